@@ -35,13 +35,13 @@ if TYPE_CHECKING:
     from epicyclic.show.views import solve as solve
     from epicyclic.show.views import solve_for as solve_for
     from epicyclic.study.bands.compare_cases import compare_cases as compare_cases
-    from epicyclic.study.bands.run import uncertainty as uncertainty
+    from epicyclic.study.bands.points import uncertainty as uncertainty
     from epicyclic.study.heat import heat_balance as heat_balance
     from epicyclic.study.load import load_case as load_case
     from epicyclic.study.maps.compute import loss_map as loss_map
+    from epicyclic.study.maps.compute import with_temperature_state as with_temperature_state
     from epicyclic.study.maps.duty import duty_cycle as duty_cycle
     from epicyclic.study.maps.formats import write_map as write_map
-    from epicyclic.study.maps.lumped import with_temperature_state as with_temperature_state
     from epicyclic.study.maps.warm_up import warm_up as warm_up
     from epicyclic.study.measured.compare import compare_measured as compare_measured
     from epicyclic.study.measured.comparison import MeasuredComparison as MeasuredComparison
@@ -82,9 +82,9 @@ _HOME = {
     "solve": "epicyclic.show.views",
     "solve_for": "epicyclic.show.views",
     "sweep": "epicyclic.study.sweeps.run",
-    "uncertainty": "epicyclic.study.bands.run",
+    "uncertainty": "epicyclic.study.bands.points",
     "warm_up": "epicyclic.study.maps.warm_up",
-    "with_temperature_state": "epicyclic.study.maps.lumped",
+    "with_temperature_state": "epicyclic.study.maps.compute",
     "write_map": "epicyclic.study.maps.formats",
 }
 

@@ -82,6 +82,11 @@ class InputError(EpicyclicError, ValueError):
         return "\n".join([head, *lines])
 
 
+def one_problem(key: str, value: str, allowed: str, remedy: str, source: str = "") -> InputError:
+    """The `InputError` of a single problem; parameters as for `Problem`."""
+    return InputError([Problem(key, value, allowed, remedy)], source)
+
+
 def raise_any(problems: Iterable[Problem], source: str = "") -> None:
     """Raise the `InputError` of the problems if there are any; parameters as for that."""
     found = tuple(problems)

@@ -13,8 +13,7 @@ import pytest
 import epicyclic as ep
 from epicyclic.cli.common import parse_changes
 from epicyclic.cli.main import main
-from epicyclic.study.sweeps.axes import columns_of
-from epicyclic.study.sweeps.links import parse_expression
+from epicyclic.study.sweeps.axes import columns_of, parse_expression
 from epicyclic.study.sweeps.plan import SweepPlan, make_plan, parse_links, parse_together
 from epicyclic.study.sweeps.run import to_dataset, to_table
 from epicyclic.study.sweeps.runner import Row, Rows, fingerprint

@@ -77,7 +77,7 @@ def test_estimates_say_that_they_are_none_of_the_source():
 
 
 def test_slopes_without_a_published_one_are_shown_too():
-    slopes = [item for item in settled._figures() if item["compute"] == "branch_slope"]
+    slopes = [item for item in settled._settled_figures() if item["compute"] == "branch_slope"]
     conditions = {(item["with"]["temperature"], item["with"]["finish"]) for item in slopes}
     assert len(conditions) == 6
     assert sum("source" in item for item in slopes) == 2

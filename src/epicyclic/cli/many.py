@@ -51,8 +51,8 @@ def refuse_options(options: Mapping[str, object]) -> None:
 def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None:
     """Write the map of `file` to `output`, with the temperature as a state if it is `heated`."""
     from epicyclic.show.files import open_map
+    from epicyclic.study.maps.compute import with_temperature_state
     from epicyclic.study.maps.formats import write_map
-    from epicyclic.study.maps.lumped import with_temperature_state
     from epicyclic.study.maps.tables import map_case
 
     data = open_map(file)
@@ -216,8 +216,14 @@ def loss_map(
         )
         convert(Path(case), output, name, heated=heated)
         return
-    from epicyclic.study.maps.compute import coordinates, map_plan, resolving_texts, states_left_out
-    from epicyclic.study.maps.lumped import check_axis, lumped
+    from epicyclic.study.maps.compute import (
+        check_axis,
+        coordinates,
+        lumped,
+        map_plan,
+        resolving_texts,
+        states_left_out,
+    )
     from epicyclic.study.sweeps.plan import parse_vary
 
     loaded = load_with(case, changes)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from epicyclic.case.case import Case
-    from epicyclic.study.bands.run import Study
+    from epicyclic.study.bands.study import Study
     from epicyclic.study.sweeps.runner import Rows, Runner
 
 MAP_SUFFIX = ".nc"

@@ -77,10 +77,7 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
     are fitted models of the oil, ``fitted`` and ``ehl-direct`` if the case chooses them. With
     `brief` only those that `recommended` looks at, without the quick method, whose loss is NaN.
 
-    Raises
-    ------
-    InputError
-        If the case is a train of given efficiencies.
+    Raises `InputError` if the case is a train of given efficiencies.
     """
     built = build_computed(case)
     owners = [own for _, own in set_cases(case, built.sets)]

@@ -12,7 +12,7 @@ from epicyclic.builders.temperatures import oil_medium
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.messages import refused, written
-from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.errors import ConvergenceError, InputError, one_problem
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.heat import COLDEST, HOTTEST
 from epicyclic.result.result import HeatBalance, Result, in_words
@@ -74,10 +74,7 @@ def heat_balance(case: Case) -> HeatBalance:
 def with_network(case: Case) -> Case:
     """The case with the network of its parts.
 
-    Raises
-    ------
-    InputError
-        If all its losses are given, so that it has no oil.
+    Raises `InputError` if all its losses are given, so that it has no oil.
     """
     _check_oil(case)
     return case.updated(NETWORK)
@@ -86,7 +83,7 @@ def with_network(case: Case) -> Case:
 def _check_oil(case: Case) -> None:
     if case.lubricant is None:
         allowed = "needs a case that computes losses; all those of this one are given."
-        raise InputError([Problem("models.temperatures", "network", allowed, "")], case.source)
+        raise one_problem("models.temperatures", "network", allowed, "", case.source)
 
 
 def hottest(heat: HeatBalance) -> str:
@@ -209,7 +206,7 @@ def solve_for(
     """The cooling, flow or power with which the oil has a temperature, as `epicyclic.solve_for`."""
     if quantity not in QUANTITIES:
         allowed = f"is none of {', '.join(QUANTITIES)}."
-        raise InputError([Problem("quantity", written(quantity), allowed, "Name one of them.")])
+        raise one_problem("quantity", written(quantity), allowed, "Name one of them.")
     target = _temperature(temperature)
     _check_oil(case)
     search = QUANTITIES[quantity](case, target)
@@ -283,15 +280,11 @@ def _bracket(
         f"{_limit(search, at)} it is at {CELSIUS.text(excess(at) + target, 4)}"
         for at in (0.0, before or number)
     )
-    raise InputError(
-        [
-            Problem(
-                f"oil at {CELSIUS.text(target)}",
-                "",
-                f"cannot be reached: {', '.join(ends)}.",
-                "Choose another temperature, or change other ways of the heat, [thermal].",
-            )
-        ]
+    raise one_problem(
+        f"oil at {CELSIUS.text(target)}",
+        "",
+        f"cannot be reached: {', '.join(ends)}.",
+        "Choose another temperature, or change other ways of the heat, [thermal].",
     )
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from epicyclic.builders.notes import load_notes
 from epicyclic.builders.set_case import set_cases
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.losses.contact import LineLoads
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 
 # Variables of datasets: values in the units that users see, with label and unit.
 
-
 Array = NDArray[np.float64] | NDArray[np.bool_]
 Variable = tuple[tuple[str, ...], Array, dict[str, Any]]
 
@@ -63,7 +62,6 @@ def variable(
 
 
 # Everything about the loaded meshes of a case, point by point.
-
 
 FloatArray = NDArray[np.float64]
 
@@ -97,13 +95,13 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
         If the load on the teeth is not found.
     """
     if case.operation.torque == 0:
-        problem = Problem(
+        raise one_problem(
             "operation.torque",
             "0 N*m",
             "leaves the meshes without load.",
             "Give a torque other than zero.",
+            case.source,
         )
-        raise InputError([problem], case.source)
     built = build_computed(case)
     notes = {name: load_notes(own) for name, own in set_cases(case, built.sets)}
     state = built.loaded_state()
@@ -244,12 +242,9 @@ def bearing_details(
 ) -> xr.Dataset:
     """Roller loads of a bearing with units, rows, rollers and slices counted from 1.
 
-    Returns
-    -------
-    xarray.Dataset
-        Dimensions ``row``, ``roller``, ``slice``: ``azimuth`` of each roller from the load,
-        ``axial_position`` of each slice from the middle of the bearing, ``load`` of each roller,
-        ``line_load`` and ``pressure`` (inner race) of each slice.
+    Returns xarray.Dataset: dimensions ``row``, ``roller``, ``slice``: ``azimuth`` of each roller
+    from the load, ``axial_position`` of each slice from the middle of the bearing, ``load`` of each
+    roller, ``line_load`` and ``pressure`` (inner race) of each slice.
     """
     import xarray as xr
 

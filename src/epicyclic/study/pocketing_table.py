@@ -12,7 +12,7 @@ import numpy as np
 
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem, Status
+from epicyclic.errors import Status, one_problem
 from epicyclic.losses.pocket_tables import (
     ATTRIBUTE,
     FLOW_NUMBERS,
@@ -184,8 +184,7 @@ def _table_plan(places: SweepPlan) -> TablePlan:
     case = places.case
     if case.numerics.pocket_interpolation == 0:
         allowed = "must be more than 0: a table is interpolated."
-        problem = Problem("numerics.pocket_interpolation", "0", allowed, "Take 0.002.")
-        raise InputError([problem], case.source)
+        raise one_problem("numerics.pocket_interpolation", "0", allowed, "Take 0.002.", case.source)
     flows = tuple(
         flow
         for index in range(places.size)
@@ -195,14 +194,13 @@ def _table_plan(places: SweepPlan) -> TablePlan:
     for family in plan.families:
         if not any(flow.turns for flow in flows if flow.family == family):
             name, allowed = family.mesh.name, "stands still at all these speeds."
-            raise InputError([Problem(name, "", allowed, "Give other speeds.")], case.source)
+            raise one_problem(name, "", allowed, "Give other speeds.", case.source)
         try:
             _ = family.geometry
         except ValueError as error:
             allowed = f"has no tooth outline: {error}."
             remedy = "Change the tooth (tip and root diameter, tool_tip_radius)."
-            problem = Problem(family.mesh.name, "", allowed, remedy)
-            raise InputError([problem], case.source) from None
+            raise one_problem(family.mesh.name, "", allowed, remedy, case.source) from None
     return plan
 
 
@@ -243,8 +241,7 @@ def table_dataset(plan: TablePlan, rows: Rows) -> xr.Dataset:
 
     case, families = plan.case, plan.families
     if rows.failures:
-        problem = Problem("", "", rows.failures[0], "Change the case.")
-        raise InputError([problem], case.source)
+        raise one_problem("", "", rows.failures[0], "Change the case.", case.source)
     made = [i for i, status in enumerate(rows.status) if status == Status.CONVERGED]
     tables = {families[i]: _table_of(rows, i) for i in made}
     speed, temperature = plan.places.axes

@@ -13,7 +13,7 @@ from scipy.integrate import cumulative_trapezoid
 
 from epicyclic.builders.build import build
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, one_problem
 from epicyclic.gears.cutting import tooth_outline
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.generation import Tool
@@ -109,7 +109,7 @@ def mesh_duties(case: Case) -> tuple[MeshDuty, ...]:
 
 def _unsuitable(case: Case, key: str, what: str) -> InputError:
     remedy = "Change operation.speed, or the tooth (tip and root diameter, tool_tip_radius)."
-    return InputError([Problem(key, "", what, remedy)], case.source)
+    return one_problem(key, "", what, remedy, case.source)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

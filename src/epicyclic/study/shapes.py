@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 # Where the gears of a set stand, and how they must be turned for their teeth to mesh.
 
-
 Point = tuple[float, float]
 """x and y of a centre. [m]"""
 Place = tuple[float, float, float]
@@ -126,10 +125,7 @@ def tooth_directions(
 
     Nothing is checked: whether the set can be assembled so is a matter of the case.
 
-    Returns
-    -------
-    dict of str to list of float
-        By gear; the first one points upwards. [rad]
+    Returns dict of str to list of float: by gear; the first one points upwards. [rad]
     """
     known: dict[_Stand, float] = {}
     stands = [(name, number) for name in centers for number in range(len(centers[name]))]
@@ -194,7 +190,6 @@ def _meshing(
 # Each gear is one dataset: the outline of one tooth about the axis of the gear, the tooth pointing
 # along y, and the places at which the gear stands, each with the direction of its first tooth.
 
-
 POINTS_PER_SECTION = 12
 """Points of a drawn outline on each section of half a tooth."""
 
@@ -204,14 +199,11 @@ def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
 
     Of a train the gears of the sets whose losses are computed.
 
-    Returns
-    -------
-    dict of str to xarray.Dataset
-        By gear, ``"sun"``, of a train ``"P1.sun"``. ``x``, ``y`` over ``point``: one tooth from the
-        middle of a space to the middle of the next; absent if the tooth has no outline.
-        ``center_x``, ``center_y``, ``direction`` over ``place``. Diameters without dimension. Units
-        in ``attrs["units"]``. The attribute ``relative_speed`` is that of the gear over that of the
-        first one of its set, seen from the carrier.
+    Returns dict of str to xarray.Dataset: by gear, ``"sun"``, of a train ``"P1.sun"``. ``x``, ``y``
+    over ``point``: one tooth from the middle of a space to the middle of the next; absent if the
+    tooth has no outline. ``center_x``, ``center_y``, ``direction`` over ``place``. Diameters
+    without dimension. Units in ``attrs["units"]``. The attribute ``relative_speed`` is that of the
+    gear over that of the first one of its set, seen from the carrier.
     """
     return {
         joined_key(prefix, name): shape
@@ -225,12 +217,10 @@ def mesh_views(case: Case) -> dict[str, xr.Dataset]:
 
     Member 1 stands below and pushes to the right, whichever flank carries in the case.
 
-    Returns
-    -------
-    dict of str to xarray.Dataset
-        By mesh, ``"sun_mesh"``, of a train ``"P1.sun_mesh"``. ``center_x``, ``center_y``,
-        ``direction``, ``operating_radius`` over ``gear``; ``path_x``, ``path_y`` over ``end``,
-        where contact begins and ends; ``pressure_angle`` of the line of action.
+    Returns dict of str to xarray.Dataset: by mesh, ``"sun_mesh"``, of a train ``"P1.sun_mesh"``.
+    ``center_x``, ``center_y``, ``direction``, ``operating_radius`` over ``gear``; ``path_x``,
+    ``path_y`` over ``end``, where contact begins and ends; ``pressure_angle`` of the line of
+    action.
     """
     return {
         joined_key(prefix, duty.key): _view(duty.mesh)

@@ -11,7 +11,7 @@ from epicyclic.builders.built import Built
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
 from epicyclic.contact.elastic_teeth import LoadedMesh
-from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.errors import ConvergenceError, one_problem
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figures, table_around
 from epicyclic.machine.element import OIL
@@ -27,20 +27,18 @@ from epicyclic.study.operating import AXES
 def build_computed(case: Case) -> Built:
     """The machine of a case with gears.
 
-    Raises
-    ------
-    InputError
-        If it is a train in which every set has a given efficiency: there are no teeth to look at.
+    Raises `InputError` if it is a train in which every set has a given efficiency: there are no
+    teeth to look at.
     """
     built = build(case)
     if not built.sets or built.known_fluids is None:
-        problem = Problem(
+        raise one_problem(
             "sets",
             "",
             "have given efficiencies only: nothing is known of their teeth.",
             "Give a set its gears (module, face widths, roughness) in place of its efficiency.",
+            case.source,
         )
-        raise InputError([problem], case.source)
     return built
 
 
@@ -49,7 +47,6 @@ def build_computed(case: Case) -> Built:
 # Parts that do not depend on the operating point (geometry, contact lines, load shape), and parts
 # that depend on some of it only (roller loads on the torque), are cached by what they depend on, so
 # that a sweep does them once.
-
 
 WARMER = (30.0, 60.0)
 """How much warmer than its inlet the oil is where tables are asked for flows through pockets; they

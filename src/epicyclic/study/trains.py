@@ -27,10 +27,7 @@ def loss_sums(
 ) -> dict[str, dict[str, float]]:
     """Sums by set or part, and in each by kind. [W]
 
-    Returns
-    -------
-    dict of str to dict of str to float
-        Of `LOSS_KINDS` those that the set or part has.
+    Returns dict of str to dict of str to float: of `LOSS_KINDS` those that the set or part has.
     """
     kinds = {name: kind for table, kind in _OF_PARTS.items() for name in inputs.get(table, {})}
     sums: dict[str, dict[str, float]] = {}
@@ -51,7 +48,6 @@ def _kind_of(term: str) -> str:
 
 
 # The kinematics of every state of a train: which ratio it has, or why it has none.
-
 
 AT_REST = 1e-10
 """Speed, relative to that of the input, of a shaft that stands still. [1]"""

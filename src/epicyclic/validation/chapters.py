@@ -155,10 +155,7 @@ _WITHOUT_FLOW = {f"losses.{mesh}_pocketing.include": False for mesh in ("sun_mes
 def bearing_families(figures: Sequence[str], runner: Runner = HERE) -> list[Family]:
     """Mechanical loss of one planet bearing. Talbot (2012), section 3.4.
 
-    Raises
-    ------
-    ConvergenceError
-        If a point cannot be computed.
+    Raises `ConvergenceError` if a point cannot be computed.
     """
     wanted = [figure for figure in figures if figure in _BEARING_STUDIES]
     points: list[dict[str, Any]] = []
@@ -204,10 +201,8 @@ def _bearing_marks(figure: str) -> Iterator[Mark]:
 def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
     """Loads along the rollers at the largest torque, or at the torques of Fig. 3.3.
 
-    Returns
-    -------
-    list of (str, xarray.Dataset)
-        What varies, and `epicyclic.study.meshes.bearing_details` of it.
+    Returns list of (str, xarray.Dataset): what varies, and `epicyclic.study.meshes.bearing_details`
+    of it.
     """
     name = ROLLER_FIGURES[figure]
     lever = _BRANCH if name == "branch" else _CURVES[name]
@@ -258,10 +253,7 @@ _SPIN = ("sun_mesh_pocketing", "ring_mesh_pocketing", "planet_bearing_viscous")
 def loaded_and_unloaded(runner: Runner = HERE) -> xr.Dataset:
     """The 300 tests: 3 to 6 planets, shaved or polished, at all temperatures, torques and speeds.
 
-    Raises
-    ------
-    ConvergenceError
-        If a test cannot be computed.
+    Raises `ConvergenceError` if a test cannot be computed.
     """
     levers = (_SET, _TEMPERATURE, _TORQUE, _speed())
     names = ("total", "load_dependent", "load_independent", "input_power", *_SPIN)
@@ -275,10 +267,7 @@ def loaded_and_unloaded(runner: Runner = HERE) -> xr.Dataset:
 def set_families(figures: Sequence[str], runner: Runner = HERE) -> list[Family]:
     """Losses of the whole set in the tests. Talbot (2012), section 5.3.
 
-    Raises
-    ------
-    ConvergenceError
-        If a test cannot be computed.
+    Raises `ConvergenceError` if a test cannot be computed.
     """
     wanted = [figure for figure in figures if figure in _OF_TESTS]
     if not wanted:

@@ -15,6 +15,7 @@ from epicyclic.cli.common import (
     output_option,
     picture_bytes,
     picture_option,
+    progress_bar,
     runner_options,
     set_option,
     shard_option,
@@ -25,10 +26,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.files import make_folder, write_file
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from epicyclic.study.sweeps.runner import Rows, Runner
-    from epicyclic.validation.compare import ClosureFigure, Comparison
     from epicyclic.validation.pocketing import StudyPlan
 
 
@@ -49,7 +47,10 @@ if TYPE_CHECKING:
 @output_option("A page with pictures and tables in place of the table: .html, or .pdf.", "FILE")
 def validate(temperatures: bool, bands: bool, output: Path | None) -> None:
     """Compare with published figures: published, computed, difference, verdict."""
-    from epicyclic.show.terminal import terminal
+    # computing and drawing are loaded by those who ask for them: the command line starts quickly
+    from epicyclic.show.terminal import as_on_page, terminal
+    from epicyclic.study.sweeps.runner import Runner
+    from epicyclic.validation import compare, pages
 
     chosen = [
         name for name, is_on in (("--temperatures", temperatures), ("--bands", bands)) if is_on
@@ -61,74 +62,33 @@ def validate(temperatures: bool, bands: bool, output: Path | None) -> None:
             for name in others
         ]
         raise InputError(problems, "the command")
-    if temperatures:
-        terminal().print(_settled())
-    elif bands:
-        terminal().print(_banded())
-    elif output is None:
-        from epicyclic.show.terminal import as_on_page
-        from epicyclic.validation.pages import closure_table, validation_table
-
-        rows, closures = _compared(), _closures()
-        terminal().print(as_on_page(closure_table(closures)))
-        terminal().print(validation_table(rows, closures))
-    else:
-        _write(output)
-
-
-def _write(output: Path) -> None:
-    """The page of all figures, and what it comes to."""
-    check_page(output)
-    from epicyclic.cli.common import progress_bar
-    from epicyclic.validation.compare import summary
-    from epicyclic.validation.pages import validation_html
-
-    rows = _compared()
-    closures = _closures()
-    with progress_bar("pictures") as progress:
-        page = validation_html(rows, closures, progress)
-    write_page(output, page)
-    click.echo(summary(rows, closures))
-
-
-def _compared() -> tuple[Comparison, ...]:
-    from epicyclic.cli.common import progress_bar
-    from epicyclic.validation.compare import compare_published
-
+    if chosen:
+        with progress_bar("tests") as progress:
+            runner = Runner(progress=progress)
+            if temperatures:
+                settled = compare.settled_figures(runner)
+                shown = pages.settled_table(settled, compare.estimates())
+            else:
+                shown = pages.bands_table(compare.measured_figures(runner))
+        terminal().print(shown)
+        return
+    if output is not None:
+        check_page(output)
     with progress_bar("figures") as progress:
-        return compare_published(progress)
-
-
-def _closures() -> tuple[ClosureFigure, ...]:
-    from epicyclic.cli.common import progress_bar
-    from epicyclic.validation.compare import closure_figures
-
+        rows = compare.compare_published(progress)
     with progress_bar("closures of the flow through pockets") as progress:
-        return closure_figures(progress)
-
-
-def _settled() -> RenderableType:
-    from epicyclic.cli.common import progress_bar
-    from epicyclic.study.sweeps.runner import Runner
-    from epicyclic.validation.compare import estimates, settled_figures
-    from epicyclic.validation.pages import settled_table
-
-    with progress_bar("tests") as progress:
-        return settled_table(settled_figures(Runner(progress=progress)), estimates())
-
-
-def _banded() -> RenderableType:
-    from epicyclic.cli.common import progress_bar
-    from epicyclic.study.sweeps.runner import Runner
-    from epicyclic.validation.compare import measured_figures
-    from epicyclic.validation.pages import bands_table
-
-    with progress_bar("tests") as progress:
-        return bands_table(measured_figures(Runner(progress=progress)))
+        closures = compare.closure_figures(progress)
+    if output is None:
+        terminal().print(as_on_page(pages.closure_table(closures)))
+        terminal().print(pages.validation_table(rows, closures))
+        return
+    with progress_bar("pictures") as progress:
+        page = pages.validation_html(rows, closures, progress)
+    write_page(output, page)
+    click.echo(compare.summary(rows, closures))
 
 
 # The command reproduce: a chapter of the dissertation computed again.
-
 
 PAGE = "index.html"
 
@@ -157,7 +117,6 @@ def reproduce(
     epicyclic reproduce 5 -o chapter-5
     epicyclic reproduce 3 --figure 3.4 --figure 3.5 -o bearings
     """
-    from epicyclic.cli.common import progress_bar
     from epicyclic.study.sweeps.run import write_dataset
     from epicyclic.validation.chapters import CHAPTERS, TOPICS
     from epicyclic.validation.compare import compare_published, summary

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import itertools
-import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
-from importlib import resources
+from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.case.case import read_case
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.bands.plan import nearby_at
 from epicyclic.study.bands.quick import quick_band
@@ -22,7 +19,14 @@ from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.plan import PointList
 from epicyclic.study.sweeps.run import as_tested, with_unloaded
 from epicyclic.study.sweeps.runner import HERE, Runner
-from epicyclic.validation.compute import FIGURES, LoadedTests, loaded_conditions, source_case
+from epicyclic.validation.compute import (
+    FIGURES,
+    LoadedTests,
+    data_file,
+    loaded_conditions,
+    pair_pocketing,
+    source_case,
+)
 
 # The open figures of the published study of pocketing losses, for each model of the flow.
 
@@ -32,17 +36,23 @@ CLOSURES = ("incompressible", "isentropic", "mean-density", "talbot-2012")
 """Models that are compared; "central-differences" has no solution for some of the figures."""
 
 
-@dataclass(frozen=True, slots=True)
-class ClosureFigure:
-    """One open figure of the study."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Published:
+    """What is published of one figure, and how far off a computed one may be."""
 
     what: str
     unit: str
     source: str
-    low: float  # What is published; equal for a value.
-    high: float  # What is published; equal for a value.
-    tolerance: float  # By how much a value may miss that and yet hold. [1]
+    low: float  # The published value, twice, or the ends of the published range.
+    high: float
+    tolerance: float  # Relative to the published value. [1]
     cause: str  # Why that tolerance.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClosureFigure(Published):
+    """One open figure of the study, computed with every model."""
+
     computed: dict[str, float]  # By model, as `CLOSURES`.
 
     def holds(self, model: str) -> bool:
@@ -55,11 +65,11 @@ def closure_figures(
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[ClosureFigure, ...]:
     """All open figures, computed with every model."""
-    content = _content()
-    figures = []
-    for number, figure in enumerate(content["figure"]):
-        allowed = figure if "tolerance" in figure else content["default"]
-        figures.append(
+    default = data_file("pocketing.toml")["default"]
+    found = []
+    for number, figure in enumerate(open_figures()):
+        allowed = figure if "tolerance" in figure else default
+        found.append(
             ClosureFigure(
                 what=figure["what"],
                 unit=figure["unit"],
@@ -68,48 +78,36 @@ def closure_figures(
                 high=figure["high"],
                 tolerance=allowed["tolerance"],
                 cause=allowed["cause"],
-                computed={model: _computed(figure, model) for model in CLOSURES},
+                computed={model: _with_closure(figure, model) for model in CLOSURES},
             )
         )
-        progress(number + 1, len(content["figure"]))
-    return tuple(figures)
+        progress(number + 1, len(open_figures()))
+    return tuple(found)
 
 
 def open_figures() -> list[dict[str, Any]]:
     """The entries of `pocketing.toml`."""
-    found: list[dict[str, Any]] = _content()["figure"]
+    found: list[dict[str, Any]] = data_file("pocketing.toml")["figure"]
     return found
 
 
-@cache
-def _content() -> dict[str, Any]:
-    file = resources.files("epicyclic.validation").joinpath("pocketing.toml")
-    return tomllib.loads(file.read_text("utf-8"))
-
-
-def _computed(figure: dict[str, Any], model: str) -> float:
-    loss = _loss(figure["helix_angle"], figure["face_width"], model)
-    if "over" in figure:
-        return loss / _loss(figure["over"], figure["face_width"], model)
-    return loss
-
-
-@cache
-def _loss(helix_angle: str, face_width: str, model: str) -> float:
-    """Pocketing loss of the example pair at 10000 rpm. [W]"""
-    case = read_case("talbot-2012-pair").updated(
-        {
-            "gears.helix_angle": helix_angle,
-            "pinion.face_width": face_width,
-            "gear.face_width": face_width,
-            "models.pocketing": model,
-        }
+def _with_closure(figure: Mapping[str, Any], model: str) -> float:
+    """Pocketing loss of the example pair at 10000 rpm [W], or its ratio to that of another one."""
+    width = figure["face_width"]
+    loss, *others = (
+        pair_pocketing(
+            gears__helix_angle=figure[angle],
+            pinion__face_width=width,
+            gear__face_width=width,
+            models__pocketing=model,
+        )
+        for angle in ("helix_angle", "over")
+        if angle in figure
     )
-    return solve(case).losses["mesh_pocketing"]
+    return loss / others[0] if others else loss
 
 
 # Compare the published figures with what is computed.
-
 
 Verdict = Literal["agrees", "differs", "calibrated", "no verdict"]
 _TOPICS = {
@@ -131,19 +129,12 @@ FILES = ("published.toml", "programs.toml")
 """What is published, and what other programs print."""
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comparison(Published):
     """One published figure and the computed one."""
 
-    what: str
     topic: str
-    unit: str
-    source: str
-    low: float  # The published value, twice, or the published range.
-    high: float  # The published value, twice, or the published range.
     computed: float
-    tolerance: float  # Relative to the published value. [1]
-    cause: str  # Why that tolerance.
     role: str  # ``"validation"``, ``"calibration"`` or ``"context"``.
     # How the tolerance was: ``"print"``, the rounding of what is printed, or ``"in view"`` of the
     # computed figure.
@@ -182,9 +173,7 @@ def compare_published(
 
 def published_figures() -> list[dict[str, Any]]:
     """The entries of all `FILES`."""
-    folder = resources.files("epicyclic.validation")
-    texts = (folder.joinpath(name).read_text(encoding="utf-8") for name in FILES)
-    return [figure for text in texts for figure in tomllib.loads(text)["figure"]]
+    return [figure for name in FILES for figure in data_file(name)["figure"]]
 
 
 def by_topic(rows: Sequence[Comparison]) -> dict[str, list[Comparison]]:
@@ -206,15 +195,13 @@ def summary(
     closures: Sequence[ClosureFigure] = (),
 ) -> str:
     """How many figures agree, and how much each kind of agreement says."""
-    return " ".join((*_sentences(rows), *_of_closures(closures)))
-
-
-def _of_closures(closures: Sequence[ClosureFigure]) -> Iterator[str]:
+    sentences = [*_sentences(rows)]
     if closures:
         held = (
             f"{sum(figure.holds(model) for figure in closures)} with {model}" for model in CLOSURES
         )
-        yield f"Of {len(closures)} open figures of pocketing hold {', '.join(held)}."
+        sentences.append(f"Of {len(closures)} open figures of pocketing hold {', '.join(held)}.")
+    return " ".join(sentences)
 
 
 def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:
@@ -255,7 +242,6 @@ def _compare(figure: dict[str, Any]) -> Comparison:
 
 
 # Published measurements beside the band that the shipped distributions give. Nothing is fitted.
-
 
 FloatArray = NDArray[np.float64]
 
@@ -365,14 +351,12 @@ def _compute(figure: Mapping[str, Any], bands: _Bands, draw: int) -> float:
         )
         return [_Test(it.input_power, float(it.load_dependent[draw])) for it in chosen]
 
-    own: LoadedTests = tests
-    return FIGURES[figure["compute"]](**figure["with"], tests=own)
+    return _by_tests(figure, tests)
 
 
 # The loaded tests of the dissertation with temperatures that follow from the losses.
 #
 # Nothing is fitted to them: what is not published of their heat is varied over its plausible range.
-
 
 _MODEL = "models.temperatures"
 _OF_TESTS = ("branch_slope", "load_dependent_loss", "loss_share")
@@ -406,79 +390,27 @@ class SettledFigure:
     high: float  # The least and the most of the network with all combinations of `estimates`.
 
 
-@cache
-def _settled_content() -> dict[str, Any]:
-    file = resources.files("epicyclic.validation").joinpath("settled.toml")
-    return tomllib.loads(file.read_text(encoding="utf-8"))
-
-
 def estimates() -> tuple[Estimate, ...]:
     """Inputs of the network that are not published, and their plausible ranges."""
-    return tuple(Estimate(**item) for item in _settled_content()["estimate"])
+    return tuple(Estimate(**item) for item in data_file("settled.toml")["estimate"])
 
 
 def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
     """Every published figure of the loaded tests, and the slopes at all temperatures and finishes.
 
-    Raises
-    ------
-    ConvergenceError
-        If a test cannot be computed.
+    Raises `ConvergenceError` if a test cannot be computed.
     """
-    networks = list(_networks())
+    keys = [item.key for item in estimates()]
+    # all combinations of the estimates and the ends of their ranges
+    ends = itertools.product(*((item.low, item.value, item.high) for item in estimates()))
+    networks: list[dict[str, Any]] = [
+        {_MODEL: "network"} | dict(zip(keys, values, strict=True)) for values in ends
+    ]
+    likely: dict[str, Any] = {_MODEL: "network"}
+    likely |= {item.key: item.value for item in estimates()}
     settings = [{_MODEL: "inlet"}, {_MODEL: "flank"}, *networks]
-    inlet, flank, *others = _tests_of(settings, runner)
-    middle = others[networks.index(_network(item.value for item in estimates()))]
-    return tuple(
-        SettledFigure(
-            what=figure["what"],
-            unit=figure["unit"],
-            published=tuple(figure[key] for key in ("value", "low", "high") if key in figure),
-            inlet=_settled_compute(figure, inlet),
-            flank=_settled_compute(figure, flank),
-            network=_settled_compute(figure, middle),
-            low=min(_settled_compute(figure, one) for one in others),
-            high=max(_settled_compute(figure, one) for one in others),
-        )
-        for figure in _settled_figures()
-    )
-
-
-def _networks() -> Iterator[dict[str, Any]]:
-    """All combinations of the estimates and the ends of their ranges."""
-    ways = [(item.low, item.value, item.high) for item in estimates()]
-    return map(_network, itertools.product(*ways))
-
-
-def _network(values: Iterable[float | str]) -> dict[str, Any]:
-    """What a case changes that takes these values of the estimates."""
-    keys = (item.key for item in estimates())
-    return {_MODEL: "network", **dict(zip(keys, values, strict=True))}
-
-
-def _settled_figures() -> Iterator[dict[str, Any]]:
-    """Those that are published, then slopes of which no measurement is kept here."""
-    known = [figure for figure in published_figures() if figure["compute"] in _OF_TESTS]
-    yield from known
-    content = _settled_content()
-    for finish, temperature in itertools.product(content["finishes"], content["temperatures"]):
-        given = {"temperature": temperature, "finish": finish, "planets": content["planets"]}
-        if not any(figure["with"] == given for figure in known):
-            yield {
-                "what": f"slope of the branch loss over the branch power, {finish}, {temperature}",
-                "unit": "%",
-                "compute": "branch_slope",
-                "with": given,
-            }
-
-
-def _settled_compute(figure: Mapping[str, Any], tests: LoadedTests) -> float:
-    return FIGURES[figure["compute"]](**figure["with"], tests=tests)
-
-
-def _tests_of(settings: Sequence[Mapping[str, Any]], runner: Runner) -> list[LoadedTests]:
-    """The loaded tests with each of the settings, all computed in one go."""
-    content = _settled_content()
+    # The loaded tests with each of the settings, all computed in one go.
+    content = data_file("settled.toml")
     conditions = [
         test
         for temperature, finish in itertools.product(content["temperatures"], content["finishes"])
@@ -493,10 +425,45 @@ def _tests_of(settings: Sequence[Mapping[str, Any]], runner: Runner) -> list[Loa
     loss = as_tested(rows, unloaded)
     tests = list(map(_Test, rows.numbers("input_power")[: loss.size].tolist(), loss.tolist()))
     names, count = [tuple(test.values()) for test in conditions], len(conditions)
-    return [
+    inlet, flank, *others = [
         partial(_chosen, dict(zip(names, tests[first : first + count], strict=True)))
         for first in range(0, len(tests), count)
     ]
+    middle = others[networks.index(likely)]
+    return tuple(
+        SettledFigure(
+            what=figure["what"],
+            unit=figure["unit"],
+            published=tuple(figure[key] for key in ("value", "low", "high") if key in figure),
+            inlet=_by_tests(figure, inlet),
+            flank=_by_tests(figure, flank),
+            network=_by_tests(figure, middle),
+            low=min(_by_tests(figure, one) for one in others),
+            high=max(_by_tests(figure, one) for one in others),
+        )
+        for figure in _settled_figures()
+    )
+
+
+def _settled_figures() -> Iterator[dict[str, Any]]:
+    """Those that are published, then slopes of which no measurement is kept here."""
+    known = [figure for figure in published_figures() if figure["compute"] in _OF_TESTS]
+    yield from known
+    content = data_file("settled.toml")
+    for finish, temperature in itertools.product(content["finishes"], content["temperatures"]):
+        given = {"temperature": temperature, "finish": finish, "planets": content["planets"]}
+        if not any(figure["with"] == given for figure in known):
+            yield {
+                "what": f"slope of the branch loss over the branch power, {finish}, {temperature}",
+                "unit": "%",
+                "compute": "branch_slope",
+                "with": given,
+            }
+
+
+def _by_tests(figure: Mapping[str, Any], tests: LoadedTests) -> float:
+    """A figure that follows from the loaded tests."""
+    return FIGURES[figure["compute"]](**figure["with"], tests=tests)
 
 
 def _chosen(

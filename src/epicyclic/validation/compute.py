@@ -174,33 +174,10 @@ def mesh_stiffness_of(mesh: LoadedMesh) -> float:
     return mesh.mean(mesh.secant_stiffness) / mesh.mesh.face_width / 1e9
 
 
-PROGRAM_FIGURES: dict[str, Callable[..., float]] = {
-    function.__name__: function
-    for function in (
-        mesh_geometry,
-        mesh_power,
-        loss_factor,
-        closed_loss_factor,
-        local_loss_factor,
-        mean_friction,
-        closed_loss,
-        local_loss,
-        stage_loss,
-        sliding_loss,
-        pitch_pressure,
-        smallest_film,
-        largest_film,
-        program_single_stiffness,
-        program_mesh_stiffness,
-    )
-}
-
-
 # The published figures computed: one function for each kind of figure.
 #
 # Each takes plain values as `published.toml` has them and returns a number in the unit stated
 # there.
-
 
 TEST_TORQUES = (250, 500, 750, 1000)
 """Loaded tests: torque on the sun. [N m]"""
@@ -343,7 +320,8 @@ def loss_share(
     return min(values) if extreme == "smallest" else max(values)
 
 
-def _pocketing(**changes: object) -> float:
+@cache
+def pair_pocketing(**changes: str | float) -> float:
     """Pocketing loss of the example pair with its keys changed. [W]"""
     case = read_case("talbot-2012-pair")
     updated = case.updated({key.replace("__", "."): value for key, value in changes.items()})
@@ -352,14 +330,14 @@ def _pocketing(**changes: object) -> float:
 
 def pocketing_loss(helix_angle: str, model: str) -> float:
     """Pocketing loss of the example pair at 10000 rpm. [W]"""
-    return _pocketing(gears__helix_angle=helix_angle, models__pocketing=model)
+    return pair_pocketing(gears__helix_angle=helix_angle, models__pocketing=model)
 
 
 def pocketing_speed_exponent(model: str) -> float:
     """Slope of the logarithm of the loss of the spur pair over that of the speed. [1]"""
     speeds = np.arange(1000, 10001, 1000)
     losses = [
-        _pocketing(
+        pair_pocketing(
             gears__helix_angle="0 deg", models__pocketing=model, operation__speed=f"{speed} rpm"
         )
         for speed in speeds
@@ -370,7 +348,7 @@ def pocketing_speed_exponent(model: str) -> float:
 def pocketing_oil_ratio(model: str) -> float:
     """Loss of the spur pair with an oil share of 0.6 over that with 0.05. [1]"""
     rich, lean = (
-        _pocketing(
+        pair_pocketing(
             gears__helix_angle="0 deg", models__pocketing=model, surroundings__oil_air_ratio=share
         )
         for share in (0.6, 0.05)
@@ -423,14 +401,14 @@ def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
 
 
 @cache
-def _tables_of(name: str) -> dict[str, Any]:
-    """What a file beside `published.toml` holds."""
+def data_file(name: str) -> dict[str, Any]:
+    """What a data file beside this module holds."""
     file = resources.files("epicyclic.validation").joinpath(name)
     return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
 def _train(train: str, changes: Mapping[str, Any]) -> Result:
-    tables = _tables_of("trains.toml").get(train)
+    tables = data_file("trains.toml").get(train)
     case = read_case(train if tables is None else tables)
     return solve(case.updated(changes))
 
@@ -452,7 +430,7 @@ def train_efficiency(train: str, **changes: Any) -> float:
 
 def bulk_temperature(mesh: str) -> float:
     """ISO/TS 6336-22, from the friction and the loss factor printed beside it. [degC]"""
-    given = _tables_of("temperatures.toml")[mesh]
+    given = data_file("temperatures.toml")[mesh]
     rise = bulk_rise_of_loss(
         given["power"] * given["mean_friction"] * given["loss_factor"],
         given["center_distance"],
@@ -479,7 +457,7 @@ def pair_flash_temperature(pair: str, line_load: float) -> float:
     contact = _loaded_pair(pair)[1]
     mesh, start = contact.mesh, contact.mesh.path_start
     speed1, speed2 = contact.speed1 * start, contact.speed2 * mesh.curvature2(start)
-    carried = effusivity(**_tables_of("temperatures.toml")["steel"])
+    carried = effusivity(**data_file("temperatures.toml")["steel"])
     rise = flash_temperature(
         _mean_friction(pair),
         line_load,
@@ -497,7 +475,7 @@ def pair_flash_temperature(pair: str, line_load: float) -> float:
 
 @cache
 def _loaded_pair(pair: str) -> tuple[dict[str, Any], MeshContact]:
-    given = _tables_of("temperatures.toml")[pair]
+    given = data_file("temperatures.toml")[pair]
     return given, mesh_contacts(read_case(given["case"]))["mesh"]
 
 
@@ -517,24 +495,13 @@ def _mean_friction(pair: str) -> float:
 FIGURES: Mapping[str, Callable[..., float]] = {
     function.__name__: function
     for function in (
-        planet_bearing_loss,
-        planet_bearing_ratio,
-        train_efficiency,
-        train_ratio,
-        bulk_temperature,
-        pair_bulk_temperature,
-        pair_flash_temperature,
-        azimuth_of_gained_rollers,
-        mixture_density,
-        mixture_viscosity,
-        branch_slope,
-        load_dependent_loss,
-        load_independent_loss,
-        loss_share,
-        pocketing_loss,
-        pocketing_speed_exponent,
-        pocketing_oil_ratio,
-        single_stiffness,
-        mean_mesh_stiffness,
+        mesh_geometry, mesh_power, loss_factor, closed_loss_factor, local_loss_factor,
+        mean_friction, closed_loss, local_loss, stage_loss, sliding_loss, pitch_pressure,
+        smallest_film, largest_film, program_single_stiffness, program_mesh_stiffness,
+        planet_bearing_loss, planet_bearing_ratio, azimuth_of_gained_rollers,
+        mixture_density, mixture_viscosity, branch_slope, load_dependent_loss,
+        load_independent_loss, loss_share, pocketing_loss, pocketing_speed_exponent,
+        pocketing_oil_ratio, single_stiffness, mean_mesh_stiffness, train_ratio,
+        train_efficiency, bulk_temperature, pair_bulk_temperature, pair_flash_temperature,
     )
-} | PROGRAM_FIGURES
+}  # fmt: skip

@@ -35,6 +35,7 @@ from epicyclic.validation.compare import (
     Comparison,
     Estimate,
     MeasuredFigure,
+    Published,
     SettledFigure,
     by_topic,
     summary,
@@ -71,9 +72,7 @@ def closure_table(rows: Sequence[ClosureFigure]) -> Table:
     cells = [
         (
             Cell(f"{row.what}, {row.unit}".rstrip(", ")),
-            aligned(
-                shown(row.low) if row.low == row.high else f"{shown(row.low)} to {shown(row.high)}"
-            ),
+            aligned(published_text(row)),
             *(
                 aligned(f"{shown(row.computed[name])} {'holds' if row.holds(name) else 'misses'}")
                 for name in CLOSURES
@@ -178,14 +177,13 @@ def verdict_text(row: Comparison) -> str:
     return f"{row.verdict} ({100 * row.tolerance:.2g} %{seen})"
 
 
-def published_text(row: Comparison) -> str:
+def published_text(row: Published) -> str:
     """The published value, or the ends of its range."""
     low, high = shown(row.low), shown(row.high)
     return low if low == high else f"{low} to {high}"
 
 
 # The report of the comparison with published figures: one page for all of them.
-
 
 MOST_ROWS = 8
 """Most rows of one picture."""
@@ -208,22 +206,21 @@ def validation_html(
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> str:
     """Every published figure, pictured and listed, as one page that needs nothing else."""
+    verdicts: list[str] = [row.verdict for row in rows]
+    closure_sections = [
+        Section("closures", "Pocketing by every closure", (closure_table(closures),))
+        for _ in closures[:1]
+    ]
     return page_html(
         title="Published figures, computed",
         kind="Validation",
         operation=summary(rows, closures),
         source=f"Computed with epicyclic {versions()['epicyclic']}",
-        key_figures=_key_figures(rows),
-        sections=[*comparison_sections(rows, progress), *_closure_section(closures)],
+        key_figures=[
+            KeyFigure(verdict, number(verdicts.count(verdict), "")) for verdict in _STYLES
+        ],
+        sections=[*comparison_sections(rows, progress), *closure_sections],
     )
-
-
-def _key_figures(rows: Sequence[Comparison]) -> list[KeyFigure]:
-    verdicts = [row.verdict for row in rows]
-    return [
-        KeyFigure(verdict, number(verdicts.count(verdict), ""))
-        for verdict in ("agrees", "differs", "calibrated", "no verdict")
-    ]
 
 
 def comparison_sections(
@@ -244,11 +241,6 @@ def comparison_sections(
     yield Section("signs", "Signs", (Listing(text),))
 
 
-def _closure_section(rows: Sequence[ClosureFigure]) -> Iterator[Section]:
-    if rows:
-        yield Section("closures", "Pocketing by every closure", (closure_table(rows),))
-
-
 def _items(key: str, rows: Sequence[Comparison]) -> Iterator[Item]:
     """Pictures of like height, each below its table, which breaks and fills a printed page."""
     count = math.ceil(len(rows) / MOST_ROWS)
@@ -256,14 +248,11 @@ def _items(key: str, rows: Sequence[Comparison]) -> Iterator[Item]:
     for place in range(count):
         part = rows[place * height : (place + 1) * height]
         yield _table(part)
-        drawing = _drawing(f"{key}-{place + 1}" if count > 1 else key, part)
+        name = f"{key}-{place + 1}" if count > 1 else key
+        with styled_figure(1, 1, "", panel=deviations_size(part)) as (figure, axes):
+            ax = plot_deviations(part, axes[0, 0])
+        drawing = Drawing(name, "Computed over published", svg_text(figure, name), explorable(ax))
         yield Gallery((drawing,), is_wide=True)
-
-
-def _drawing(key: str, rows: Sequence[Comparison]) -> Drawing:
-    with styled_figure(1, 1, "", panel=deviations_size(rows)) as (figure, axes):
-        ax = plot_deviations(rows, axes[0, 0])
-    return Drawing(key, "Computed over published", svg_text(figure, key), explorable(ax))
 
 
 def _table(rows: Sequence[Comparison]) -> Table:

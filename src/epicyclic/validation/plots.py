@@ -193,8 +193,6 @@ def _described(coordinate: xr.DataArray) -> str:
 
 # The figures of the parametric study of pocketing losses.
 
-
-PUBLISHED = "Talbot (2012)"
 SAME_LINE = 1e-6
 """Values that differ less than this are the same. [1]"""
 
@@ -208,10 +206,13 @@ def study_figure(
     places = list(itertools.product(*(range(study.sizes[panel]) for panel in panels)))
     exponents = "speed_exponent" in study
     count = len(places) + exponents
-    columns = count if count <= MOST_COLUMNS else 2
+    columns = _columns(count)
     rows = -(-count // columns)
+    # what all points have in common beside the gears
+    oil = json.loads(study.attrs["case"])["operation"]["oil_inlet_temperature"]
+    held = unit_text(f"pocketing {study.attrs['model']}, oil at {oil}")
     title = str(study.attrs["title"])
-    with styled_figure(rows, columns, title, caption=_held(study)) as (figure, axes):
+    with styled_figure(rows, columns, title, caption=held) as (figure, axes):
         flat = axes.ravel()
         for ax, place in zip(flat, places, strict=False):
             _plot_loss(study.isel(dict(zip(panels, place, strict=True))), ax, published)
@@ -222,12 +223,6 @@ def study_figure(
         curves = study[study["pocketing_loss"].dims[-2]]
         legend_of_figure(figure, flat[: len(places)], str(curves.attrs["long_name"]))
     return figure
-
-
-def _held(study: xr.Dataset) -> str:
-    """What all points of a study have in common beside the gears."""
-    oil = json.loads(study.attrs["case"])["operation"]["oil_inlet_temperature"]
-    return unit_text(f"pocketing {study.attrs['model']}, oil at {oil}")
 
 
 def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) -> None:
@@ -241,12 +236,36 @@ def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) ->
             curve,
             marker=MARKERS[number % len(MARKERS)],
             ms=4,
-            label=_study_value(loss[curves][number]),
+            label=_value(loss[curves][number]),
         )
     if published is not None:
-        _study_mark(loss, over, ax, published)
-        _mark_bands(loss, over, ax, published)
-    held = [_study_described(study[name]) for name in study.coords if study[name].ndim == 0]
+        values = {
+            "helix_angle": published.helix_angle,
+            "face_width": published.face_width,
+            "speed": published.speed,
+        }
+        if _has(loss, values):
+            label = f"{SOURCE}, {published.speed:g} rpm"
+            ax.plot(
+                values[over], published.loss, "*", color=COLOURS[-1], ms=12, label=label, zorder=3
+            )
+        # Between which losses the axes of the source enclose its curve of the highest speed.
+        for helix, width, low, high in published.bands:
+            values = {"helix_angle": helix, "face_width": width, "speed": published.speed}
+            if not _has(loss, values):
+                continue
+            ax.errorbar(
+                values[over],
+                (low + high) / 2,
+                yerr=(high - low) / 2,
+                ls="none",
+                color=COLOURS[-1],
+                capsize=4,
+                lw=1.2,
+                zorder=3,
+                label=f"{SOURCE}, between ticks of its axes, {published.speed:g} rpm",
+            )
+    held = [_described(study[name]) for name in study.coords if study[name].ndim == 0]
     ax.set(title=", ".join(held) or "Loss", xlabel=label_of(loss[over]), ylabel="pocketing loss, W")
     ax.set_ylim(bottom=0)
 
@@ -262,58 +281,19 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
             loss[number],
             marker=MARKERS[number % len(MARKERS)],
             ms=4,
-            label=f"{_study_value(loss[curves][number])}: {slope:.2f}",
+            label=f"{_value(loss[curves][number])}: {slope:.2f}",
         )
     if published is not None and float(loss[curves][0]) == 0.0:
         speed = loss["speed"].to_numpy()
         # through the middle of the curve in logarithms, where lines of all slopes cross
         scale = np.exp(np.log(loss[0]).mean() - published.exponent * np.log(speed).mean())
         line = float(scale) * speed**published.exponent
-        label = f"{PUBLISHED}, 0 deg: {published.exponent:.2f}"
+        label = f"{SOURCE}, 0 deg: {published.exponent:.2f}"
         ax.loglog(speed, line, color="black", ls="--", lw=1.0, label=label)
     label_logarithms(ax.xaxis, ax.yaxis)
     ax.set(title="Exponent of the speed", xlabel=label_of(loss["speed"]))
     ax.set_ylabel("pocketing loss, W")
     ax.legend(title=f"{loss[curves].attrs['long_name']}: exponent", loc="upper left")
-
-
-def _study_mark(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStudy) -> None:
-    """The published loss, if it belongs to this panel and one of its curves."""
-    values = {
-        "helix_angle": published.helix_angle,
-        "face_width": published.face_width,
-        "speed": published.speed,
-    }
-    if not _has(loss, values):
-        return
-    ax.plot(
-        values[over],
-        published.loss,
-        "*",
-        color=COLOURS[-1],
-        ms=12,
-        label=f"{PUBLISHED}, {published.speed:g} rpm",
-        zorder=3,
-    )
-
-
-def _mark_bands(loss: xr.DataArray, over: str, ax: Axes, published: PublishedStudy) -> None:
-    """Between which losses the axes of the source enclose its curve of the highest speed."""
-    for helix, width, low, high in published.bands:
-        values = {"helix_angle": helix, "face_width": width, "speed": published.speed}
-        if not _has(loss, values):
-            continue
-        ax.errorbar(
-            values[over],
-            (low + high) / 2,
-            yerr=(high - low) / 2,
-            ls="none",
-            color=COLOURS[-1],
-            capsize=4,
-            lw=1.2,
-            zorder=3,
-            label=f"{PUBLISHED}, between ticks of its axes, {published.speed:g} rpm",
-        )
 
 
 def _has(loss: xr.DataArray, values: Mapping[str, float]) -> bool:
@@ -325,16 +305,6 @@ def _has(loss: xr.DataArray, values: Mapping[str, float]) -> bool:
         and bool(np.isclose(np.atleast_1d(loss[name].to_numpy()), value, rtol=SAME_LINE).any())
         for name, value in values.items()
     )
-
-
-def _study_value(coordinate: xr.DataArray) -> str:
-    """``"5000 rpm"``"""
-    number = format_number(float(coordinate), 5)
-    return f"{number} {unit_text(str(coordinate.attrs['units']))}".rstrip()
-
-
-def _study_described(coordinate: xr.DataArray) -> str:
-    return f"{coordinate.attrs['long_name']} {_study_value(coordinate)}"
 
 
 # Every figure of a chapter of Talbot (2012) that is computed again, with its data.
@@ -352,10 +322,7 @@ class Reproduced:
 def reproduce(figures: Sequence[str], runner: Runner = HERE) -> Iterator[Reproduced]:
     """Compute and draw figures, ``"3.4"``, published numbers marked on them.
 
-    Raises
-    ------
-    ConvergenceError
-        If a point of chapter 3 or 5 cannot be computed.
+    Raises `ConvergenceError` if a point of chapter 3 or 5 cannot be computed.
     """
     for name in figures:
         if name in chapters.ROLLER_FIGURES:
@@ -374,7 +341,6 @@ def reproduce(figures: Sequence[str], runner: Runner = HERE) -> Iterator[Reprodu
 
 
 # Published figures beside computed ones: how far off each is, and how far off it may be.
-
 
 SHOWN = 0.40
 """Differences beyond it are drawn at the edge, with their number. [1]"""

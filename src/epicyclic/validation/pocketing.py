@@ -17,7 +17,7 @@ from epicyclic.builders.models import fluids_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, build_case, read_case
 from epicyclic.case.messages import did_you_mean, refused, written
 from epicyclic.case.read import plain
-from epicyclic.errors import InputError, Problem, Status, raise_any
+from epicyclic.errors import Problem, Status, one_problem, raise_any
 from epicyclic.gears.cutting import mated_tools
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_thickness
 from epicyclic.gears.mesh import Mesh
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
 
 # Variants of a mesh as the pocketing study compares them. Talbot (2012), section 4.4.
-
 
 ROUNDING = 1e-9
 """What is less negative is left over from rounding. [m] or [1]"""
@@ -87,10 +86,8 @@ def transverse_module(mesh: Mesh, teeth: tuple[int, int]) -> float:
 def teeth_for_module(mesh: Mesh, modules: Sequence[float]) -> dict[float, tuple[int, int]]:
     """Whole teeth whose transverse modules come nearest to `modules`, by their modules.
 
-    Raises
-    ------
-    ValueError
-        If a module leaves fewer teeth than a gear can have, or a ring no more than its mate.
+    Raises `ValueError` if a module leaves fewer teeth than a gear can have, or a ring no more than
+    its mate.
     """
     found = {}
     for module in modules:
@@ -105,10 +102,7 @@ def teeth_for_module(mesh: Mesh, modules: Sequence[float]) -> dict[float, tuple[
 def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
     """The duty with the mesh, tools and speed of `variant`.
 
-    Raises
-    ------
-    ValueError
-        If such gears do not mesh or cannot be cut.
+    Raises `ValueError` if such gears do not mesh or cannot be cut.
     """
     mesh = _varied_mesh(duty.mesh, variant)
     for what, value in (
@@ -126,12 +120,8 @@ def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
 def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketFlow:
     """Flow through the pockets of a variant.
 
-    Raises
-    ------
-    InputError
-        If such gears do not mesh or cannot be cut.
-    ConvergenceError
-        If the flow is not found.
+    Raises `InputError` if such gears do not mesh or cannot be cut; `ConvergenceError` if the flow
+    is not found.
     """
     fluids = fluids_of(case)
     mixture = mixture_state(fluids.oil, variant.oil_fraction, fluids.pressure)
@@ -142,8 +132,9 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
             family = replace(family, oil_fraction=variant.oil_fraction)
         return family.flow(speed, mixture, pressure)
     except ValueError as error:
-        problem = Problem(duty.key, "", f"cannot be so: {error}.", "Vary over a smaller range.")
-        raise InputError([problem], "the study") from None
+        raise one_problem(
+            duty.key, "", f"cannot be so: {error}.", "Vary over a smaller range.", "the study"
+        ) from None
 
 
 def _varied_mesh(mesh: Mesh, variant: PocketVariant) -> Mesh:
@@ -364,12 +355,9 @@ def _duty(case: Case, mesh: str | None) -> MeshDuty:
     key = next(iter(duties)) if mesh is None else mesh
     if key not in duties:
         allowed = f"must be {' or '.join(duties)}."
-        raise InputError(
-            [Problem("mesh", written(key), allowed, "Name one of these.")], "the study"
-        )
+        raise one_problem("mesh", written(key), allowed, "Name one of these.", "the study")
     if duties[key].speed1 == 0:
-        problem = Problem(key, "", "does not turn.", "Change operation.speed.")
-        raise InputError([problem], case.source)
+        raise one_problem(key, "", "does not turn.", "Change operation.speed.", case.source)
     return duties[key]
 
 
@@ -438,8 +426,9 @@ def _axis(duty: MeshDuty, name: str, values: tuple[float, ...]) -> StudyAxis:
     try:
         found = teeth_for_module(duty.mesh, values)
     except ValueError as error:
-        problem = Problem("range module", "", f"{error}.", "Give smaller modules.")
-        raise InputError([problem], "the study") from None
+        raise one_problem(
+            "range module", "", f"{error}.", "Give smaller modules.", "the study"
+        ) from None
     return StudyAxis(name, tuple(found), tuple(found.values()))
 
 
@@ -534,7 +523,13 @@ def _dataset(plan: StudyPlan, name: str, rows: Rows, own: list[int]) -> xr.Datas
         variables[key] = (dims, texts, {"long_name": label})
     dataset = xr.Dataset(variables, coordinates, _attributes(plan, name))
     if name == "speed" and dataset.sizes["speed"] > 1:
-        dataset["speed_exponent"] = _exponents(dataset["pocketing_loss"])
+        # Slope of the logarithm of the loss over that of the speed.
+        loss = dataset["pocketing_loss"]
+        speed = np.log(loss["speed"])
+        away = speed - speed.mean()
+        slope: xr.DataArray = (np.log(loss) * away).sum("speed", skipna=False) / (away**2).sum()
+        slope.attrs = {"long_name": "exponent of the speed in the loss", "units": "1"}
+        dataset["speed_exponent"] = slope
     return dataset
 
 
@@ -564,17 +559,7 @@ def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
     }
 
 
-def _exponents(loss: xr.DataArray) -> xr.DataArray:
-    """Slope of the logarithm of the loss over that of the speed."""
-    speed = np.log(loss["speed"])
-    away = speed - speed.mean()
-    slope: xr.DataArray = (np.log(loss) * away).sum("speed", skipna=False) / (away**2).sum()
-    slope.attrs = {"long_name": "exponent of the speed in the loss", "units": "1"}
-    return slope
-
-
 # What is published of the parametric study of pocketing losses. Talbot (2012), section 4.4.
-
 
 EXAMPLE = "talbot-2012-pair"
 _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")

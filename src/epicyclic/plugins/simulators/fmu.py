@@ -26,8 +26,8 @@ import numpy as np
 
 from epicyclic.case.messages import one_line
 from epicyclic.errors import EpicyclicError, Problem
+from epicyclic.study.maps.compute import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.study.maps.formats import Format
-from epicyclic.study.maps.lumped import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.study.maps.tables import Lookup, make_lookup, slack, stated
 from epicyclic.study.operating import AXES, PLANE, STATE
 from epicyclic.units import CELSIUS, RPM, format_number

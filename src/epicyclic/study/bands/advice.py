@@ -72,7 +72,6 @@ def known_of(data: xr.Dataset) -> Known:
 
 # What limits the trust in a result, and what would raise it most.
 
-
 LEAST = 0.02
 """Share in the variance of the total from which a value is said to limit the trust. [1]"""
 CONCERNED = 0.05

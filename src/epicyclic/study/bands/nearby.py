@@ -113,7 +113,6 @@ def factors_of(values: Sequence[UncertainValue], points: FloatArray) -> dict[str
 
 # Losses where each uncertain input is one standard deviation up and down.
 
-
 HALF_WIDTH = math.sqrt(3.0)
 """Half the width of a uniform distribution over its standard deviation. [1]"""
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from epicyclic.case.case import Case
 from epicyclic.case.read import plain
 from epicyclic.case.tables.uncertainty import UncertainValue
-from epicyclic.errors import InputError, Problem, Status, raise_any
+from epicyclic.errors import Problem, Status, one_problem, raise_any
 from epicyclic.result.result import Result
 from epicyclic.study.bands.nearby import (
     INPUT_POWER,
@@ -102,8 +102,7 @@ def check_samples(samples: int) -> None:
         return
     nearest = 2 ** round(np.log2(min(max(samples, FEWEST), MOST)))
     allowed = f"must be a power of 2 from {FEWEST} to {MOST}."
-    problem = Problem("samples", str(samples), allowed, f"Take {nearest}.")
-    raise InputError([problem], "the command")
+    raise one_problem("samples", str(samples), allowed, f"Take {nearest}.", "the command")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,12 @@
-"""How well the losses over a map, and the energy of a duty cycle, are known."""
+"""How well losses are known: of a case, over a map, over a duty cycle."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,8 +16,6 @@ from epicyclic.case.case import Case
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.study.bands.nearby import Nearby, Outputs, outputs_of
 from epicyclic.study.bands.plan import (
-    SampledCase,
-    SamplePlan,
     check_samples,
     nearby_at,
     sampled_case,
@@ -24,6 +24,7 @@ from epicyclic.study.bands.samples import COVERAGE, fit_curves, index_values, ma
 from epicyclic.study.bands.study import (
     LABELS,
     UNIT_OF_RESULT,
+    Study,
     about_inputs,
     about_study,
     contributions,
@@ -31,22 +32,25 @@ from epicyclic.study.bands.study import (
     indices_of,
     sample_variables,
     summaries,
+    uncertainty_study,
 )
 from epicyclic.study.maps.compute import MapPlan, changes_at, further_values, stored_plan
-from epicyclic.study.maps.cycle import Cycle
-from epicyclic.study.maps.duty import Sums, add_up
+from epicyclic.study.maps.cycle import Cycle, open_cycle
+from epicyclic.study.maps.duty import Sums, add_up, cycle_map, parse_temperatures
 from epicyclic.study.maps.tables import loss_power, map_case
 from epicyclic.study.operating import AXES, axis_name
 from epicyclic.study.solve import solve
-from epicyclic.study.sweeps.runner import HERE, Rows, Runner
+from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
 from epicyclic.units import KILOJOULE, NEWTON_METRE, RPM
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-# How well the losses of a map are known: the same samples of all inputs at each of its points.
+# How well the losses over a map, and the energy of a duty cycle, are known.
 
+
+# How well the losses of a map are known: the same samples of all inputs at each of its points.
 
 FloatArray = NDArray[np.float64]
 
@@ -70,22 +74,15 @@ def map_study(data: xr.Dataset, samples: int | None = None, seed: int = 1) -> Ma
     grid = stored_plan(data)
     points = [grid.changes(number) for number in range(grid.size)]
     sampled = sampled_case(grid.case, solve(grid.case), count, seed, points)
-    return MapStudy(data, grid, sampled, seed)
+    return MapStudy(grid.case, sampled, seed, data, grid)
 
 
 @dataclass(frozen=True, slots=True)
-class MapStudy:
-    """The samples of all points of a map."""
+class MapStudy(Study):
+    """Samples A and B at every point of a map."""
 
     data: xr.Dataset  # The map.
     grid: MapPlan
-    sampled: SampledCase
-    seed: int
-
-    @property
-    def plan(self) -> SamplePlan:
-        """Samples A and B at every point."""
-        return self.sampled.plan
 
     def dataset(self, rows: Rows) -> xr.Dataset:
         """The map with what the samples say; see `uncertainty`."""
@@ -177,7 +174,6 @@ class MapStudy:
 # Some points of the cycle, drawn with a probability that grows with the energy lost there, stand
 # for all. Every sample of the inputs is solved at each of them: the inputs are the same throughout
 # the cycle, so that they do not average out.
-
 
 CYCLE_SAMPLES = 64
 """Points in each of the two sets."""
@@ -271,16 +267,6 @@ def cycle_study(
     """What has to be solved for the uncertainty of the energy of a cycle; see `uncertainty`."""
     count = CYCLE_SAMPLES if samples is None else samples
     check_samples(count)
-    case = _case_of(data, celsius, points)
-    result = solve(case)
-    sums = add_up(data, cycle, celsius, samples=POINTS if points is None else points)
-    energies = _energies(sums, outputs_of(case, result))
-    nearby = nearby_at(case, result, energies.points, runner)
-    sampled = sampled_case(case, result, count, seed, energies.points)
-    return CycleStudy(case, cycle, energies, nearby, sampled, seed)
-
-
-def _case_of(data: xr.Dataset, celsius: tuple[float, ...] | None, points: int | None) -> Case:
     problems = []
     if celsius is not None and len(celsius) > 1:
         allowed = "must be one for an uncertainty."
@@ -293,7 +279,12 @@ def _case_of(data: xr.Dataset, celsius: tuple[float, ...] | None, points: int | 
         problems.append(Problem("case", "", allowed, "Compute the map again."))
     if problems or case is None:
         raise InputError(problems, "the command")
-    return case
+    result = solve(case)
+    sums = add_up(data, cycle, celsius, samples=POINTS if points is None else points)
+    energies = _energies(sums, outputs_of(case, result))
+    nearby = nearby_at(case, result, energies.points, runner)
+    sampled = sampled_case(case, result, count, seed, energies.points)
+    return CycleStudy(case, sampled, seed, cycle, energies, nearby)
 
 
 def _energies(sums: Sums, outputs: Outputs) -> Energies:
@@ -321,20 +312,12 @@ def _energies(sums: Sums, outputs: Outputs) -> Energies:
 
 
 @dataclass(frozen=True, slots=True)
-class CycleStudy:
-    """The samples of the points that stand for a duty cycle."""
+class CycleStudy(Study):
+    """Samples A and B at every point that stands for a duty cycle."""
 
-    case: Case
     cycle: Cycle
     energies: Energies
     nearby: tuple[Nearby, ...]  # At each point.
-    sampled: SampledCase
-    seed: int
-
-    @property
-    def plan(self) -> SamplePlan:
-        """Samples A and B at every point."""
-        return self.sampled.plan
 
     def dataset(self, rows: Rows) -> xr.Dataset:
         """The energies, and what the samples say of them; see `uncertainty`."""
@@ -387,3 +370,79 @@ class CycleStudy:
         ]  # fmt: skip
         found: FloatArray = np.array([(above - below) / 2 for below, above in ends])
         return found
+
+
+# How well losses are known: of a case, over a map, over a duty cycle.
+
+
+def uncertainty(
+    source: Case | xr.Dataset,
+    cycle: Any = None,
+    temperature: Iterable[Any] | None = None,
+    *,
+    samples: int | None = None,
+    points: int | None = None,
+    seed: int = 1,
+    jobs: int | None = None,
+    dask: str | None = None,
+    journal: str | Path | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """How well losses and efficiency are known, and what that depends on.
+
+    Inputs and the errors of models, as [uncertainty] of the case states them or as is assumed,
+    are drawn at scrambled Sobol points, twice, and of a single case with each of them exchanged
+    between the two. Over a map and a cycle they are the same at all operating points.
+
+    Parameters
+    ----------
+    source : PlanetaryCase, GearPairCase, TrainCase or xarray.Dataset
+        A dataset is a loss map.
+    cycle : str, Path, pandas.DataFrame or mapping, optional
+        A duty cycle, as for `duty_cycle`: the uncertainty is that of its energy lost.
+    temperature : iterable, optional
+        Oil inlet temperature of a cycle without a column of it: one.
+    samples : int, optional
+        Points in each of the two sets, a power of 2. Default: 256; 32 over a map, 64 over a cycle.
+    points : int, optional
+        Points of the cycle, that are solved with all samples. Default: 16.
+    seed : int, optional
+        Seed of the scrambling: equal ones give equal results, whatever computes them.
+    jobs, dask, journal, progress
+        As for `sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``result``, every loss, their sums and the efficiency: ``nominal``, ``mean``,
+        ``standard_uncertainty``, ``expanded_uncertainty`` (k = 2), ``low``, ``high`` (95 %,
+        symmetric in probability), ``shortest_low``, ``shortest_high``. Over ``input`` and
+        ``result``: ``contribution``, the change for one standard deviation. Over ``driver``, which
+        is an input or several that are correlated: Sobol indices ``first_order`` and
+        ``total_order`` with their 95 % intervals. Over ``sample``: ``drawn``, ``value``,
+        ``status``, ``message``. Of a map the same over its axes, beside what the map has itself.
+        There and of a cycle the indices follow from curves through the samples, and ``explained``,
+        of a cycle ``curves_explain``, is the share of the variance that these explain. Of a cycle
+        energies [kJ] take the place of losses, and ``point_error`` is the standard error
+        of ``standard_uncertainty`` because some points stand for all.
+
+    Raises
+    ------
+    InputError
+        If the table [uncertainty] has problems; as for `duty_cycle`.
+    ConvergenceError
+        If the case itself, or hardly any sample of it, can be solved.
+    """
+    runner = Runner(jobs, dask, None, journal, progress)
+    study: Study
+    if cycle is not None:
+        checked = open_cycle(cycle)
+        celsius = parse_temperatures(checked, temperature)
+        within = Runner(jobs, dask, journal=None)
+        data = cycle_map(source, checked, celsius, within) if isinstance(source, Case) else source
+        study = cycle_study(data, checked, celsius, samples, points, seed, within)
+    elif isinstance(source, Case):
+        study = uncertainty_study(source, samples, seed)
+    else:
+        study = map_study(source, samples, seed)
+    return study.dataset(runner.run(study.plan))

@@ -69,10 +69,7 @@ def standard_uncertainty(value: UncertainValue) -> float:
 def correlations(values: Sequence[UncertainValue]) -> FloatArray:
     """Matrix of the stated coefficients of correlation.
 
-    Raises
-    ------
-    LinAlgError
-        If no distribution of several values has them all.
+    Raises `LinAlgError` if no distribution of several values has them all.
     """
     place = {value.key: index for index, value in enumerate(values)}
     matrix = np.eye(len(values))
@@ -163,7 +160,6 @@ def _correlated(probabilities: FloatArray, values: Sequence[UncertainValue]) -> 
 
 # What samples of a result say about it: uncertainty, intervals, and what drives them.
 
-
 COVERAGE = 0.95
 """Share of the values within an interval. [1]"""
 COVERAGE_FACTOR = 2.0
@@ -253,7 +249,6 @@ def index_values(a: FloatArray, b: FloatArray, mixed: FloatArray) -> tuple[Float
 
 # Losses as curves of what is uncertain, fitted to samples: indices at no further solution.
 
-
 ROUNDING = 1e-9
 """Standard deviation over the largest value below which a loss does not vary. [1]"""
 
@@ -273,7 +268,8 @@ class Curves:
 
     def at(self, drawn: FloatArray) -> FloatArray:
         """Load-dependent, load-independent and total loss at some points, shape (3, n)."""
-        losses = self._losses(drawn)
+        found = np.exp(_columns(self.values, drawn) @ self.slopes).T
+        losses = np.where(np.isnan(self.means)[:, None], found, self.means[:, None])
         parts = [losses[self.dependent].sum(axis=0), losses[~self.dependent].sum(axis=0)]
         return np.array([*parts, losses.sum(axis=0)])
 
@@ -281,10 +277,6 @@ class Curves:
         """`at` A, B, and A with each group from B, shape (2 + g, 3, n)."""
         mixed = map(samples.mixed, range(len(samples.groups)))
         return np.array([self.at(drawn) for drawn in (samples.a, samples.b, *mixed)])
-
-    def _losses(self, drawn: FloatArray) -> FloatArray:
-        found = np.exp(_columns(self.values, drawn) @ self.slopes).T
-        return np.where(np.isnan(self.means)[:, None], found, self.means[:, None])
 
 
 def fit_curves(dependent: NDArray[np.bool], samples: Samples, losses: FloatArray) -> Curves:

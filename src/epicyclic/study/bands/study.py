@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from typing import TYPE_CHECKING, Any
@@ -51,29 +52,29 @@ LABELS = {
 assert [one.name for one in fields(Summary)] == list(LABELS)
 
 
-def uncertainty_study(case: Case, samples: int | None = None, seed: int = 1) -> UncertaintyStudy:
-    """What has to be solved for the uncertainty of a case; see `uncertainty`."""
-    samples = SAMPLES if samples is None else samples
-    check_samples(samples)
-    result = solve(case)
-    nearby = look_nearby(case, result)
-    sampled = sampled_case(case, result, samples, seed, active=nearby.active)
-    return UncertaintyStudy(case, nearby, sampled, seed)
-
-
 @dataclass(frozen=True, slots=True)
-class UncertaintyStudy:
-    """The samples of a case, and the points to be solved for them."""
+class Study(ABC):
+    """The samples of what is uncertain in a case, to be solved, and what then follows."""
 
     case: Case
-    nearby: Nearby
     sampled: SampledCase
     seed: int
 
     @property
     def plan(self) -> SamplePlan:
-        """Points of A, of B, and of A with each group of inputs that change losses from B."""
+        """The points to be solved."""
         return self.sampled.plan
+
+    @abstractmethod
+    def dataset(self, rows: Rows) -> xr.Dataset:
+        """What the solved points say; see `uncertainty`."""
+
+
+@dataclass(frozen=True, slots=True)
+class CaseStudy(Study):
+    """Points of A, of B, and of A with each group of inputs that change losses from B."""
+
+    nearby: Nearby
 
     def dataset(self, rows: Rows) -> xr.Dataset:
         """What the solved points say; see `uncertainty`."""
@@ -88,6 +89,16 @@ class UncertaintyStudy:
         about = about_study(self.case, outputs, self.plan.count, self.seed, data.attrs["failed"])
         remarks = model_remarks(self.case, solve(self.case))
         return data.assign_attrs(about | {"remarks": "\n".join(remarks)})
+
+
+def uncertainty_study(case: Case, samples: int | None = None, seed: int = 1) -> CaseStudy:
+    """What has to be solved for the uncertainty of a case; see `uncertainty`."""
+    samples = SAMPLES if samples is None else samples
+    check_samples(samples)
+    result = solve(case)
+    nearby = look_nearby(case, result)
+    sampled = sampled_case(case, result, samples, seed, active=nearby.active)
+    return CaseStudy(case, sampled, seed, nearby)
 
 
 def sample_variables(
@@ -168,13 +179,7 @@ def about_study(
 
 
 def _sound(total: FloatArray, messages: Sequence[str]) -> NDArray[np.bool]:
-    """Which samples have a result.
-
-    Raises
-    ------
-    ConvergenceError
-        If hardly any has.
-    """
+    """Which samples have a result; raises `ConvergenceError` if hardly any has."""
     sound = np.isfinite(total)
     if sound.sum() < FEWEST:
         reason = next((text for text in messages if text), "")

@@ -12,14 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.builders.build import layout_of
+from epicyclic.builders.build import build, layout_of
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.train import TrainCase
-from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
+from epicyclic.machine.element import OIL
+from epicyclic.machine.heat import NetworkModel
 from epicyclic.result.result import Layout, number_fields
-from epicyclic.study.maps.tables import Lookup, check_map, map_case
+from epicyclic.study.maps.tables import Lookup, check_map, map_case, map_inputs
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
@@ -32,6 +34,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+# Loss maps: computed over speed, torque and temperature, resolved near zero torque.
+
+
 # How far the energy lost over a duty cycle is off, because a map is interpolated.
 #
 # A sample of the points is solved directly. They are drawn with a probability that grows with the
@@ -41,7 +46,6 @@ if TYPE_CHECKING:
 # had the probability p = 1 - exp(-w tau) to stay, and the sum of x/p over the sample estimates the
 # sum of x over all points, with the variance (1 - p) x^2/p^2 of each, uncorrelated (Cohen and
 # Kaplan, PODC 2007, 225). A cycle of no more points than the sample is summed exactly.
-
 
 Array = NDArray[np.float64]
 _SEED = 0
@@ -156,7 +160,6 @@ def leave_out(lookup: Lookup, node_work: Array) -> Deviation:
 # Near zero torque the rolling loss rises like a root, and at the torque that just drives the drag
 # behind a mesh the loss has a kink. A map that is read linearly needs torques there that crowd.
 
-
 FloatArray = NDArray[np.float64]
 
 RATIO = 2.0
@@ -176,10 +179,7 @@ def resolving_zero(
 ) -> list[float]:
     """`torques`, and on each side of zero that they reach more that crowd there, and zero.
 
-    Returns
-    -------
-    list of float
-        Rising. As given if zero is not among them or between them.
+    Returns list of float: rising. As given if zero is not among them or between them.
 
     Examples
     --------
@@ -214,11 +214,8 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     the map, at the middle one of its speeds and the first value of all other
     axes, the loss is solved directly.
 
-    Returns
-    -------
-    dict
-        ``torque_interpolation_error``, relative [1], and ``torque_interpolation`` in words; nothing
-        if there is only one torque, no point can be solved, or one takes minutes.
+    Returns dict: ``torque_interpolation_error``, relative [1], and ``torque_interpolation`` in
+    words; nothing if there is only one torque, no point can be solved, or one takes minutes.
     """
     torques = data["torque"].values.astype(float)
     speeds = data["speed"].values[data["speed"].values != 0]
@@ -296,7 +293,6 @@ def _takes_minutes(case: Case) -> bool:
 # The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss
 # over the magnitude of the speed of that shaft. With it the torque that the shaft passes on is the
 # torque on it less the torque loss times the sign of its speed, driving and coasting.
-
 
 _OWN_AXES = {**AXES, STATE: STATE_KEY}
 _SHAFT_KEYS = (
@@ -443,17 +439,13 @@ def map_plan(
 def stored_plan(data: xr.Dataset) -> MapPlan:
     """The plan by which a map was computed.
 
-    Raises
-    ------
-    InputError
-        If `data` is no map, or its case is none of this version.
+    Raises `InputError` if `data` is no map, or its case is none of this version.
     """
     check_map(data)
     case = map_case(data)
     if case is None:
         allowed = "is none of this version of the program."
-        problem = Problem("case", "", allowed, "Compute the map again.")
-        raise InputError([problem], "the map")
+        raise one_problem("case", "", allowed, "Compute the map again.", "the map")
     values = {str(name): written_values(data[name]) for name in data["torque_loss"].dims}
     own = {name: values.pop(name, None) for name in (*AXES, STATE)}
     further = {str(data[name].attrs["case_key"]): texts for name, texts in values.items()}
@@ -658,3 +650,69 @@ def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
     if reasons:
         text["states_left_out"] = " ".join(reasons)
     return text
+
+
+# A gearbox of one temperature: what it stores, and what it gives to its surroundings.
+
+
+CAPACITY, CONDUCTANCE = "lumped_heat_capacity", "lumped_conductance"
+SURROUNDINGS = "surroundings_temperature"
+"""Attributes of a map whose temperature follows from its losses, in J/K, W/K and K."""
+
+
+def with_temperature_state(data: xr.Dataset, case: Case) -> xr.Dataset:
+    """A map with what makes its temperature follow from the losses, for an FMU.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        From `loss_map`, with all parts at the temperature of the oil, over two temperatures or
+        more.
+    case : PlanetaryCase, GearPairCase or TrainCase
+        Whose network of heat, settled at its operating point, gives the conductance.
+
+    Raises
+    ------
+    InputError
+        If the map has no axis of temperatures or was made at settled ones, or if what the case
+        stores is not known.
+    """
+    check_axis(data.sizes.get("temperature", 0))
+    if map_inputs(data).get("models", {}).get("temperatures") == "network":
+        allowed = "must be inlet: the map is to hold the losses at the temperature of the oil."
+        raise one_problem(
+            "models.temperatures", '"network"', allowed, "Make the map anew.", "the map"
+        )
+    return data.assign_attrs(lumped(case))
+
+
+def check_axis(count: int) -> None:
+    """Raise `InputError` unless a map has several temperatures."""
+    if count < 2:
+        allowed = "must have two or more values, so that it can change."
+        raise one_problem("temperature", "", allowed, 'Give more, as "20,60,100 degC".', "the map")
+
+
+def lumped(case: Case) -> dict[str, float]:
+    """Attributes of a map whose temperature follows from its losses. Theory (W39).
+
+    Raises `InputError` if no temperatures follow from the losses, or what the case stores is not
+    known.
+    """
+    if not case.computed:
+        allowed = "has losses that are all given: no temperature follows from them."
+        raise one_problem("case", "", allowed, "Choose one with an oil.")
+    warm = case.updated({"models.temperatures": "network"})
+    model = build(warm).thermal
+    assert isinstance(model, NetworkModel)
+    capacity = sum(model.capacities().values())
+    heat = solve(warm).heat
+    assert heat is not None
+    leaving = [(heat.given[way.into], way.watts) for way in heat.ways if way.into in heat.given]
+    whole = sum(watts for _, watts in leaving)
+    if not whole > 0:
+        allowed = "loses no power at its operating point, which tells the way of the heat."
+        raise one_problem("operation", "", allowed, "Give a speed.")
+    around = sum(kelvin * watts for kelvin, watts in leaving) / whole
+    conductance = whole / (heat.temperatures[OIL] - around)
+    return {CAPACITY: capacity, CONDUCTANCE: conductance, SURROUNDINGS: around}

@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
 from epicyclic.case.messages import did_you_mean, refused, written
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.study.maps.compute import (
     Deviation,
     MapPlan,
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 # Linear interpolation is a weighted sum of the values at the nodes of the map. The weights of all
 # points are added up first, each times the angle turned through; multiplied by the torque losses at
 # the nodes they give the energy of every component at once.
-
 
 Array = NDArray[np.float64]
 
@@ -268,8 +267,7 @@ def _temperatures(
     if "temperature" not in lookup.names:
         if celsius is not None:
             allowed = "has no effect: every loss of the train is given."
-            problem = Problem("temperature", "", allowed, "Leave it out.")
-            raise InputError([problem], "the command")
+            raise one_problem("temperature", "", allowed, "Leave it out.", "the command")
         return (None,)
     if "temperature" in cycle.ranges:
         return (None,)
@@ -279,7 +277,7 @@ def _temperatures(
     if axis.size > 1:
         allowed = f"is not a column of the cycle, and the map has {axis.size} of them."
         remedy = f'Choose some, as "{format_number(float(axis[0]))} degC".'
-        raise InputError([Problem("temperature", "", allowed, remedy)], "the command")
+        raise one_problem("temperature", "", allowed, remedy, "the command")
     return (float(axis[0]),)
 
 
@@ -288,8 +286,13 @@ def check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
     text = ", ".join(known)
     if not cycle.states:
         allowed = f"is not among the columns, and there are several: {text}."
-        problem = Problem(STATE, "", allowed, f"Name a column {STATE}, or make a map of one state.")
-        raise InputError([problem], cycle.source.name)
+        raise one_problem(
+            STATE,
+            "",
+            allowed,
+            f"Name a column {STATE}, or make a map of one state.",
+            cycle.source.name,
+        )
     problems = [
         Problem(
             STATE,
@@ -524,4 +527,4 @@ def check_same(plan: DutyPlan, cycle: Path) -> None:
         allowed = f"cannot be read: {error.strerror}."
     if allowed:
         remedy = "Put back the cycle of which the shards were computed."
-        raise InputError([Problem("CYCLE", str(cycle), allowed, remedy)], "the command")
+        raise one_problem("CYCLE", str(cycle), allowed, remedy, "the command")

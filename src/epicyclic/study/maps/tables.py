@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, read_case
 from epicyclic.case.messages import one_line
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.study.operating import AXES, OPERATING, PLANE, STATE
 from epicyclic.study.sweeps.run import csv_safe, to_table
 from epicyclic.units import NEWTON_METRE, RPM, WATT
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 
 # Maps as tables of points: NetCDF, CSV, Parquet; what makes a dataset a map.
-
 
 _STATED = (
     "title",
@@ -103,7 +102,7 @@ def check_map(data: xr.Dataset, source: str = "the map") -> None:
     if lacks:
         allowed = f"is no loss map; it lacks {', '.join(lacks)}."
         remedy = "Give what epicyclic map or loss_map made, all of its axes kept."
-        raise InputError([Problem("", "", f"This dataset {allowed}", remedy)], source)
+        raise one_problem("", "", f"This dataset {allowed}", remedy, source)
     raise_any([*_axis_problems(data), *_value_problems(data)], source)
 
 
@@ -156,8 +155,7 @@ def check_gaps(data: xr.Dataset) -> None:
     reasons = data["message"].values[gaps] if "message" in data else []
     reason = next((f" The first: {one_line(str(text))}" for text in reasons if text), "")
     allowed = f"is missing at {int(gaps.sum())} points; all are needed.{reason}"
-    problem = Problem("torque_loss", "", allowed, "Leave these points out.")
-    raise InputError([problem], "the map")
+    raise one_problem("torque_loss", "", allowed, "Leave these points out.", "the map")
 
 
 def write_csv(data: xr.Dataset, path: Path) -> None:
@@ -177,7 +175,6 @@ def write_parquet(data: xr.Dataset, path: Path) -> None:
 # Interpolated is the loss of each component over the magnitude of the speed of the reference shaft,
 # its share of the torque loss, and not the power. Over the speed it is nearer to a straight line,
 # and its limit at rest is in the map.
-
 
 Array = NDArray[np.float64]
 
@@ -290,10 +287,7 @@ def make_lookup(data: xr.Dataset) -> Lookup:
     At rest, where no power is lost, the torque loss is split between the components as at the
     slowest speed beside it.
 
-    Raises
-    ------
-    InputError
-        If `data` is no map, has gaps, further axes, or two driven members.
+    Raises `InputError` if `data` is no map, has gaps, further axes, or two driven members.
     """
     check_map(data)
     _check_usable(data)

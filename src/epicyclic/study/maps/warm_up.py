@@ -18,7 +18,7 @@ from epicyclic.builders.temperatures import term_nodes
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.messages import refused, written
-from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import OIL, joined_key
 from epicyclic.machine.heat import AMBIENT, HOTTEST, NetworkModel
@@ -27,7 +27,7 @@ from epicyclic.machine.heat_paths import INLET
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.solve import Solution, solve_machine
 from epicyclic.result.result import origin
-from epicyclic.study.maps.compute import MapPlan, held_shaft, map_plan, resolving_zero
+from epicyclic.study.maps.compute import held_shaft, map_plan, resolving_zero
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of
 from epicyclic.study.maps.tables import Lookup, driven_problem, loss_power
@@ -54,7 +54,6 @@ if TYPE_CHECKING:
 #
 # The machine is solved with all of its parts equally hot, at a few temperatures. Over time each
 # loss is then read at the temperature of its own parts.
-
 
 Array = NDArray[np.float64]
 
@@ -85,10 +84,7 @@ def heat_samples(
 ) -> list[list[HeatSample]]:
     """Samples of operating points at some temperatures.
 
-    Returns
-    -------
-    list of list of HeatSample
-        For each temperature one of every point.
+    Returns list of list of HeatSample: for each temperature one of every point.
     """
     machines = [build(case.updated(changes), flow_tables) for changes in points]
     samples: list[list[HeatSample]] = [[] for _ in knots]
@@ -221,7 +217,6 @@ def _coefficients(knots: Array, values: Sequence[Sequence[Sequence[float]]]) -> 
 
 # Warming up: temperatures and losses over time, at a constant operating point or over a cycle.
 
-
 START = quantity_of(Temperature) or CELSIUS
 DURATION = Quantity("a time", "s", "s", low=0.0, high=1e9, open_low=True)
 HEADROOM = 80.0
@@ -343,7 +338,7 @@ def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
     """Duration [s] and temperature at the start [K]; raises `InputError` for all that is wrong."""
     if not case.computed:
         allowed = "has losses that are all given: no temperature follows from them."
-        raise InputError([Problem("case", "", allowed, "Choose one with an oil.")])
+        raise one_problem("case", "", allowed, "Choose one with an oil.")
     found, problems = [], []
     if start is None:
         start = CELSIUS.exact_text(case.thermal.ambient_temperature)
@@ -422,7 +417,15 @@ def _driven(case: Case, seconds: float, cycle: Cycle) -> _Drive:
     if case.states:
         check_states(cycle, tuple(case.states))
         states = [name for name in case.states if name in cycle.states]
-    plan = _plan(case, cycle, states)
+    # The points of the grid, at one temperature.
+    speeds = crowded(*cycle.ranges["speed"], SPEEDS)
+    torques = resolving_zero(crowded(*cycle.ranges["torque"], TORQUES), CROWD)
+    plan = map_plan(
+        case.updated({"models.temperatures": "inlet"}),
+        texts_of(speeds, RPM),
+        texts_of(torques, NEWTON_METRE),
+        states=states or None,
+    )
     points = [plan.changes(index) for index in range(plan.size)]
     for changes in points:
         del changes[AXES["temperature"]]
@@ -433,18 +436,6 @@ def _driven(case: Case, seconds: float, cycle: Cycle) -> _Drive:
     shape = tuple(axis.size for axis in sizes.values())
     grid = Lookup(tuple(sizes), tuple(sizes.values()), tuple(states), (), np.zeros((0, *shape)))
     return _Drive(points, tuple(_steps(cycle, grid, seconds / MOST_STEPS)), plan)
-
-
-def _plan(case: Case, cycle: Cycle, states: Sequence[str]) -> MapPlan:
-    """The points of the grid, at one temperature."""
-    speeds = crowded(*cycle.ranges["speed"], SPEEDS)
-    torques = resolving_zero(crowded(*cycle.ranges["torque"], TORQUES), CROWD)
-    return map_plan(
-        case.updated({"models.temperatures": "inlet"}),
-        texts_of(speeds, RPM),
-        texts_of(torques, NEWTON_METRE),
-        states=states or None,
-    )
 
 
 def _steps(cycle: Cycle, grid: Lookup, width: float) -> Iterator[_Step]:

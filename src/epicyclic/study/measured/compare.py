@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from epicyclic.case.base import CaseTable
 from epicyclic.case.case import Case, build_case
 from epicyclic.case.fields import Parameter, no_start, parameter_of
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.study.measured.comparison import (
     AS_GIVEN,
     CALIBRATED,
@@ -43,7 +43,6 @@ if TYPE_CHECKING:
 
 
 # What a comparison asks: a case at measured points; also as a plan whose points shards share.
-
 
 BoolArray = NDArray[np.bool_]
 
@@ -119,8 +118,9 @@ def check_any(given: Computed) -> None:
     """Raise `InputError` if no point could be computed."""
     if not np.isfinite(given.loss).any():
         reason = next(message for message in given.messages if message)
-        problem = Problem("measurements", "", f"no point can be computed: {reason}", "")
-        raise InputError([problem], "the comparison")
+        raise one_problem(
+            "measurements", "", f"no point can be computed: {reason}", "", "the comparison"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +190,6 @@ def _tested_problems(case: Case, table: Measurements, load_dependent: str) -> It
 #
 # A fit never passes for a prediction: what it touched is named ``calibrated`` everywhere, and its
 # errors are given apart for the points it used and for those held out.
-
 
 _EQUATION = re.compile(r"(?P<column>[^=]+)=(?P<value>.*)")
 
@@ -309,15 +308,13 @@ def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> B
     if match is None or column not in table.labels:
         allowed = "must be COLUMN=VALUE, or a share between 0 and 1."
         remedy = f"Columns are {', '.join(table.labels)}."
-        raise InputError([Problem("hold_out", str(hold_out), allowed, remedy)], "the comparison")
+        raise one_problem("hold_out", str(hold_out), allowed, remedy, "the comparison")
     wanted = match["value"].strip()
     chosen = np.array([_same(cell, wanted) for cell in table.labels[column]])
     if not chosen.any():
         values = ", ".join(dict.fromkeys(table.labels[column]))
         allowed = f"holds for no row; {column} has {values[:200]}."
-        raise InputError(
-            [Problem("hold_out", str(hold_out), allowed, "Name one of them.")], "the comparison"
-        )
+        raise one_problem("hold_out", str(hold_out), allowed, "Name one of them.", "the comparison")
     return chosen
 
 

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 # A calibrated case: fitted values, and how well they are known, as its table [uncertainty].
 
-
 SHRUNK = 1 - 1e-6
 """Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
 DIGITS = 8
@@ -92,7 +91,6 @@ def _without(table: dict[str, Any], keys: Collection[str]) -> dict[str, Any]:
 
 
 # How far computed losses are from measured ones, by set of points and by group.
-
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

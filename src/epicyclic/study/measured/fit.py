@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.fields import Parameter
-from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.errors import ConvergenceError, Problem, one_problem, raise_any
 from epicyclic.study.measured.intervals import (
     PROFILED,
     Combination,
@@ -39,24 +39,6 @@ def fit_warnings(
     residuals: Residuals, fitted: Sequence[FittedParameter], found: Linearised
 ) -> Iterator[str]:
     """What limits a fit, in sentences."""
-    yield from _of_values(fitted, found)
-    if not found.is_separable:
-        yield "these points cannot tell the inputs apart: fix some of them."
-    yield from _alike(fitted, found)
-    if found.freedom == 0:
-        yield "there are as many inputs as points: the fit cannot fail, and proves nothing."
-    if found.weighted and found.spread > 1:
-        yield (
-            f"the points scatter {found.spread:.2f} times as much about the fit as their "
-            "uncertainties allow; the intervals are widened by that factor."
-        )
-    if len(fitted) > PROFILED:
-        yield from _curved(residuals, found)
-    else:
-        yield from _skewed(residuals, fitted, found)
-
-
-def _of_values(fitted: Sequence[FittedParameter], found: Linearised) -> Iterator[str]:
     for item, is_idle in zip(fitted, found.is_idle, strict=True):
         if item.at_bound:
             beyond = "there is no interval" if math.isnan(item.low) else "its interval ends there"
@@ -71,9 +53,8 @@ def _of_values(fitted: Sequence[FittedParameter], found: Linearised) -> Iterator
             )
         elif item.high - item.low > 2 * abs(item.value):
             yield f"{item.key} is hardly determined: its interval is wider than twice its value."
-
-
-def _alike(fitted: Sequence[FittedParameter], found: Linearised) -> Iterator[str]:
+    if not found.is_separable:
+        yield "these points cannot tell the inputs apart: fix some of them."
     correlation = found.correlation()
     for i, j in itertools.combinations(range(len(fitted)), 2):
         if abs(correlation[i, j]) >= ALIKE:
@@ -81,6 +62,17 @@ def _alike(fitted: Sequence[FittedParameter], found: Linearised) -> Iterator[str
                 f"{fitted[i].key} and {fitted[j].key} can hardly be told apart (correlation "
                 f"{correlation[i, j]:.3f}): fix one of them."
             )
+    if found.freedom == 0:
+        yield "there are as many inputs as points: the fit cannot fail, and proves nothing."
+    if found.weighted and found.spread > 1:
+        yield (
+            f"the points scatter {found.spread:.2f} times as much about the fit as their "
+            "uncertainties allow; the intervals are widened by that factor."
+        )
+    if len(fitted) > PROFILED:
+        yield from _curved(residuals, found)
+    else:
+        yield from _skewed(residuals, fitted, found)
 
 
 def _skewed(
@@ -141,7 +133,6 @@ def _is_inside(parameters: Sequence[Parameter], scaled: FloatArray) -> bool:
 # Covariances are those of the linearised model at the solution, from its derivatives there;
 # intervals of few parameters follow from profiles of the likelihood.
 
-
 Tell = Callable[[str], None]
 """Is told how a fit gets on, a sentence at a time."""
 
@@ -169,19 +160,13 @@ def fit_parameters(
 
     `reach` is how far each may be off before the fit, over its start value; see `reaches`.
 
-    Raises
-    ------
-    InputError
-        If there are fewer points than parameters, or a parameter has no influence.
-    ConvergenceError
-        If the fit does not converge.
+    Raises `InputError` if there are fewer points than parameters, or a parameter has no influence;
+    `ConvergenceError` if the fit does not converge.
     """
     count, size = int(used.sum()), len(parameters)
     if count < size:
         allowed = f"{size} inputs cannot be fitted to {count} usable points."
-        raise InputError(
-            [Problem("fit", "", allowed, "Fit fewer, or give more points.")], "the fit"
-        )
+        raise one_problem("fit", "", allowed, "Fit fewer, or give more points.", "the fit")
     residuals = Residuals(points.shared(), parameters, used)
     names = ", ".join(item.key for item in parameters)
     tell(f"fit: {count} points, {names}")
@@ -272,7 +257,19 @@ def _described(
     residuals: Residuals, found: Linearised, known: tuple[Combination, ...], tell: Tell
 ) -> Fit:
     """The fit with intervals and warnings."""
-    fitted = _intervals(residuals, found, tell)
+    errors = found.standard_errors()
+    reach = found.quantile * errors
+    ends = np.full((errors.size, 2), np.nan)
+    if errors.size <= PROFILED:
+        tell("fit: profiles of the likelihood")
+        ends = profile_ends(residuals, found)
+    profiled = np.isfinite(ends).all(axis=1)
+    linear = np.stack([found.solution - reach, found.solution + reach], axis=1)
+    ends = np.where(profiled[:, None], ends, linear)
+    fitted = tuple(
+        _fitted(item, found, number, ends[number], bool(profiled[number]))
+        for number, item in enumerate(residuals.parameters)
+    )
     return Fit(
         parameters=fitted,
         settings=residuals.settings(found.solution),
@@ -298,22 +295,6 @@ def _discrepancy(residuals: Residuals, found: Linearised) -> float:
         return found.spread
     square = float(np.mean(residuals.uncertainty**2))
     return math.sqrt(square * (found.spread**2 - 1))
-
-
-def _intervals(residuals: Residuals, found: Linearised, tell: Tell) -> tuple[FittedParameter, ...]:
-    errors = found.standard_errors()
-    reach = found.quantile * errors
-    ends = np.full((errors.size, 2), np.nan)
-    if errors.size <= PROFILED:
-        tell("fit: profiles of the likelihood")
-        ends = profile_ends(residuals, found)
-    profiled = np.isfinite(ends).all(axis=1)
-    linear = np.stack([found.solution - reach, found.solution + reach], axis=1)
-    ends = np.where(profiled[:, None], ends, linear)
-    return tuple(
-        _fitted(item, found, number, ends[number], bool(profiled[number]))
-        for number, item in enumerate(residuals.parameters)
-    )
 
 
 def _fitted(

@@ -134,7 +134,6 @@ class Linearised:
 # The sum of squares along that valley says how far a parameter may be off, also where the losses
 # are not linear in it or where it ended at a bound.
 
-
 PROFILED = 3
 """Parameters up to which profiles are made."""
 MOST_PLACES, MOST_ROUNDS = 12, 8
@@ -158,10 +157,7 @@ def profile_ends(residuals: Residuals, found: Linearised) -> FloatArray:
 
     An end beyond a bound is the bound.
 
-    Returns
-    -------
-    ndarray, shape (p, 2)
-        Scaled; NaN where there is none.
+    Returns ndarray, shape (p, 2): scaled; NaN where there is none.
     """
     ends = np.full((found.solution.size, 2), np.nan)
     growth = (found.quantile * found.spread) ** 2
@@ -416,7 +412,6 @@ class Fit:
 # How far each input may be off is known before, from [uncertainty] or by assumption. A combination
 # of inputs that may be off that far without moving the losses by their uncertainty cannot be
 # fitted.
-
 
 NAMED = 0.2
 """Component of a direction, over the largest, from which an input is named. [1]"""

@@ -100,7 +100,6 @@ class NearbyPoints(PointList):
 
 # The losses that the model gives at measured points, for any values of some keys.
 
-
 FloatArray = NDArray[np.float64]
 
 _EXACT = {"numerics.pocket_interpolation": 0.0}
@@ -182,7 +181,6 @@ class MeasuredPoints:
 
 
 # Deviations of computed from measured losses over weights, for any values of some keys.
-
 
 STEP = 1e-2
 """Step of the differences that give the derivatives, over the start value: flows through pockets

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 # Tables as users keep them (CSV, Excel, Parquet) as rows of plain cells.
 
-
 _NOUN = "measurement"
 _LARGEST_FILE = 10_000_000
 """Largest file, also of what a compressed file holds. [bytes]"""
@@ -53,10 +52,7 @@ class Grid:
 def read_grid(path: Path) -> Grid:
     """The cells of a CSV, Excel (first sheet) or Parquet file.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read as such, is empty, or has more than `MOST_ROWS` rows.
+    Raises `InputError` if it cannot be read as such, is empty, or has more than `MOST_ROWS` rows.
     """
     readers = {".xlsx": _excel_rows, ".parquet": _parquet_rows}
     reader = readers.get(path.suffix.lower(), _csv_rows)
@@ -158,7 +154,6 @@ def _text(cell: object) -> str:
 
 # Measurements as a table states them: conditions, loss, which loss it is, uncertainty.
 
-
 FloatArray = NDArray[np.float64]
 
 LOAD_DEPENDENT = "load_dependent"
@@ -256,10 +251,7 @@ def parse_measurements(
 ) -> Measurements:
     """What the cells of a table mean for a case.
 
-    Raises
-    ------
-    InputError
-        With every mistake in the table.
+    Raises `InputError` with every mistake in the table.
     """
     problems = _Problems(tuple(line for line, _ in grid.rows))
     columns = _columns(grid, case, problems)

@@ -20,20 +20,22 @@ from epicyclic.case.case import Case, build_case
 from epicyclic.case.fields import field_at, is_whole_number
 from epicyclic.case.read import parse_value, plain
 from epicyclic.case.train import TrainCase
-from epicyclic.errors import InputError, Problem, Status, raise_any
+from epicyclic.errors import InputError, Problem, Status, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.study.operating import AXES, STATE_KEY
 from epicyclic.study.solve import pocket_flow_numbers, solve
 from epicyclic.study.sweeps.axes import (
     MOST_POINTS,
     Axis,
+    Point,
+    check_links,
+    keys_behind,
     listed,
     make_axis,
     make_group,
     make_rows,
     too_many,
 )
-from epicyclic.study.sweeps.links import Point, check_links, keys_behind
 from epicyclic.study.sweeps.runner import Plan, Row
 from epicyclic.units import format_number
 
@@ -99,7 +101,6 @@ def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 # What a sweep varies: keys, their values, and the cases of the full product.
-
 
 _RANGE = re.compile(
     r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
@@ -296,11 +297,8 @@ def make_plan(
 ) -> SweepPlan:
     """Check what is to be varied.
 
-    Raises
-    ------
-    InputError
-        For unknown or unsuitable keys, no values, values that cannot be read, repeated ones, or
-        links that have no value.
+    Raises `InputError` for unknown or unsuitable keys, no values, values that cannot be read,
+    repeated ones, or links that have no value.
     """
     single = {str(key): listed(values) for key, values in (vary or {}).items()}
     groups = [
@@ -310,8 +308,7 @@ def make_plan(
     sizes = [*map(len, single.values()), *(max(map(len, it.values()), default=0) for it in groups)]
     if not sizes:
         remedy = "Give at least one key and its values; --vary KEY=VALUES on the command line."
-        problem = Problem("vary", "", "is empty.", remedy)
-        raise InputError([problem], "the sweep")
+        raise one_problem("vary", "", "is empty.", remedy, "the sweep")
     if math.prod(sizes) > MOST_POINTS:  # not worth reading them
         raise InputError([too_many("vary", math.prod(sizes))], "the sweep")
     made = [make_axis(case, key, values) for key, values in single.items()]
@@ -357,10 +354,7 @@ def parse_vary(
 
     A unit after the last value, or after the count, holds for all values without one.
 
-    Raises
-    ------
-    InputError
-        If an option is not of that form.
+    Raises `InputError` if an option is not of that form.
     """
     problems = []
     vary: dict[str, list[Any]] = {}
@@ -406,10 +400,7 @@ def parse_together(case: Case, options: Sequence[str]) -> list[dict[str, list[An
 def parse_links(options: Sequence[str]) -> dict[str, str]:
     """The options ``key = expression`` of a command line.
 
-    Raises
-    ------
-    InputError
-        If an option is not of that form, or names a key again.
+    Raises `InputError` if an option is not of that form, or names a key again.
     """
     links: dict[str, str] = {}
     problems = []
@@ -428,36 +419,32 @@ def parse_links(options: Sequence[str]) -> dict[str, str]:
 def _values(case: Case, key: str, text: str) -> Iterator[Any]:
     match = _RANGE.fullmatch(text)
     if match is not None:
-        yield from _range(case, key, match)
+        start, stop = _NUMBER.fullmatch(match["start"]), _NUMBER.fullmatch(match["stop"])
+        if start is None or stop is None:
+            raise ValueError("start and stop must be numbers")
+        count = int(match["count"])
+        if count < 1:
+            raise ValueError("the count must be 1 or more")
+        if count > MOST_POINTS:
+            raise ValueError(f"the count must be {MOST_POINTS} or less")
+        units = {unit for unit in (start[2], stop[2], (match["unit"] or "").strip()) if unit}
+        if len(units) > 1:
+            raise ValueError(f"the units {' and '.join(sorted(units))} differ")
+        unit = units.pop() if units else ""
+        field = field_at(case, key)
+        whole = field is not None and is_whole_number(field[0])
+        for number in np.linspace(float(start[1]), float(stop[1]), count):
+            if unit:
+                yield f"{format_number(float(number), 12)} {unit}"
+            elif whole and float(number).is_integer():
+                yield int(number)
+            else:
+                yield float(number)
         return
     items = [item.strip() for item in text.split(",") if item.strip()]
     shared = _unit_of(items[-1]) if items else ""
     for item in items:
         yield parse_value(f"{item} {shared}" if shared and _is_bare(item) else item)
-
-
-def _range(case: Case, key: str, match: re.Match[str]) -> Iterator[Any]:
-    start, stop = _NUMBER.fullmatch(match["start"]), _NUMBER.fullmatch(match["stop"])
-    if start is None or stop is None:
-        raise ValueError("start and stop must be numbers")
-    count = int(match["count"])
-    if count < 1:
-        raise ValueError("the count must be 1 or more")
-    if count > MOST_POINTS:
-        raise ValueError(f"the count must be {MOST_POINTS} or less")
-    units = {unit for unit in (start[2], stop[2], (match["unit"] or "").strip()) if unit}
-    if len(units) > 1:
-        raise ValueError(f"the units {' and '.join(sorted(units))} differ")
-    unit = units.pop() if units else ""
-    field = field_at(case, key)
-    whole = field is not None and is_whole_number(field[0])
-    for number in np.linspace(float(start[1]), float(stop[1]), count):
-        if unit:
-            yield f"{format_number(float(number), 12)} {unit}"
-        elif whole and float(number).is_integer():
-            yield int(number)
-        else:
-            yield float(number)
 
 
 def _is_bare(item: str) -> bool:

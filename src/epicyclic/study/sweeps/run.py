@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from epicyclic.builders.build import layout_of
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.files import check_place, whole_file
 from epicyclic.netcdf_file import texts_not_copied
+from epicyclic.plugins.rexs.model import unit_of
 from epicyclic.result.result import number_fields, origin
 from epicyclic.study.operating import AXES, axis_name
-from epicyclic.study.sweeps.axes import ROW, columns_of, unit_of
+from epicyclic.study.sweeps.axes import ROW, columns_of
 from epicyclic.study.sweeps.plan import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Progress, Rows, Runner
 from epicyclic.units import percent
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
 
 # Rows of a sweep as an `xarray.Dataset`, and the files it is kept in.
-
 
 FORMATS = (".nc", ".csv", ".parquet")
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
@@ -148,10 +148,13 @@ def _about_pocketing(rows: Rows) -> str:
 def check_output(path: Path) -> None:
     """Raise `InputError` unless a sweep can be written to `path`."""
     if path.suffix not in FORMATS:
-        problem = Problem(
-            "-o", str(path), f"must end in {', '.join(FORMATS)}.", "Choose one of these formats."
+        raise one_problem(
+            "-o",
+            str(path),
+            f"must end in {', '.join(FORMATS)}.",
+            "Choose one of these formats.",
+            "the command",
         )
-        raise InputError([problem], "the command")
     check_place(path)
 
 
@@ -194,7 +197,6 @@ def to_table(dataset: xr.Dataset) -> pd.DataFrame:
 #
 # Both are found at one speed and oil inlet temperature, each at the temperatures it settles at. The
 # loaded oil is hotter and drags less, so that this is less than the loss that depends on the load.
-
 
 Points = tuple[dict[str, Any], ...]
 

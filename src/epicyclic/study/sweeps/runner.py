@@ -24,7 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from epicyclic.errors import EpicyclicError, InputError, Problem, Status, is_interrupt, raise_any
+from epicyclic.errors import (
+    EpicyclicError,
+    InputError,
+    Problem,
+    Status,
+    is_interrupt,
+    one_problem,
+    raise_any,
+)
 from epicyclic.files import look_seldom, make_folder
 
 # The journal of an unfinished study: one line for each finished point, written as it finishes.
@@ -129,10 +137,8 @@ class Journal:
     def read(self) -> dict[int, Row]:
         """Finished points by number; none if there is no file.
 
-        Raises
-        ------
-        InputError
-            If the file cannot be read or holds something else than points of this study.
+        Raises `InputError` if the file cannot be read or holds something else than points of this
+        study.
         """
         return dict(self.points())
 
@@ -172,10 +178,7 @@ class Journal:
     def append(self, point: int, row: Row) -> None:
         """Add a finished point; it outlives this process when this returns.
 
-        Raises
-        ------
-        InputError
-            If it cannot be written; what was written before stays.
+        Raises `InputError` if it cannot be written; what was written before stays.
         """
         self._write(_sealed(_RECORD.dump_json(_Record(self.fingerprint, point, row))))
 
@@ -192,13 +195,13 @@ class Journal:
         except OSError as error:
             whole, reason = False, str(error.strerror)
         if not whole:
-            problem = Problem(
+            raise one_problem(
                 "journal",
                 str(self.path),
                 f"cannot be written: {reason}.",
                 "Finished points are kept; make room, and give the same command again.",
+                "the sweep",
             )
-            raise InputError([problem], "the sweep")
 
     def _may_be_cut_short(self, line: bytes) -> bool:
         """True for the start of a line of this study."""
@@ -219,10 +222,7 @@ def _opened(path: Path) -> BinaryIO:
 def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
     """Fingerprint and content of the study of which a file holds points.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, or does not say of which study it is.
+    Raises `InputError` if it cannot be read, or does not say of which study it is.
     """
     try:
         with _opened(path) as file:
@@ -266,14 +266,13 @@ def _parse_heading(line: bytes) -> _Heading | None:
 
 def _error(path: Path, allowed: str) -> InputError:
     remedy = "Move it away or delete it, and give the command again."
-    return InputError([Problem("journal", str(path), allowed, remedy)], "the sweep")
+    return one_problem("journal", str(path), allowed, remedy, "the sweep")
 
 
 # Many independent points: in this process while that is quick, else in workers or on a cluster.
 #
 # Finished points are kept in a journal at once, and rows do not depend on order, workers, shards or
 # interruptions as long as `Plan.solve` is a function of the number of the point.
-
 
 Progress = Callable[..., None]
 Batch = list[tuple[int, Row]]
@@ -428,13 +427,7 @@ def share_of(plan: Plan, shard: tuple[int, int] | None) -> list[int]:
 
 
 def parse_shard(text: str | None) -> tuple[int, int] | None:
-    """The option ``--shard 2/8``.
-
-    Raises
-    ------
-    InputError
-        If it is not of that form.
-    """
+    """The option ``--shard 2/8``; raises `InputError` if it is not of that form."""
     if text is None:
         return None
     match = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text)
@@ -445,7 +438,7 @@ def parse_shard(text: str | None) -> tuple[int, int] | None:
 
 def _no_shard(text: str) -> InputError:
     allowed = "must be I/N, with I from 1 to N."
-    return InputError([Problem("--shard", text, allowed, "For example 2/8.")], "the command")
+    return one_problem("--shard", text, allowed, "For example 2/8.", "the command")
 
 
 def heading(plan: Plan, shard: tuple[int, int] | None, output: Mapping[str, Any]) -> dict[str, Any]:
@@ -572,10 +565,13 @@ def _distributed() -> Any:
     try:
         import distributed
     except ImportError:
-        problem = Problem(
-            "--dask", "", "needs the package distributed.", 'Install "epicyclic[dask]".'
-        )
-        raise InputError([problem], "the command") from None
+        raise one_problem(
+            "--dask",
+            "",
+            "needs the package distributed.",
+            'Install "epicyclic[dask]".',
+            "the command",
+        ) from None
     return distributed
 
 
@@ -594,7 +590,7 @@ def _client(address: str, *, trial: bool = False) -> Any:
 
 def _cluster_error(address: str, allowed: str) -> InputError:
     remedy = "Give the address of a running scheduler, as in tcp://host:8786."
-    return InputError([Problem("--dask", f'"{address}"', allowed, remedy)], "the command")
+    return one_problem("--dask", f'"{address}"', allowed, remedy, "the command")
 
 
 def _same(plan: Plan) -> Plan:
@@ -647,10 +643,8 @@ def gather(
 ) -> tuple[Plan, Rows, dict[str, Any]]:
     """The plan of which `files` hold shards, all its points, and how they are to be written.
 
-    Raises
-    ------
-    InputError
-        If a file is no journal, the files are of several plans, or points are missing.
+    Raises `InputError` if a file is no journal, the files are of several plans, or points are
+    missing.
     """
     (first, *_) = files
     mark, content = read_heading(first)
@@ -706,4 +700,4 @@ def _check_whole(rows: Rows, shares: Mapping[Path, Sequence[int]]) -> None:
 
 
 def _shard_error(file: Path, allowed: str, remedy: str) -> InputError:
-    return InputError([Problem("FILE", str(file), allowed, remedy)], "the command")
+    return one_problem("FILE", str(file), allowed, remedy, "the command")
