@@ -16,10 +16,9 @@ from epicyclic.case.case import Case
 from epicyclic.errors import one_problem
 from epicyclic.files import check_place, whole_file
 from epicyclic.netcdf_file import texts_not_copied
-from epicyclic.plugins.rexs.model import unit_of
 from epicyclic.result.result import number_fields, origin
 from epicyclic.study.operating import AXES, axis_name
-from epicyclic.study.sweeps.axes import ROW, columns_of
+from epicyclic.study.sweeps.axes import ROW, columns_of, unit_of
 from epicyclic.study.sweeps.plan import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Progress, Rows, Runner
 from epicyclic.units import percent
