@@ -51,10 +51,7 @@ def compare(point: Mapping[str, float], number: int, changes: Mapping[str, Any])
                 "rolling_speed": f"{point['speed']} m/s",
                 "slide_to_roll_ratio": point["slip"],
             },
-            "lubricant": {
-                "oil": "atf-talbot-2012",
-                "temperature": f"{point['temperature']} degC",
-            },
+            "lubricant": {"oil": "atf-talbot-2012", "temperature": f"{point['temperature']} degC"},
             "surface1": {"roughness": f"{point['rough1']} um", "seed": 2 * number},
             "surface2": {"roughness": f"{point['rough2']} um", "seed": 2 * number + 1},
             "numerics": NUMERICS,

@@ -98,13 +98,7 @@ def loaded_contact(
     lines, shape = load_shape(mesh, model, positions, segments)
     force = torque / mesh.gear1.base_radius
     return mesh_contact(
-        mesh,
-        lines,
-        force * shape,
-        force=force,
-        speed1=speed,
-        oil=oil,
-        flanks=Flanks(STEEL, *rough),
+        mesh, lines, force * shape, force=force, speed1=speed, oil=oil, flanks=Flanks(STEEL, *rough)
     )
 
 

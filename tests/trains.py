@@ -32,12 +32,7 @@ def one_set(gears, meshes, held, ends, efficiency=0.99, planets=3):
             }
         },
         "shafts": {"in": [f"S.{ends[0]}"], "out": [f"S.{ends[1]}"], "housing": [f"S.{held}"]},
-        "operation": {
-            "input": "in",
-            "output": "out",
-            "torque": "7 N*m",
-            "speed": "1300 rpm",
-        },
+        "operation": {"input": "in", "output": "out", "torque": "7 N*m", "speed": "1300 rpm"},
     }
 
 
@@ -91,13 +86,7 @@ def wolfrom(sun, wide, fixed, narrow, out, efficiency=0.99):
     train = published("wolfrom")
     own = train["sets"]["W"]
     own["mesh_efficiency"] = efficiency
-    teeth = {
-        "sun": sun,
-        "wide": wide,
-        "fixed_ring": fixed,
-        "narrow": narrow,
-        "output_ring": out,
-    }
+    teeth = {"sun": sun, "wide": wide, "fixed_ring": fixed, "narrow": narrow, "output_ring": out}
     for name, count in teeth.items():
         own["gears"][name]["teeth"] = count
     return train

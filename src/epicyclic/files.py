@@ -40,10 +40,7 @@ def read_text(
 ) -> str:
     """The text of a file.
 
-    Raises
-    ------
-    InputError
-        If it is not a file, too large, or not UTF-8 text.
+    Raises `InputError` if it is not a file, too large, or not UTF-8 text.
     """
     return decode(read_bytes(path, noun, largest), noun)
 
@@ -197,11 +194,8 @@ def whole_file(path: Path, option: str = OPTION) -> Iterator[Path]:
     A file that is replaced keeps its permissions, a new one gets those that the umask of the user
     leaves it. A link is followed.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be written: the disk is full, the name is too long. `option` is that of
-        its problem.
+    Raises `InputError` if the file cannot be written: the disk is full, the name is too long.
+    `option` is that of its problem.
     """
     with _plain_errors(path, option):
         target = path.resolve()
@@ -219,10 +213,7 @@ def whole_file(path: Path, option: str = OPTION) -> Iterator[Path]:
 def write_file(path: Path, content: str | bytes) -> None:
     """Write `content` to a file whole or not at all, or to a device or pipe as it is.
 
-    Raises
-    ------
-    InputError
-        As for `whole_file`.
+    Raises `InputError`: As for `whole_file`.
     """
     data = content.encode() if isinstance(content, str) else content
     with _plain_errors(path, FILE):

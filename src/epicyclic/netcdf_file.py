@@ -46,10 +46,7 @@ _MAKE_AGAIN = "Make it again."
 def read_groups(path: Path) -> dict[str, xr.Dataset]:
     """All that a file holds, in memory: the root by an empty name, groups by their path.
 
-    Raises
-    ------
-    InputError
-        If it is no NetCDF file, is damaged, or holds too much.
+    Raises `InputError` if it is no NetCDF file, is damaged, or holds too much.
     """
     import netCDF4
     import xarray as xr

@@ -166,10 +166,7 @@ def one_of(unit: str) -> Any:
 def in_unit(value: Any, unit: str) -> float:
     """A pint quantity, or a number, in `unit`; radians count as numbers.
 
-    Raises
-    ------
-    TypeError
-        If its dimension is another one.
+    Raises `TypeError` if its dimension is another one.
     """
     quantity = value if hasattr(value, "magnitude") else with_unit(value, "")
     return float(quantity.to(unit).magnitude)
@@ -178,10 +175,7 @@ def in_unit(value: Any, unit: str) -> float:
 def pure_number(value: Any) -> float:
     """The value of a number or pint quantity without dimension; angles are in radians.
 
-    Raises
-    ------
-    TypeError
-        If it has one.
+    Raises `TypeError` if it has one.
     """
     return in_unit(value, "")
 
@@ -254,10 +248,8 @@ class Quantity:
     def parse(self, value: object) -> float:
         """`value`, text with a unit or a pint quantity, as an SI number.
 
-        Raises
-        ------
-        PydanticCustomError
-            With the allowed form and range, when `value` is not such a quantity.
+        Raises `PydanticCustomError` with the allowed form and range, when `value` is not such a
+        quantity.
         """
         return _parsed_text(self, value) if isinstance(value, str) else self._parsed(value)
 
@@ -270,10 +262,8 @@ class Quantity:
     def scale_from(self, unit: str) -> tuple[float, float]:
         """What arrays of numbers in `unit` are multiplied by, and what is added, for display.
 
-        Raises
-        ------
-        PydanticCustomError
-            With the allowed form, when `unit` does not measure this quantity.
+        Raises `PydanticCustomError` with the allowed form, when `unit` does not measure this
+        quantity.
         """
         zero, one = (
             self.to_display(self._converted(number, unit.strip().translate(_PLAIN_SIGNS)))
@@ -474,8 +464,7 @@ Density = Annotated[
     float, Quantity("a density", "kg/m^3", "kg/m^3", low=0.0, high=3e4, open_low=True)
 ]
 KinematicViscosity = Annotated[
-    float,
-    Quantity("a kinematic viscosity", "m^2/s", "mm^2/s", low=0.3, high=1e7, open_low=True),
+    float, Quantity("a kinematic viscosity", "m^2/s", "mm^2/s", low=0.3, high=1e7, open_low=True)
 ]
 """ASTM D341 takes the logarithm of a logarithm of the value in mm^2/s plus 0.7."""
 PressureViscosity = Annotated[
@@ -492,8 +481,7 @@ BodyCapacity = Annotated[
     float, Quantity("a heat capacity", "J/K", "J/K", low=0.0, high=1e10, open_low=True)
 ]
 HeatTransfer = Annotated[
-    float,
-    Quantity("a heat transfer coefficient", "W/(m^2*K)", "W/(m^2*K)", low=0.0, high=1e6),
+    float, Quantity("a heat transfer coefficient", "W/(m^2*K)", "W/(m^2*K)", low=0.0, high=1e6)
 ]
 
 

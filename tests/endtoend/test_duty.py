@@ -361,11 +361,7 @@ print(time.process_time() - before, int(peak[1]) / 1024)
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "count"),
-    [
-        ("1,abc,nan,\n" * 1_000_000, 4),
-        ("1" * 50_000_000, 1),
-        ('"' + "1,2,3,4\n" * 3_000_000, 1),
-    ],
+    [("1,abc,nan,\n" * 1_000_000, 4), ("1" * 50_000_000, 1), ('"' + "1,2,3,4\n" * 3_000_000, 1)],
 )
 def test_large_bad_files_end_soon_and_in_little_memory(tmp_path, body, count):
     path = tmp_path / "cycle.csv"

@@ -30,8 +30,7 @@ def test_heat_prints_temperatures_and_where_the_heat_goes(epicyclic):
 
 
 @pytest.mark.parametrize(
-    ("quantity", "key"),
-    [("oil_flow", "thermal.oil_flow"), ("input_power", "operation.torque")],
+    ("quantity", "key"), [("oil_flow", "thermal.oil_flow"), ("input_power", "operation.torque")]
 )
 def test_heat_finds_what_leads_to_a_temperature(epicyclic, quantity, key):
     options = ("--solve", quantity, "--target", "96.5 degC")

@@ -215,10 +215,7 @@ def _inline(value):
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        (
-            {"models.friction": "fitted", "lubricant.oil": "iso-vg-68-mineral"},
-            "needs a file",
-        ),
+        ({"models.friction": "fitted", "lubricant.oil": "iso-vg-68-mineral"}, "needs a file"),
         ({"models.friction": "fitted", "models.oil_model": "none.json"}, "cannot be read"),
         ({"models.bearing": "fitted"}, "no bearing rolling loss"),
         ({"models.friction": "fitted", "models.fitted_form": "regression"}, "form regression"),

@@ -270,8 +270,7 @@ def test_command_reports_failed_points(tmp_path, epicyclic):
 
 
 @pytest.mark.parametrize(
-    ("output", "words"),
-    [("s.xls", ".parquet"), ("missing/s.csv", "no place for a file")],
+    ("output", "words"), [("s.xls", ".parquet"), ("missing/s.csv", "no place for a file")]
 )
 def test_unusable_output_is_refused_before_computing(tmp_path, epicyclic, output, words):
     done = epicyclic(

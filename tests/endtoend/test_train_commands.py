@@ -16,10 +16,7 @@ SMALL = (
 
 def test_a_train_is_started_checked_and_run(epicyclic):
     done = epicyclic("init", "--kind", "train", "axle.toml")
-    assert (done.returncode, done.stdout) == (
-        0,
-        "Wrote axle.toml. Next: epicyclic run axle.toml\n",
-    )
+    assert (done.returncode, done.stdout) == (0, "Wrote axle.toml. Next: epicyclic run axle.toml\n")
     checked = epicyclic("check", "axle.toml")
     assert checked.returncode == 0, checked.stderr
     assert checked.stdout.startswith("axle.toml: a sound train case.\n")

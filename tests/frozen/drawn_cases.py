@@ -449,12 +449,7 @@ def draw_angles(rng: random.Random, count: int, places: int) -> list[str]:
 
 
 def draw_drive(
-    operation: Tables,
-    numbers: Numbers,
-    options: Options,
-    torque: float,
-    speed: float,
-    ratio: float,
+    operation: Tables, numbers: Numbers, options: Options, torque: float, speed: float, ratio: float
 ) -> None:
     """The operating point: torque and speed of the sun turned into those of the input."""
     driver, other, alone = options["drive"]

@@ -16,11 +16,7 @@ from epicyclic.study.bands.inputs import uncertain_values
 
 PAIR = {
     "kind": "gear_pair",
-    "operation": {
-        "torque": "120 N*m",
-        "speed": "1700 rpm",
-        "oil_inlet_temperature": "63 degC",
-    },
+    "operation": {"torque": "120 N*m", "speed": "1700 rpm", "oil_inlet_temperature": "63 degC"},
     "gears": {
         "normal_module": "3 mm",
         "normal_pressure_angle": "20 deg",
@@ -170,10 +166,7 @@ def test_slopes_are_uncertain_by_the_class():
         "models.load_distribution": "compliance",
     }
     found = slopes(pair(changes))
-    assert set(found) == {
-        "pinion.micro_geometry.lead_slope",
-        "pinion.micro_geometry.profile_slope",
-    }
+    assert set(found) == {"pinion.micro_geometry.lead_slope", "pinion.micro_geometry.profile_slope"}
     limits = flank_tolerances(7, 3e-3, 23 * 3e-3 / np.cos(np.radians(11)), 31e-3)
     lead = found["pinion.micro_geometry.lead_slope"]
     assert lead.spread == pytest.approx(

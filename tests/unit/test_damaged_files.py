@@ -53,7 +53,7 @@ RICH = {
             "diameter": ["132 mm", "139 mm"],
             "face_position": ["0 mm", "30 mm"],
             "deviation": [["0 um", "1 um"], ["2 um", "3 um"]],
-        },
+        }
     },
 }
 """Tables within tables and lists: an oil, coefficients of friction, deviations of a flank."""

@@ -296,10 +296,7 @@ def test_schlenk_and_ohlendorf_on_the_test_article(talbot, celsius, rpm, mu, wat
 def test_load_factors_enter_the_load_of_niemann_and_winter_only(talbot, factors, times):
     """(K_A K_gamma)^0.2, as KISSsoft 03/2017 has it; 2500 N m keeps the load in its range."""
     given = {"operation.torque": "2500 N*m", "models.mesh_loads": "without-losses"}
-    keys = {
-        "models.application_factor": factors[0],
-        "models.mesh_load_factor": factors[1],
-    }
+    keys = {"models.application_factor": factors[0], "models.mesh_load_factor": factors[1]}
     for name in ("niemann-winter", "schlenk"):
         plain = ep.solve(talbot.updated(given | {"models.friction": name}))
         loaded = ep.solve(talbot.updated(given | keys | {"models.friction": name}))

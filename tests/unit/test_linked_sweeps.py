@@ -190,10 +190,7 @@ def test_table_of_points(case, tmp_path):
     assert list(data.row.values) == [1, 2, 3]
     assert list(data.gears_normal_module.values) == [1.8, 1.8, 1.7]
     frame = pd.DataFrame({"sun.teeth": [73, 74], "operation.torque [N*m]": [1.5, 2.5]})
-    assert columns_of(frame) == {
-        "sun.teeth": [73, 74],
-        "operation.torque": ["1.5 N*m", "2.5 N*m"],
-    }
+    assert columns_of(frame) == {"sun.teeth": [73, 74], "operation.torque": ["1.5 N*m", "2.5 N*m"]}
 
 
 @pytest.mark.parametrize(

@@ -73,12 +73,7 @@ def test_losses_have_the_names_of_their_meshes_bodies_and_gears():
         "carrier_drag",
     )
     fixed = gearing_of("layshaft")
-    assert fixed.terms[-4:] == (
-        "drive_drag",
-        "lay_wheel_drag",
-        "lay_pinion_drag",
-        "driven_drag",
-    )
+    assert fixed.terms[-4:] == ("drive_drag", "lay_wheel_drag", "lay_pinion_drag", "driven_drag")
     assert not any("bearing" in term or "carrier" in term for term in fixed.terms)
 
 
@@ -144,11 +139,7 @@ def test_own_keys_of_a_gear_come_before_those_that_all_share():
 def test_mass_of_a_planet_is_the_sum_of_its_gears():
     sets = [
         build(ep.load_case(changed("wolfrom", **keys))).sets["S"]
-        for keys in (
-            {},
-            {"gears__narrow__mass": "0.3 kg"},
-            {"gears__wide__mass": None},
-        )
+        for keys in ({}, {"gears__narrow__mass": "0.3 kg"}, {"gears__wide__mass": None})
     ]
     given, sum_of_two, estimated = (own.planets[0] for own in sets)
     assert given.mass == 0.4
@@ -479,11 +470,7 @@ def test_planets_that_touch(kind, planets, gears, most):
 
 def test_planets_that_do_not_share_a_plane_cannot_touch():
     """The wide rear part of the long planet passes behind the short planets, if these end there."""
-    rear = {
-        "planets": 4,
-        "gears__long_rear__teeth": 25,
-        "gears__large_sun__teeth": 32,
-    }
+    rear = {"planets": 4, "gears__long_rear__teeth": 25, "gears__large_sun__teeth": 32}
     assert found("ravigneaux", **rear) == ()
     problem = only(found("ravigneaux", gears__short__face_width="30 mm", **rear))
     assert "short and long_rear" in problem.allowed
@@ -612,11 +599,7 @@ def test_friction_table_of_the_train_serves_its_sets():
 
 def test_geometry_may_stay_where_efficiencies_are_given():
     given = ep.solve(ep.load_case(changed("double_planet", mesh_efficiency=0.99)))
-    assert given.losses.keys() == {
-        "S.sun_inner_mesh",
-        "S.inner_outer_mesh",
-        "S.outer_ring_mesh",
-    }
+    assert given.losses.keys() == {"S.sun_inner_mesh", "S.inner_outer_mesh", "S.outer_ring_mesh"}
     mesh = {"sun-inner": {"center_distance": "48 mm", "efficiency": 0.5}}
     worse = ep.solve(ep.load_case(changed("double_planet", mesh_efficiency=0.99, mesh=mesh)))
     assert worse.efficiency < given.efficiency

@@ -30,9 +30,7 @@ def spur_of_contact_ratio(make_mesh, ratio):
     curvature = mesh.line_of_action / 2 + path / 2
     tip = math.hypot(curvature, mesh.gear1.base_radius)
     mesh = replace(
-        mesh,
-        gear1=replace(mesh.gear1, tip_radius=tip),
-        gear2=replace(mesh.gear2, tip_radius=tip),
+        mesh, gear1=replace(mesh.gear1, tip_radius=tip), gear2=replace(mesh.gear2, tip_radius=tip)
     )
     assert mesh.transverse_contact_ratio == pytest.approx(ratio, rel=1e-10)
     return mesh

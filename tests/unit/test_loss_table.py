@@ -33,8 +33,7 @@ POWER = LossTable("power", {"speed": np.array([50.0, 100.0])}, np.array([30.0, 8
 
 
 @pytest.mark.parametrize(
-    ("speed", "torque"),
-    [(100.0, 4.0), (50.0, 2.0), (200.0, 2.5), (300.0, 1.0), (1000.0, 1.0)],
+    ("speed", "torque"), [(100.0, 4.0), (50.0, 2.0), (200.0, 2.5), (300.0, 1.0), (1000.0, 1.0)]
 )
 def test_torque_is_linear_between_points_and_held_beyond(speed, torque):
     # sums and products of few binary fractions are exact
@@ -170,10 +169,7 @@ def test_a_file_with_two_axes_in_any_order(read):
             "speed [rpm],temperature [degC],torque [N*m]\n0,40,1\n5,40,1\n0,90,1\n",
             ["no row for the point 5 rpm, 90 degC"],
         ),
-        (
-            "speed [rpm],torque [kg]\none,1\ntwo,3\n",
-            ["measures something else", "not a number"],
-        ),
+        ("speed [rpm],torque [kg]\none,1\ntwo,3\n", ["measures something else", "not a number"]),
         ("speed,temperature,torque [N*m]\n0,40,1\n", ["no unit", "no unit"]),
     ],
 )

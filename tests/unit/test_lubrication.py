@@ -463,10 +463,7 @@ def test_each_set_of_a_train_may_have_its_own_method():
     }
     keys = {value.key for value in uncertain_values(small_axle(**own))[0]}
     factors = {key for key in keys if "oil_share" in key or "oil_air" in key}
-    assert factors == {
-        "lubrication.oil_share_factor",
-        "sets.planets.lubrication.oil_share_factor",
-    }
+    assert factors == {"lubrication.oil_share_factor", "sets.planets.lubrication.oil_share_factor"}
 
 
 def test_flanks_of_each_set_follow_its_method():
@@ -552,11 +549,7 @@ def test_bad_tables_have_one_clear_problem(table, key, said):
     [
         (DIP, {"thermal__lubrication": "spray"}, "thermal.lubrication"),
         (JETS, {"thermal__lubrication": "submerged"}, "thermal.lubrication"),
-        (
-            DIP,
-            {"thermal__oil_volume": "2.1 l"},
-            "lubrication.oil_volume, thermal.oil_volume",
-        ),
+        (DIP, {"thermal__oil_volume": "2.1 l"}, "lubrication.oil_volume, thermal.oil_volume"),
         ({"method": "jet"}, {"models__temperatures": "network"}, "thermal"),
         (
             JETS,

@@ -81,8 +81,7 @@ def test_losses_and_torques_that_drive_each_other_up_are_told(coarse_talbot):
 @pytest.mark.parametrize(("torque", "status"), [("20 kN*m", "converged"), ("2 MN*m", "unphysical")])
 def test_contacts_wider_than_their_radius_are_told(torque, status):
     pair = ep.load_case(
-        "talbot-2012-pair",
-        {"operation.torque": torque, "losses.mesh_pocketing.include": False},
+        "talbot-2012-pair", {"operation.torque": torque, "losses.mesh_pocketing.include": False}
     )
     found = ep.solve(pair)
     mesh = found.meshes["mesh"]

@@ -183,8 +183,7 @@ def test_too_many_losses_are_summed_by_what_loses_them(talbot_record, monkeypatc
 def test_large_losses_are_in_kilowatts(talbot_record, factor, unit, scale):
     contents = talbot_record.result
     larger = replace(
-        contents,
-        terms=tuple(replace(term, watts=factor * term.watts) for term in contents.terms),
+        contents, terms=tuple(replace(term, watts=factor * term.watts) for term in contents.terms)
     )
     ax = plot_loss_sum(larger, axes())
     assert ax.get_xlabel() == f"power loss, {unit}"

@@ -96,8 +96,7 @@ def test_axial_force_goes_to_the_locating_bearing(axial, thrust, expected):
 
 def test_one_bearing_carries_what_does_not_tilt_it():
     (found,) = bearing_reactions(
-        [Support(0.5)],
-        [ShaftLoad(0.2, (100.0, 7.0, 30.0)), ShaftLoad(0.8, (100.0, 7.0, 0.0))],
+        [Support(0.5)], [ShaftLoad(0.2, (100.0, 7.0, 30.0)), ShaftLoad(0.8, (100.0, 7.0, 0.0))]
     )
     assert (found.x, found.y, found.z) == pytest.approx((-200.0, -14.0, -30.0))
     (idle,) = bearing_reactions([Support(0.5)], [])

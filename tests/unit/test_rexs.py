@@ -281,10 +281,7 @@ def test_power_and_speed_give_the_torque(read):
 
 @pytest.mark.parametrize(
     ("speed", "expected"),
-    [
-        (-600.0, {"second_input": "ring", "second_speed": "600 rpm"}),
-        (0.0, {"fixed": "ring"}),
-    ],
+    [(-600.0, {"second_input": "ring", "second_speed": "600 rpm"}), (0.0, {"fixed": "ring"})],
 )
 def test_speed_of_a_second_member(read, speed, expected):
     parts = planetary()

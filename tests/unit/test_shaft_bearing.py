@@ -563,10 +563,7 @@ def test_table_over_the_load(oil, tmp_path, state):
         ({"model": "skf-2018", "series": "302"}, "series"),
         ({"model": "skf-2018", "series": "62", "static_load_rating": None}, "static_load_rating"),
         ({"model": "harris", "static_load_rating": None}, "static_load_rating"),
-        (
-            {"type": "cylindrical", "model": "skf-2018", "series": "2", "oil_level": "3 mm"},
-            "width",
-        ),
+        ({"type": "cylindrical", "model": "skf-2018", "series": "2", "oil_level": "3 mm"}, "width"),
         ({"type": "tapered"}, "axial_factor"),
         ({"type": "tapered", "axial_factor": 1.6, "contact_angle": "14 deg"}, "axial_factor"),
         ({"axial_factor": 1.6}, "axial_factor"),

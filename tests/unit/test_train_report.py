@@ -142,8 +142,7 @@ def test_friction_of_all_sets_is_compared():
 
 
 @pytest.mark.parametrize(
-    "ask",
-    [ep.mesh_details, ep.pocket_details, ep.loaded_meshes, ep.mesh_contacts],
+    "ask", [ep.mesh_details, ep.pocket_details, ep.loaded_meshes, ep.mesh_contacts]
 )
 def test_given_efficiencies_have_no_teeth_to_look_at(ask):
     with pytest.raises(InputError) as caught:

@@ -167,27 +167,17 @@ def test_test_article_hardly_leaves_the_ranges_made_for_it(talbot):
         ({"operation.torque": "20 N*m"}, "Hertz pressure"),
         ({"lubricant.oil": "iso-vg-32-pao", **REGRESSIONS}, "pressure-viscosity coefficient"),
         ({"models.friction": "xu-2007"}, "film ratio"),
-        (
-            {"models.friction": "benedict-kelley", "sun.roughness": "2 um"},
-            "mean rms roughness",
-        ),
+        ({"models.friction": "benedict-kelley", "sun.roughness": "2 um"}, "mean rms roughness"),
         (
             {"models.friction": "benedict-kelley", "operation.torque": "1e-3 N*m"},
             "argument of the logarithm",
         ),
         ({"models.friction": "matsumoto", "operation.torque": "10 N*m"}, "load number W"),
         ({"models.friction": "doleschel", "operation.speed": "10 rpm"}, "speed number U"),
-        (
-            {"models.friction": "schlenk", "operation.torque": "100 N*m"},
-            "load for each face width",
-        ),
+        ({"models.friction": "schlenk", "operation.torque": "100 N*m"}, "load for each face width"),
         ({"models.friction": "schlenk", "operation.speed": "100 rpm"}, "pitch-line speed"),
         (
-            {
-                "models.friction": "schlenk",
-                "sun.roughness": "8 um",
-                "planet.roughness": "8 um",
-            },
+            {"models.friction": "schlenk", "sun.roughness": "8 um", "planet.roughness": "8 um"},
             "mean roughness Ra",
         ),
         (
@@ -223,10 +213,7 @@ def test_test_article_hardly_leaves_the_ranges_made_for_it(talbot):
         ({"operation.speed": "100 rpm"}, "rolling speed"),
         ({"planet_bearing.race_roughness": "0.2 um"}, "rms roughness of the races"),
         ({"planet_bearing.roller_roughness": "0.02 um"}, "rms roughness of the rollers"),
-        (
-            {"models.friction": "niemann-winter", "operation.speed": "100 rpm"},
-            "pitch-line speed",
-        ),
+        ({"models.friction": "niemann-winter", "operation.speed": "100 rpm"}, "pitch-line speed"),
         ({"models.friction": "schlenk", "operation.speed": "20000 rpm"}, "pitch-line speed"),
         (
             {"lubricant.oil": "atf-dexron-ulv", "operation.oil_inlet_temperature": "180 degC"},

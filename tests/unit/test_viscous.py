@@ -15,11 +15,7 @@ from epicyclic.losses.drag import (
     viscous_flags,
 )
 from epicyclic.oil.properties import MixtureState, mixture_state
-from reference.rotating_body import (
-    cylinder_power,
-    laminar_disc_power,
-    turbulent_disc_power,
-)
+from reference.rotating_body import cylinder_power, laminar_disc_power, turbulent_disc_power
 
 RPM = math.pi / 30
 
@@ -249,9 +245,7 @@ def test_bodies_of_the_set_turn_at_their_own_speeds(talbot, atf):
 )
 def test_thrust_bearing_between_two_parts(talbot, atf, between, rpm):
     case = talbot.updated(
-        {
-            "thrust_bearing": {"mean_diameter": "90 mm", "between": between, "count": 2},
-        }
+        {"thrust_bearing": {"mean_diameter": "90 mm", "between": between, "count": 2}}
     )
     expected = 2 * bearing_viscous_loss(3.5, atf(90).kinematic_viscosity, rpm * RPM, 90e-3)
     found = ep.solve(case).losses["thrust_bearing_viscous"]

@@ -89,12 +89,7 @@ def test_roller_loads_are_those_of_the_rollers():
 @pytest.fixture
 def data(monkeypatch):
     """Tests with made-up losses, no two of them equal."""
-    levers = (
-        chapters._SET,
-        chapters._TEMPERATURE,
-        chapters._TORQUE,
-        chapters._speed(),
-    )
+    levers = (chapters._SET, chapters._TEMPERATURE, chapters._TORQUE, chapters._speed())
     shape = tuple(len(lever.values) for lever in levers)
     rng = np.random.default_rng(11)
     values = {

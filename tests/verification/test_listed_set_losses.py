@@ -262,10 +262,7 @@ def forces_on(kind, built, body):
     points, forces = [], []
     for element in built.sets["S"].meshes:
         mesh, share = element.mesh, state.torques[f"S.{element.key}"] / case_set["planets"]
-        for own, other, member in (
-            (mesh.gear1, mesh.gear2, 1),
-            (mesh.gear2, mesh.gear1, 2),
-        ):
+        for own, other, member in ((mesh.gear1, mesh.gear2, 1), (mesh.gear2, mesh.gear1, 2)):
             if bodies[own.name] != body:
                 continue
             # teeth push both gears of an external mesh round in one sense

@@ -59,8 +59,7 @@ def test_so_does_a_set_with_all_that_can_be_lost_and_two_driven_members(member):
 
 @pytest.mark.parametrize("torque", [300.0, -250.0])
 @pytest.mark.parametrize(
-    ("driver", "held"),
-    [("sun", "ring"), ("ring", "sun"), ("carrier", "sun"), ("sun", "carrier")],
+    ("driver", "held"), [("sun", "ring"), ("ring", "sun"), ("carrier", "sun"), ("sun", "carrier")]
 )
 def test_each_mesh_keeps_its_share_of_the_power_that_reaches_it(talbot, driver, held, torque):
     """With constant friction and an even load the shares are those of the loss factors, and power

@@ -44,10 +44,7 @@ def test_the_heat_that_leaves_is_the_loss(settled):
 
 def test_losses_belong_to_the_temperatures_they_lead_to(settled):
     temperatures = settled.heat.temperatures
-    for key, nodes in (
-        ("sun_mesh", ("sun", "planet")),
-        ("ring_mesh", ("planet", "ring")),
-    ):
+    for key, nodes in (("sun_mesh", ("sun", "planet")), ("ring_mesh", ("planet", "ring"))):
         mean = sum(temperatures[node] for node in nodes) / 2
         assert settled.meshes[key].contact_temperature == pytest.approx(mean, abs=3 * AGREEMENT)
     middle = (temperatures["planet"] + temperatures["pin"]) / 2

@@ -9,16 +9,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from trains import (
-    double_planet,
-    one_set,
-    plus,
-    published,
-    simple,
-    stepped,
-    turned_round,
-    wolfrom,
-)
+from trains import double_planet, one_set, plus, published, simple, stepped, turned_round, wolfrom
 
 ROUNDING = 1e-11  # relative; a few roundings of a small linear system
 PRINTED = 6e-6  # the reference values have five digits
@@ -202,11 +193,7 @@ def test_two_stages_in_series_have_the_product_of_their_efficiencies():
     }
     alone = copy.deepcopy(train)
     del alone["sets"]["second"]
-    alone["shafts"] = {
-        "in": ["first.sun"],
-        "out": ["first.carrier"],
-        "housing": ["first.ring"],
-    }
+    alone["shafts"] = {"in": ["first.sun"], "out": ["first.carrier"], "housing": ["first.ring"]}
     single, both = solved(alone), solved(train)
     assert both.efficiency == pytest.approx(single.efficiency**2, rel=ROUNDING)
     assert both.train.ratio == pytest.approx(single.train.ratio**2, rel=ROUNDING)

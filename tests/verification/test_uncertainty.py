@@ -65,8 +65,7 @@ def test_indices_of_the_function_of_ishigami():
     samples = make_samples([uniform(key, -math.pi, math.pi) for key in "abc"], 2**12, 5)
     found = sobol_indices(
         *at_all(
-            samples,
-            lambda x: np.sin(x[0]) + 7 * np.sin(x[1]) ** 2 + 0.1 * x[2] ** 4 * np.sin(x[0]),
+            samples, lambda x: np.sin(x[0]) + 7 * np.sin(x[1]) ** 2 + 0.1 * x[2] ** 4 * np.sin(x[0])
         ),
         seed=1,
     )

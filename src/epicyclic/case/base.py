@@ -112,10 +112,7 @@ class CaseTable(Table):
     ) -> Self:
         """The case of `tables`, plain values, checked by themselves and against each other.
 
-        Raises
-        ------
-        InputError
-            With `problems` and every other one.
+        Raises `InputError` with `problems` and every other one.
         """
         valid = validate(cls, tables, sound)
         validation, told = with_sizes(valid, tables)

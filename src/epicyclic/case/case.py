@@ -123,10 +123,7 @@ KINDS: Mapping[str, type[PlanetaryCase] | type[GearPairCase] | type[TrainCase]] 
 def read_case(source: str | Path | Mapping[str, Any]) -> Case:
     """A case from a TOML file, the name of a built-in one or its tables, checked.
 
-    Raises
-    ------
-    InputError
-        With every problem found, not only the first.
+    Raises `InputError` with every problem found, not only the first.
     """
     if isinstance(source, Mapping):
         return _build_any(plain(source), "the given tables")
@@ -146,10 +143,7 @@ def read_case(source: str | Path | Mapping[str, Any]) -> Case:
 def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Case:
     """The case of `tables` of a known kind, which may need the `changes` to be complete.
 
-    Raises
-    ------
-    InputError
-        With every problem of the changed tables, as problems of `source`.
+    Raises `InputError` with every problem of the changed tables, as problems of `source`.
     """
     changed, problems = with_changes(KINDS[tables["kind"]], plain(tables), changes)
     return _build_any(changed, source, problems)

@@ -236,10 +236,7 @@ def _check_closed_form(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
         reasons.append("a member that floats freely or none")
     return [
         Problem(
-            "load_sharing.method",
-            '"closed-form"',
-            f"needs {reason}.",
-            'Write method = "direct".',
+            "load_sharing.method", '"closed-form"', f"needs {reason}.", 'Write method = "direct".'
         )
         for reason in reasons
     ]

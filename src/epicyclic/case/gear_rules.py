@@ -205,10 +205,7 @@ def check_mesh(
         ]
     problems = _check_backlash(gearing, mesh, distance_key)
     ends: list[Problem] = []
-    for tip, root, clearance in (
-        (two, one, mesh.tip_clearance2),
-        (one, two, mesh.tip_clearance1),
-    ):
+    for tip, root, clearance in ((two, one, mesh.tip_clearance2), (one, two, mesh.tip_clearance1)):
         if clearance < -ROUNDING:
             ends.append(_negative_clearance(gearing, mesh, tip, root))
             continue
@@ -293,10 +290,7 @@ def _tip_diameters(gearing: Gearing, mesh: Mesh) -> str:
 def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) -> list[Problem]:
     """Contact must stay on the involute of `gear` up to where the tip of `mate` leaves it.
 
-    Raises
-    ------
-    ValueError
-        If no tool generates `gear`.
+    Raises `ValueError` if no tool generates `gear`.
     """
     if gear is mesh.gear1:
         curvature, radius = mesh.path_start, mesh.radius1_at_start

@@ -26,10 +26,7 @@ RackName = Literal["iso-53-a", "iso-53-b", "iso-53-c", "iso-53-d"]
 class SharedGears(Table):
     """What all gears of a set share; in a listed set beside the tables of its gears."""
 
-    AT_MOST_ONE = (
-        ("basic_rack", "addendum_coefficient"),
-        ("basic_rack", "dedendum_coefficient"),
-    )
+    AT_MOST_ONE = (("basic_rack", "addendum_coefficient"), ("basic_rack", "dedendum_coefficient"))
 
     normal_module: Length | None = Field(default=None, description="m_n.")
     transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")

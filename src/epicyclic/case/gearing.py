@@ -140,10 +140,8 @@ class Gearing:
     def gear(self, name: str) -> Gear:
         """A gear by its name.
 
-        Raises
-        ------
-        ValueError
-            If its thickness is given, or the middle of measuring balls lies, in the base circle.
+        Raises `ValueError` if its thickness is given, or the middle of measuring balls lies, in the
+        base circle.
         """
         assert self.shared is not None
         table, shared = self.tables[name], self.shared
@@ -298,10 +296,7 @@ class Gearing:
         the sense of positive speeds. A planet without a central gear has no place that this would
         determine, and is left out.
 
-        Raises
-        ------
-        ValueError
-            If two pins cannot stand at the distance of their planets.
+        Raises `ValueError` if two pins cannot stand at the distance of their planets.
         """
         distances = self.distances
         radii: dict[str, float] = {}

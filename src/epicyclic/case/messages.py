@@ -43,10 +43,7 @@ def path_of(key: str) -> tuple[str | int, ...]:
 def key_parts(key: str) -> list[str]:
     """The names of a dotted key; one in quotes may have dots: ``positions."S1.pinion"``.
 
-    Raises
-    ------
-    InputError
-        If it has more names than any key of a case.
+    Raises `InputError` if it has more names than any key of a case.
     """
     if key.count(".") > _DEEPEST:
         allowed = f"is not a key: it has more than {_DEEPEST} dots."

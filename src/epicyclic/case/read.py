@@ -39,10 +39,7 @@ _MOST_VALUES = 20_000
 def plain(value: Any) -> Any:
     """A copy of `value` with plain dicts, numbers and text, tuples for arrays, nothing for None.
 
-    Raises
-    ------
-    InputError
-        If it is too large or nested too deep to be part of a case.
+    Raises `InputError` if it is too large or nested too deep to be part of a case.
     """
     budget = iter(range(_MOST_VALUES))
     return _plain(value, _DEEPEST, budget)
@@ -181,10 +178,8 @@ def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
     A value that only lacks its quotes is read as if it had them, so that the rest of the file can
     be checked too.
 
-    Raises
-    ------
-    InputError
-        If it is not a file, not text, or not TOML that can be read around its mistakes.
+    Raises `InputError` if it is not a file, not text, or not TOML that can be read around its
+    mistakes.
     """
     try:
         tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE))

@@ -481,11 +481,7 @@ def _fewer(
 
 
 def _side_by_side(
-    gearing: Gearing,
-    sound: Mapping[str, Gear],
-    positions: Mapping[str, float],
-    one: str,
-    two: str,
+    gearing: Gearing, sound: Mapping[str, Gear], positions: Mapping[str, float], one: str, two: str
 ) -> bool:
     """True if the faces of two gears on planets are known to overlap along the axis."""
     bodies = gearing.bodies[one], gearing.bodies[two]

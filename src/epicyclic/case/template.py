@@ -82,10 +82,7 @@ def text_like(name: str) -> str:
 
     That of a train is its own file.
 
-    Raises
-    ------
-    InputError
-        If there is no such case, or it is not sound.
+    Raises `InputError` if there is no such case, or it is not sound.
     """
     case = read_case(name)
     if isinstance(case, TrainCase):

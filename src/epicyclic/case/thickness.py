@@ -24,10 +24,7 @@ DIGITS = 4
 def half_angle(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
     """Half angle at the reference circle of the teeth that a table states.
 
-    Raises
-    ------
-    ValueError
-        If the thickness is stated inside the base circle.
+    Raises `ValueError` if the thickness is stated inside the base circle.
     """
     teeth = table.teeth
     half = _stated(table, rack, internal=internal)

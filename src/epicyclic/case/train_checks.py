@@ -266,11 +266,7 @@ def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> li
 
 
 def _standing_output(
-    train: TrainCase,
-    shape: TrainShape,
-    machine: Machine,
-    driven: str,
-    others: Sequence[str],
+    train: TrainCase, shape: TrainShape, machine: Machine, driven: str, others: Sequence[str]
 ) -> list[Problem]:
     """An output that the input does not turn can balance no torque of it."""
     from epicyclic.machine.balance import speeds_of

@@ -148,11 +148,7 @@ def duty_writer(
 
 
 def _result(
-    data: xr.Dataset,
-    cycle: Cycle,
-    celsius: tuple[float, ...] | None,
-    clamp: bool,
-    runner: Runner,
+    data: xr.Dataset, cycle: Cycle, celsius: tuple[float, ...] | None, clamp: bool, runner: Runner
 ) -> xr.Dataset:
     from epicyclic.cli.common import progress_bar
     from epicyclic.study.maps.duty import add_up, make_duty

@@ -173,9 +173,7 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 @output_option("File of the map.", required=True)
 @click.option("--format", "name", metavar="NAME", help="Default: by the ending of the file.")
 @click.option(
-    "--even-torques",
-    is_flag=True,
-    help="Add no torques that crowd at zero to start:stop:count.",
+    "--even-torques", is_flag=True, help="Add no torques that crowd at zero to start:stop:count."
 )
 @click.option(
     "--temperature-state",

@@ -50,10 +50,7 @@ seed_option = click.option(
     help="Points in each set, a power of 2; default: 256, over a map 32, a cycle 64.",
 )
 @click.option(
-    "--points",
-    metavar="N",
-    type=int,
-    help="Points of the CYCLE that stand for all; default: 16.",
+    "--points", metavar="N", type=int, help="Points of the CYCLE that stand for all; default: 16."
 )
 @seed_option
 @output_option("Write a .nc file.", "FILE")

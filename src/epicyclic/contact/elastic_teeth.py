@@ -116,10 +116,7 @@ class ToothPlate:
 
         Theory (E3).
 
-        Returns
-        -------
-        ndarray, shape (n, 3 terms)
-            [m^0.5 N^-0.5]
+        [m^0.5 N^-0.5]
         """
         height, inclination = self._place(curvature)
         thickness = np.interp(height, self.section_height, self.section_thickness)
@@ -328,10 +325,7 @@ class ElasticRing:
 
         Theory (E6).
 
-        Returns
-        -------
-        ndarray, shape (..., 3, 3)
-            [m/N], [1/N], [1/(N m)]
+        [m/N], [1/N], [1/(N m)]
         """
         influence = np.broadcast_to(loads * self._even(), (*angle.shape, 3, 3)).copy()
         shortest = math.floor(2 * math.pi * self.radius / self.thickness)
@@ -391,10 +385,7 @@ def rim_coupling(
 
     Theory (E7).
 
-    Returns
-    -------
-    ndarray, shape (positions, lines, lines)
-        [m/N]
+    [m/N]
     """
     gear = mesh.gear2
     ring = ElasticRing(
@@ -473,12 +464,8 @@ def mesh_compliance(
 
     Theory (E4).
 
-    Raises
-    ------
-    ConvergenceError
-        If the stiffness of a tooth cannot be inverted.
-    ValueError
-        If no tool generates a tooth.
+    Raises `ConvergenceError` if the stiffness of a tooth cannot be inverted. Raises `ValueError` if
+    no tool generates a tooth.
     """
     with one_thread():
         return _coefficients(mesh, body1, body2, contact_lines(mesh, positions, segments))
@@ -636,10 +623,7 @@ def load_mesh_elastically(
     Contact is looked for on the contact lines of rigid flanks: that deflection and relief may move
     the first and the last contact of a tooth beyond the ends of the path is left out.
 
-    Raises
-    ------
-    ConvergenceError
-        If no loads are found that satisfy all conditions of the contact.
+    Raises `ConvergenceError` if no loads are found that satisfy all conditions of the contact.
     """
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
     separation = _separation(mesh, deviations, positions, segments)
@@ -674,11 +658,7 @@ def _separation(
 
 
 def _loaded(
-    mesh: Mesh,
-    compliance: MeshCompliance,
-    force: float,
-    separation: FloatArray,
-    start: FloatArray,
+    mesh: Mesh, compliance: MeshCompliance, force: float, separation: FloatArray, start: FloatArray
 ) -> LoadedMesh:
     """The mesh under the transverse `force`, from the normal forces `start` of the segments."""
     lines = compliance.lines

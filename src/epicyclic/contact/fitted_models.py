@@ -73,10 +73,7 @@ class Regression:
     def fit(self, states: LineContacts, target: FloatArray, weight: FloatArray) -> FloatArray:
         """Linear least squares of the logarithm, all branches at once.
 
-        Raises
-        ------
-        ValueError
-            If a branch has fewer contacts than coefficients.
+        Raises `ValueError` if a branch has fewer contacts than coefficients.
         """
         shares, sizes = self._weights(states), self._sizes()
         if any(np.count_nonzero(s) <= size for s, size in zip(shares, sizes, strict=True)):
@@ -313,10 +310,7 @@ class Structured:
     def fit(self, states: LineContacts, target: FloatArray, weight: FloatArray) -> FloatArray:
         """Coefficients by least squares of the logarithm.
 
-        Raises
-        ------
-        ValueError
-            If there are fewer contacts than coefficients, or nothing is found.
+        Raises `ValueError` if there are fewer contacts than coefficients, or nothing is found.
         """
         from scipy.optimize import least_squares
 
@@ -531,10 +525,7 @@ class NearbySimulations(BaseModel):
     ) -> NearbySimulations:
         """What `states` have over a form.
 
-        Raises
-        ------
-        ValueError
-            If a form is too far off to be corrected.
+        Raises `ValueError` if a form is too far off to be corrected.
         """
         taken = np.arange(excess.size)
         if excess.size > MOST_SIMULATIONS:
@@ -853,10 +844,7 @@ def check_resistance(
 def read_oil_model(path: str | Path) -> OilModel:
     """The models in a file.
 
-    Raises
-    ------
-    InputError
-        If there is no such file, or it is not one of these, or damaged.
+    Raises `InputError` if there is no such file, or it is not one of these, or damaged.
     """
     file = Path(path)
     try:

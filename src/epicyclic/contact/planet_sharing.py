@@ -64,15 +64,7 @@ def solve_branch_forces(
 
     Theory (S3), (S4).
 
-    Returns
-    -------
-    ndarray, shape (planets,)
-        [N]
-
-    Raises
-    ------
-    ConvergenceError
-        If no forces balance.
+    [N] Raises `ConvergenceError` if no forces balance.
     """
     loose = [name for name in directions if name in supports]
     if loose:
@@ -136,10 +128,7 @@ def _loaded(
     lead = (branches.lead - branches.lead.max()) / reach
     roots = np.sqrt(stiffness * branches.compliance)
     balance = np.block(
-        [
-            [np.ones((1, number)), np.zeros((1, len(roots)))],
-            [displacement.T, np.diag(roots)],
-        ]
+        [[np.ones((1, number)), np.zeros((1, len(roots)))], [displacement.T, np.diag(roots)]]
     )
     right = np.array([branches.compliance * force / reach, *np.zeros(len(roots))])
     right -= balance[:, :number] @ lead
@@ -175,10 +164,7 @@ def closed_form_branch_forces(
     Other members than the one that may float are rigid. Can be negative: the form does not hold
     there.
 
-    Returns
-    -------
-    ndarray, shape (planets,)
-        [N]
+    [N]
     """
     n = len(branches.angles)
     between = branches.angles[:, None] - branches.angles[None, :]

@@ -69,10 +69,7 @@ class ToothOutline:
     ) -> Floats:
         """Outline of the whole gear, or of some teeth side by side.
 
-        Returns
-        -------
-        ndarray, shape (m, 2)
-            x and y about the gear axis, counter-clockwise. The first tooth points along y. [m]
+        x and y about the gear axis, counter-clockwise. The first tooth points along y. [m]
         """
         count = self.teeth if teeth is None else teeth
         if not 1 <= count <= self.teeth:
@@ -102,15 +99,7 @@ def form_radius(
     of action, in closed form. With undercut it is where fillet and involute intersect; whether the
     undercut leaves the tooth on its root is not checked here.
 
-    Returns
-    -------
-    float
-        [m]
-
-    Raises
-    ------
-    ValueError
-        If the tool cannot generate this gear.
+    [m] Raises `ValueError` if the tool cannot generate this gear.
     """
     cut = fit_tool(gear, default_tool(gear) if tool is None else tool)
     return _involute_start(gear, cut)[0]
@@ -261,10 +250,7 @@ def longest_involute(gear: Gear, rounding: float | None) -> float:
     the tooth, it is the rack with just the rounding that lets the involute begin at the base
     circle; if they cut away the tips of a ring, the default shaper cutter.
 
-    Raises
-    ------
-    ValueError
-        If no tool generates the tooth.
+    Raises `ValueError` if no tool generates the tooth.
     """
     stated = stated_tool(gear, rounding)
     if not gear.internal:
@@ -285,10 +271,7 @@ def longest_involute(gear: Gear, rounding: float | None) -> float:
 def stated_tool(gear: Gear, rounding: float | None) -> Tool | None:
     """The tool that cuts `gear` with a stated tip `rounding`; None if none is stated.
 
-    Raises
-    ------
-    ValueError
-        If no default shaper cutter generates a ring.
+    Raises `ValueError` if no default shaper cutter generates a ring.
     """
     if rounding is None:
         return None
@@ -304,10 +287,7 @@ def cutting_tool(gear: Gear, rounding: float | None) -> Tool:
 
     If that one does not, it is the tool that leaves the longest involute.
 
-    Raises
-    ------
-    ValueError
-        If no tool generates the tooth.
+    Raises `ValueError` if no tool generates the tooth.
     """
     stated = stated_tool(gear, rounding)
     if stated is not None:
@@ -346,10 +326,7 @@ def fitted_tool(
 
     A stated rounding is kept.
 
-    Raises
-    ------
-    ValueError
-        If no tool generates the tooth.
+    Raises `ValueError` if no tool generates the tooth.
     """
     usual = cutting_tool(gear, rounding)
     outward = -1 if gear.internal else 1

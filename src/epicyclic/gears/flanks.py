@@ -239,10 +239,7 @@ class FlankDeviations:
 
         Theory (G39).
 
-        Returns
-        -------
-        ndarray, shape (positions, lines, segments)
-            [m]
+        [m]
         """
         # lines that are not in contact lie beyond the path of contact: any place on it serves
         rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
@@ -289,10 +286,7 @@ def rq_of(
 ) -> float:
     """Rms roughness Rq of a surface of which another parameter is stated.
 
-    Returns
-    -------
-    float
-        [m]
+    [m]
 
     Examples
     --------

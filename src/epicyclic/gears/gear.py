@@ -163,10 +163,7 @@ def half_angle_from_thickness(
 
     Theory (G10).
 
-    Raises
-    ------
-    ValueError
-        If `radius` is inside the base circle, where there is no involute.
+    Raises `ValueError` if `radius` is inside the base circle, where there is no involute.
     """
     reference = teeth * rack.transverse_module / 2
     cosine = reference * math.cos(rack.transverse_pressure_angle) / radius

@@ -230,10 +230,7 @@ def default_tool(gear: Gear) -> Tool:
     cutter without profile shift and with a tip rounding of 0.2 m_n; its tooth count is the one
     nearest to a third of the ring's that can generate the ring, between 10 and two thirds of it.
 
-    Raises
-    ------
-    ValueError
-        If no such shaper cutter generates the ring.
+    Raises `ValueError` if no such shaper cutter generates the ring.
     """
     module = gear.rack.normal_module
     if not gear.internal:
@@ -264,10 +261,7 @@ def default_tool(gear: Gear) -> Tool:
 def fit_tool(gear: Gear, tool: Tool) -> Cut:
     """Fit the tool to the gear, and check that both can be.
 
-    Raises
-    ------
-    ValueError
-        If the tool cannot generate this gear.
+    Raises `ValueError` if the tool cannot generate this gear.
     """
     _check_gear(gear)
     if gear.internal != isinstance(tool, ShaperTool):

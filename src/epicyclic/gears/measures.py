@@ -89,10 +89,7 @@ def half_angle_from_pins(
 ) -> float:
     """Half angle at the reference circle of a tooth with dimension M_d over balls. Theory (G50).
 
-    Raises
-    ------
-    ValueError
-        If the balls would have their middle inside the base circle.
+    Raises `ValueError` if the balls would have their middle inside the base circle.
     """
     _, base = _pitch_and_base(rack, teeth)
     side = -1 if internal else 1
@@ -106,10 +103,7 @@ def half_angle_from_pins(
 def _pin_angle(gear: Gear, pin: float) -> float:
     """Transverse pressure angle at the middle of a ball in a space. Theory (G50).
 
-    Raises
-    ------
-    ValueError
-        If the ball is too small to touch the flanks.
+    Raises `ValueError` if the ball is too small to touch the flanks.
     """
     _, base = _pitch_and_base(gear.rack, gear.teeth)
     side = -1 if gear.internal else 1
@@ -123,10 +117,7 @@ def _pin_angle(gear: Gear, pin: float) -> float:
 def dimension_over_pins(gear: Gear, pin: float) -> float:
     """M_d over two balls, or between them in a ring. ISO 21771. Theory (G50). [m]
 
-    Raises
-    ------
-    ValueError
-        If the balls are too small to touch the flanks.
+    Raises `ValueError` if the balls are too small to touch the flanks.
 
     Examples
     --------
@@ -144,10 +135,7 @@ def dimension_over_pins(gear: Gear, pin: float) -> float:
 def pin_contact_radius(gear: Gear, pin: float) -> float:
     """Radius at which balls touch the flanks. ISO 21771. Theory (G51). [m]
 
-    Raises
-    ------
-    ValueError
-        If the balls are too small to touch the flanks.
+    Raises `ValueError` if the balls are too small to touch the flanks.
     """
     side = -1 if gear.internal else 1
     curvature = gear.base_radius * math.tan(_pin_angle(gear, pin))

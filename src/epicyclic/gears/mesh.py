@@ -243,10 +243,7 @@ def profile_shift_sum(
 ) -> float:
     """x1 + x2 at a centre distance. ISO 21771:2007, Eq. 62 and 63. Theory (G44), (G45). [1]
 
-    Raises
-    ------
-    ValueError
-        If the base circles do not let the gears come so close.
+    Raises `ValueError` if the base circles do not let the gears come so close.
 
     Examples
     --------
@@ -276,10 +273,7 @@ def closed_center_distance(
 ) -> float:
     """Centre distance a at which profile shifts leave this backlash. Theory (G44), (G45). [m]
 
-    Raises
-    ------
-    ValueError
-        If there is none.
+    Raises `ValueError` if there is none.
 
     Examples
     --------
@@ -396,10 +390,7 @@ def nearest_places(count: int, number: int) -> tuple[float, ...]:
 def pin_angle(radius1: float, radius2: float, distance: float) -> float:
     """Angle at the axis of the set between two pins at a distance from each other. Theory (A4).
 
-    Raises
-    ------
-    ValueError
-        If no triangle has these sides.
+    Raises `ValueError` if no triangle has these sides.
     """
     cosine = (radius1**2 + radius2**2 - distance**2) / (2 * radius1 * radius2)
     if abs(cosine) > 1:

@@ -388,16 +388,7 @@ def solve_contact_loads(
         )
         quick_update(forces, step, loaded)
     forces, approach, stiffness, iterations = careful_solution(
-        force,
-        compliance,
-        coupling,
-        gap,
-        length,
-        local_a,
-        local_b,
-        floor,
-        tolerance,
-        max_iterations,
+        force, compliance, coupling, gap, length, local_a, local_b, floor, tolerance, max_iterations
     )
     if iterations > 0:
         iterations += QUICK_STEPS

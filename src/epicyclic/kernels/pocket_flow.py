@@ -176,17 +176,7 @@ def _advance(
         )
         q += ahead_q
         axial += ahead_axial
-        second = solve_stage(
-            end,
-            before,
-            fields,
-            numbers,
-            fluid,
-            fresh,
-            shares,
-            tau,
-            rates[1],
-        )
+        second = solve_stage(end, before, fields, numbers, fluid, fresh, shares, tau, rates[1])
         if second > 0:
             moves[0][1], moves[1][1] = q - q0, axial - axial0
             totals[:3] += step * ((1 - SDIRK) * rates[0] + SDIRK * rates[1])
@@ -228,12 +218,9 @@ def periodic_flow(
 ) -> int:
     """Flow through the pockets, mesh period after mesh period until it repeats. Theory (Q18).
 
-    Returns
-    -------
-    int
-        Periods; negative if the flow did not repeat, and both works are then means of the last
-        half of these; zero if a step has no solution, or the iterations are over before there are
-        `FEWEST` periods.
+    Periods; negative if the flow did not repeat, and both works are then means of the last half of
+    these; zero if a step has no solution, or the iterations are over before there are `FEWEST`
+    periods.
     """
     steps, pockets, slices = live.shape
     xi = fluid[0]
@@ -246,11 +233,7 @@ def periodic_flow(
     alive = np.zeros((pockets, slices), np.bool_)
     excess = np.zeros((pockets, slices))
     before = np.zeros((pockets, slices))
-    fresh = (
-        np.zeros((pockets + 1, slices)),
-        np.zeros((pockets, slices + 1)),
-        NEW_INERTIA / steps,
-    )
+    fresh = (np.zeros((pockets + 1, slices)), np.zeros((pockets, slices + 1)), NEW_INERTIA / steps)
     moves_q = np.zeros((steps, 2, pockets, slices))
     moves_axial = np.zeros((steps, 2, pockets, slices + 1))
     last_work = math.nan
@@ -390,12 +373,7 @@ def _leave(q: float, volume: float, fluid: Fluid, totals: Floats) -> float:
 
 
 @kernel
-def _renumber(
-    fields: Fields,
-    fresh: Fresh,
-    alive: Flags,
-    shift: int,
-) -> None:
+def _renumber(fields: Fields, fresh: Fresh, alive: Flags, shift: int) -> None:
     """Give every pocket the number of the one that it has replaced one period later."""
     q, axial, cross = fields
     for i in range(cross.shape[0]):

@@ -204,10 +204,7 @@ def gap_table(
 ) -> Floats:
     """Gap between two flanks and its middle at many angles. Theory (Q3).
 
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        Width, x and y of the middle. [m]
+    Width, x and y of the middle. [m]
     """
     table = np.empty((phi.size, 3))
     for n in range(phi.size):
@@ -228,10 +225,7 @@ def gap_feet(
 ) -> Points:
     """Points of both flanks where the gap between them is narrowest, arguments as for `gap_table`.
 
-    Returns
-    -------
-    ndarray of complex, shape (n, 2)
-        On gear 1 and on gear 2. [m]
+    On gear 1 and on gear 2. [m]
     """
     feet = np.empty((phi.size, 2), np.complex128)
     for n in range(phi.size):
@@ -380,10 +374,7 @@ def pocket_outlines(
 ) -> Points:
     """Outlines of a pocket at many angles, arguments as for `pocket_table`.
 
-    Returns
-    -------
-    ndarray of complex, shape (n, m)
-        Points around the pocket, as many as it has, then NaN. [m]
+    Points around the pocket, as many as it has, then NaN. [m]
     """
     outlines = np.full((phi.size, _most_points(gears[0], gears[3])), complex(math.nan, math.nan))
     for n in range(phi.size):
@@ -403,10 +394,7 @@ def pocket_table(
 ) -> Floats:
     """End area of a pocket and its centroid at many angles. Theory (Q4), (Q5).
 
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        Area [m^2], x and y of the centroid [m].
+    Area [m^2], x and y of the centroid [m].
     """
     polygon = np.empty(_most_points(gears[0], gears[3]), np.complex128)
     table = np.empty((phi.size, 3))

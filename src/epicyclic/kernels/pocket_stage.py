@@ -324,12 +324,7 @@ def _add_masses(
 
 @kernel
 def _exchange(
-    ka: int,
-    kb: int,
-    flow: float,
-    flow_a: float,
-    flow_b: float,
-    system: tuple[Floats, Floats, int],
+    ka: int, kb: int, flow: float, flow_a: float, flow_b: float, system: tuple[Floats, Floats, int]
 ) -> float:
     """Put a flow from cell a to cell b, and its derivatives by their pressures, into both balances.
 
@@ -552,10 +547,7 @@ def solve_stage(
 ) -> int:
     """One implicit Euler step by Newton's method. Theory (Q14), (Q15), (Q16).
 
-    Returns
-    -------
-    int
-        Newton iterations, negative without convergence.
+    Newton iterations, negative without convergence.
     """
     excess0, axial0, cross0 = before
     cell_at, _, count, width = numbers

@@ -50,10 +50,7 @@ def oil_names() -> tuple[str, ...]:
 def oil_table(name: str) -> dict[str, Any]:
     """The data of one built-in oil.
 
-    Raises
-    ------
-    KeyError
-        If there is no such oil.
+    Raises `KeyError` if there is no such oil.
     """
     if name not in oil_names():
         raise KeyError(name)
@@ -111,10 +108,7 @@ def builtin_case(name: str) -> dict[str, Any]:
     A variant is named by words after the name of its case, at most one of each group, in any
     order: ``talbot-2012-n6-polished-40C``.
 
-    Raises
-    ------
-    KeyError
-        If there is no such case or variant.
+    Raises `KeyError` if there is no such case or variant.
     """
     bases = (file for file in case_files() if f"{name}-".startswith(f"{file}-"))
     base = max(bases, key=len, default="")

@@ -152,12 +152,7 @@ def _race_table(
 
 @lru_cache(maxsize=64)
 def _path_table(
-    model: OilModel,
-    quantity: str,
-    form: str,
-    motion: _Motion,
-    flanks: Flanks[float],
-    oil: OilState,
+    model: OilModel, quantity: str, form: str, motion: _Motion, flanks: Flanks[float], oil: OilState
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Arguments of `along_path`: ends, crowding, lowest and highest pressure, values."""
     path = np.array([motion.mesh.path_start, motion.mesh.path_end]) - motion.mesh.pitch_point

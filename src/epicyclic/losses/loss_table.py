@@ -177,10 +177,7 @@ def read_loss_table(
     every point of one goes with every point of the other, in any order. Lines that begin with ``#``
     do not count; the separator is a comma, a semicolon or a tab.
 
-    Raises
-    ------
-    InputError
-        With every mistake in the file.
+    Raises `InputError` with every mistake in the file.
     """
     try:
         return _parse(read_text(path, "loss table", _LARGEST_FILE), str(path))

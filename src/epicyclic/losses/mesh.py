@@ -40,8 +40,7 @@ def mesh_warmth(
     flash = flash_temperatures(contact, friction, materials)
     load = contact.line_load * contact.weight
     return MeshWarmth(
-        flash_mean=float((flash * load).sum() / load.sum()),
-        flash_max=float(flash.max()),
+        flash_mean=float((flash * load).sum() / load.sum()), flash_max=float(flash.max())
     )
 
 

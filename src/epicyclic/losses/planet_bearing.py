@@ -231,10 +231,7 @@ def roller_loads(
 ) -> RollerLoads:
     """Load on every slice under radial forces and moments.
 
-    Raises
-    ------
-    ConvergenceError
-        If the balance of forces is not found.
+    Raises `ConvergenceError` if the balance of forces is not found.
     """
     load = np.array([force_x, force_y, moment_x, moment_y])
     load[2:] /= bearing.half_width
@@ -318,10 +315,7 @@ def tilting_moments(
 ) -> tuple[float, float]:
     """Moments that hold the outer race tilted under a radial force along x. Theory (B10). [N m]
 
-    Raises
-    ------
-    ConvergenceError
-        If the balance of forces is not found.
+    Raises `ConvergenceError` if the balance of forces is not found.
     """
     half_width = bearing.half_width
     load = np.array([force, 0.0, 0.0, 0.0])

@@ -120,10 +120,7 @@ def pocket_outlines(
 ) -> NDArray[np.complex128]:
     """Outlines of the pockets of `mesh`, for pictures.
 
-    Returns
-    -------
-    ndarray of complex, shape (n, m)
-        Points x + iy around the pocket, as many as it has, then NaN; axes as of `centroid`. [m]
+    Points x + iy around the pocket, as many as it has, then NaN; axes as of `centroid`. [m]
     """
     gears, figures = _section(mesh, tools, drives1)
     outlines: NDArray[np.complex128] = kernels.pocket_outlines(angle, member, gears, figures)
@@ -139,10 +136,7 @@ def gap_feet(
 ) -> NDArray[np.complex128]:
     """Points of both flanks where the gap between them is narrowest, for pictures.
 
-    Returns
-    -------
-    ndarray of complex, shape (n, 2)
-        On gear 1 and on gear 2, axes as of `pocket_outlines`. [m]
+    On gear 1 and on gear 2, axes as of `pocket_outlines`. [m]
     """
     gears, figures = _section(mesh, tools, drives1)
     feet: NDArray[np.complex128] = kernels.gap_feet(angle, 1.0 if leading else -1.0, gears, figures)
@@ -239,14 +233,7 @@ class Cells:
     @property
     def shape(self) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """What the kernel takes beside `live`."""
-        return (
-            self.volume,
-            self.growth,
-            self.axial,
-            self.gap,
-            self.axial_reach,
-            self.gap_reach,
-        )
+        return (self.volume, self.growth, self.axial, self.gap, self.axial_reach, self.gap_reach)
 
 
 @lru_cache(maxsize=32)

@@ -516,10 +516,7 @@ def store(tables: Mapping[FlowFamily, FlowTable]) -> str:
 def read_stored(path: Path) -> StoredTables:
     """The tables in a file.
 
-    Raises
-    ------
-    InputError
-        If there is no such file, or it is none of these, or of another version.
+    Raises `InputError` if there is no such file, or it is none of these, or of another version.
     """
     return _read(*_state(path))
 
@@ -552,10 +549,8 @@ def _read(path: Path, _changed: int, _size: int) -> StoredTables:
 def stored_table(path: Path, family: FlowFamily) -> FlowTable:
     """The table of a family of flows in a file.
 
-    Raises
-    ------
-    InputError
-        As for `read_stored`, and if the file has no table for these pockets; it names what differs.
+    Raises `InputError`: As for `read_stored`, and if the file has no table for these pockets; it
+    names what differs.
     """
     return _table(*_state(path), family)
 

@@ -272,10 +272,7 @@ def range_left(group: Sequence[ValidityFlag]) -> str:
 def range_text(group: Sequence[ValidityFlag]) -> str:
     """What was found, and the range."""
     first = group[0]
-    low, high = (
-        min(flag.found_low for flag in group),
-        max(flag.found_high for flag in group),
-    )
+    low, high = (min(flag.found_low for flag in group), max(flag.found_high for flag in group))
     texts = format_number(low, 3), format_number(high, 3)
     found = texts[0] if texts[0] == texts[1] else " to ".join(texts)
     unit = f" {first.unit}" if first.unit else ""
@@ -313,11 +310,7 @@ def check_ranges(
 
 
 def check_contacts(
-    use: ModelUse,
-    ranges: Iterable[Range],
-    contacts: object,
-    weight: FloatArray,
-    part: float = 1.0,
+    use: ModelUse, ranges: Iterable[Range], contacts: object, weight: FloatArray, part: float = 1.0
 ) -> tuple[ValidityFlag, ...]:
     """`check_ranges` of line contacts; local quantities count with the loss where they occur."""
     return tuple(
@@ -336,11 +329,7 @@ def _not_within(
 
 
 def _flag(
-    use: ModelUse,
-    item: Range,
-    values: FloatArray | float,
-    weight: FloatArray | float,
-    part: float,
+    use: ModelUse, item: Range, values: FloatArray | float, weight: FloatArray | float, part: float
 ) -> ValidityFlag:
     """The flag of a quantity that leaves its range."""
     least, most = _ends(values)

@@ -89,10 +89,7 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
         / oil.thermal_conductivity
     )
     number = goksem_hargreaves_force(
-        contact.speed_number,
-        contact.material_number,
-        contact.load_number,
-        heating,
+        contact.speed_number, contact.material_number, contact.load_number, heating
     )
     elastic = number * contact.radius / oil.pressure_viscosity
     rigid = martin_force(contact.line_load, contact.rolling_speed, oil.dynamic_viscosity)

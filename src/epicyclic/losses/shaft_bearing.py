@@ -179,10 +179,7 @@ def harris_coefficient(bearing: CatalogueBearing, load: BearingLoad) -> float:
     Deep groove: 0.0009 (P0/C0)^0.55; rollers: constant, 0.0003 caged cylindrical, 0.00055 full
     complement, 0.0004 tapered. Harris (1991), second hand.
 
-    Raises
-    ------
-    ValueError
-        For needle roller bearings, which Harris's table does not have.
+    Raises `ValueError` for needle roller bearings, which Harris's table does not have.
     """
     if bearing.type not in bearing_types("harris"):
         raise ValueError(f"Harris gives no coefficient for {bearing.type} bearings")
@@ -249,12 +246,7 @@ class PalmgrenModel:
         )
 
     def flags(
-        self,
-        where: str,
-        bearing: CatalogueBearing,
-        load: BearingLoad,
-        speed: float,
-        oil: OilState,
+        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
     ) -> tuple[ValidityFlag, ...]:
         """Flags on speed, static load and, of cylindrical rollers, axial force."""
         return load_flags(ModelUse("bearing", self.name, where), AXIAL_RATIO, bearing, load, speed)
@@ -291,12 +283,7 @@ class TableModel:
         )
 
     def flags(
-        self,
-        where: str,
-        bearing: CatalogueBearing,
-        load: BearingLoad,
-        speed: float,
-        oil: OilState,
+        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
     ) -> tuple[ValidityFlag, ...]:
         """Flags on values beyond the table."""
         use = ModelUse("bearing", "table", where)
@@ -355,12 +342,7 @@ def load_flags(
 # ``bearings/skf-2018.toml``.
 
 
-STARVATION: Mapping[str, float] = {
-    "jet": 3e-8,
-    "oil-bath": 3e-8,
-    "grease": 6e-8,
-    "oil-air": 6e-8,
-}
+STARVATION: Mapping[str, float] = {"jet": 3e-8, "oil-bath": 3e-8, "grease": 6e-8, "oil-air": 6e-8}
 """K_rs by lubrication: oil jet, low oil bath, grease, oil and air (SKF 2018). [1]"""
 LARGEST_DRAG_VARIABLE = 0.0012
 """V_M of a ball bearing that is fully submerged (SKF 2018). [1]"""
@@ -465,12 +447,7 @@ class SkfModel:
         )
 
     def flags(
-        self,
-        where: str,
-        bearing: CatalogueBearing,
-        load: BearingLoad,
-        speed: float,
-        oil: OilState,
+        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
     ) -> tuple[ValidityFlag, ...]:
         """Flags on speed, static load and, of cylindrical rollers, axial force."""
         return load_flags(
@@ -502,10 +479,7 @@ def skf_series(kind: BearingType) -> tuple[str, ...]:
 def skf_constants(kind: BearingType, series: str, cage: Cage = "caged") -> SkfConstants:
     """The constants of a series; those of full complement bearings are the same for all series.
 
-    Raises
-    ------
-    KeyError
-        If SKF's table has no such bearing.
+    Raises `KeyError` if SKF's table has no such bearing.
     """
     wanted = series if cage == "caged" else cage
     tables = _skf_tables()
@@ -570,10 +544,7 @@ def skf_load_variables(
 
     Theory (J5), (J6), (J7).
 
-    Raises
-    ------
-    ValueError
-        For needle roller bearings, which SKF's table does not have.
+    Raises `ValueError` for needle roller bearings, which SKF's table does not have.
     """
     pitch, radial, axial = bearing.pitch_diameter * 1e3, load.radial, load.axial
     R1, R2 = constants.rolling_1, constants.rolling_2

@@ -115,10 +115,7 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     Plain repetition of losses and temperatures as long as that is quick, as where nothing but the
     gears gets warm; else Broyden's method on the temperatures.
 
-    Raises
-    ------
-    ConvergenceError
-        If there is no equilibrium, or only one that no gearbox survives.
+    Raises `ConvergenceError` if there is no equilibrium, or only one that no gearbox survives.
     """
     nodes = tuple(model.start)
     unheated = start_of(machine, operation)
@@ -475,10 +472,7 @@ class NetworkModel:
     def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
         """Temperatures at which the heat of the losses leaves. Theory (W26).
 
-        Raises
-        ------
-        InputError
-            If the heat of a part has no way out.
+        Raises `InputError` if the heat of a part has no way out.
         """
         heat = self._heat(solution)
         fixed = self._fixed_links(temperatures[OIL], solution, heat)
@@ -571,10 +565,7 @@ class NetworkModel:
     def capacities(self) -> dict[str, float]:
         """Heat that each node stores for a kelvin. Theory (W35). [J/K]
 
-        Raises
-        ------
-        InputError
-            With everything that is not known of the oil and the housing.
+        Raises `InputError` with everything that is not known of the oil and the housing.
         """
         own = self.settings
         oil, _ = self.media_at(own.inlet)

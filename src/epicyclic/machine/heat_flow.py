@@ -55,15 +55,8 @@ class Network:
     ) -> dict[str, float]:
         """Temperatures at which the heat that arises leaves again. Theory (W26).
 
-        Returns
-        -------
-        dict of str to float
-            Of the nodes of unknown temperature. [K]
-
-        Raises
-        ------
-        LinAlgError
-            If the heat of a node has no way to a node of given temperature: see `cut_off`.
+        Of the nodes of unknown temperature. [K] Raises `LinAlgError` if the heat of a node has no
+        way to a node of given temperature: see `cut_off`.
         """
         matrix, known = self.system()
         found = np.linalg.solve(matrix, known + self.sources(heat))
@@ -262,10 +255,7 @@ class Transient:
     ) -> Course:
         """The course from temperatures `start` at the first of `times`. Theory (W32).
 
-        Raises
-        ------
-        ConvergenceError
-            If the integration does not reach the end.
+        Raises `ConvergenceError` if the integration does not reach the end.
         """
         from scipy.integrate import solve_ivp
 

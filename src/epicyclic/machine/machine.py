@@ -76,10 +76,7 @@ def bearing_reactions(
     and the forces R_1 = -R_2 - sum F. The axial force -sum F_z falls on the first support that
     takes it in this sense; on the first of all if none is marked.
 
-    Raises
-    ------
-    ValueError
-        If statics alone does not give the reactions; the message says why.
+    Raises `ValueError` if statics alone does not give the reactions; the message says why.
     """
     if not supports:
         raise ValueError("the shaft has no bearing that could take its loads")

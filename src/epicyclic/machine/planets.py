@@ -110,10 +110,7 @@ def planet_shares(
 
     The closed form holds while all planets carry; where one does not, (S3) and (S4) are solved.
 
-    Raises
-    ------
-    ConvergenceError
-        If no loads of the planets balance.
+    Raises `ConvergenceError` if no loads of the planets balance.
     """
     count = sharing.count
     if sharing.method == "mesh-load-factor":
@@ -292,10 +289,7 @@ def tilt_planet(
     The tilt opens one end of each mesh, the load moves to the other end, and its moment tilts the
     planet back. Carrier and pin are rigid; the bearing stands under the middle of the face.
 
-    Raises
-    ------
-    ConvergenceError
-        If the load of a mesh or of the bearing is not found.
+    Raises `ConvergenceError` if the load of a mesh or of the bearing is not found.
     """
     from scipy.optimize import root
 
@@ -635,9 +629,7 @@ def _heat_conductance(own: PlanetBearing, loads: RollerLoads) -> float:
     bearing = own.bearing
     inner, outer = (
         hertz_half_width(
-            loads.intensity,
-            np.full_like(loads.intensity, radius),
-            bearing.equivalent_modulus,
+            loads.intensity, np.full_like(loads.intensity, radius), bearing.equivalent_modulus
         )
         for radius in (bearing.inner_radius, bearing.outer_radius)
     )

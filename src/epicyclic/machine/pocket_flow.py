@@ -132,12 +132,8 @@ def _exchanged(duty: MeshDuty) -> bool:
 def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
     """Flow through the pockets of a mesh; None without motion.
 
-    Raises
-    ------
-    ConvergenceError
-        If the flow is not found.
-    ValueError
-        If a tooth has no outline.
+    Raises `ConvergenceError` if the flow is not found. Raises `ValueError` if a tooth has no
+    outline.
     """
     if duty.speed1 == 0:
         return None
@@ -156,10 +152,7 @@ def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRe
 
     Those that a stored table holds are left out, and those that another flow gives by scaling.
 
-    Raises
-    ------
-    InputError
-        If that table was made for other pockets.
+    Raises `InputError` if that table was made for other pockets.
     """
     for duty in duties:
         if duty.models.pockets.include and duty.speed1 != 0:
@@ -178,12 +171,8 @@ def mesh_flows(
     Read from the stored table of its settings, else scaled from another flow where that can be,
     else from the tables of a sweep or the known flows, where they have it.
 
-    Raises
-    ------
-    ConvergenceError
-        If a flow is not found.
-    InputError
-        If the stored table was made for other pockets.
+    Raises `ConvergenceError` if a flow is not found. Raises `InputError` if the stored table was
+    made for other pockets.
     """
     flows: dict[str, MeshFlow] = {duty.key: MeshFlow() for duty in duties}
     direct: dict[str, FlowRequest] = {}

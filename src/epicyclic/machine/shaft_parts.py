@@ -60,11 +60,7 @@ class TableLoss:
         temperature = state.fluids.oil.temperature
         watts = self.table.loss(speed=speed, temperature=temperature)
         loss = Loss(
-            LOAD_INDEPENDENT,
-            watts,
-            "loss table",
-            self.table.source,
-            brakes=((*self.between, 1.0),),
+            LOAD_INDEPENDENT, watts, "loss table", self.table.source, brakes=((*self.between, 1.0),)
         )
         figures = TableLossFigures(
             speed=abs(speed), friction_torque=watts / abs(speed) if speed != 0 else math.nan
@@ -95,10 +91,7 @@ SEAL_SOURCES: Mapping[SealFormula, str] = {
     "linke": "H. Linke, Stirnradverzahnung, second hand",
 }
 
-TORQUE_PER_DIAMETER: Mapping[str, float] = {
-    "iso-14179-1-viton": 3.736,
-    "iso-14179-1-buna-n": 2.429,
-}
+TORQUE_PER_DIAMETER: Mapping[str, float] = {"iso-14179-1-viton": 3.736, "iso-14179-1-buna-n": 2.429}
 """Friction torque over shaft diameter, ISO/TR 14179-1. [N]"""
 
 _KELVIN = 273.15

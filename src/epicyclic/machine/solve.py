@@ -297,10 +297,7 @@ def solve_machine(
 
     Theory (T5), (T6).
 
-    Raises
-    ------
-    ConvergenceError
-        If losses and torques do not agree.
+    Raises `ConvergenceError` if losses and torques do not agree.
     """
     if start is None:
         start = start_of(machine, operation)
@@ -434,10 +431,7 @@ class _Branch:
     def follow(self, found: Balance) -> Balance | _Pass:
         """Torques with the losses that those of `found` lead to; a `_Pass` if they agree.
 
-        Raises
-        ------
-        ConvergenceError
-            If losses or torques grow beyond all bounds.
+        Raises `ConvergenceError` if losses or torques grow beyond all bounds.
         """
         self.passes += 1
         state = State(
@@ -625,10 +619,7 @@ def stage_torques(machine: Machine, solution: Solution) -> dict[str, dict[str, f
     Torque times speed is the power that enters the part there; over all bodies these powers sum to
     its loss. The torques of all parts and clutches on a body balance the one from outside.
 
-    Returns
-    -------
-    dict of str to dict of str to float
-        By set or part and body. [N m]
+    By set or part and body. [N m]
     """
     taken: dict[str, dict[str, float]] = {}
     for stage, body, torque in _torques(machine, solution):

@@ -126,8 +126,7 @@ class Oil(_Data):
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     description: str = ""
     temperature_range: tuple[Temperature, Temperature] = Field(
-        default=as_stated(("0 degC", "120 degC")),
-        description="Where the values are meant to hold.",
+        default=as_stated(("0 degC", "120 degC")), description="Where the values are meant to hold."
     )
     kinematic_viscosity: tuple[ViscosityPoint, ...] = Field(min_length=2)
     density: tuple[DensityPoint, ...] = Field(min_length=1)

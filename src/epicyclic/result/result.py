@@ -706,9 +706,7 @@ def of_gear(name: str) -> str:
 
 
 def _part_fields(
-    name: str,
-    kind: type[DataclassInstance],
-    part: Callable[[Result], DataclassInstance | None],
+    name: str, kind: type[DataclassInstance], part: Callable[[Result], DataclassInstance | None]
 ) -> Iterator[tuple[str, str, str, Callable[[Result], float]]]:
     title = name.replace("_", " ").replace(".", ", ")
     for it in dataclasses.fields(kind):

@@ -229,10 +229,7 @@ def report_pdf(
 ) -> bytes:
     """A page as PDF, of its still figures.
 
-    Raises
-    ------
-    InputError
-        If WeasyPrint cannot be used.
+    Raises `InputError` if WeasyPrint cannot be used.
     """
     weasyprint = _weasyprint()
 

@@ -168,11 +168,7 @@ def _tables(source: _Source, place: Path, table: Any, title: str) -> list[Table]
 
 def _plain_table(source: _Source, place: Path, table: Any, title: str) -> Table:
     rows = tuple(
-        (
-            Cell(_words(path[len(place) :])),
-            _cell(source, path, value),
-            _about(source, path),
-        )
+        (Cell(_words(path[len(place) :])), _cell(source, path, value), _about(source, path))
         for path, value in _leaves(table, place)
         if source.shows(path)
     )

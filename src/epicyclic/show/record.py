@@ -98,15 +98,8 @@ class _Growing(Mapping[str, "xr.Dataset"]):
 def growing_record(case: Case) -> ResultRecord:
     """Solve a case, and compute each group of fields when it is first asked for.
 
-    Returns
-    -------
-    ResultRecord
-        Not to be saved: it has the fields that were asked for.
-
-    Raises
-    ------
-    ConvergenceError
-        As for `solve`, and when a group is asked for.
+    Not to be saved: it has the fields that were asked for. Raises `ConvergenceError`: As for
+    `solve`, and when a group is asked for.
     """
     result = solve(case)
     return _record(case, result, _Growing(_makers(case, result)))

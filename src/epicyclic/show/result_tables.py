@@ -368,11 +368,7 @@ def rolling_table(result: Result, train: Train) -> Table:
     rows = []
     for key, power in train.rolling.items():
         share = percent(abs(power) / entering) if entering else ""
-        cells = [
-            Cell(in_words(key)),
-            tenths(abs(power), f"rolling_power.{key}"),
-            aligned(share),
-        ]
+        cells = [Cell(in_words(key)), tenths(abs(power), f"rolling_power.{key}"), aligned(share)]
         if losses:
             watts = result.losses.get(key)
             cells.append(Cell("") if watts is None else tenths(watts))
@@ -399,11 +395,7 @@ def terms_table(result: Result, train: Train) -> Iterator[Table]:
         return
     groups = result.groups
     rows = tuple(
-        (
-            Cell(in_words(name)),
-            *share_row(result, watts, f"losses.{name}"),
-            Cell(groups[name]),
-        )
+        (Cell(in_words(name)), *share_row(result, watts, f"losses.{name}"), Cell(groups[name]))
         for name, watts in result.losses.items()
         if name not in result.not_included
     )

@@ -48,10 +48,7 @@ class Result(plain.Result):
     ) -> pd.DataFrame:
         """Losses, or every number, as a table.
 
-        Returns
-        -------
-        pandas.DataFrame
-            One row for each, named by its key.
+        One row for each, named by its key.
 
         Examples
         --------
@@ -90,10 +87,7 @@ class Result(plain.Result):
     ) -> Figure:
         """One of the pictures of ``epicyclic plot``.
 
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Its ``savefig`` writes a file.
+        Its ``savefig`` writes a file.
 
         Examples
         --------
@@ -112,10 +106,7 @@ class Result(plain.Result):
     ) -> None:
         """Keep the result in a file, whole or not at all.
 
-        Raises
-        ------
-        InputError
-            If there is no place for the file, or it ends otherwise.
+        Raises `InputError` if there is no place for the file, or it ends otherwise.
 
         Examples
         --------

@@ -404,11 +404,7 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
             f"speed {of_gear(duty.mesh.gear1.name)} against the line of centres",
             RPM,
         ),
-        "oil_fraction": (
-            oil_in_mesh(duty),
-            "share of oil in the mixture, by volume",
-            NUMBER,
-        ),
+        "oil_fraction": (oil_in_mesh(duty), "share of oil in the mixture, by volume", NUMBER),
     }
     return {
         name: variable((), value, label, unit) for name, (value, label, unit) in numbers.items()

@@ -183,8 +183,7 @@ class Parameter:
 
 PARAMETERS = {
     "speed": Parameter(
-        "speed",
-        Quantity("a rotational speed", "rad/s", "rpm", low=0.0, high=1e6, open_low=True),
+        "speed", Quantity("a rotational speed", "rad/s", "rpm", low=0.0, high=1e6, open_low=True)
     ),
     "helix-angle": Parameter("helix angle", Quantity("an angle", "rad", "deg", low=0.0, high=45.0)),
     "face-width": Parameter(

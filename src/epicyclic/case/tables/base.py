@@ -94,10 +94,7 @@ def _builtin_oil(table: Mapping[str, Any]) -> str | None:
 def whole_oil(table: dict[str, Any]) -> dict[str, Any]:
     """The properties of an oil that its grade or two viscosities describe; others as they are.
 
-    Raises
-    ------
-    PydanticCustomError
-        If the table does not tell the viscosity at two temperatures.
+    Raises `PydanticCustomError` if the table does not tell the viscosity at two temperatures.
     """
     if not _is_short(table):
         return table
@@ -306,10 +303,7 @@ def _known_fit(value: object) -> str:
     return fit
 
 
-ThicknessFit = Annotated[
-    str,
-    BeforeValidator(_known_fit, json_schema_input_type=str),
-]
+ThicknessFit = Annotated[str, BeforeValidator(_known_fit, json_schema_input_type=str)]
 
 
 def roughness_told(text: object) -> tuple[float, str] | None:

@@ -80,10 +80,7 @@ class LubricationTable(Table):
         "estimate by method.",
     )
     oil_share_factor: Number = Field(
-        default=1.0,
-        gt=0,
-        le=100,
-        description="Multiplies that estimate, at most to 1.",
+        default=1.0, gt=0, le=100, description="Multiplies that estimate, at most to 1."
     )
 
     def __hash__(self) -> int:  # a table of names cannot be hashed

@@ -75,10 +75,7 @@ def behaviour_of(preset: object) -> dict[str, object]:
 HeatingModel = Literal["isothermal", "inlet-and-film"]
 HEATING = "With or without thinner inlet film, flash and film temperature."
 """What the key says."""
-NEEDED = {
-    "limiting-stress": ("shear_stress",),
-    "carreau": ("shear_stress", "shear_exponent"),
-}
+NEEDED = {"limiting-stress": ("shear_stress",), "carreau": ("shear_stress", "shear_exponent")}
 """Keys without which a law cannot be used."""
 OF_TWO_SLOPES = ("second_slope", "slope_ratio", "transition_pressure")
 """Keys of that law, which has a default for each."""
@@ -288,8 +285,7 @@ class ContactSolver(OilBehaviour):
         default=None, description="With heating. Default: that of the material of each gear."
     )
     asperity_film: SmallLength = Field(
-        default=as_stated(film_text(USUAL)),
-        description="Film below which flanks touch (estimate).",
+        default=as_stated(film_text(USUAL)), description="Film below which flanks touch (estimate)."
     )
     correlation_length: SmallLength = Field(
         default=as_stated("20 um"), description="Of the roughness of both flanks (estimate)."
@@ -410,12 +406,7 @@ class GearPairModels(Table):
         description="local: along the contact lines; loss-factor: mean friction times Ohlendorf's.",
     )
     pocketing: Literal[
-        "auto",
-        "incompressible",
-        "isentropic",
-        "mean-density",
-        "central-differences",
-        "talbot-2012",
+        "auto", "incompressible", "isentropic", "mean-density", "central-differences", "talbot-2012"
     ] = Field(
         default="auto",
         description="Fluid in the pockets: incompressible: mixture of constant density above the "

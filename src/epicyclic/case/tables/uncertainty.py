@@ -36,8 +36,7 @@ class DistributionTable(Table):
     )
 
     normal: Stated | None = Field(
-        default=None,
-        description='Standard uncertainty about the value, "0.05 um" or "12 %".',
+        default=None, description='Standard uncertainty about the value, "0.05 um" or "12 %".'
     )
     uniform: tuple[Stated, Stated] | None = Field(
         default=None, description="Limits between which all values are alike."

@@ -117,12 +117,8 @@ class Worker:
     ) -> Any:
         """What a function of a module returns, computed in the process.
 
-        Raises
-        ------
-        Ended
-            If `end` or `close` was called meanwhile, or `close` before.
-        EpicyclicError
-            As the task raises it.
+        Raises `Ended` if `end` or `close` was called meanwhile, or `close` before. Raises
+        `EpicyclicError`: As the task raises it.
         """
         loop = asyncio.get_running_loop()
         async with self._lock:

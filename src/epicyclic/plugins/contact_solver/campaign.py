@@ -560,8 +560,7 @@ class CampaignFolder:
             write_file(plan, json.dumps(self.campaign.describe(), indent=2) + "\n")
         elif _read_json(plan) != json.loads(json.dumps(self.campaign.describe())):
             raise _folder_error(
-                self.path,
-                "holds another campaign: other oil, points, seed, settings or version.",
+                self.path, "holds another campaign: other oil, points, seed, settings or version."
             )
 
     def run(self, runner: Runner = HERE) -> None:

@@ -649,9 +649,7 @@ def _statistics(surface: Profile) -> dict[str, float]:
 
 
 def solve_contact(
-    case: ContactCase,
-    frames: bool = False,
-    progress: Callable[[int, int], None] | None = None,
+    case: ContactCase, frames: bool = False, progress: Callable[[int, int], None] | None = None
 ) -> ContactResult:
     """Solve a contact, with `FRAMES` moments of a rough one over 6 half-widths if `frames`.
 

@@ -94,11 +94,7 @@ def fit_quantity(
     if not fitted:
         raise ValueError("; ".join(f"{name}: {reason}" for name, reason in left_out.items()))
     return QuantityFit(
-        unit=unit,
-        contacts=target.size,
-        domain=domain,
-        forms=tuple(fitted),
-        left_out=left_out,
+        unit=unit, contacts=target.size, domain=domain, forms=tuple(fitted), left_out=left_out
     )
 
 

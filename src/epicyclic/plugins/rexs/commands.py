@@ -123,11 +123,7 @@ def import_(
 @component_option
 @set_option
 def export(
-    case: str,
-    original: str | None,
-    output: Path,
-    component: int | None,
-    changes: tuple[str, ...],
+    case: str, original: str | None, output: Path, component: int | None, changes: tuple[str, ...]
 ) -> None:
     """Compute a CASE and write its results into a copy of the REXS file ORIGINAL.
 

@@ -203,12 +203,7 @@ def _material(builder: Builder, material: Material) -> int:
 
 
 def _stage(
-    builder: Builder,
-    owner: int,
-    oil: int,
-    gears: Sequence[int],
-    center: float,
-    name: str = "mesh",
+    builder: Builder, owner: int, oil: int, gears: Sequence[int], center: float, name: str = "mesh"
 ) -> int:
     stage = builder.add("cylindrical_stage", name, center_distance=(center, "m"))
     builder.part(owner, stage)
@@ -512,10 +507,7 @@ def _switches(builder: Builder, case: TrainCase, shafts: Mapping[str, int]) -> N
 
 
 def _bearings(
-    builder: Builder,
-    case: TrainCase,
-    shafts: Mapping[str, int],
-    places: Mapping[str, Place],
+    builder: Builder, case: TrainCase, shafts: Mapping[str, int], places: Mapping[str, Place]
 ) -> None:
     for kind, name, table in case.elements:
         if kind != "bearings" or not isinstance(table, ShaftBearingTable):

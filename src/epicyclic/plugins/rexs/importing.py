@@ -70,10 +70,8 @@ class RexsImport:
     ) -> Case:
         """The case, with some keys set.
 
-        Raises
-        ------
-        InputError
-            With every problem; for a key that the file lacks, with the REXS id that would give it.
+        Raises `InputError` with every problem; for a key that the file lacks, with the REXS id that
+        would give it.
         """
         try:
             return build_case(self.tables, changes or {}, self.source)

@@ -11,5 +11,5 @@ PLUG_IN = PlugIn(
         "simscape": "tables:SIMSCAPE",
         "fmu": "fmu:FMU",
         "gem": "tables:GEM",
-    },
+    }
 )

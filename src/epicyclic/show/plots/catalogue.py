@@ -263,9 +263,7 @@ PLOTS: dict[str, Plot] = {
     "losses": Plot("Where do the watts go?", _of_result(plot_losses)),
     "loss-sum": Plot("How do the losses add up?", _of_result(plot_loss_sum)),
     "power-flow": Plot(
-        "Where does the power flow, what circulates, what is lost?",
-        _power_flow,
-        size=SLIDE,
+        "Where does the power flow, what circulates, what is lost?", _power_flow, size=SLIDE
     ),
     "drivers": Plot("What is the uncertainty of the total loss due to?", _drivers, size=WIDE),
     "band": Plot("How well are total loss and efficiency known?", _band),
@@ -308,8 +306,7 @@ PLOTS: dict[str, Plot] = {
         projection="polar",
     ),
     "roller-pressure": Plot(
-        "How is the load distributed along the rollers?",
-        _of_group("bearings", plot_roller_profile),
+        "How is the load distributed along the rollers?", _of_group("bearings", plot_roller_profile)
     ),
     "pocket-pressure": Plot(
         "How does the pressure in a pocket change through its life?", _pocket_pressure
@@ -362,10 +359,7 @@ def available(stored: Stored) -> dict[str, Plot]:
 def panels_of(stored: Stored, name: str) -> list[Panel]:
     """The panels of a plot.
 
-    Raises
-    ------
-    InputError
-        If there is no such plot, or the file lacks what it shows.
+    Raises `InputError` if there is no such plot, or the file lacks what it shows.
     """
     panels = PLOTS[name].panels(stored) if name in PLOTS else []
     if panels:

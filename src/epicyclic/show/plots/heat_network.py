@@ -251,11 +251,7 @@ def _write(ax: Axes, x: float, y: float, text: str, size: float, **style: Any) -
 
 
 def _box(
-    ax: Axes,
-    layout: _Layout,
-    node: str,
-    middle: tuple[float, float],
-    half: tuple[float, float],
+    ax: Axes, layout: _Layout, node: str, middle: tuple[float, float], half: tuple[float, float]
 ) -> None:
     """A part with its name, temperature, and the heat of its losses."""
     (x, y), (width, height) = middle, half

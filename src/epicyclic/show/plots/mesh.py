@@ -176,12 +176,7 @@ def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, 
     corners = Triangulation(path, face, triangles)
     top, told = top_of_scale(values)
     drawn = ax.tripcolor(
-        corners,
-        values,
-        shading="gouraud",
-        cmap=COLOUR_MAP,
-        rasterized=True,
-        vmax=top,
+        corners, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True, vmax=top
     )
     ax.figure.colorbar(drawn, ax=ax, label=f"{label}{told}", extend="max" if told else "neither")
 

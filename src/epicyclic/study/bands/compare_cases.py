@@ -119,11 +119,7 @@ def _renamed(values: Sequence[UncertainValue], shared: set[str]) -> list[Uncerta
 
 
 def _evaluate(
-    case: Case,
-    result: Result,
-    values: Sequence[UncertainValue],
-    points: FloatArray,
-    runner: Runner,
+    case: Case, result: Result, values: Sequence[UncertainValue], points: FloatArray, runner: Runner
 ) -> tuple[Outputs, FloatArray]:
     inputs = [number for number, it in enumerate(values) if not it.is_model_form]
     outputs = outputs_of(case, result)

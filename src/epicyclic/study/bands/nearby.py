@@ -61,10 +61,7 @@ class Outputs:
     ) -> FloatArray:
         """Results with the losses of each kind times the factor of its model. Theory (U7).
 
-        Returns
-        -------
-        ndarray of float, shape (s, n)
-            In the order of `names`; efficiency NaN without power.
+        In the order of `names`; efficiency NaN without power.
         """
         kinds = self.kinds * (2 if self.tested else 1)
         every = np.array(

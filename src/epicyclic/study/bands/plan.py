@@ -124,10 +124,7 @@ class SampledCase:
     ) -> FloatArray:
         """Results at all operating points, in all sets of samples.
 
-        Returns
-        -------
-        ndarray of float, shape (p, k, s, n)
-            In the order of `Outputs.names`.
+        In the order of `Outputs.names`.
         """
         losses = np.array([rows.numbers(name) for name in self.outputs.numbers])
         losses = losses.reshape(len(losses), len(self.samples), -1, self.plan.count)

@@ -15,11 +15,7 @@ from numpy.typing import NDArray
 from epicyclic.case.case import Case
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.study.bands.nearby import Nearby, Outputs, outputs_of
-from epicyclic.study.bands.plan import (
-    check_samples,
-    nearby_at,
-    sampled_case,
-)
+from epicyclic.study.bands.plan import check_samples, nearby_at, sampled_case
 from epicyclic.study.bands.samples import COVERAGE, fit_curves, index_values, make_samples
 from epicyclic.study.bands.study import (
     LABELS,
@@ -205,10 +201,7 @@ class Energies:
     ) -> FloatArray:
         """Energies of the cycle, and its efficiency. Theory (U10).
 
-        Returns
-        -------
-        ndarray of float, shape (s, n)
-            [kJ], [1]
+        [kJ], [1]
         """
         time = self.time.copy()
         if without is not None:

@@ -295,12 +295,7 @@ def _takes_minutes(case: Case) -> bool:
 # torque on it less the torque loss times the sign of its speed, driving and coasting.
 
 _OWN_AXES = {**AXES, STATE: STATE_KEY}
-_SHAFT_KEYS = (
-    "operation.input",
-    "operation.output",
-    "operation.fixed",
-    "operation.second_input",
-)
+_SHAFT_KEYS = ("operation.input", "operation.output", "operation.fixed", "operation.second_input")
 """Keys that decide which shaft is the reference, and which the output."""
 _SUMS = (
     "load_dependent",

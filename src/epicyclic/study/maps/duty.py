@@ -144,10 +144,7 @@ def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple
 
 
 def cycle_map(
-    case: Case,
-    cycle: Cycle,
-    celsius: tuple[float, ...] | None,
-    runner: Runner = HERE,
+    case: Case, cycle: Cycle, celsius: tuple[float, ...] | None, runner: Runner = HERE
 ) -> xr.Dataset:
     """A map of `case` that covers a cycle."""
     plan = cycle_plan(case, cycle, celsius)
@@ -233,12 +230,7 @@ def add_up(
     return Sums(lookup, celsius, clamp, tuple(totals), tuple(drawn))
 
 
-def make_duty(
-    data: xr.Dataset,
-    cycle: Cycle,
-    sums: Sums,
-    runner: Runner = HERE,
-) -> xr.Dataset:
+def make_duty(data: xr.Dataset, cycle: Cycle, sums: Sums, runner: Runner = HERE) -> xr.Dataset:
     """The result of `duty_cycle`, its error measured at the points that were drawn."""
     import xarray as xr
 
@@ -319,11 +311,7 @@ def point_of(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[Array, ...]:
 
 
 def _go_through(
-    lookup: Lookup,
-    cycle: Cycle,
-    celsius: float | None,
-    sample: Sample,
-    progress: Progress | None,
+    lookup: Lookup, cycle: Cycle, celsius: float | None, sample: Sample, progress: Progress | None
 ) -> Totals:
     """All points of a cycle added up, at its own temperatures or at one."""
     modes, nodes, states = len(MODES), lookup.size, max(1, len(lookup.states))

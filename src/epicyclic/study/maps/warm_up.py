@@ -147,10 +147,7 @@ class HeatTables:
     """
 
     def __init__(
-        self,
-        model: NetworkModel,
-        knots: Sequence[float],
-        samples: Sequence[Sequence[HeatSample]],
+        self, model: NetworkModel, knots: Sequence[float], samples: Sequence[Sequence[HeatSample]]
     ) -> None:
         every = [sample for row in samples for sample in row]
         self.capacities = model.capacities()

@@ -339,10 +339,7 @@ def make_parameters(
 ) -> tuple[Parameter, ...]:
     """The keys to be fitted, checked; `varied` are those that the table sets itself.
 
-    Raises
-    ------
-    InputError
-        For keys that are unknown, hold no number, or have no start value.
+    Raises `InputError` for keys that are unknown, hold no number, or have no start value.
     """
     found = [_not_zero(parameter_of(case, key, set(varied))) for key in keys]
     problems = [item for item in found if isinstance(item, Problem)]

@@ -158,9 +158,7 @@ class CasePlan(Plan):
         if result.status is not Status.CONVERGED:
             return Row(str(result.status), message=result.notes[0])
         return Row(
-            status=str(result.status),
-            warnings=" | ".join(result.warnings),
-            numbers=result.values(),
+            status=str(result.status), warnings=" | ".join(result.warnings), numbers=result.values()
         )
 
 
