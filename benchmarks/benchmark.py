@@ -214,7 +214,7 @@ def duty_seconds() -> tuple[float, float]:
 
 
 def clear_caches() -> None:
-    from epicyclic.builders import gear_sets
+    from epicyclic.build import gear_sets
     from epicyclic.case import flanks, gearing
     from epicyclic.contact import elastic_teeth
     from epicyclic.gears import flanks as contact_lines
@@ -255,7 +255,7 @@ def compliance_seconds(segments: int) -> tuple[float, float]:
     loads : float
         Load of both meshes at one operating point. [s]
     """
-    from epicyclic.builders import gear_sets
+    from epicyclic.build import gear_sets
     from epicyclic.contact.elastic_teeth import load_mesh_elastically, mesh_compliance
 
     case = test_article()
@@ -323,7 +323,7 @@ def pocket_seconds() -> tuple[float, float, float, float]:
         Their geometry; geometry and flow of a new set; flow of a compressible mixture; a whole
         operating point at a new speed, the flow known.
     """
-    from epicyclic.builders.build import build
+    from epicyclic.build.machine import build
     from epicyclic.losses import pocket_flow as network
     from epicyclic.losses import pocket_geometry as cells
     from epicyclic.losses import pocket_geometry as geometry

@@ -13,8 +13,8 @@ from dataclasses import replace
 from scipy.optimize import brentq
 
 import epicyclic as ep
-from epicyclic.builders.build import build
-from epicyclic.builders.gear_sets import roller_bearing
+from epicyclic.build.gear_sets import roller_bearing
+from epicyclic.build.machine import build
 from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, roller_loads
 
 PUBLISHED = {"40 degC": 236.0, "60 degC": 195.0, "90 degC": 181.0}

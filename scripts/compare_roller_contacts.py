@@ -19,8 +19,8 @@ from pathlib import Path
 from scipy.optimize import brentq
 
 import epicyclic as ep
-from epicyclic.builders.build import build
-from epicyclic.builders.gear_sets import roller_bearing
+from epicyclic.build.gear_sets import roller_bearing
+from epicyclic.build.machine import build
 from epicyclic.contact.fitted_models import read_oil_model
 from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import (

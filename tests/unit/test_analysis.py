@@ -10,8 +10,8 @@ import pytest
 from rich.console import Console
 
 import epicyclic as ep
-from epicyclic.builders.build import build
-from epicyclic.builders.models import resolve_models
+from epicyclic.build.machine import build
+from epicyclic.build.models import resolve_models
 from epicyclic.show.terminal import result_tables
 from epicyclic.study.friction import compare_friction
 

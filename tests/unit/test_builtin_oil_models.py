@@ -15,7 +15,7 @@ from rich.console import Console
 
 import epicyclic as ep
 from epicyclic import library
-from epicyclic.builders.models import resolve_models, standing_of
+from epicyclic.build.models import resolve_models, standing_of
 from epicyclic.case.read import plain
 from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
 from epicyclic.contact.line_contact import contacts_at

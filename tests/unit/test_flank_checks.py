@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import epicyclic as ep
-from epicyclic.builders.notes import load_notes
-from epicyclic.builders.set_case import set_cases
+from epicyclic.build.models import set_cases
+from epicyclic.build.result import load_notes
 from epicyclic.case import flanks
 from epicyclic.case.gearing import outside_radius
 

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from epicyclic import load_case, solve
-from epicyclic.builders.notes import thin_teeth_notes
-from epicyclic.builders.set_case import set_cases
+from epicyclic.build.models import set_cases
+from epicyclic.build.result import thin_teeth_notes
 from epicyclic.gears.gear import BasicRack
 from epicyclic.gears.mesh import closed_center_distance, profile_shift_sum, recommended_backlash
 from epicyclic.units import MILLIMETRE

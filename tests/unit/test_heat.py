@@ -11,7 +11,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import epicyclic as ep
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.errors import InputError
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.result.stored import read_result

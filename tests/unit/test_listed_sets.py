@@ -10,7 +10,7 @@ import pytest
 
 import epicyclic as ep
 import listed_trains
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.case.train_tables import ListedGear
 from epicyclic.gears.mesh import closing_number, nearest_places, pin_angle
 from listed_trains import BEARING, CARRIER

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from epicyclic import library
-from epicyclic.builders.elements import build_element
+from epicyclic.build.elements import build_element
 from epicyclic.case.tables.elements import DragTable, drag_problems
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.loss_table import LossTable, read_loss_table, table_problems

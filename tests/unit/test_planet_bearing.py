@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.builders.build import build
-from epicyclic.builders.gear_sets import palmgren_coefficient, roller_bearing
+from epicyclic.build.gear_sets import palmgren_coefficient, roller_bearing
+from epicyclic.build.machine import build
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss
 from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, palmgren_loss, roller_loads

@@ -69,7 +69,7 @@ def test_the_rest_works_without_a_plug_in(gone, tmp_path):
 
 
 def test_a_model_of_a_missing_plug_in_is_refused(monkeypatch):
-    monkeypatch.setattr("epicyclic.builders.models.offered", lambda kind: {})
+    monkeypatch.setattr("epicyclic.build.models.offered", lambda kind: {})
     case = ep.load_case("talbot-2012-pair").updated({"models.friction": "ehl-direct"})
     with pytest.raises(InputError, match="plug-in that is not installed"):
         ep.solve(case)

@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from epicyclic import library
-from epicyclic.builders.elements import build_element
+from epicyclic.build.elements import build_element
 from epicyclic.case.tables.elements import SealTable, seal_problems
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import LOAD_INDEPENDENT, State, figures, fluids_at

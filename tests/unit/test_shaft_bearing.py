@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from epicyclic import library
-from epicyclic.builders.elements import build_element
+from epicyclic.build.elements import build_element
 from epicyclic.case.tables.elements import ShaftBearingTable, bearing_problems
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import bearing_viscous_loss

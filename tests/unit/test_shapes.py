@@ -9,7 +9,7 @@ import pytest
 from matplotlib.path import Path
 
 import epicyclic as ep
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.study.shapes import gear_shapes, mesh_views
 from listed_trains import double_planet, layshaft, plus, ravigneaux, stepped, wolfrom
 

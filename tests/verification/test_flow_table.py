@@ -10,7 +10,7 @@ import pytest
 
 import asymmetric
 import epicyclic as ep
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.losses import pocket_flow as network
 from epicyclic.losses.pocket_tables import (
     LEAST_NUMBER,

@@ -10,7 +10,7 @@ import pytest
 
 import epicyclic as ep
 import listed_trains
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.machine import mesh_force
 from epicyclic.machine.planets import PlanetContact, planet_load

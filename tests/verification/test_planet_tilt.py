@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.builders.build import build
-from epicyclic.builders.gear_sets import roller_bearing
+from epicyclic.build.gear_sets import roller_bearing
+from epicyclic.build.machine import build
 from epicyclic.losses.planet_bearing import roller_loads
 from epicyclic.machine.gear_mesh import elastic_loads
 from epicyclic.machine.planets import PlanetContact, _tilt_by_newton, _tilt_one_by_one, planet_load

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.builders.build import build
-from epicyclic.builders.gear_sets import roller_bearing
+from epicyclic.build.gear_sets import roller_bearing
+from epicyclic.build.machine import build
 from epicyclic.kernels.line_contact import hertz_half_width
 from epicyclic.losses.planet_bearing import roller_loads
 from epicyclic.machine.convection import roller_conductance

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import epicyclic as ep
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.machine.heat_flow import Curves, Link, Source, Transient
 
 CAPACITY, CONDUCTANCE, AIR = 5000.0, 12.5, 293.15

@@ -111,7 +111,7 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     loaded = load_with(case, changes)
     click.echo(f"{case}: a sound {loaded.kind} case.")
     if loaded.lubrication is not None:
-        from epicyclic.builders.supplies import stated_supplies
+        from epicyclic.build.result import stated_supplies
 
         for name, supply in stated_supplies(loaded):
             click.echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.case.case import Case
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.result.result import Result, set_of

@@ -6,17 +6,18 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from epicyclic.builders.build import build
-from epicyclic.builders.models import (
+from epicyclic.build.machine import build
+from epicyclic.build.models import (
+    SetCase,
     fitted_oil_model,
     friction_of,
     friction_settings,
     pocketing_of,
     resolve_models,
     rolling_of,
+    set_cases,
     standing_of,
 )
-from epicyclic.builders.set_case import SetCase, set_cases
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS

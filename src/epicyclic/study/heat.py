@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
-from epicyclic.builders.temperatures import oil_medium
+from epicyclic.build.temperatures import oil_medium
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.messages import refused, written

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.builders.notes import load_notes
-from epicyclic.builders.set_case import set_cases
+from epicyclic.build.models import set_cases
+from epicyclic.build.result import load_notes
 from epicyclic.case.case import Case
 from epicyclic.errors import one_problem
 from epicyclic.gears.mesh import Mesh

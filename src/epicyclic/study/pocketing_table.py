@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.case.case import Case
 from epicyclic.errors import Status, one_problem
 from epicyclic.losses.pocket_tables import (

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
-from epicyclic.builders.build import build
+from epicyclic.build.machine import build
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, one_problem
 from epicyclic.gears.cutting import tooth_outline

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from epicyclic.builders.build import build as build_machine
+from epicyclic.build.machine import build as build_machine
 from epicyclic.case.case import Case
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing, outside_radius

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from epicyclic.builders.assembly import assemble
-from epicyclic.builders.build import build
-from epicyclic.builders.built import Built
+from epicyclic.build.machine import Built, build
+from epicyclic.build.result import assemble
 from epicyclic.case.case import Case
 from epicyclic.case.train import TrainCase
 from epicyclic.contact.elastic_teeth import LoadedMesh

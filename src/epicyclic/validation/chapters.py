@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.builders.gear_sets import roller_bearing
+from epicyclic.build.gear_sets import roller_bearing
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.meshes import bearing_details
 from epicyclic.study.solve import solve

@@ -14,9 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.builders.build import build
-from epicyclic.builders.gear_sets import roller_bearing
-from epicyclic.builders.models import fluids_of
+from epicyclic.build.gear_sets import roller_bearing
+from epicyclic.build.machine import build
+from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, read_case
 from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.contact.temperatures import (

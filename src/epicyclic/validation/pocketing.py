@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.builders.models import fluids_of
+from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, build_case, read_case
 from epicyclic.case.messages import did_you_mean, refused, written
 from epicyclic.case.read import plain

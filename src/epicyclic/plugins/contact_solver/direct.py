@@ -15,8 +15,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.builders.models import solid_of
-from epicyclic.builders.set_case import SetCase
+from epicyclic.build.models import SetCase, solid_of
 from epicyclic.case.tables.models import oil_laws
 from epicyclic.contact.elastic_teeth import one_thread
 from epicyclic.contact.fitted_models import EYRING_STRESS, eyring_friction

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic import library
-from epicyclic.builders.build import layout_of
+from epicyclic.build.machine import layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.errors import ConvergenceError

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.builders.build import build, layout_of
+from epicyclic.build.machine import build, layout_of
 from epicyclic.case.case import Case, PlanetaryCase
 from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.train import TrainCase

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 from scipy.interpolate import PchipInterpolator
 
-from epicyclic.builders.build import build
-from epicyclic.builders.temperatures import term_nodes
+from epicyclic.build.machine import build
+from epicyclic.build.temperatures import term_nodes
 from epicyclic.case.case import Case
 from epicyclic.case.fields import quantity_of
 from epicyclic.case.messages import refused, written

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.builders.notes import NOT_INCLUDED
+from epicyclic.build.result import NOT_INCLUDED
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.losses.ranges import OUT_OF_RANGE

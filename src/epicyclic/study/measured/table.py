@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.builders.build import layout_of
+from epicyclic.build.machine import layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.fields import field_at, is_array, is_text, known_keys, quantity_of
 from epicyclic.case.messages import did_you_mean, misspelt, one_line, sentence

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.builders.build import layout_of
+from epicyclic.build.machine import layout_of
 from epicyclic.case.case import Case
 from epicyclic.errors import one_problem
 from epicyclic.files import check_place, whole_file
