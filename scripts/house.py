@@ -1,0 +1,179 @@
+"""How heavy the package is: lines, files, imports, and what the main command loads and calls.
+
+    python scripts/house.py
+
+The figures have ceilings, which tests/static/test_house.py holds them to. Lines are those of all
+Python files below src/epicyclic, the core is all but `plugins` and `validation`.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from functools import cache
+from itertools import combinations
+from pathlib import Path
+
+SOURCE = Path(__file__).parents[1] / "src" / "epicyclic"
+CEILINGS = {
+    "lines": 72_000,
+    "lines of the core": 56_000,
+    "lines of case": 4_500,
+    "files": 280,
+    "longest chain of imports": 25,
+    "modules loaded by epicyclic.case.case": 45,
+    "kernels loaded by epicyclic.case.case": 0,
+    "functions of one solution": 500,
+    "pairs of classes with the same fields": 5,
+    "tests of the kind of a set": 0,
+}
+APART = ("plugins", "validation")
+KINDS = ("PlanetaryCase", "GearPairCase", "PlanetarySet", "PairSet", "ListedSet", "ComputedSet")
+TESTS = ("isinstance", "issubclass")
+KIND_ROOMS = ("case", "build")
+"""Where the form in which a set is stated may matter."""
+ALIKE, COMMON = 0.6, 4
+"""Classes count as the same from this share of common fields on, and this number of them."""
+LOADED = "import sys, json, epicyclic.case.case; print(json.dumps(sorted(sys.modules)))"
+CALLED = """
+import sys, epicyclic
+functions = set()
+def note(frame, event, _):
+    code = frame.f_code
+    if event == "call" and code.co_filename.startswith(sys.argv[1]) and code.co_flags & 1:
+        if "<" not in code.co_qualname.split(".")[-1]:
+            functions.add((code.co_filename, code.co_qualname))
+sys.setprofile(note)
+from epicyclic.case.case import read_case
+from epicyclic.study.solve import solve
+solve(read_case("talbot-2012"))
+sys.setprofile(None)
+print(len(functions))
+"""
+
+
+def files() -> list[Path]:
+    """All modules of the package."""
+    return sorted(SOURCE.rglob("*.py"))
+
+
+def room(path: Path) -> str:
+    """The folder of a module below the package; of a module beside them its name."""
+    return path.relative_to(SOURCE).parts[0]
+
+
+def lines(*rooms: str, but: tuple[str, ...] = ()) -> int:
+    """Lines of the modules in some rooms, or in all, but for some."""
+    return sum(
+        len(path.read_text(encoding="utf-8").splitlines())
+        for path in files()
+        if (not rooms or room(path) in rooms) and room(path) not in but
+    )
+
+
+def name_of(path: Path) -> str:
+    """Dotted name of a module."""
+    parts = path.relative_to(SOURCE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+@cache
+def imports() -> dict[str, frozenset[str]]:
+    """What each module imports of the package when it is loaded."""
+    modules = {name_of(path): ast.parse(path.read_text(encoding="utf-8")) for path in files()}
+
+    def found(tree: ast.Module) -> Iterator[str]:
+        for node in tree.body:
+            if isinstance(node, ast.ImportFrom) and node.module:
+                for alias in node.names:
+                    name = f"{node.module}.{alias.name}"
+                    yield name if name in modules else node.module
+
+    return {name: frozenset({*found(tree)} & modules.keys()) for name, tree in modules.items()}
+
+
+@cache
+def chain(module: str) -> tuple[str, ...]:
+    """The longest chain of imports that begins with a module."""
+    below = (chain(name) for name in imports()[module] if name != module)
+    return (module, *max(below, key=len, default=()))
+
+
+def classes() -> Iterator[tuple[str, frozenset[str]]]:
+    """Every class with fields, and their names."""
+    for path in files():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                fields = [item.target for item in node.body if isinstance(item, ast.AnnAssign)]
+                names = frozenset(item.id for item in fields if isinstance(item, ast.Name))
+                if len(names) >= COMMON - 1:
+                    yield f"{name_of(path)}.{node.name}", names
+
+
+def mirrors() -> list[tuple[str, str]]:
+    """Pairs of classes that share most of their fields."""
+    return [
+        (one, two)
+        for (one, first), (two, second) in combinations(classes(), 2)
+        if len(first & second) >= COMMON and len(first & second) >= ALIKE * len(first | second)
+    ]
+
+
+def kind_tests() -> list[str]:
+    """Where code outside `KIND_ROOMS` asks in which form a set is stated."""
+    found = []
+    for path in files():
+        if room(path) in KIND_ROOMS:
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in (
+                "isinstance",
+                "issubclass",
+            ):
+                asked = {item.id for item in ast.walk(node.args[1]) if isinstance(item, ast.Name)}
+                if asked & {*KINDS}:
+                    found.append(f"{name_of(path)}:{node.lineno}")
+    return found
+
+
+def output(code: str) -> str:
+    """What a program prints in a process of its own."""
+    command = [sys.executable, "-c", code, str(SOURCE)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def figures() -> dict[str, int]:
+    """Every figure that has a ceiling."""
+    loaded = [name for name in json.loads(output(LOADED)) if name.startswith("epicyclic")]
+    kernels = [name for name in loaded if name.startswith("epicyclic.kernels.")]
+    return {
+        "lines": lines(),
+        "lines of the core": lines(but=APART),
+        "lines of case": lines("case"),
+        "files": len(files()),
+        "longest chain of imports": max(len(chain(name)) for name in imports()),
+        "modules loaded by epicyclic.case.case": len(loaded),
+        "kernels loaded by epicyclic.case.case": len(kernels),
+        "functions of one solution": int(output(CALLED)),
+        "pairs of classes with the same fields": len(mirrors()),
+        "tests of the kind of a set": len(kind_tests()),
+    }
+
+
+def main() -> None:
+    """Print the figures, and what those consist of that are lists."""
+    for name, value in figures().items():
+        print(f"{name:40} {value:>7,} of {CEILINGS[name]:>7,}")
+    print("\nlongest chain:", *max(map(chain, imports()), key=len), sep="\n  ")
+    print("\nsame fields:", *(" ~ ".join(pair) for pair in mirrors()), sep="\n  ")
+    print("\ntests of the kind of a set:", *kind_tests(), sep="\n  ")
+    print("\nlines by room:")
+    for name in sorted({room(path) for path in files()}, key=lines, reverse=True):
+        print(f"  {name:20} {lines(name):>7,}")
+
+
+if __name__ == "__main__":
+    main()

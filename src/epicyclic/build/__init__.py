@@ -1,0 +1,1 @@
+"""From cases to machines, and from their solutions to results."""

@@ -1,0 +1,152 @@
+"""The elements that a train adds by tables of their own: bearings, seals, other drags.
+
+A new kind is one module in `epicyclic.machine`, one table of keys with its line in `ELEMENT_CHECKS`
+of `epicyclic.case.tables.elements`, and one function here with its line in `_BUILDERS`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from epicyclic.case.tables.elements import (
+    DragTable,
+    SealTable,
+    ShaftBearingTable,
+    between,
+    points_of,
+)
+from epicyclic.losses.shaft_bearing import (
+    DEFAULT_COEFFICIENTS,
+    DEFAULT_FLANGE_COEFFICIENTS,
+    DEFAULT_VISCOUS_FACTORS,
+    STARVATION,
+    BearingLoad,
+    BearingModel,
+    CatalogueBearing,
+    ContactSeal,
+    PalmgrenModel,
+    SkfModel,
+    TableModel,
+    full_film_friction,
+    skf_constants,
+)
+from epicyclic.machine.element import Element
+from epicyclic.machine.shaft_parts import Seal, ShaftBearing, TableLoss
+from epicyclic.oil.oil import Oil
+from epicyclic.oil.properties import oil_state
+
+_FORTY_CELSIUS = 313.15
+"""40 degC in kelvin."""
+
+
+def _bearing(
+    name: str, table: ShaftBearingTable, bodies: tuple[str, str], oil: Oil, folder: Path
+) -> ShaftBearing:
+    force = None
+    if table.radial_force is not None:
+        force = BearingLoad(radial=table.radial_force, axial=table.axial_force or 0.0)
+    return ShaftBearing(
+        key=name,
+        between=bodies,
+        bearing=_catalogue_bearing(table),
+        model=_bearing_model(table, oil, folder),
+        force=force,
+        minimum_load_factor=table.minimum_load_factor,
+        reference_speed=table.reference_speed,
+    )
+
+
+def _catalogue_bearing(table: ShaftBearingTable) -> CatalogueBearing:
+    axial_factor = table.axial_factor
+    if axial_factor is None and table.contact_angle is not None:
+        axial_factor = 0.4 / math.tan(table.contact_angle)
+    return CatalogueBearing(
+        type=table.type,
+        bore=table.bore,
+        outside_diameter=table.outside_diameter,
+        width=_known(table.width),
+        cage=table.cage,
+        dynamic_load_rating=_known(table.dynamic_load_rating),
+        static_load_rating=_known(table.static_load_rating),
+        axial_factor=_known(axial_factor),
+    )
+
+
+def _known(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingModel:
+    if table.model == "table":
+        points = points_of(table, folder)
+        assert points is not None
+        return TableModel(points)
+    if table.model == "skf-2018":
+        return _skf_model(table, oil)
+    kind = (table.type, table.cage)
+    constant = None
+    if table.model == "palmgren":
+        constant = table.palmgren_coefficient or DEFAULT_COEFFICIENTS[kind]
+    factor, flange = table.viscous_factor, table.flange_coefficient
+    return PalmgrenModel(
+        viscous_factor=DEFAULT_VISCOUS_FACTORS[kind] if factor is None else factor,
+        constant=constant,
+        flange_coefficient=DEFAULT_FLANGE_COEFFICIENTS[table.cage] if flange is None else flange,
+    )
+
+
+def _skf_model(table: ShaftBearingTable, oil: Oil) -> SkfModel:
+    seal = table.seal
+    friction = table.sliding_friction
+    return SkfModel(
+        constants=skf_constants(table.type, table.series or "", table.cage),
+        full_film_friction=full_film_friction(table.type, oil.kind)
+        if friction is None
+        else friction,
+        starvation=STARVATION[table.lubrication],
+        oil_level=table.oil_level,
+        drag_variable=table.drag_variable,
+        seal=None
+        if seal is None
+        else ContactSeal(seal.counterface_diameter, seal.factor, seal.exponent, seal.constant),
+    )
+
+
+def _seal(name: str, table: SealTable, bodies: tuple[str, str], oil: Oil, folder: Path) -> Seal:
+    viscosity = oil_state(oil, _FORTY_CELSIUS).kinematic_viscosity
+    if table.model != "table":
+        return Seal(name, bodies, table.diameter, table.model, viscosity)
+    points = points_of(table, folder)
+    assert points is not None
+    return Seal(name, bodies, table.diameter, points, viscosity)
+
+
+def _drag(
+    name: str, table: DragTable, bodies: tuple[str, str], oil: Oil, folder: Path
+) -> TableLoss:
+    points = points_of(table, folder)
+    assert points is not None
+    return TableLoss(name, bodies, points)
+
+
+_BUILDERS: Mapping[str, Callable[..., Element]] = {
+    "bearings": _bearing,
+    "seals": _seal,
+    "drags": _drag,
+}
+
+
+def build_element(
+    kind: str,  # ``"bearings"``, ``"seals"`` or ``"drags"``.
+    name: str,
+    table: Any,  # Its table, which the checks found sound.
+    *,
+    shafts: Mapping[str, str],  # The bodies beside the housing, by all their names.
+    oil: Oil,
+    folder: Path,  # That of the case.
+) -> Element:
+    """The element of a table; raises `InputError` for unknown shafts and bad files."""
+    return _BUILDERS[kind](name, table, between(table, shafts), oil, folder)

@@ -1,0 +1,382 @@
+"""From the tables of a set to the element that loses its power."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+
+from epicyclic.build.models import (
+    SetCase,
+    bearing_model,
+    contact_modulus,
+    fitted_rolling,
+    loss_choices,
+    mesh_models,
+    oil_share,
+    solid_of,
+)
+from epicyclic.case import flanks
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.gearing import Gearing, outside_radius, outward_of, rim_thickness
+from epicyclic.case.tables.elements import PlanetBearing as BearingTable
+from epicyclic.case.tables.lubrication import LubricationTable
+from epicyclic.case.tables.models import Numerics
+from epicyclic.contact.elastic_teeth import GearBody, Rim
+from epicyclic.contact.line_contact import Flanks
+from epicyclic.gears.cutting import cutting_tool, fitted_tool
+from epicyclic.gears.gear import CARRIER, HOUSING, Gear
+from epicyclic.gears.generation import Tool
+from epicyclic.gears.mesh import Mesh
+from epicyclic.losses.drag import Dipped
+from epicyclic.losses.fitted import FittedRolling
+from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
+from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.machine.disc import Disc, Jets, Sump, ThrustBearing
+from epicyclic.machine.element import joined_key
+from epicyclic.machine.gear_mesh import GearMesh
+from epicyclic.machine.gear_set import GearSet, Planet, PlanetMesh, Reference
+from epicyclic.machine.planets import LoadSharing, PlanetBearing
+
+# How the oil of a case meets the bodies that turn in it.
+
+
+def gear_disc(case: SetCase, body: str, gear: Gear, table: GearTable) -> Disc:
+    """A central gear as it turns in the mixture, dips or meets jets.
+
+    A ring dips as a body without teeth: those of its inside are left out.
+    """
+    radius = outside_radius(gear, table)
+    pitch = radius if gear.internal else gear.reference_radius
+    part = Dipped(
+        radius=pitch,
+        tip_radius=radius,
+        width=gear.face_width,
+        depth=_depth(case.lubrication, gear.name, radius),
+        module=gear.rack.normal_module,
+        teeth=0 if gear.internal else gear.teeth,
+        tooth_height=abs(gear.tip_radius - gear.root_radius),
+        pressure_angle=gear.rack.normal_pressure_angle,
+        helix_angle=abs(gear.rack.helix_angle),
+    )
+    return Disc(
+        where=gear.name,
+        body=body,
+        radius=radius,
+        width=gear.face_width,
+        oil_fraction=oil_share(case).share,
+        sump=_sump(case, part),
+        jets=_jets(case.lubrication, gear),
+    )
+
+
+def carrier_disc(case: SetCase, body: str, outer_diameter: float, width: float, mate: Gear) -> Disc:
+    """A carrier as it turns in the mixture or dips; its flow is told apart by a gear beside it."""
+    radius = outer_diameter / 2
+    depth = _depth(case.lubrication, "carrier", radius)
+    part = Dipped(radius, radius, width, depth, mate.rack.normal_module)
+    return Disc("carrier", body, radius, width, oil_share(case).share, _sump(case, part))
+
+
+def _depth(table: LubricationTable | None, name: str, radius: float) -> float:
+    """Depth of the lowest point of a part below the oil at rest; 0 above it. [m]"""
+    if table is None or table.method != "dip":
+        return 0.0
+    if table.oil_level is not None:
+        return max(radius + table.oil_level, 0.0)
+    return table.immersion.get(name, 0.0)
+
+
+def _sump(case: SetCase, part: Dipped) -> Sump | None:
+    table = case.lubrication
+    if table is None or table.method != "dip":
+        return None
+    volume = case.thermal.oil_volume if table.oil_volume is None else table.oil_volume
+    assert volume is not None
+    return Sump(part, volume, table.churning)
+
+
+def _jets(table: LubricationTable | None, gear: Gear) -> Jets | None:
+    if table is None or table.method != "jet" or not table.oil_flow:
+        return None
+    return Jets(table.oil_flow, table.jet_speed, table.nozzle_side, gear.reference_radius)
+
+
+# From the tables of a set to the element that loses its power.
+
+
+CAGED_PALMGREN = 0.0003
+"""f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
+FULL_COMPLEMENT_PALMGREN = 0.00055
+"""f1 of a full-complement roller bearing. Talbot (2012), p. 56. [1]"""
+VISCOUS_FACTOR_PER_ROW = 3.0
+"""f0 of one row of caged cylindrical rollers, middle of 2.2-4.0. Talbot (2012), p. 130. [1]"""
+
+
+def gear_set(
+    key: str,  # First part of the keys of its losses.
+    case: SetCase,
+    # The body in the machine of every body of the set, and of its carrier.
+    bodies: Mapping[str, str],
+    # Its members: that whose torque states the load, then those between which the losses act.
+    order: Sequence[str],
+    flow_tables: FlowTables,  # Tables of flows through pockets.
+) -> GearSet:
+    """The losses of a set."""
+    gearing = case.gearing
+    discs = dict(_discs(case, bodies))
+    return GearSet(
+        key=key,
+        carrier=bodies[CARRIER] if gearing.planets else HOUSING,
+        meshes=tuple(_meshes(key, case, bodies, flow_tables)),
+        planets=tuple(_planet(key, case, body, bodies[body]) for body in gearing.planets),
+        sharing=_sharing(case),
+        discs=discs,
+        missing=_missing(case),
+        thrust=_thrust_bearing(case, bodies),
+        choices=loss_choices(case),
+        reference=_reference(case, bodies, order),
+    )
+
+
+def _reference(case: SetCase, bodies: Mapping[str, str], order: Sequence[str]) -> Reference | None:
+    """Where the loads of meshes are those without losses; a set of several ways has none."""
+    levers = case.gearing.levers
+    if case.models.mesh_loads == "with-losses" or not levers:
+        return None
+    loaded, *others = order
+    between = [bodies[member] for member in others]
+    ends = (between[0], between[1] if len(between) > 1 else HOUSING)
+    return Reference(bodies[loaded], levers[loaded], ends)
+
+
+# --- meshes ---------------------------------------------------------------------------------------
+
+
+def _meshes(
+    key: str, case: SetCase, bodies: Mapping[str, str], flow_tables: FlowTables
+) -> Iterator[GearMesh]:
+    gearing = case.gearing
+    models, tools = mesh_models(case, flow_tables), _tools(gearing)
+    for drawn, mesh in zip(gearing.meshes, gearing.geometries, strict=True):
+        gears = drawn.first, drawn.second
+        one, two = tables = gearing.tables[drawn.first], gearing.tables[drawn.second]
+        own = [gearing.bodies[gear] for gear in gears]
+        yield GearMesh(
+            key=drawn.key,
+            mesh=mesh,
+            bodies=(bodies[own[0]], bodies[own[1]]),
+            tools=(tools[drawn.first], tools[drawn.second]),
+            roundings=(one.tool_tip_radius, two.tool_tip_radius),
+            flanks=Flanks(
+                contact_modulus(one.material, two.material), one.roughness, two.roughness
+            ),
+            solids=gear_bodies(mesh, tables, gearing.count or 1),
+            deviations=flanks.flank_deviations(mesh, tables, drawn.table.misalignment),
+            models=models[drawn.key],
+            materials=(solid_of(one.material), solid_of(two.material)),
+            nodes=(joined_key(key, own[0]), joined_key(key, own[1])),
+        )
+
+
+@lru_cache(maxsize=256)
+def gear_bodies(
+    mesh: Mesh, tables: tuple[GearTable, GearTable], planets: int = 1
+) -> tuple[GearBody, GearBody]:
+    """Materials, root fillets and rims of both members of a mesh, `planets` of which are alike."""
+    one, two = tables
+    return _body(mesh.gear1, one, 1), _body(mesh.gear2, two, planets)
+
+
+def _body(gear: Gear, table: GearTable, loads: int) -> GearBody:
+    thickness = rim_thickness(table)
+    return GearBody(
+        table.material.elastic_modulus,
+        table.material.poisson_ratio,
+        cutting_tool(gear, table.tool_tip_radius),
+        None if thickness is None else Rim(thickness, loads),
+    )
+
+
+def _tools(gearing: Gearing) -> dict[str, Tool]:
+    """The tool of each gear, which serves the mate that reaches deepest."""
+    needed: dict[str, float] = {}
+    for mesh in gearing.geometries:
+        ends = ((mesh.gear1, mesh.radius1_at_start), (mesh.gear2, mesh.radius2_at_end))
+        for gear, radius in ends:
+            deeper = max if gear.internal else min
+            needed[gear.name] = deeper(radius, needed.get(gear.name, radius))
+    return {
+        name: fitted_tool(gearing.gear(name), table.tool_tip_radius, needed[name])
+        for name, table in gearing.tables.items()
+    }
+
+
+# --- planets --------------------------------------------------------------------------------------
+
+
+def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
+    gearing, bearing = case.gearing, case.bearings[planet]
+    gears = {name: gearing.tables[name] for name in gearing.gears_of(planet)}
+    stated = [
+        mass for table in gears.values() if (mass := getattr(table, "mass", None)) is not None
+    ]
+    made = [(gearing.gear(name), table) for name, table in gears.items()]
+    pin = f"{planet}_pin" if gearing.listed else "pin"
+    no_bearing = f"bearing of {planet}" if gearing.listed else "[planet_bearing]"
+    return Planet(
+        key=f"{planet}_bearing",
+        body=body,
+        pin_radius=gearing.pins[planet].radius,
+        meshes=tuple(_planet_meshes(gearing, planet)),
+        mass=sum(stated) if stated else planet_mass(made, bearing),
+        mass_estimated=not stated,
+        bearing=planet_bearing(case, bearing),
+        no_bearing=f"the case has no {no_bearing}",
+        tilts=case.models.planet_tilt == "coupled",
+        nodes=(joined_key(key, planet), joined_key(key, pin)),
+    )
+
+
+def _planet_meshes(gearing: Gearing, planet: str) -> Iterator[PlanetMesh]:
+    """How the meshes of a planet stand to it: their directions, hands and places on its axis."""
+    pins, hands, places = gearing.pins, gearing.hands, gearing.positions
+    for mesh in gearing.meshes:
+        ends = ((mesh.first, mesh.second), (mesh.second, mesh.first))
+        for member, (gear, mate) in enumerate(ends, start=1):
+            if gearing.bodies[gear] != planet:
+                continue
+            other = gearing.bodies[mate]
+            outward = outward_of(pins, planet, other if other in gearing.planets else None)
+            yield PlanetMesh(
+                mesh=mesh.key,
+                member=member,
+                outward=(0.0, -1.0) if mesh.internal else outward,
+                # a torque from t to r pushes a right-handed gear against y
+                hand=-hands[gear],
+                position=places[gear],
+            )
+
+
+def planet_mass(gears: Iterable[tuple[Gear, GearTable]], bearing: BearingTable | None) -> float:
+    """Mass of a planet with its rollers, from its sizes: discs to the reference circles. [kg]
+
+    Theory (B19).
+    """
+    bore = rollers = 0.0
+    if bearing is not None:
+        bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
+        volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
+        rollers = bearing.rows * bearing.rollers_per_row * volume * bearing.material.density
+    return rollers + sum(
+        math.pi
+        * (gear.reference_radius**2 - (bore / 2) ** 2)
+        * gear.face_width
+        * table.material.density
+        for gear, table in gears
+    )
+
+
+def _sharing(case: SetCase) -> LoadSharing | None:
+    table = case.sharing
+    if table is None:
+        return None
+    return LoadSharing(
+        method=table.method,
+        mesh_load_factor=table.mesh_load_factor,
+        angles=case.gearing.planet_angles,
+        position_errors=table.position_errors or (),
+        floating_member=table.floating_member,
+        support_stiffness=table.support_stiffness,
+        pin_stiffness=table.pin_stiffness,
+    )
+
+
+def planet_bearing(case: SetCase, table: BearingTable | None) -> PlanetBearing | None:
+    """The planet bearing that `table` describes, with the models of the case."""
+    if table is None:
+        return None
+    name = bearing_model(case, table)
+    is_fitted = name in (FittedRolling.name, FITTED_OR_PALMGREN)
+    factor = table.viscous_factor
+    return PlanetBearing(
+        bearing=roller_bearing(table, case.numerics),
+        model=fitted_rolling(case, "bearing_rolling_loss") if is_fitted else name,
+        palmgren_coefficient=palmgren_coefficient(table),
+        viscous_factor=VISCOUS_FACTOR_PER_ROW * table.rows if factor is None else factor,
+        conductivity=table.material.thermal_conductivity,
+        oil_held=case.models.oil_beyond_range == "held",
+        palmgren_beyond=name == FITTED_OR_PALMGREN,
+    )
+
+
+def palmgren_coefficient(table: BearingTable) -> float:
+    """f1 of the case, or the published one of the bearing's kind. [1]"""
+    if table.palmgren_coefficient is not None:
+        return table.palmgren_coefficient
+    return CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
+
+
+def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:
+    """The bearing that `table` describes."""
+    return RollerBearing(
+        rows=table.rows,
+        rollers_per_row=table.rollers_per_row,
+        roller_diameter=table.roller_diameter,
+        roller_length=table.roller_length,
+        inner_diameter=table.pin_diameter,
+        diametral_clearance=table.diametral_clearance,
+        crown_drop=table.crown_drop,
+        crown_length_fraction=table.crown_length_fraction,
+        row_gap=table.row_gap,
+        roller_roughness=table.roller_roughness,
+        race_roughness=table.race_roughness,
+        equivalent_modulus=contact_modulus(table.material, table.material),
+        slices=numerics.bearing_slices,
+    )
+
+
+# --- what turns in oil and air --------------------------------------------------------------------
+
+
+def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tuple[Disc, ...]]]:
+    """Every central gear turns in the mixture or a sump, and the carrier."""
+    gearing = case.gearing
+    for name, gears in gearing.drags.items():
+        yield (
+            name,
+            tuple(
+                gear_disc(case, bodies[gearing.bodies[it]], gearing.gear(it), gearing.tables[it])
+                for it in gears
+            ),
+        )
+    if case.carrier is not None:
+        size = (case.carrier.outer_diameter, case.carrier.width)
+        mate = gearing.gear(next(gears[0] for gears in gearing.drags.values()))
+        yield "carrier_drag", (carrier_disc(case, bodies[CARRIER], *size, mate),)
+
+
+def _missing(case: SetCase) -> dict[str, str]:
+    """Losses that are not computed, because the case has no table for them."""
+    parts = {
+        "carrier_drag": (case.carrier, "[carrier]"),
+        "thrust_bearing_viscous": (case.thrust_bearing, "[thrust_bearing]"),
+    }
+    return {
+        name: f"the case has no {table}"
+        for name, (part, table) in parts.items()
+        if part is None and name in case.losses
+    }
+
+
+def _thrust_bearing(case: SetCase, bodies: Mapping[str, str]) -> ThrustBearing | None:
+    table = case.thrust_bearing
+    if table is None:
+        return None
+    one, two = table.between.split("-")
+    return ThrustBearing(
+        between=(bodies[one], bodies.get(two, HOUSING)),
+        mean_diameter=table.mean_diameter,
+        viscous_factor=table.viscous_factor,
+        count=table.count,
+    )

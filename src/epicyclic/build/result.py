@@ -1,0 +1,617 @@
+"""From the solution of a machine to the result that the user sees, with its notes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from epicyclic.build.machine import Built
+from epicyclic.build.models import (
+    SetCase,
+    fitted_oil_model,
+    friction_of,
+    oil_share,
+    resolve_models,
+    rolling_of,
+    set_cases,
+    standing_of,
+)
+from epicyclic.case import flanks
+from epicyclic.case.case import Case
+from epicyclic.case.gear_rules import backlash_notes
+from epicyclic.case.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
+from epicyclic.case.tables.lubrication import SHARE_KEY
+from epicyclic.case.tables.models import LoadSharing
+from epicyclic.case.train import TrainCase
+from epicyclic.contact.fitted_models import changed_properties
+from epicyclic.gears.gear import HOUSING
+from epicyclic.gears.mesh import are_evenly_spaced
+from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
+from epicyclic.losses.mixed_ehl import TALBOT_FLUID
+from epicyclic.losses.ranges import SomeFlags, ValidityFlag
+from epicyclic.losses.reliability import RELIABILITY
+from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
+from epicyclic.machine.disc import churned
+from epicyclic.machine.element import OIL, Loss, joined_key
+from epicyclic.machine.gear_mesh import MeshFigures
+from epicyclic.machine.gear_set import GearSet, GearSetResult
+from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
+from epicyclic.machine.planets import SHARING_METHODS, BearingFigures
+from epicyclic.machine.pocket_flow import oil_in_mesh
+from epicyclic.machine.shaft_parts import ShaftBearing
+from epicyclic.machine.solve import Solution, stage_torques
+from epicyclic.result.result import (
+    HeatBalance,
+    HeatWay,
+    LossTerm,
+    MemberState,
+    OilSupply,
+    PowerFlow,
+    Result,
+    Train,
+    in_words,
+)
+from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
+
+# How oil gets to the gears of a case, and what follows from it.
+
+
+def stated_supplies(case: Case) -> Iterator[tuple[str, OilSupply]]:
+    """How oil gets to the gears of each set that says so, by the key of the set."""
+    sets = dict(case.computed_sets) if isinstance(case, TrainCase) else [""]
+    for key, own in set_cases(case, sets):
+        if own.lubrication is not None:
+            share = oil_share(own)
+            method = own.lubrication.method
+            yield key, OilSupply(method, share.share, *share.band, share.grade, share.source)
+
+
+def solved_supplies(
+    case: Case, sets: Mapping[str, GearSet], solution: Solution
+) -> Iterator[tuple[str, OilSupply]]:
+    """The same with what the speeds make of it."""
+    for key, supply in stated_supplies(case):
+        own = sets[key]
+        discs = [disc for discs in own.discs.values() for disc in discs]
+        yield (
+            key,
+            replace(
+                supply,
+                churning=churned(discs, solution.state),
+                meshes={duty.key: oil_in_mesh(duty) for duty in own.mean_duties(solution.state)},
+            ),
+        )
+
+
+# Notes: what a user must know about a result besides its numbers.
+
+
+NOT_INCLUDED = "Not included"
+"""Begins the note that names loss terms which are missing."""
+GEAR_PRESSURE = 2.4e9
+"""1.6 times the endurance limit of 1.5 GPa of case-hardened steel: life factor for static load of
+ISO 6336-2, limit of ISO 6336-5, grade MQ (general knowledge). [Pa]"""
+BEARING_PRESSURE = 4.0e9
+"""Pressure of a roller on its race at the static load rating of ISO 76 (general knowledge). [Pa]"""
+IDLE_PART = 0.3
+"""Part of the most loaded roller without load from which a result says so. [1]"""
+LEAST_CONTACT = 0.75
+"""Share of the contact lines that carries below which a result says so. [1]"""
+
+
+def case_notes(
+    case: SetCase,
+    found: GearSetResult,
+    turning: Collection[str],  # Central gears that turn.
+) -> tuple[str, ...]:
+    """What a user must know about a set: its oil, its load, its flows, its planets."""
+    meshes = {key: item for key, item in found.figures.items() if isinstance(item, MeshFigures)}
+    notes = (
+        *fluid_notes(case),
+        *lubrication_notes(case),
+        *load_notes(case),
+        *thin_teeth_notes(case),
+        *contact_notes(meshes),
+        *pressure_notes(found.figures),
+        *found.notes,
+    )
+    sharing = case.sharing if found.shares else None
+    return (
+        *notes,
+        *case.found,
+        *_arrangement_notes(case),
+        *(() if sharing is None else _share_notes(sharing, found.shares)),
+        *_ring_notes(case.gearing, turning),
+    )
+
+
+def fluid_notes(case: SetCase) -> tuple[str, ...]:
+    """What was made for another oil than that of the case, and what the case changes in it."""
+    oil, models = case.lubricant.oil, resolve_models(case)
+    bearing = "mixed-ehl" in models.get("bearing", "")
+    fluids = {
+        "friction": (models["friction"], friction_of(case).made_for),
+        "rolling": (models["rolling"], rolling_of(case).made_for),
+        "bearing": ("mixed-ehl", TALBOT_FLUID if bearing else None),
+    }
+    notes = [
+        f"models.{key}: the regression {model} was made for {fluid.title}, not for {oil.name}."
+        for key, (model, fluid) in fluids.items()
+        if fluid is not None and fluid.key != oil.friction_regression
+    ]
+    notes += _fitted_notes(case, models)
+    if case.models.temperatures != "inlet" and friction_of(case).takes_oil_temperature:
+        notes.append(
+            f"models.friction: {models['friction']} was fitted to tests by the temperature of "
+            "their oil: it takes that of the oil around the gears, not that of the flanks."
+        )
+    factor = case.lubricant.pressure_viscosity_factor
+    if factor != 1:
+        notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")
+    return tuple(notes)
+
+
+def lubrication_notes(case: SetCase) -> Iterator[str]:
+    """What a stated share of oil overrides, and what is left out of the losses."""
+    table = case.lubrication
+    if table is None:
+        return
+    if "oil_air_ratio" in case.surroundings.model_fields_set:
+        yield (
+            f"{SHARE_KEY} has no effect: the share of oil follows from [lubrication], whose "
+            "oil_share states a known one."
+        )
+    if table.method == "jet" and table.oil_flow is None:
+        yield (
+            "lubrication.oil_flow is not given: the oil that jets bring between the teeth, and the "
+            "power that accelerates it, are left out."
+        )
+    if table.method == "dip":
+        left_out = ["of planets"] if case.gearing.planets else []
+        left_out += ["inside rings"] if list(case.gearing.rings()) else []
+        if left_out:
+            yield f"Churning {' and '.join(left_out)} is not modelled."
+
+
+def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
+    """On fitted models of another oil, and on those of this name that are not used."""
+    oil, given = case.lubricant.oil, case.models.oil_model is not None
+    if given and any("fitted" in name for name in models.values()):
+        model = fitted_oil_model(case)
+        if model is not None and model.oil != oil:
+            yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
+    changed = changed_properties(oil)
+    asked = any(getattr(case.models, key, "") == "auto" for key in RELIABILITY)
+    if not given and changed and asked:
+        yield (
+            f"The models built in for {oil.name} are not used, because this oil differs from it in "
+            f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."
+        )
+
+
+def thin_teeth_notes(case: SetCase) -> Iterator[str]:
+    """A note on every mesh with gross backlash."""
+    for mesh in case.gearing.geometries:
+        yield from backlash_notes(case.gearing, mesh)
+
+
+def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
+    """A note on every mesh of which much does not carry."""
+    return tuple(
+        f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
+        f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed what the teeth "
+        "bend. Contact that begins or ends beyond the path of contact is not modelled."
+        for name, mesh in meshes.items()
+        if mesh.contact_share < LEAST_CONTACT
+    )
+
+
+def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
+    """Contacts pressed beyond what steel bears, and rollers of which much carries nothing."""
+    for key, found in figures.items():
+        name = key.replace("_", " ")
+        if isinstance(found, MeshFigures) and found.hertz_pressure_max > GEAR_PRESSURE:
+            yield (
+                f"The teeth of the {name} are pressed with "
+                f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; hardened steel bears about "
+                f"{GIGAPASCAL.text(GEAR_PRESSURE, 2)} for a few times."
+            )
+        if isinstance(found, BearingFigures):
+            if found.hertz_pressure_max > BEARING_PRESSURE:
+                yield (
+                    f"The rollers of the {name} are pressed with "
+                    f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; at the static rating of a "
+                    f"roller bearing it is {GIGAPASCAL.text(BEARING_PRESSURE, 2)}."
+                )
+            idle = _idle_part(found)
+            if idle > IDLE_PART:
+                yield (
+                    f"{name.capitalize()}: {percent(idle, 0)} of the most loaded roller carries "
+                    f"nothing of its {NEWTON.text(found.roller_load_max, 3)}, because the planet "
+                    f"is tilted by {format_number(found.moment, 3)} N m."
+                )
+
+
+def _idle_part(bearing: BearingFigures) -> float:
+    """Part of the length of the most loaded roller that carries nothing. [1]"""
+    if bearing.loads is None or not bearing.roller_load_max:
+        return 0.0
+    rollers = bearing.loads.intensity.sum(axis=2)
+    row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
+    return float(np.mean(bearing.loads.intensity[row, most] == 0))
+
+
+def load_notes(case: SetCase) -> tuple[str, ...]:
+    """Notes on deviations that the load distribution ignores, and on the rim of a ring gear."""
+    notes = []
+    model, gearing = case.models.load_distribution, case.gearing
+    if _states_deviations(gearing) and not LOAD_DISTRIBUTIONS[model].takes_deviations:
+        notes.append(
+            f"models.load_distribution = {model} ignores micro-geometry and misalignment; "
+            "compliance takes them into account."
+        )
+    return (*notes, *_rim_notes(case))
+
+
+def _rim_notes(case: SetCase) -> Iterator[str]:
+    """Where a rim leaves the assumptions of its formula."""
+    gearing = case.gearing
+    for name, table, ring in gearing.rings():
+        thickness, key = rim_thickness(table), gearing.key(name)
+        if thickness is None:
+            continue
+        height = ring.root_radius - ring.tip_radius
+        if thickness < height:
+            yield (
+                f"{key}.rim_thickness is less than the height of the teeth, "
+                f"{1e3 * height:.4g} mm: the deflection of so thin a rim is outside what the "
+                "compliance is made for."
+            )
+        even = are_evenly_spaced(gearing.planet_angles or (0.0,))
+        if not even or (case.sharing is not None and case.sharing.method != "equal"):
+            yield (
+                f"{key}.rim_thickness: the rim bends as under evenly spaced and equally loaded "
+                f"planets, but these are {'not equally loaded' if even else 'not evenly spaced'}."
+            )
+
+
+def _states_deviations(gearing: Gearing) -> bool:
+    return any(mesh.table.misalignment for mesh in gearing.meshes) or any(
+        map(flanks.micro_geometries, gearing.tables.values())
+    )
+
+
+def general_notes(
+    terms: Iterable[LossTerm], input_power: float, efficiency: float | None
+) -> tuple[str, ...]:
+    """Notes on what is missing, what is scaled, and on efficiency near zero load."""
+    notes = []
+    missing: dict[str, list[str]] = {}
+    for term in terms:
+        if term.left_out:
+            missing.setdefault(term.left_out, []).append(term.name)
+        elif term.factor != 1.0:
+            notes.append(f"{term.name} is multiplied by {term.factor:g}.")
+    notes += [
+        f"{NOT_INCLUDED}: {', '.join(names)} ({reason})." for reason, names in missing.items()
+    ]
+    if efficiency == 0.0 and input_power > 0:
+        notes.append(
+            "No power leaves: the losses take all that enters, and the output must be driven."
+        )
+    return tuple(notes)
+
+
+def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, ...]:
+    notes = []
+    if len(set(shares)) > 1:
+        most = shares.index(max(shares)) + 1
+        notes.append(f"Meshes and bearing are those of planet {most}, the most loaded one.")
+    idle = [str(number) for number, share in enumerate(shares, 1) if share == 0]
+    if idle and sharing.method in ("closed-form", "direct"):
+        beyond = (
+            ", and load_sharing.method = closed-form is replaced by direct"
+            if sharing.method == "closed-form"
+            else ""
+        )
+        notes.append(
+            f"No load reaches {'planet' if len(idle) == 1 else 'planets'} {', '.join(idle)} of "
+            f"{len(shares)}: the others bend less than their positions differ{beyond}."
+        )
+    notes += [
+        f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}."
+        for key in sharing.idle_keys()
+    ]
+    return tuple(notes)
+
+
+def _arrangement_notes(case: SetCase) -> Iterator[str]:
+    """What has no effect on a listed set, and what planets need to be assembled."""
+    gearing = case.gearing
+    if gearing.listed and case.models.mesh_loads == "without-losses":
+        yield "models.mesh_loads = without-losses has no effect on a set whose gears are listed."
+    planets = gearing.count
+    if planets is None or gearing.stated_angles is not None:
+        return
+    found = gearing.arrangement()
+    if found.individual:
+        bodies = list(gearing.bodies.values())
+        stepped = ", ".join(body for body in gearing.planets if bodies.count(body) > 1)
+        fitting = [str(n) for n in range(1, planets + 1) if found.number % n == 0]
+        yield (
+            f"{planets} equally spaced planets cannot be alike: on each {stepped} the gears must "
+            f"be turned against each other in its own way, because {found.number}/{planets} is no "
+            f"integer. Alike ones fit equally spaced if there are {' or '.join(fitting)}."
+        )
+    elif not are_evenly_spaced(found.angles):
+        number = str(found.number)
+        if not gearing.listed:
+            number = f"({gearing.tables['sun'].teeth} + {gearing.tables['ring'].teeth})"
+        placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in found.angles)
+        yield (
+            f"{planets} planets cannot be equally spaced, because {number}/{planets} is no "
+            f"integer; they stand at {placed} deg."
+        )
+
+
+def _ring_notes(gearing: Gearing, turning: Collection[str]) -> Iterator[str]:
+    for name, table, _ in gearing.rings():
+        if name in turning and rim_thickness(table) is None:
+            yield (
+                f"{gearing.key(name)}.rim_thickness is not given: the drag of the turning ring is "
+                f"that of a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
+            )
+
+
+# From the solution of a machine to the result that the user sees.
+
+
+Methods = dict[str, tuple[str, str]]
+
+
+def assemble(case: Case, built: Built, settled: Settled) -> Result:
+    """The result of a case from the solution of its machine."""
+    solution = settled.solution
+    losses = dict(_losses(solution))
+    terms = tuple(_term(name, losses[name]) for name in built.layout.losses)
+    flow = PowerFlow(
+        {
+            name: MemberState(solution.speeds.get(name, 0.0), solution.torques.get(name, 0.0))
+            for name in built.layout.members
+        },
+        solution.input_power,
+        solution.efficiency,
+    )
+    figures = dict(_figures(solution))
+    methods = dict(_methods(built))
+    supplies = dict(solved_supplies(case, built.sets, solution))
+    fluids = None if built.known_fluids is None else solution.state.fluids
+    flags: SomeFlags = () if fluids is None else fluids.flags
+    sharing = built.sets[""].sharing if "" in built.sets else None
+    return Result(
+        title=case.title,
+        kind=case.kind,
+        layout=built.layout,
+        terms=terms,
+        flow=flow,
+        meshes={key: item for key, item in figures.items() if isinstance(item, MeshFigures)},
+        bearings={key: item for key, item in figures.items() if isinstance(item, BearingFigures)},
+        parts={
+            key: item
+            for key, item in figures.items()
+            if not isinstance(item, MeshFigures | BearingFigures)
+        },
+        fluid=None if fluids is None else fluids.figures,
+        models=dict(_models(case, built)),
+        standing=dict(_standing(case, built, supplies)),
+        flags=(*flags, *_flags(solution)),
+        notes=(
+            *general_notes(terms, flow.input_power, flow.efficiency),
+            *_train_notes(case, solution),
+            *_floating_notes(solution),
+            *_heat_notes(settled),
+            *_set_notes(case, built, solution),
+        ),
+        load_methods={key: title for key, (title, _) in methods.items()},
+        load_sources={key: source for key, (_, source) in methods.items()},
+        sources=_sources(terms, methods),
+        case=case,
+        planet_angles=() if sharing is None else sharing.angles,
+        planet_shares=next(
+            (
+                item.shares
+                for key, item in solution.results.items()
+                if isinstance(item, GearSetResult) and not key
+            ),
+            (),
+        ),
+        train=_train(case, built, solution),
+        heat=_heat(case, built, settled),
+        lubrication=supplies,
+    )
+
+
+def _heat(case: Case, built: Built, settled: Settled) -> HeatBalance | None:
+    """Temperatures and the ways of the heat; None if everything is at the inlet temperature."""
+    if built.thermal is None:
+        return None
+    answer, solution = settled.answer, settled.solution
+    return HeatBalance(
+        model=case.models.temperatures,
+        temperatures=answer.temperatures,
+        sources=heat_of(solution),
+        ways=tuple(_ways(case, answer)),
+        given=answer.given,
+        residual=answer.residual,
+        evaluations=settled.evaluations,
+    )
+
+
+def _ways(case: Case, answer: Answer) -> Iterator[HeatWay]:
+    flows = answer.flows or {}
+    for link in answer.links:
+        yield HeatWay(
+            link.key,
+            link.hot,
+            link.target,
+            flows[link.key],
+            link.conductance,
+            link.method,
+            link.source,
+        )
+    power = case.thermal.cooler_power
+    if answer.links and power:
+        yield HeatWay("oil-cooler", OIL, "cooler", power, math.nan, "given power", "given")
+
+
+def _losses(solution: Solution) -> Iterator[tuple[str, Loss]]:
+    yield from solution.given.items()
+    for key, result in solution.results.items():
+        for name, loss in result.losses.items():
+            yield joined_key(key, name), loss
+
+
+def _term(name: str, loss: Loss) -> LossTerm:
+    return LossTerm(
+        name, loss.watts, loss.group, loss.method, loss.source, loss.factor, loss.left_out
+    )
+
+
+def _figures(solution: Solution) -> Iterator[tuple[str, Any]]:
+    for key, result in solution.results.items():
+        for name, item in result.figures.items():
+            yield joined_key(key, name) if name else key, item
+
+
+def _flags(solution: Solution) -> Iterator[ValidityFlag]:
+    """Flags of all elements, those of a train with the name of their set."""
+    for key, result in solution.results.items():
+        if not key:
+            yield from result.flags
+            continue
+        for flag in result.flags:
+            yield replace(flag, use=replace(flag.use, where=f"{key}: {flag.use.where}"))
+
+
+def _methods(built: Built) -> Iterator[tuple[str, tuple[str, str]]]:
+    """How the load along the teeth and between planets is found, for each set."""
+    for key, own in built.sets.items():
+        distribution = LOAD_DISTRIBUTIONS[own.meshes[0].models.load_distribution]
+        yield joined_key(key, "load_distribution"), (distribution.title, distribution.source)
+        if own.sharing is not None:
+            yield joined_key(key, "load_sharing"), SHARING_METHODS[own.sharing.method]
+
+
+def _sources(terms: Iterable[LossTerm], methods: Methods) -> tuple[str, ...]:
+    """Sources of the terms that are included and of the load, each once, in order."""
+    sources = [term.source for term in terms if not term.left_out]
+    sources += [source for _, source in methods.values()]
+    return tuple(dict.fromkeys(source for source in sources if source))
+
+
+def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
+    for key, own in set_cases(case, built.sets):
+        for name, model in resolve_models(own).items():
+            yield joined_key(key, name), model
+
+
+def _standing(
+    case: Case, built: Built, supplies: Mapping[str, OilSupply]
+) -> Iterator[tuple[str, str]]:
+    for key, supply in supplies.items():
+        idle = supply.method == "dip" and not supply.churning
+        remark = "; nothing that turns reaches the oil" if idle else ""
+        yield joined_key(key, "lubrication"), supply.text + remark
+    for key, own in set_cases(case, built.sets):
+        for role, phrase in standing_of(own).items():
+            compared = supplies[key].comparison if role == "churning" else ""
+            yield joined_key(key, role), f"{compared}; {phrase}" if compared else phrase
+    for element in built.machine.elements:
+        if isinstance(element, ShaftBearing):
+            name = element.model.name
+            phrase = f"{name}: {SHAFT_BEARING_RELIABILITY[name]}"
+            yield joined_key(element.key, "shaft_bearing"), phrase
+
+
+def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:
+    for key, own in set_cases(case, built.sets):
+        found = solution.results[key]
+        assert isinstance(found, GearSetResult)
+        turning = {
+            name.removesuffix("_drag")
+            for name, discs in built.sets[key].discs.items()
+            if solution.speeds[discs[0].body] != 0
+        }
+        for note in case_notes(own, found, turning):
+            yield f"{key}: {note}" if key else note
+    for result in solution.results.values():
+        if not isinstance(result, GearSetResult):
+            yield from result.notes
+
+
+def _train_notes(case: Case, solution: Solution) -> Iterator[str]:
+    if not isinstance(case, TrainCase):
+        return
+    if solution.jammed:
+        yield (
+            "Self-locking: whatever the torque on the output, friction in the meshes does not let "
+            "the train turn under this torque on the input; it stands still, and nothing is lost."
+        )
+    elif solution.self_locking:
+        output = case.shape.shaft_of(case.operation.output) or ""
+        yield (
+            "Self-locking: no power passes from the input to the output; the output "
+            f"{case.operation.output} must be driven too, with "
+            f"{solution.torques[output]:.6g} N*m."
+        )
+    if not solution.unique:
+        yield (
+            "Some members share their load in more than one possible way (brakes, clutches or "
+            "meshes in parallel): of all torques in balance, the smallest are shown."
+        )
+
+
+def _heat_notes(settled: Settled) -> Iterator[str]:
+    if settled.change > AGREEMENT:
+        yield (
+            f"Temperatures and losses agree to {settled.change:.1g} K only: a loss scatters from "
+            "one evaluation to the next, as that of a flow through pockets that does not repeat."
+        )
+
+
+def _floating_notes(solution: Solution) -> Iterator[str]:
+    for key in sorted(solution.floating):
+        yield (
+            f"{in_words(key.removeprefix('.'))}: next to no torque passes, and the teeth float in "
+            "their backlash: with the losses on either flank they would be pressed to the other "
+            "one. The losses are those on one flank; on the other the flow through the pockets "
+            "loses another amount, so that the loss jumps over a small range of torque."
+        )
+
+
+def _train(case: Case, built: Built, solution: Solution) -> Train | None:
+    if not isinstance(case, TrainCase):
+        return None
+    ends = [
+        case.shape.shaft_of(name) or "" for name in (case.operation.input, case.operation.output)
+    ]
+    shafts = {*built.layout.members, HOUSING}
+    return Train(
+        state=case.operation.state or "",
+        ratio=solution.ratio,
+        power_ratio=solution.power_ratio,
+        rolling={key: solution.rolling[key] for key in built.layout.rolling},
+        clutches=solution.couplings,
+        stages={
+            name: {body: torque for body, torque in taken.items() if body in shafts}
+            for name, taken in stage_torques(built.machine, solution).items()
+        },
+        self_locking=solution.self_locking,
+        jammed=solution.jammed,
+        input=ends[0],
+        output=ends[1],
+    )
