@@ -486,10 +486,10 @@ ELEMENT_CHECKS: Mapping[str, Callable[[Any], list[Problem]]] = {
 
 def bodies_of(table: Table) -> dict[str, str]:
     """The two bodies that a part is between, by their keys."""
-    if isinstance(table, DragTable):
-        return {f"between[{number}]": body for number, body in enumerate(table.between)}
-    assert isinstance(table, ShaftBearingTable | SealTable)
-    return {"shaft": table.shaft, "against": table.against}
+    keys = dict(table)
+    if "between" in keys:
+        return {f"between[{number}]": body for number, body in enumerate(keys["between"])}
+    return {key: keys[key] for key in ("shaft", "against")}
 
 
 def placing_problems(table: Table, shafts: Mapping[str, str], folder: Path) -> list[Problem]:

@@ -1,0 +1,247 @@
+"""What a newcomer adds touches few files, and works: tried in a copy of the package.
+
+A friction model, an element, a key of a case, an output figure and a loss family. Each addition is
+a list of edits: the file, what stands there, and what takes its place; a file that is not there is
+made. CONTRIBUTING.md walks through the element.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[2] / "src" / "epicyclic"
+Edit = tuple[str, str, str]
+
+FRICTION: list[Edit] = [
+    (
+        "losses/friction.py",
+        "    for model in (\n",
+        """    for model in (
+        FrictionFormula(
+            name="halved",
+            title="half of a constant",
+            source="a test",
+            reliability="made up",
+            function=lambda contact, given: np.full_like(contact.line_load, given.constant / 2),
+        ),
+""",
+    ),
+    ("case/tables/models.py", '    "mixed-ehl",\n', '    "mixed-ehl",\n    "halved",\n'),
+]
+
+BRAKE: list[Edit] = [
+    (
+        "machine/magnet_brake.py",
+        "",
+        '''"""A magnet brake on a shaft: a constant torque above 10 rpm."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from epicyclic.machine.element import LOAD_INDEPENDENT, ElementResult, Loss
+
+LEAST_SPEED = 10 * 3.141592653589793 / 30  # [rad/s]
+
+
+@dataclass(frozen=True, slots=True)
+class MagnetBrake:
+    """Torque between a shaft and what holds the magnet."""
+
+    key: str
+    between: tuple[str, str]
+    torque: float  # [N m]
+
+    terms: ClassVar = ("braking",)
+    figure_types: ClassVar = ()
+
+    def loads(self, state, last=None):
+        """Nothing: torques and forces do not matter."""
+        return {}
+
+    def evaluate(self, state, last=None):
+        """The loss in a state."""
+        speed = abs(state.speeds[self.between[0]] - state.speeds[self.between[1]])
+        watts = self.torque * speed if speed > LEAST_SPEED else 0.0
+        ends = ((*self.between, 1.0),)
+        return ElementResult(
+            {"braking": Loss(LOAD_INDEPENDENT, watts, "magnet brake", "a test", brakes=ends)}, {}
+        )
+''',
+    ),
+    (
+        "case/tables/elements.py",
+        "class ElementTables(Table):\n",
+        '''class BrakeTable(Table):
+    """A magnet brake on a shaft."""
+
+    shaft: str
+    against: str = "housing"
+    torque: DragTorque
+
+
+class ElementTables(Table):
+''',
+    ),
+    (
+        "case/tables/elements.py",
+        "    drags: dict[str, DragTable] = Field(default={})\n",
+        "    drags: dict[str, DragTable] = Field(default={})\n"
+        "    brakes: dict[str, BrakeTable] = Field(default={})\n",
+    ),
+    (
+        "case/tables/elements.py",
+        '    "drags": drag_problems,\n',
+        '    "drags": drag_problems,\n    "brakes": lambda table: [],\n',
+    ),
+    (
+        "build/elements.py",
+        '    "drags": _drag,\n',
+        '    "drags": _drag,\n'
+        '    "brakes": lambda name, table, bodies, *_: MagnetBrake(name, bodies, table.torque),\n',
+    ),
+    (
+        "build/elements.py",
+        "from epicyclic.machine.shaft_parts import",
+        "from epicyclic.machine.magnet_brake import MagnetBrake\n"
+        "from epicyclic.machine.shaft_parts import",
+    ),
+]
+
+KEY: list[Edit] = [
+    (
+        "case/tables/models.py",
+        "    factor: Number = Field(default=1.0",
+        '    share: Number = Field(default=1.0, ge=0, le=1, description="Counted part.")\n'
+        "    factor: Number = Field(default=1.0",
+    ),
+    (
+        "build/models.py",
+        "LossChoice(option.include, option.factor)",
+        "LossChoice(option.include, option.factor * option.share)",
+    ),
+]
+
+FIGURE: list[Edit] = [
+    (
+        "machine/gear_mesh.py",
+        '    overlap_ratio: float = figure("overlap ratio", NUMBER)\n',
+        '    overlap_ratio: float = figure("overlap ratio", NUMBER)\n'
+        '    total_contact_ratio: float = figure("total contact ratio", NUMBER)\n',
+    ),
+    (
+        "machine/gear_mesh.py",
+        "overlap_ratio=mesh.overlap_ratio,",
+        "overlap_ratio=mesh.overlap_ratio,\n"
+        "        total_contact_ratio=mesh.overlap_ratio + mesh.transverse_contact_ratio,",
+    ),
+]
+
+FAMILY: list[Edit] = [
+    (
+        "losses/windage.py",
+        "",
+        '"""Windage of a carrier, made up."""\n\n\ndef windage(speed):\n'
+        '    """Loss. [W]"""\n    return 1e-6 * abs(speed) ** 3\n',
+    ),
+    (
+        "machine/gear_set.py",
+        "        if self.thrust is not None:\n",
+        """        if "carrier_windage" in self.choices:
+            watts = windage(state.speeds[self.carrier])
+            losses["carrier_windage"] = Loss(
+                LOAD_INDEPENDENT, watts, "windage", "a test", brakes=((self.carrier, HOUSING, 1.0),)
+            )
+        if self.thrust is not None:
+""",
+    ),
+    (
+        "machine/gear_set.py",
+        "from epicyclic.machine.disc import",
+        "from epicyclic.losses.windage import windage\nfrom epicyclic.machine.disc import",
+    ),
+    (
+        "case/tables/models.py",
+        "    thrust_bearing_viscous: LossOption = _AS_COMPUTED\n",
+        "    thrust_bearing_viscous: LossOption = _AS_COMPUTED\n"
+        "    carrier_windage: LossOption = _AS_COMPUTED\n",
+    ),
+]
+
+COARSE = {"numerics.pocket_slices": 6, "numerics.pocket_steps": 10}
+PROGRAMS = {
+    "friction": """
+low = case.updated({"models.friction": "halved", "models.constant_friction": 0.06})
+high = case.updated({"models.friction": "constant", "models.constant_friction": 0.03})
+print(ep.solve(low).losses["sun_mesh_sliding"] / ep.solve(high).losses["sun_mesh_sliding"])
+""",
+    "element": """
+train = ep.load_case("train-eaxle").updated(coarse)
+shaft = train.operation.input
+braked = train.updated({"brakes.B.shaft": shaft, "brakes.B.torque": "0.7 N*m"})
+result = ep.solve(braked)
+print(result.losses["B.braking"] / (0.7 * train.operation.speed))
+""",
+    "key": """
+part = case.updated({"losses.sun_drag.share": 0.25})
+print(4 * ep.solve(part).losses["sun_drag"] / ep.solve(case).losses["sun_drag"])
+""",
+    "figure": """
+numbers = {it.key: it.value for it in ep.solve(case).numbers()}
+mesh = "sun_mesh_"
+total = numbers[mesh + "transverse_contact_ratio"] + numbers[mesh + "overlap_ratio"]
+print(numbers[mesh + "total_contact_ratio"] / total)
+""",
+    "family": """
+result = ep.solve(case)
+speed = result.flow.members["carrier"].speed
+print(result.losses["carrier_windage"] / (1e-6 * abs(speed) ** 3))
+""",
+}
+ADDITIONS = {
+    "friction": (FRICTION, 2),
+    "element": (BRAKE, 3),
+    "key": (KEY, 3),
+    "figure": (FIGURE, 2),
+    "family": (FAMILY, 8),
+}
+
+
+def edited(text: str, before: str, after: str) -> str:
+    assert text.count(before) >= 1, f"{before!r} is not there any more"
+    return text.replace(before, after, 1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ADDITIONS)
+def test_an_addition_touches_few_files_and_works(name, tmp_path):
+    edits, most = ADDITIONS[name]
+    assert len({file for file, _, _ in edits}) <= most
+    copy = tmp_path / "epicyclic"
+    shutil.copytree(SOURCE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    for file, before, after in edits:
+        path = copy / file
+        after = edited(path.read_text(encoding="utf-8"), before, after) if before else after
+        path.write_text(after, encoding="utf-8")
+    program = f"""
+import epicyclic as ep
+coarse = {json.dumps(COARSE)}
+case = ep.load_case("talbot-2012").updated(coarse)
+{PROGRAMS[name]}
+"""
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    found = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        env=environment,
+        check=False,
+    )
+    assert found.returncode == 0, found.stderr
+    assert float(found.stdout) == pytest.approx(1.0, rel=1e-9)
