@@ -36,11 +36,14 @@ def run_command(arguments: Sequence[str], folder: Path) -> Done:
     before = Path.cwd()
     settings = {key: os.environ.get(key) for key in SETTINGS}
     argv, handler, threshold = sys.argv, signal.getsignal(signal.SIGINT), gc.get_threshold()
+    program = sys.modules["__main__"]
+    package = program.__package__
     output, errors = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2))
     code = 0
     os.environ.update(SETTINGS)
     os.chdir(folder)
     sys.argv = ["epicyclic", *arguments]
+    program.__package__ = None  # from which its help would take another name
     try:
         with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
             main()
@@ -48,6 +51,7 @@ def run_command(arguments: Sequence[str], folder: Path) -> Done:
         code = int(end.code or 0)
     finally:
         sys.argv = argv
+        program.__package__ = package
         os.chdir(before)
         signal.signal(signal.SIGINT, handler)
         gc.set_threshold(*threshold)

@@ -1,13 +1,21 @@
-"""Writes what is frozen at commit 93d3dc1: results.json.xz.
+"""Writes what is frozen at commit 93d3dc1: results.json.xz and texts.json.xz.
 
 Run by hand, from the folder of the tests, with an installation of that commit only: what other
-commits compute is to be compared with the file and not written into it.
+commits compute and say is to be compared with the files and not written into them.
 
     python -m frozen.make_frozen results
+    python -m frozen.make_frozen texts
 
-Frozen are the built-in cases with some of their variants, cases chosen by hand, trains of listed
-sets, 300 cases drawn at random, two small loss maps and sweeps, and the bands of some cases. Each
-case is kept with its tables, so that the file can be used without this script.
+Frozen as results are the built-in cases with some of their variants, cases chosen by hand, trains
+of listed sets, 300 cases drawn at random, two small loss maps and sweeps, and the bands of some
+cases. Frozen as texts is what is said of broken cases, commands and files, and of some sound ones.
+Each case is kept with its tables, and each text with its inputs, so that the files can be used
+without this script.
+
+    python -m frozen.make_frozen differences
+
+works with any commit: it prints the texts that are not the frozen ones, as candidates for
+improved_texts.toml. A candidate is to be shortened to the words that were changed.
 """
 
 from __future__ import annotations
@@ -24,16 +32,23 @@ from pathlib import Path
 from typing import Any
 
 import epicyclic as ep
+from frozen.broken_cases import bases, broken_cases
+from frozen.broken_commands import broken_commands, sound_commands
 from frozen.chosen_cases import BANDS, BUILT_IN, COARSE, chosen_cases, start_of
 from frozen.command import run_command, toml_of
 from frozen.drawn_cases import drawn_cases, value
+from frozen.entries import Maker, outcome_of
+from frozen.texts import TEXTS, differing, frozen_texts
 
 RESULTS = Path(__file__).with_name("results.json.xz")
+FOUND = Path(__file__).with_name("found_inputs.json")
 COMMIT = "93d3dc1"
 QUICK = 40
 """Drawn cases that the default test run solves."""
 LONG = 1.0
 """A case that takes longer is not solved by the default test run, unless it is built in. [s]"""
+SOON = 0.4
+"""An entry that takes longer is not tried by the default test run. [s]"""
 DIGITS = 12
 """Of frozen numbers."""
 
@@ -197,19 +212,67 @@ def rounded(content: Any) -> Any:
             return content
 
 
+def all_texts() -> Tables:
+    """Everything that the file of texts holds."""
+    found = json.loads(FOUND.read_text(encoding="utf-8"))
+    tables = bases()
+    entries: dict[str, Tables] = {}
+    with tempfile.TemporaryDirectory() as name:
+        maker = Maker(Path(name))
+        for entry in (*broken_cases(), *broken_commands(), *sound_commands(), *found):
+            key = entry["name"]
+            assert key not in entries, key
+            tried(entry, tables, maker)  # what it needs is made, and the first time takes longer
+            start = time.perf_counter()
+            outcome = tried(entry, tables, maker)
+            seconds = time.perf_counter() - start
+            entries[key] = entry | {"quick": seconds < SOON, "outcome": outcome}
+            print(f"{key} {seconds:.2f} s")
+    return {"commit": COMMIT, "bases": tables, "entries": entries}
+
+
+def tried(entry: Tables, tables: Tables, maker: Maker) -> Tables:
+    """The outcome of an entry in a folder of its own."""
+    with tempfile.TemporaryDirectory() as name:
+        return outcome_of(entry, tables, Path(name), maker)
+
+
+def print_differences() -> None:
+    """Texts that are not the frozen ones, as entries of improved_texts.toml."""
+    texts, results = frozen_texts(), json.loads(lzma.decompress(RESULTS.read_bytes()))
+    pairs: dict[tuple[str, str], str] = {}
+    with tempfile.TemporaryDirectory() as name:
+        maker = Maker(Path(name))
+        for key, entry in texts["entries"].items():
+            for pair in differing(entry["outcome"], tried(entry, texts["bases"], maker)):
+                pairs.setdefault(pair, key)
+    for key, entry in results["cases"].items():
+        if "result" in entry:
+            now = ep.solve(ep.load_case(entry["case"])).to_dict()
+            for pair in differing(entry["result"]["warnings"], now["warnings"]):
+                pairs.setdefault(pair, key)
+    for (old, new), key in pairs.items():
+        print(f"# {key}\n[[text]]\nold = {json.dumps(old, ensure_ascii=False)}")
+        print(f"new = {json.dumps(new, ensure_ascii=False)}\n")
+
+
 def write(file: Path, content: Tables) -> None:
     """A compressed file of JSON."""
-    text = json.dumps(content, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+    text = json.dumps(content, separators=(",", ":"))
     file.write_bytes(lzma.compress(text.encode(), preset=9 | lzma.PRESET_EXTREME))
     print(f"{file.name}: {file.stat().st_size} bytes")
 
 
 def main() -> None:
-    """Freeze what is asked for."""
+    """Freeze or compare what is asked for."""
     warnings.simplefilter("error")
     match sys.argv[1:]:
         case ["results"]:
             write(RESULTS, all_results())
+        case ["texts"]:
+            write(TEXTS, all_texts())
+        case ["differences"]:
+            print_differences()
         case _:
             sys.exit(__doc__)
 

@@ -1,12 +1,17 @@
-"""Texts that were improved since they were frozen."""
+"""Frozen texts, and those that were improved since."""
 
 from __future__ import annotations
 
+import json
+import lzma
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
-__all__ = ["improved"]
+__all__ = ["TEXTS", "differing", "frozen_texts", "improved"]
 
+TEXTS = Path(__file__).with_name("texts.json.xz")
 IMPROVED = Path(__file__).with_name("improved_texts.toml")
 PAIRS = tuple(
     (pair["old"], pair["new"])
@@ -14,8 +19,42 @@ PAIRS = tuple(
 )
 
 
-def improved(text: str) -> str:
-    """A frozen text as it reads now."""
-    for old, new in PAIRS:
-        text = text.replace(old, new)
-    return text
+def frozen_texts() -> dict[str, Any]:
+    """What the file of texts holds."""
+    content: dict[str, Any] = json.loads(lzma.decompress(TEXTS.read_bytes()))
+    return content
+
+
+def improved(content: Any) -> Any:
+    """A frozen text, or lists and tables of them, as it reads now."""
+    if isinstance(content, str):
+        for old, new in PAIRS:
+            content = content.replace(old, new)
+        return content
+    if isinstance(content, dict):
+        return {key: improved(item) for key, item in content.items()}
+    return [improved(item) for item in content] if isinstance(content, list) else content
+
+
+def differing(frozen: Any, found: Any) -> Iterator[tuple[str, str]]:
+    """Pairs of texts in the same place that differ, beside the improved ones.
+
+    Of texts of several lines only the lines that differ, if there are as many.
+    """
+    frozen = improved(frozen)
+    if isinstance(frozen, dict) and isinstance(found, dict):
+        for key in frozen.keys() & found.keys():
+            yield from differing(frozen[key], found[key])
+        frozen, found = ({key: it for key, it in one.items() if key not in other}
+                         for one, other in ((frozen, found), (found, frozen)))  # fmt: skip
+    elif isinstance(frozen, list) and isinstance(found, list) and len(frozen) == len(found):
+        for old, new in zip(frozen, found, strict=True):
+            yield from differing(old, new)
+        return
+    elif isinstance(frozen, str) and isinstance(found, str):
+        lines = frozen.splitlines(), found.splitlines()
+        if len(lines[0]) == len(lines[1]) > 1:
+            yield from differing(*lines)
+            return
+    if frozen != found:
+        yield tuple(it if isinstance(it, str) else json.dumps(it) for it in (frozen, found))
