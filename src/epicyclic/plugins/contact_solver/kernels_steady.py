@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.kernels.compiling import kernel
-from epicyclic.kernels.ehl_fluid import (
+from epicyclic.plugins.contact_solver.kernels_fluid import (
     ScaledFluid,
     density_ratio,
     log_viscosity_ratio,

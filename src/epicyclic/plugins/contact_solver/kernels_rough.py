@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.kernels.compiling import kernel
-from epicyclic.kernels.ehl_fluid import (
+from epicyclic.plugins.contact_solver.kernels_fluid import (
     ScaledFluid,
     density_ratio,
     flow_work,
@@ -23,7 +23,7 @@ from epicyclic.kernels.ehl_fluid import (
     mean_shear,
     thinning_factor,
 )
-from epicyclic.kernels.ehl_linear import (
+from epicyclic.plugins.contact_solver.kernels_linear import (
     BAND,
     Groups,
     Space,
