@@ -246,19 +246,3 @@ def mates_factor(mates: int) -> float:
     2.0
     """
     return (1 + mates) / 2
-
-
-def bulk_rise_of_integral_flash(
-    integral_flash: float,  # Mean flash temperature of the integral temperature method. [K]
-    lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
-) -> float:
-    """Bulk temperature above that of the oil, ISO/TS 6336-21, second hand. [K]
-
-    Theory (W8).
-
-    Examples
-    --------
-    >>> round(bulk_rise_of_integral_flash(20.0, LUBRICATION_FACTORS["dip"]), 2)
-    14.0
-    """
-    return 0.70 * lubrication_factor * integral_flash

@@ -44,12 +44,6 @@ class ContactLines:
     face_position: FloatArray
     length: FloatArray  # Length of each segment along the contact line. [m]
 
-    @property
-    def total_length(self) -> FloatArray:
-        """Total length of the contact lines at each mesh position. [m]"""
-        total: FloatArray = self.length.sum(axis=(1, 2))
-        return total
-
 
 @lru_cache(maxsize=64)
 def contact_lines(

@@ -351,7 +351,7 @@ class Housing:
         return self.fin_factor * convection + shell.radiation(self.emissivity, wall, air)
 
     def links(self, wall: float, air: float) -> Iterator[Link]:
-        """From the oil to the wall, and from there to the air."""
+        """From the oil to the wall, and from there to the air. Theory (W12)."""
         inside = self.inner_coefficient * self.inner_area
         if self.method == "iso-14179-1":
             whole = self.coefficient * self.area

@@ -160,7 +160,7 @@ def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> f
     law = oil.pressure_viscosity
     if isinstance(law, GoldLaw):
         return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9
-    # z, linear between the points of the law and constant beyond them, Theory (L5)
+    # z, linear between the points of the law and constant beyond them: (L5)
     index = float(np.interp(temperature, *_roelands_points(oil, law)))
     return index * roelands_slope(mu)
 
