@@ -38,10 +38,7 @@ def read_text(
     noun: str,  # What the file should be, ``"case"`` for a case file, for messages.
     largest: int,  # Size beyond which it is something else. [bytes]
 ) -> str:
-    """The text of a file.
-
-    Raises `InputError` if it is not a file, too large, or not UTF-8 text.
-    """
+    """The text of a file. Raises `InputError` if it is not a file, too large, or not UTF-8 text."""
     return decode(read_bytes(path, noun, largest), noun)
 
 
@@ -192,10 +189,8 @@ def whole_file(path: Path, option: str = OPTION) -> Iterator[Path]:
     """A file to be written in a private folder; it replaces `path` if nothing goes wrong.
 
     A file that is replaced keeps its permissions, a new one gets those that the umask of the user
-    leaves it. A link is followed.
-
-    Raises `InputError` if the file cannot be written: the disk is full, the name is too long.
-    `option` is that of its problem.
+    leaves it. A link is followed. Raises `InputError` if the file cannot be written: the disk is
+    full, the name is too long. `option` is that of its problem.
     """
     with _plain_errors(path, option):
         target = path.resolve()

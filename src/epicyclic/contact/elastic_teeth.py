@@ -114,9 +114,7 @@ class ToothPlate:
         The force acts along the common normal; in the section of the tooth it bends the plate by
         its part across the middle line and, acting beside that line, by the moment of the rest.
 
-        Theory (E3).
-
-        [m^0.5 N^-0.5]
+        Theory (E3). [m^0.5 N^-0.5]
         """
         height, inclination = self._place(curvature)
         thickness = np.interp(height, self.section_height, self.section_thickness)
@@ -323,9 +321,7 @@ class ElasticRing:
         Waves shorter than the thickness of the ring are left out: they belong to the foundation
         of the tooth. One wave around the ring moves it as a whole, which its support prevents.
 
-        Theory (E6).
-
-        [m/N], [1/N], [1/(N m)]
+        Theory (E6). [m/N], [1/N], [1/(N m)]
         """
         influence = np.broadcast_to(loads * self._even(), (*angle.shape, 3, 3)).copy()
         shortest = math.floor(2 * math.pi * self.radius / self.thickness)
@@ -379,11 +375,9 @@ def rim_coupling(
     modulus: float,  # [Pa], [1]
     poisson_ratio: float,  # [Pa], [1]
 ) -> FloatArray:
-    """Deflection along the normal at each contact line under a unit force on each.
+    """Deflection along the normal at each contact line under a unit force on each. Theory (E7).
 
     The force of a line acts at its middle, in the plane of action; the tooth is rigid here.
-
-    Theory (E7).
 
     [m/N]
     """
@@ -460,9 +454,7 @@ def mesh_compliance(
     positions: int,  # As for `contact_lines`.
     segments: int,  # As for `contact_lines`.
 ) -> MeshCompliance:
-    """Influence coefficients of `mesh`, shared by all loads.
-
-    Theory (E4).
+    """Influence coefficients of `mesh`, shared by all loads. Theory (E4).
 
     Raises `ConvergenceError` if the stiffness of a tooth cannot be inverted. Raises `ValueError` if
     no tool generates a tooth.
@@ -621,9 +613,8 @@ def load_mesh_elastically(
     """Line loads of all segments under the transverse `force` of the mesh.
 
     Contact is looked for on the contact lines of rigid flanks: that deflection and relief may move
-    the first and the last contact of a tooth beyond the ends of the path is left out.
-
-    Raises `ConvergenceError` if no loads are found that satisfy all conditions of the contact.
+    the first and the last contact of a tooth beyond the ends of the path is left out. Raises
+    `ConvergenceError` if no loads are found that satisfy all conditions of the contact.
     """
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
     separation = _separation(mesh, deviations, positions, segments)

@@ -66,10 +66,7 @@ class InletOil:
 
 @dataclass(frozen=True, eq=False)
 class LineContacts:
-    """Line contacts, one for each entry of the arrays, all of shape (n,).
-
-    Theory (O1).
-    """
+    """Line contacts, one for each entry of the arrays, all of shape (n,). Theory (O1)."""
 
     line_load: FloatArray  # W'. [N/m]
     radius: FloatArray  # Equivalent radius of curvature in the normal section. [m]

@@ -62,9 +62,7 @@ def solve_branch_forces(
 ) -> FloatArray:
     """Forces of all branches, none negative, in balance with `force` and the supports.
 
-    Theory (S3), (S4).
-
-    [N] Raises `ConvergenceError` if no forces balance.
+    Theory (S3), (S4). [N] Raises `ConvergenceError` if no forces balance.
     """
     loose = [name for name in directions if name in supports]
     if loose:

@@ -51,9 +51,7 @@ def contact_lines(
     positions: int,  # Mesh positions over one base pitch, about: each interval gets at least one.
     segments: int,  # Segments on each contact line.
 ) -> ContactLines:
-    """Contact lines of `mesh` over one base pitch.
-
-    Theory (G25), (G26).
+    """Contact lines of `mesh` over one base pitch. Theory (G25), (G26).
 
     Every line is cut into `segments` equal parts of its own length. The mesh positions are the
     middles of equal parts of the intervals between which lines enter and leave, so that averages
@@ -193,10 +191,7 @@ class MicroGeometry:
         curvature: FloatArray,  # Roll lengths of the points. [m]
         face_position: FloatArray,  # From the end of the face of the gear where contact begins. [m]
     ) -> FloatArray:
-        """Material missing at points of the flank of `gear`.
-
-        Theory (G38).
-        """
+        """Material missing at points of the flank of `gear`. Theory (G38)."""
         root, tip = active
         along = (curvature - root) / (tip - root)
         across = face_position / gear.face_width
@@ -231,9 +226,7 @@ class FlankDeviations:
     def separation(self, mesh: Mesh, lines: ContactLines) -> FloatArray:
         """Gap of the unloaded flanks along the common normal on all segments of `lines`.
 
-        Theory (G39).
-
-        [m]
+        Theory (G39). [m]
         """
         # lines that are not in contact lie beyond the path of contact: any place on it serves
         rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)

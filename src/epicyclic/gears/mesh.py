@@ -86,9 +86,7 @@ class Mesh:
         return self.line_of_action - self.side * curvature1
 
     def equivalent_radius(self, curvature1: Real) -> Real:
-        """Equivalent radius of curvature in the normal section. [m]
-
-        Theory (C3).
+        """Equivalent radius of curvature in the normal section. Theory (C3). [m]
 
         Litvin and Fuentes, Gear Geometry and Applied Theory: the curvature of an involute helicoid
         across its contact line is that of the transverse section times cos(beta_b).
@@ -144,10 +142,7 @@ class Mesh:
 
     @cached_property
     def mean_contact_length(self) -> float:
-        """Mean over the mesh period of the length of all contact lines. [m]
-
-        Theory (G40).
-        """
+        """Mean over the mesh period of the length of all contact lines. Theory (G40). [m]"""
         area = self.face_width * self.transverse_contact_ratio
         return area / math.cos(self.gear1.rack.base_helix_angle)
 

@@ -48,10 +48,8 @@ def mixture(q: float, xi: float) -> Mixture:
 def choking_table(xi: float) -> Floats:
     """Throat pressure over stagnation pressure where the throat runs at the speed of sound.
 
-    Theory (Q13).
-
-    On a grid of the logarithm of the stagnation pressure, ``CHOKE_STEP`` apart from ``-CHOKE_END``
-    to ``CHOKE_END``.
+    Theory (Q13). On a grid of the logarithm of the stagnation pressure, ``CHOKE_STEP`` apart from
+    ``-CHOKE_END`` to ``CHOKE_END``.
     """
     count = round(2 * CHOKE_END / CHOKE_STEP) + 1
     ratio = np.zeros(count)

@@ -151,11 +151,9 @@ def loaded_lengths(
 ) -> None:
     """Fill `lengths`, (rows, rollers), with the length over which each roller is loaded.
 
-    Theory (B11).
-
-    The source counts loaded slices, a number that jumps. Here the slice in which the load ends
-    counts for the part of it that a straight line between slice middles finds loaded, so that
-    the load distribution is a continuous function of the load.
+    Theory (B11). The source counts loaded slices, a number that jumps. Here the slice in which the
+    load ends counts for the part of it that a straight line between slice middles finds loaded, so
+    that the load distribution is a continuous function of the load.
     """
     rows, slices = y_over_l.shape
     delta = np.empty(slices)

@@ -63,9 +63,7 @@ def bearing_viscous_loss(
     speed: float,  # Speed of one ring against the other. [rad/s]
     pitch_diameter: float,  # d_m. [m]
 ) -> float:
-    """Viscous loss of a rolling bearing after Palmgren and Harris. [W]
-
-    Theory (V1).
+    """Viscous loss of a rolling bearing after Palmgren and Harris. Theory (V1). [W]
 
     M0 = 1e-7 f0 (nu n)^(2/3) d_m^3 for nu n >= 2000, else 160e-7 f0 d_m^3; N mm, mm^2/s, rpm, mm.
     Talbot (2012), Eq. 5.6 for the first branch; Harris, Rolling Bearing Analysis, 3rd ed. (1991)
@@ -108,9 +106,7 @@ def disc_drag(
     speed: float,  # Against the housing. [rad/s]
     mixture: MixtureState,
 ) -> DiscDrag:
-    """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5).
-
-    Theory (V3), (V6).
+    """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5). Theory (V3), (V6).
 
     Seetharaman and Kahraman (2010), Talbot (2012), p. 130. The branches of the face formula do not
     meet; here the flow is laminar within the radius at which it turns turbulent, and the turbulent

@@ -227,10 +227,7 @@ class _Fit(RangeFlags):
 
 @dataclass(frozen=True)
 class FittedFriction(NothingToSolve, _Fit):
-    """Coefficients fitted to the simulated contacts of one oil.
-
-    Theory (O9).
-    """
+    """Coefficients fitted to the simulated contacts of one oil. Theory (O9)."""
 
     takes_oil_temperature: ClassVar[bool] = False
 
@@ -243,9 +240,7 @@ class FittedFriction(NothingToSolve, _Fit):
 
 @dataclass(frozen=True)
 class FittedRolling(_Fit):
-    """Rolling loss fitted to the simulated contacts of one oil.
-
-    Theory (O9).
+    """Rolling loss fitted to the simulated contacts of one oil. Theory (O9).
 
     Beyond the loads and speeds of the simulations the loss goes on as that of the regressions,
     Theory (R5).

@@ -243,10 +243,8 @@ def _mean_rms(contact: MeshContact) -> float:
 def schlenk(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
     """mu = 0.048 [(F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 Ra^0.25 X_L, one value for the mesh.
 
-    Theory (F15).
-
-    N/mm, m/s, mm, mPa s, um; Ra the mean of both flanks. The standard's text was not read; the
-    constants agree in several independent implementations. [1]
+    Theory (F15). N/mm, m/s, mm, mPa s, um; Ra the mean of both flanks. The standard's text was not
+    read; the constants agree in several independent implementations. [1]
     """
     rough = _held_ra(contact) ** 0.25
     mu = 0.048 * _mean_group(contact) * rough * contact.oil.lubricant_factor
@@ -267,10 +265,9 @@ _RELATIVE_ROUGHNESS = Range(
 def niemann_winter(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
     """mu = 0.045 [K (F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 X_R X_L, X_R = 3.8 (Ra/d1)^0.25.
 
-    Theory (F16).
-
-    N/mm, m/s, mm, mPa s, um; K = K_A K_gamma is `load_factor`. Standard formula from general
-    knowledge, its text not read; X_R agrees with the form 2.2 (Ra/rho)^0.25 of DIN 3990-4. [1]
+    Theory (F16). N/mm, m/s, mm, mPa s, um; K = K_A K_gamma is `load_factor`. Standard formula from
+    general knowledge, its text not read; X_R agrees with the form 2.2 (Ra/rho)^0.25 of DIN 3990-4.
+    [1]
     """
     rough = held_in_range(_relative_roughness(contact), _RELATIVE_ROUGHNESS)
     group = _mean_group(contact, settings.load_factor)
@@ -319,9 +316,7 @@ _RMS = Range(
 
 
 def benedict_kelley(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
-    """mu = 0.0127 [50/(50 - S)] log10[29.66 w/(eta v_s v_r^2)], local.
-
-    Theory (F7).
+    """mu = 0.0127 [50/(50 - S)] log10[29.66 w/(eta v_s v_r^2)], local. Theory (F7).
 
     w in N/m, eta in mPa s, v_s and v_r = u1 + u2 in m/s, S rms roughness in microinches. The
     argument of the logarithm is held: below 10, with little load on much oil, it has no meaning;
@@ -357,10 +352,7 @@ def _mixed(dry: FloatArray, settings: FrictionSettings) -> FloatArray:
 
 
 def doleschel(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
-    """xi = (1 - lambda/2)^2 for lambda < 2, else 0; lambda = h_c/[(Ra1 + Ra2)/2].
-
-    Theory (F9).
-    """
+    """xi = (1 - lambda/2)^2 for lambda < 2, else 0; lambda = h_c/[(Ra1 + Ra2)/2]. Theory (F9)."""
     film = contact.radius * pan_hamrock_central_film(
         contact.speed_number, contact.material_number, contact.load_number
     )
@@ -423,9 +415,7 @@ SMALLEST_SLIDE_TO_ROLL = 1e-9
 
 
 def xu_2007(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
-    """Regression of EHL simulations of a 75W-90 gear oil, full film only.
-
-    Theory (F6).
+    """Regression of EHL simulations of a 75W-90 gear oil, full film only. Theory (F6).
 
     Xu, Kahraman, Anderson and Maddock, J. Mech. Des. 129 (2007) 58: with p_h in GPa, u_r in m/s,
     dynamic viscosity in mPa s, composite rms roughness S in um, radius in m. The range of the

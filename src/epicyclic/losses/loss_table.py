@@ -44,9 +44,7 @@ _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LossTable:
-    """Friction torque or power, linear between the points of a table.
-
-    Theory (J17).
+    """Friction torque or power, linear between the points of a table. Theory (J17).
 
     Raises
     ------
@@ -175,9 +173,8 @@ def read_loss_table(
     The header names one or two of the columns ``speed``, ``temperature`` and ``radial_force`` and
     either ``torque`` or ``power``, each with its unit: ``speed [rpm],torque [N*m]``. Of two axes,
     every point of one goes with every point of the other, in any order. Lines that begin with ``#``
-    do not count; the separator is a comma, a semicolon or a tab.
-
-    Raises `InputError` with every mistake in the file.
+    do not count; the separator is a comma, a semicolon or a tab. Raises `InputError` with every
+    mistake in the file.
     """
     try:
         return _parse(read_text(path, "loss table", _LARGEST_FILE), str(path))

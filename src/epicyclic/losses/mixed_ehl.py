@@ -110,9 +110,7 @@ def without_oil(limits: Limits) -> Limits:
 
 
 def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:
-    """Rolling loss over that of the same contacts with conditions `held`. [1]
-
-    Theory (R5).
+    """Rolling loss over that of the same contacts with conditions `held`. Theory (R5). [1]
 
     Below the held load the loss falls with the load, so that it vanishes with it; above, it is
     that of the held load. Beyond the held speed the rolling force is that of the held speed.

@@ -323,9 +323,7 @@ def pocket_flow(
     # resolution.
     end_length: float = 1.0,
 ) -> PocketFlow:
-    """Periodic flow through the pockets.
-
-    Theory (Q11).
+    """Periodic flow through the pockets. Theory (Q11).
 
     Returns
     -------

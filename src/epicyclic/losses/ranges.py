@@ -301,10 +301,7 @@ def check_ranges(
     weight: FloatArray | float = 1.0,  # The loss at each value.
     part: float = 1.0,  # Part of the whole loss that the model is asked for here. [1]
 ) -> tuple[ValidityFlag, ...]:
-    """Flags for every quantity that leaves its range.
-
-    Theory (P8).
-    """
+    """Flags for every quantity that leaves its range. Theory (P8)."""
     left = [(item, values[item.name]) for item in ranges if not _holds(item, values[item.name])]
     return tuple(_flag(use, item, value, weight, part) for item, value in left)
 

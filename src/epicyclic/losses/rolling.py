@@ -53,9 +53,7 @@ class RollingFormula(Formula):
 def mixed_ehl_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid. [W/m]
 
-    Theory (R5).
-
-    Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
+    Theory (R5). Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
     """
     held = held_in_table(contact, oil_held=oil_held)
     number = rolling_loss_number_at(*regression_groups(held))
@@ -76,10 +74,9 @@ def paired_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
 def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
     """Rolling force of both surfaces of a smooth, fully flooded contact, times u_r. [W/m]
 
-    Theory (R7), (R10).
-
-    The formula belongs to elastic contacts, and its force does not vanish with the load. That of
-    rigid cylinders and an oil of constant viscosity does; where it is smaller, it takes over.
+    Theory (R7), (R10). The formula belongs to elastic contacts, and its force does not vanish with
+    the load. That of rigid cylinders and an oil of constant viscosity does; where it is smaller, it
+    takes over.
     """
     oil = contact.oil
     heating = (

@@ -142,9 +142,7 @@ def bearing_types(model: str) -> tuple[BearingType, ...]:
 
 
 def friction_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
-    """Load P1 that sets the load-dependent friction of a bearing. [N]
-
-    Theory (J1).
+    """Load P1 that sets the load-dependent friction of a bearing. Theory (J1). [N]
 
     Deep groove: the larger of F_r and 3 F_a - 0.1 F_r; tapered: of F_r and 2 Y F_a; cylindrical and
     needle: F_r. Harris (1991), second hand.
@@ -157,9 +155,7 @@ def friction_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
 
 
 def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
-    """Equivalent static load P0 of ISO 76. [N]
-
-    Theory (J2).
+    """Equivalent static load P0 of ISO 76. Theory (J2). [N]
 
     Deep groove: the larger of F_r and 0.6 F_r + 0.5 F_a; tapered: of F_r and 0.5 F_r + 0.55 Y F_a;
     cylindrical and needle: F_r.
@@ -172,14 +168,11 @@ def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
 
 
 def harris_coefficient(bearing: CatalogueBearing, load: BearingLoad) -> float:
-    """Coefficient f1 after Harris. [1]
-
-    Theory (J3).
+    """Coefficient f1 after Harris. Theory (J3). [1]
 
     Deep groove: 0.0009 (P0/C0)^0.55; rollers: constant, 0.0003 caged cylindrical, 0.00055 full
-    complement, 0.0004 tapered. Harris (1991), second hand.
-
-    Raises `ValueError` for needle roller bearings, which Harris's table does not have.
+    complement, 0.0004 tapered. Harris (1991), second hand. Raises `ValueError` for needle roller
+    bearings, which Harris's table does not have.
     """
     if bearing.type not in bearing_types("harris"):
         raise ValueError(f"Harris gives no coefficient for {bearing.type} bearings")
@@ -194,9 +187,8 @@ def load_moment(
 ) -> float:
     """Load-dependent friction moment f1 P1 d_m, with flange friction f_f F_a d_m. [N m]
 
-    Theory (J4).
-
-    Palmgren; Harris (1991), second hand. Only the flanges of cylindrical roller bearings count.
+    Theory (J4). Palmgren; Harris (1991), second hand. Only the flanges of cylindrical roller
+    bearings count.
     """
     moment = coefficient * friction_load(bearing, load)
     if bearing.type == "cylindrical":
@@ -540,9 +532,7 @@ class _Printed:
 def skf_load_variables(
     constants: SkfConstants, bearing: CatalogueBearing, load: BearingLoad
 ) -> tuple[float, float]:
-    """G_rr and G_sl of SKF's model, in its units of N and mm.
-
-    Theory (J5), (J6), (J7).
+    """G_rr and G_sl of SKF's model, in its units of N and mm. Theory (J5), (J6), (J7).
 
     Raises `ValueError` for needle roller bearings, which SKF's table does not have.
     """
@@ -592,9 +582,7 @@ def _boundary_share(at: _Printed) -> float:
 
 
 def drag_variable(bearing: CatalogueBearing, oil_level: float) -> float:
-    """Estimate of V_M at an oil level, from none to full immersion. [1]
-
-    Theory (J11).
+    """Estimate of V_M at an oil level, from none to full immersion. Theory (J11). [1]
 
     SKF gives V_M in a diagram, which was not at hand: 0.0012 for a fully submerged ball bearing,
     and 0 without a bath; between, here, in proportion to the area under the oil. Rollers: the same.
@@ -612,10 +600,7 @@ def _immersion_angle(bearing: CatalogueBearing, oil_level: float) -> float:
 def skf_drag_moment(
     model: SkfModel, bearing: CatalogueBearing, speed: float, viscosity: float
 ) -> float:
-    """M_drag in an oil bath. [N m]
-
-    Theory (J10).
-    """
+    """M_drag in an oil bath. Theory (J10). [N m]"""
     if model.oil_level <= 0 or speed == 0:
         return 0.0
     at, constants = _Printed.of(bearing, speed, viscosity), model.constants
@@ -647,10 +632,7 @@ def skf_moments(
     speed: float,  # Speed of one ring against the other. [rad/s]
     viscosity: float,  # Kinematic, of the oil at its temperature in the bearing. [m^2/s]
 ) -> SkfMoments:
-    """Friction moments of SKF's model of 2018.
-
-    Theory (J8), (J9).
-    """
+    """Friction moments of SKF's model of 2018. Theory (J8), (J9)."""
     rolling, sliding = skf_load_variables(model.constants, bearing, load)
     at = _Printed.of(bearing, speed, viscosity)
     hot, dry = skf_reduction_factors(bearing, model.constants, model.starvation, speed, viscosity)

@@ -44,9 +44,7 @@ def oil_conductivity(
     # Density at 15.6 degC over that of water at the same temperature, 999 kg/m^3. [1]
     specific_gravity: float,
 ) -> float:
-    """Thermal conductivity of a petroleum oil. [W/(m K)]
-
-    Theory (W22).
+    """Thermal conductivity of a petroleum oil. Theory (W22). [W/(m K)]
 
     C. S. Cragoe, Natl. Bur. Stand. Misc. Publ. 97 (1929), second hand; petroleum liquids from 0 to
     200 degC, of specific gravity 0.75 to 0.95. Within 10 %.
@@ -60,9 +58,7 @@ def oil_conductivity(
 
 
 def oil_heat_capacity(temperature: float, specific_gravity: float) -> float:
-    """Specific heat capacity of a petroleum oil. [J/(kg K)]
-
-    Theory (W22).
+    """Specific heat capacity of a petroleum oil. Theory (W22). [J/(kg K)]
 
     Cragoe (1929), second hand; source, range and parameters as for `oil_conductivity`. Within 4 %.
 
@@ -94,9 +90,7 @@ def air(temperature: float, pressure: float) -> Fluid:
 
 
 def air_conductivity(temperature: float) -> float:
-    """Thermal conductivity of air at `temperature` [K], ISO 2533. [W/(m K)]
-
-    Theory (W23).
+    """Thermal conductivity of air at `temperature` [K], ISO 2533. Theory (W23). [W/(m K)]
 
     General knowledge, 100 to 1900 K as the viscosity.
 
@@ -110,9 +104,7 @@ def air_conductivity(temperature: float) -> float:
 
 
 def mixture(oil: Fluid, air: Fluid, state: MixtureState) -> Fluid:
-    """Mixture of `oil` and `air` with density and viscosity of `state`.
-
-    Theory (W24).
+    """Mixture of `oil` and `air` with density and viscosity of `state`. Theory (W24).
 
     Heat capacity by mass, which is exact; conductivity by volume, an upper bound.
 
@@ -150,10 +142,8 @@ def disc_coefficient(
 ) -> float:
     """Mean heat transfer coefficient of one face of a disc turning in a fluid at rest. [W/(m^2 K)]
 
-    Theory (W17).
-
-    Area mean of the laminar coefficient within the radius of transition and the turbulent one
-    outside. The face is equally hot all over, the fluid around it free of walls.
+    Theory (W17). Area mean of the laminar coefficient within the radius of transition and the
+    turbulent one outside. The face is equally hot all over, the fluid around it free of walls.
 
     Examples
     --------
@@ -194,10 +184,8 @@ def _turbulent_disc(fluid: Fluid, omega: float) -> float:
 def dipped_disc(fluid: Fluid, speed: float, diameter: float) -> float:
     """Heat transfer coefficient of the faces of a gear in an oil bath, Handschuh. [W/(m^2 K)]
 
-    Theory (W20).
-
-    Second hand; the formula of a plate across a flow, made for Reynolds numbers of 4e3 to 1.5e4.
-    Parameters and sense as for `disc_coefficient`.
+    Theory (W20). Second hand; the formula of a plate across a flow, made for Reynolds numbers of
+    4e3 to 1.5e4. Parameters and sense as for `disc_coefficient`.
 
     Examples
     --------
@@ -223,10 +211,8 @@ def roller_conductance(
 ) -> float:
     """Heat from race to race through loaded rollers, by the temperature difference. [W/K]
 
-    Theory (W21).
-
-    Derived here: constriction of the heat in either race and in the roller, contacts at rest and
-    dry. Rollers that touch one race only, with half-width 0, lead nothing.
+    Theory (W21). Derived here: constriction of the heat in either race and in the roller, contacts
+    at rest and dry. Rollers that touch one race only, with half-width 0, lead nothing.
 
     Examples
     --------
@@ -264,9 +250,7 @@ def free_convection(
     housing_temperature: float,  # [K]
     air_temperature: float,  # [K]
 ) -> float:
-    """Coefficient of free convection from a housing, ISO/TR 14179-2. [W/(m^2 K)]
-
-    Theory (W9).
+    """Coefficient of free convection from a housing, ISO/TR 14179-2. Theory (W9). [W/(m^2 K)]
 
     Examples
     --------
@@ -287,10 +271,8 @@ def forced_convection(
 ) -> float:
     """Coefficient of convection from a housing in moving air, ISO/TR 14179-2. [W/(m^2 K)]
 
-    Theory (W10).
-
-    The buoyancy of the warm air enters through the Reynolds number. Air has the temperature midway
-    between housing and surroundings.
+    Theory (W10). The buoyancy of the warm air enters through the Reynolds number. Air has the
+    temperature midway between housing and surroundings.
 
     Examples
     --------

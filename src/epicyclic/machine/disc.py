@@ -89,10 +89,7 @@ def disc_loss(
     state: State,
     struck: int = 1,  # Gears that turn and share the oil of the jets.
 ) -> Outcome:
-    """The drag of `discs` together, each on its own shaft, and its flags.
-
-    Theory (N2).
-    """
+    """The drag of `discs` together, each on its own shaft, and its flags. Theory (N2)."""
     flags: tuple[ValidityFlag, ...] = ()
     drags: dict[str, float] = {}
     methods: dict[str, str] = {}

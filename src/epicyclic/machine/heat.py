@@ -113,9 +113,8 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     """Temperatures and losses that agree. Theory (W27).
 
     Plain repetition of losses and temperatures as long as that is quick, as where nothing but the
-    gears gets warm; else Broyden's method on the temperatures.
-
-    Raises `ConvergenceError` if there is no equilibrium, or only one that no gearbox survives.
+    gears gets warm; else Broyden's method on the temperatures. Raises `ConvergenceError` if there
+    is no equilibrium, or only one that no gearbox survives.
     """
     nodes = tuple(model.start)
     unheated = start_of(machine, operation)

@@ -64,9 +64,7 @@ def bearing_reactions(
     supports: Sequence[Support],  # Two; or one, if the loads leave no moment about it.
     loads: Sequence[ShaftLoad],
 ) -> tuple[Reaction, ...]:
-    """Forces of the bearings of a rigid shaft, in the order of `supports`.
-
-    Theory (J18).
+    """Forces of the bearings of a rigid shaft, in the order of `supports`. Theory (J18).
 
     With supports at z_1 and z_2, loads F at z and moments M, the moments about z_1 give ::
 
@@ -74,9 +72,8 @@ def bearing_reactions(
         R_2y = -sum(F_y (z - z_1) - M_x)/(z_2 - z_1)
 
     and the forces R_1 = -R_2 - sum F. The axial force -sum F_z falls on the first support that
-    takes it in this sense; on the first of all if none is marked.
-
-    Raises `ValueError` if statics alone does not give the reactions; the message says why.
+    takes it in this sense; on the first of all if none is marked. Raises `ValueError` if statics
+    alone does not give the reactions; the message says why.
     """
     if not supports:
         raise ValueError("the shaft has no bearing that could take its loads")
@@ -146,9 +143,7 @@ def mesh_force(
     *,
     internal: bool = False,  # True for a ring gear.
 ) -> FloatArray:
-    """BearingLoad of a mesh on a gear, shape (3,). [N]
-
-    Theory (J19).
+    """BearingLoad of a mesh on a gear, shape (3,). Theory (J19). [N]
 
     Let e be the unit vector from the axis of the gear to the pitch point and t = z x e, the sense
     in which the gear turns there about +z. A torque tau about +z is the moment of the component
@@ -183,9 +178,7 @@ def mesh_load(
     *,
     internal: bool = False,
 ) -> ShaftLoad:
-    """The load of a mesh on the shaft of a gear whose middle is at `position`.
-
-    Theory (J20).
+    """The load of a mesh on the shaft of a gear whose middle is at `position`. Theory (J20).
 
     The axial force acts at the pitch point: its moment about the axis is r_w F_z e x z. Parameters
     as for `mesh_force`.

@@ -109,7 +109,6 @@ def planet_shares(
     """Share of the load that each planet carries; their sum is 1. Theory (S1).
 
     The closed form holds while all planets carry; where one does not, (S3) and (S4) are solved.
-
     Raises `ConvergenceError` if no loads of the planets balance.
     """
     count = sharing.count
@@ -249,11 +248,9 @@ def planet_load(
 ) -> PlanetLoad:
     """Load on the bearing of a planet from all its meshes and the centrifugal force.
 
-    Theory (A2), (B1), (B2), (B17).
-
-    Talbot (2012), Eq. 3.7 and 3.8, for any number of meshes and any pressure angles: the transverse
-    forces add as vectors, the axial ones form couples in the planes of the axes, and a force beside
-    the middle of the bearing a moment.
+    Theory (A2), (B1), (B2), (B17). Talbot (2012), Eq. 3.7 and 3.8, for any number of meshes and any
+    pressure angles: the transverse forces add as vectors, the axial ones form couples in the planes
+    of the axes, and a force beside the middle of the bearing a moment.
     """
     moment = 0j  # t + i r
     for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):
@@ -284,12 +281,9 @@ def tilt_planet(
 ) -> tuple[Contacts, PlanetLoad]:
     """Meshes misaligned by the tilt of the planet in its bearing, and the load that belongs to it.
 
-    Theory (B17), (B18).
-
-    The tilt opens one end of each mesh, the load moves to the other end, and its moment tilts the
-    planet back. Carrier and pin are rigid; the bearing stands under the middle of the face.
-
-    Raises `ConvergenceError` if the load of a mesh or of the bearing is not found.
+    Theory (B17), (B18). The tilt opens one end of each mesh, the load moves to the other end, and
+    its moment tilts the planet back. Carrier and pin are rigid; the bearing stands under the middle
+    of the face. Raises `ConvergenceError` if the load of a mesh or of the bearing is not found.
     """
     from scipy.optimize import root
 

@@ -151,7 +151,6 @@ def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRe
     """The flow of each mesh whose loss is included.
 
     Those that a stored table holds are left out, and those that another flow gives by scaling.
-
     Raises `InputError` if that table was made for other pockets.
     """
     for duty in duties:
@@ -169,10 +168,9 @@ def mesh_flows(
     """Flow through the pockets of each mesh, by its key, and all that are known then.
 
     Read from the stored table of its settings, else scaled from another flow where that can be,
-    else from the tables of a sweep or the known flows, where they have it.
-
-    Raises `ConvergenceError` if a flow is not found. Raises `InputError` if the stored table was
-    made for other pockets.
+    else from the tables of a sweep or the known flows, where they have it. Raises
+    `ConvergenceError` if a flow is not found. Raises `InputError` if the stored table was made for
+    other pockets.
     """
     flows: dict[str, MeshFlow] = {duty.key: MeshFlow() for duty in duties}
     direct: dict[str, FlowRequest] = {}

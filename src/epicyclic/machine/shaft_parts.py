@@ -127,9 +127,7 @@ def seal_loss(
     # Kinematic viscosity of the oil at 40 degC, more than 0.2 mm^2/s; only Linke. [m^2/s]
     viscosity_40: float,
 ) -> float:
-    """Friction loss of one lip seal. [W]
-
-    Theory (J14), (J15), (J16).
+    """Friction loss of one lip seal. Theory (J14), (J15), (J16). [W]
 
     Examples
     --------

@@ -293,9 +293,7 @@ def solve_machine(
     start: Start | None = None,  # As from `start_of`, for solutions that differ in the oil only.
     earlier: Solution | None = None,  # At another temperature of the oil, which saves work.
 ) -> Solution:
-    """Torques and losses that agree.
-
-    Theory (T5), (T6).
+    """Torques and losses that agree. Theory (T5), (T6).
 
     Raises `ConvergenceError` if losses and torques do not agree.
     """
