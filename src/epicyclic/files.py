@@ -150,7 +150,6 @@ def refuse(allowed: str, remedy: str) -> NoReturn:
 # into that folder, and whatever ends the writer leaves the old file as it was. What a killed writer
 # leaves behind is removed by the next one that writes to the same folder.
 
-
 try:
     import fcntl
 except ImportError:  # Windows, where the folder of a living writer cannot be removed anyway
@@ -299,7 +298,6 @@ def _locked(folder: Path, *, wait: bool) -> int | None:
 
 
 # How often Python looks through memory for what nothing refers to any more.
-
 
 NEW_OBJECTS = 100_000
 """So many make Python look for garbage. Imports make several times as many, all of them to stay."""

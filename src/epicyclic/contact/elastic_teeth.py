@@ -65,7 +65,6 @@ def _blas() -> ThreadpoolController:
 # 1949; R. W. Cornell, J. Mech. Des. 103 (1981) 447). Because the thickness does not change along
 # the tooth, the stiffness matrix is a sum of Kronecker products of one-dimensional integrals.
 
-
 FloatArray = NDArray[np.float64]
 
 SHEAR_FACTOR = 5 / 6
@@ -410,7 +409,6 @@ def rim_coupling(
 #
 # The coefficients depend on geometry and materials only; every load is solved with the same ones.
 
-
 FACE_TERMS_PER_HEIGHT = 2.5
 """Polynomials along a tooth for each tooth height in its length: shorter ones decay fast. [1]"""
 FACE_TERMS_LIMITS = (8, 40)
@@ -514,7 +512,6 @@ def _plate(gear: Gear, body: GearBody) -> ToothPlate:
 
 
 # The load that elastic teeth put on the contact lines of a mesh, and what follows from it.
-
 
 TOLERANCE = 1e-9
 """Gap or penetration that may remain, over the approach; error of the balance, over the force."""

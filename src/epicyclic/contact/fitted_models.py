@@ -248,7 +248,6 @@ NEEDLE_REGRESSION = Regression(
 # a polished one keeps the ridges of the other from meeting any, and a rough surface that moves
 # slower than the oil touches more than one that moves faster.
 
-
 EYRING_STRESS = 5e6
 """Unit of the stress of the fit. [Pa]"""
 SLOPE_RATIO, TRANSITION = 0.41, 0.38e9
@@ -463,7 +462,6 @@ STRUCTURED_ROLLING = Structured(
 #
 # Far from all simulations nothing is corrected.
 
-
 MOST_SIMULATIONS = 512
 """As many of a larger campaign take part: each costs time wherever the fit is used."""
 LENGTH = 2.0
@@ -604,7 +602,6 @@ def _rounded(values: FloatArray) -> tuple[float, ...]:
 
 
 # The file of the models fitted for an oil: it says what was simulated, what fits, and how well.
-
 
 Form = Regression | Structured
 
@@ -875,7 +872,6 @@ def _file_error(path: Path, allowed: str) -> InputError:
 
 
 # The fitted models that come with the package, for oils whose properties are those simulated.
-
 
 _SIMULATED = (
     "kinematic_viscosity",

@@ -29,7 +29,6 @@ class Solid:
 
 # Flash temperature of sliding line contacts, and how its heat is shared, after Blok.
 
-
 FloatArray = NDArray[np.float64]
 Numbers = FloatArray | float
 
@@ -110,7 +109,6 @@ def heat_share(
 #
 # The three rises are estimates of one quantity, made for pairs of gears. The loss factor of
 # ISO/TS 6336-22 is that of Ohlendorf, `epicyclic.losses.mesh.ohlendorf_loss_factor`.
-
 
 LUBRICATION_FACTORS: Mapping[str, float] = MappingProxyType(
     {"spray": 1.2, "dip": 1.0, "spray-and-dip": 1.0, "submerged": 0.2}

@@ -121,7 +121,6 @@ def _positions(mesh: Mesh, count: int) -> tuple[FloatArray, FloatArray]:
 # are roll lengths: transverse radii of curvature of the involute. Face positions count from the end
 # of the face where contact begins while member 1 drives.
 
-
 _EXPONENTS = {"linear": 1, "parabolic": 2}
 
 
@@ -255,7 +254,6 @@ def active_profile(mesh: Mesh, member: int) -> tuple[float, float]:
 
 
 # Parameters of rough profiles, and how they are converted into each other.
-
 
 RA_OVER_RQ = math.sqrt(2 / math.pi)
 """Ra/Rq of a Gaussian profile. [1]"""

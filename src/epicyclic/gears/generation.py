@@ -99,7 +99,6 @@ def zero_between(function: Callable[[float], float], low: float, high: float) ->
 # is named, the formula was derived from this law. Symbols follow ISO 21771; angles in radians,
 # lengths in metres.
 
-
 Floats = NDArray[np.float64]
 
 RACK_ROUNDING = 0.38

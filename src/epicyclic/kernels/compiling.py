@@ -112,7 +112,6 @@ def _tell(writer: int) -> None:
 # therefore named after the content of every kernel file. Machine code that was damaged on the disk
 # is compiled again, and what cannot be kept is compiled at every start; `cache_notes` tells.
 
-
 P = ParamSpec("P")
 R = TypeVar("R")
 

@@ -110,7 +110,6 @@ def _sum(row: FloatArray) -> float:
 
 # Tables over the pressure, and over the place on a path of contact: cubics through four points.
 
-
 Floats = NDArray[np.float64]
 
 

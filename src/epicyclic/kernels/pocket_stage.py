@@ -141,7 +141,6 @@ def donor(u: float, a: Mixture, b: Mixture) -> tuple[float, float, float]:
 # Cells (i, j): pocket i along the mesh, slice j across the face. Axial face j of pocket i lies
 # before cell (i, j), gap i of slice j before cell (i, j) as well.
 
-
 Flags = NDArray[np.bool_]
 Indices = NDArray[np.int64]
 Shape = tuple[Floats, Floats, Floats, Floats, Floats, Floats]

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 # sliding velocity is perpendicular to the plane of action. Curvatures are those of the normal
 # section of the helicoid, rho_n = rho_t/cos(beta_b).
 
-
 FloatArray = NDArray[np.float64]
 
 

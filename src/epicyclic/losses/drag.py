@@ -157,7 +157,6 @@ def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float
 
 # Churning of parts that dip into an oil sump: Changenet and Velex, and ISO/TR 14179-1.
 
-
 ChurningModel = Literal["changenet-velex", "iso-14179-1"]
 
 GRAVITY = 9.80665
@@ -398,7 +397,6 @@ def churning_flags(
 
 
 # Momentum that gears give to the oil of jets.
-
 
 NozzleSide = Literal["in-mesh", "out-of-mesh", "radial"]
 JET_METHOD = "momentum of the oil of jets"

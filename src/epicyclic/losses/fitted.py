@@ -180,7 +180,6 @@ def _path_table(
 
 # Friction and rolling loss of an oil that was characterised: fits to its simulated contacts.
 
-
 _LABELS: dict[str, tuple[str, Quantity]] = {
     "slide_to_roll_ratio": ("slide-to-roll ratio", NUMBER),
     "rolling_speed": ("rolling speed", METRE_PER_SECOND),
@@ -271,7 +270,6 @@ def domain_ranges(model: OilModel, quantity: str) -> tuple[Range, ...]:
 #
 # Beyond the simulations the weight of the fit falls smoothly, so that losses over speed, load or
 # temperature have no step.
-
 
 Fit = TypeVar("Fit", FittedFriction, FittedRolling)
 

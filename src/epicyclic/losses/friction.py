@@ -188,7 +188,6 @@ def mean_roughness_ra(contact: MeshContact) -> float:
 
 # Friction formulas fitted to gear and disc tests, each held within the range of its tests.
 
-
 _NIEMANN = "Niemann and Winter, Maschinenelemente II"
 _SPEED = Range("pitch_line_speed", "pitch-line speed", 1.0, 50.0, METRE_PER_SECOND, _NIEMANN)
 _LOAD = Range(
@@ -336,7 +335,6 @@ def benedict_kelley(contact: MeshContact, settings: FrictionSettings) -> FloatAr
 # the oil and the surfaces; the original works give them from disc tests of single oils, so that
 # here they are keys of the case. Film thicknesses are those of smooth, isothermal contacts.
 
-
 _FILM_SOURCE = "films of Pan and Hamrock, J. Tribol. 111 (1989) 246"
 FILM_RANGES = (
     Range("load_number", "load number W", 2.045e-5, 5.0e-4, NUMBER, _FILM_SOURCE),
@@ -442,7 +440,6 @@ def xu_2007(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
 
 # Coefficients of friction that the user gives.
 
-
 _AXES: dict[str, tuple[str, Quantity]] = {
     "slide_to_roll_ratio": ("slide-to-roll ratio", NUMBER),
     "film_ratio": ("film ratio", NUMBER),
@@ -502,7 +499,6 @@ def _table_of(settings: FrictionSettings) -> FrictionMap:
 
 
 # The friction models by name.
-
 
 _SCATTER_UNKNOWN = "fitted to gear tests, whose scatter was not found in print"
 _NOT_COMPARED = "no comparison with measurements was found"

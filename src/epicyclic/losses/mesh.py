@@ -79,7 +79,6 @@ def flash_temperatures(
 #
 # Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
 
-
 CLOSED_LIMIT = 1.0
 """Tip contact ratio up to which Ohlendorf's closed form holds. [1]"""
 

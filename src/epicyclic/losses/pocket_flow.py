@@ -241,7 +241,6 @@ def _before(values: Any, ended: float) -> Any:
 
 # Flow through the pockets of a mesh and the power it takes. Talbot (2012), section 4.3.
 
-
 PocketModel = Literal[
     "incompressible", "isentropic", "mean-density", "central-differences", "talbot-2012"
 ]

@@ -204,7 +204,6 @@ def _crossing(tip1: float, tip2: float, center_distance: float, internal: bool) 
 
 # Geometry of the cells into which the pockets of a mesh are cut, over one mesh period.
 
-
 SLICES_PER_PITCH = 10
 """Fewest slices for each pitch that the helix turns over the face."""
 LARGEST_END = 0.25

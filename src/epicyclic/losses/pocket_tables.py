@@ -202,7 +202,6 @@ def from_scaled(
 # nearest to the middle of every interval until the flow there was predicted by the others well
 # enough; where that does not come to pass, all numbers asked for are solved.
 
-
 WIDEST = math.log(2.0)
 """Largest distance of the first nodes, where the numbers asked for lie closer: an octave."""
 SAME = 1e-9
@@ -380,7 +379,6 @@ def _gaps(places: list[int]) -> list[tuple[int, int]]:
 # one number that the flow depends on. Between two flows so near to each other scaled figures follow
 # straight lines, so that not every pass has to solve its flow.
 
-
 CURVATURE = 20.0
 """Second derivative of the scaled power over ln(number), over that power, at most: 15 in second
 differences over 1 and 4 % of the number, in meshes of the built-in cases, of asymmetric ones and of
@@ -446,7 +444,6 @@ class KnownFlows:
 
 
 # Tables of flows through pockets in a file, with the pockets that they were made for.
-
 
 ATTRIBUTE = "flows"
 """Attribute of the NetCDF file that holds the tables as JSON."""

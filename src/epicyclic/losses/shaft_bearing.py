@@ -333,7 +333,6 @@ def load_flags(
 # conversion is done once, in `_Printed`. The constants of the series are in the library,
 # ``bearings/skf-2018.toml``.
 
-
 STARVATION: Mapping[str, float] = {"jet": 3e-8, "oil-bath": 3e-8, "grease": 6e-8, "oil-air": 6e-8}
 """K_rs by lubrication: oil jet, low oil bath, grease, oil and air (SKF 2018). [1]"""
 LARGEST_DRAG_VARIABLE = 0.0012

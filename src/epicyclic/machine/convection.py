@@ -127,7 +127,6 @@ def mixture(oil: Fluid, air: Fluid, state: MixtureState) -> Fluid:
 
 # Heat transfer from what turns: discs, shafts, gears in an oil bath; through loaded rollers.
 
-
 FloatArray = NDArray[np.float64]
 
 TRANSITION_REYNOLDS = 2.4e5
@@ -235,7 +234,6 @@ def roller_conductance(
 #
 # ISO/TR 14179-2 (after W. Funck, Diss. TU Muenchen, 1985) is second hand. Its coefficients are
 # means over the outside of a housing in air at about 100 kPa.
-
 
 SPLASHED_WALL = 200.0
 """Coefficient between the oil and the wall that it splashes, ISO/TR 14179-2. [W/(m^2 K)]"""

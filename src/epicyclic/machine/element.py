@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 # The oil at a temperature, and its mixture with air.
 
-
 _VISCOSITY = Range(
     "kinematic_viscosity",
     "kinematic viscosity",
@@ -188,7 +187,6 @@ class FluidFigures:
 
 
 # What an element of a gearbox sees, and what it answers.
-
 
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"

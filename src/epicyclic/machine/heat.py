@@ -205,7 +205,6 @@ def _runaway(
 
 # Bulk temperatures of gears from their own meshes, with the oil at its inlet temperature.
 
-
 BulkMethod = Literal["iso-6336-20", "iso-6336-22"]
 
 
@@ -304,7 +303,6 @@ BULK_METHODS: Mapping[str, Callable[[list[_Side], Solution, float], float]] = {
 
 
 # The network of a machine: nodes of its parts, the oil and the housing, and the ways between.
-
 
 AMBIENT = "air"
 COOLANT = "coolant"

@@ -198,7 +198,6 @@ def bearing_width(own: ShaftBearing) -> float:
 
 # Heat that gears, pins, carriers and bearings store, from their sizes.
 
-
 STEEL = Solid(conductivity=46.0, heat_capacity=460.0, density=7850.0)
 """Material of parts for which no case states one: pins, carriers, shaft bearings."""
 OF_SHAFT = 500.0

@@ -251,7 +251,6 @@ def forces_of(
 
 # What a machine consists of, and how it is driven.
 
-
 Terms = tuple[tuple[str, float], ...]
 """Bodies with the coefficients of their speeds in a constraint."""
 

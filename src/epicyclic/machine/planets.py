@@ -164,7 +164,6 @@ def _branches(
 # along the planet's axis, from the middle of the bearing. They are turned about r so that the first
 # mesh turns the planet from t to r: for a sun, t is then the sense in which it pushes the planet.
 
-
 FloatArray = NDArray[np.float64]
 
 TILT_TOLERANCE = 1e-9
@@ -462,7 +461,6 @@ def _tilt_under(
 
 
 # The roller bearing between a planet and its pin.
-
 
 BEARING_METHOD = "mixed-EHL rolling-loss regression, slice by slice"
 BEARING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 3.2 to 3.6"

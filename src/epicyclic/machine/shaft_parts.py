@@ -75,7 +75,6 @@ class TableLoss:
 
 # A radial lip seal on a shaft: ISO/TR 14179-1, ISO/TR 14179-2, Linke, or a table of the user.
 
-
 SealFormula = Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke"]
 
 SEAL_METHODS: Mapping[SealFormula, str] = {

@@ -159,7 +159,6 @@ def _apart(old: list[float], new: list[float]) -> float:
 
 # Losses and torques of a machine that agree with each other.
 
-
 FloatArray = NDArray[np.float64]
 
 AGREEMENT = 5e-10
