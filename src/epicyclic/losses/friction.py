@@ -223,11 +223,6 @@ def _mean_group(contact: MeshContact, load_factor: float = 1.0) -> float:
     return float(group**0.2 * viscosity**-0.05)
 
 
-def _held_ra(contact: MeshContact) -> float:
-    """Mean Ra of the flanks in its range. [um]"""
-    return held_in_range(mean_roughness_ra(contact), _ROUGHNESS) * 1e6
-
-
 def _relative_roughness(contact: MeshContact) -> float:
     """Ra/d1 in um/mm, as in the X_R of Niemann and Winter; d1 is that of the pinion."""
     pinion = min(contact.mesh.gear1.reference_radius, contact.mesh.gear2.reference_radius)
@@ -245,7 +240,7 @@ def schlenk(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
     Theory (F15). N/mm, m/s, mm, mPa s, um; Ra the mean of both flanks. The standard's text was not
     read; the constants agree in several independent implementations. [1]
     """
-    rough = _held_ra(contact) ** 0.25
+    rough = (held_in_range(mean_roughness_ra(contact), _ROUGHNESS) * 1e6) ** 0.25
     mu = 0.048 * _mean_group(contact) * rough * contact.oil.lubricant_factor
     return np.full_like(contact.line_load, mu)
 

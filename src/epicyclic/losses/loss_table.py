@@ -227,20 +227,12 @@ def _columns(header: Sequence[str]) -> tuple[dict[int, tuple[str, str]], list[Pr
             problems.append(Problem(_shown(text), "", "is a second such column.", "Delete one."))
         else:
             columns[number] = (name, match["unit"].strip())
-            problems += _unit_problems(text, *columns[number])
-    names = [name for name, _ in columns.values()]
-    if not problems:
-        problems = _missing(names)
-    return columns, problems
-
-
-def _unit_problems(header: str, name: str, unit: str) -> list[Problem]:
-    try:
-        _COLUMNS[name][1].scale_from(unit)
-    except PydanticCustomError as error:
-        remedy = f"Write it as {name} [{_COLUMNS[name][1].display}]."
-        return [Problem(_shown(header), "", f"{error.message()}.", remedy)]
-    return []
+            try:
+                _COLUMNS[name][1].scale_from(columns[number][1])
+            except PydanticCustomError as error:
+                remedy = f"Write it as {name} [{_COLUMNS[name][1].display}]."
+                problems.append(Problem(_shown(text), "", f"{error.message()}.", remedy))
+    return columns, problems or _missing([name for name, _ in columns.values()])
 
 
 def _missing(names: Sequence[str]) -> list[Problem]:

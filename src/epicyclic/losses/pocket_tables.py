@@ -100,16 +100,11 @@ class FlowFamily:
 
     def flow(self, speed: float, mixture: MixtureState, pressure: float) -> PocketFlow:
         """The flow itself. Parameters as for `pocket_flow`."""
-        return pocket_flow(
-            self.geometry,
-            speed,
-            mixture,
-            pressure,
-            self.model,
-            self.slices,
-            self.steps,
-            self.end_length,
-        )
+        return pocket_flow(self.geometry, speed, mixture, pressure, self.model, *self._resolution)
+
+    @property
+    def _resolution(self) -> tuple[int, int, float]:
+        return self.slices, self.steps, self.end_length
 
     @staticmethod
     def number(speed: float, mixture: MixtureState, pressure: float) -> float:
@@ -119,8 +114,7 @@ class FlowFamily:
     def scales(self, number: float) -> bool:
         """Whether the flow at a number is another one times density and powers of the speed."""
         if self.model == "incompressible":
-            size = (self.slices, self.steps, self.end_length)
-            return number <= void_number(self.geometry, *size)
+            return number <= void_number(self.geometry, *self._resolution)
         return self.model in NETWORK_MODELS
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
@@ -141,9 +135,7 @@ class FlowFamily:
                 MixtureState(self.oil_fraction, 1.0, 0.0),
                 1.0,
                 self.model,
-                self.slices,
-                self.steps,
-                self.end_length,
+                *self._resolution,
             )
         except ConvergenceError:
             return np.full(5, math.nan)

@@ -206,16 +206,12 @@ class PalmgrenModel:
     flange_coefficient: float = 0.0  # f_f of a cylindrical roller bearing under axial force. [1]
 
     terms: ClassVar = ("mechanical", "viscous")
+    depends_on_load: ClassVar = True
 
     @property
     def name(self) -> str:
         """As a case has it."""
         return "harris" if self.constant is None else "palmgren"
-
-    @property
-    def depends_on_load(self) -> bool:
-        """True."""
-        return True
 
     def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
         """f1. [1]"""
@@ -405,11 +401,7 @@ class SkfModel:
 
     name: ClassVar = "skf-2018"
     terms: ClassVar = ("mechanical", "drag")
-
-    @property
-    def depends_on_load(self) -> bool:
-        """True."""
-        return True
+    depends_on_load: ClassVar = True
 
     @property
     def drag_is_estimated(self) -> bool:

@@ -167,30 +167,6 @@ def mesh_force(
     return force
 
 
-def mesh_load(
-    position: float,
-    torque: float,
-    radius: float,
-    pressure_angle: float,
-    helix_tangent: float,
-    hand: int,
-    direction: float,
-    *,
-    internal: bool = False,
-) -> ShaftLoad:
-    """The load of a mesh on the shaft of a gear whose middle is at `position`. Theory (J20).
-
-    The axial force acts at the pitch point: its moment about the axis is r_w F_z e x z. Parameters
-    as for `mesh_force`.
-    """
-    force = mesh_force(
-        torque, radius, pressure_angle, helix_tangent, hand, direction, internal=internal
-    )
-    moment = np.cross(radius * np.array([math.cos(direction), math.sin(direction), 0.0]), force)
-    x, y, z = map(float, force)
-    return ShaftLoad(position, (x, y, z), (float(moment[0]), float(moment[1])))
-
-
 # Forces on the bearings of shafts, from the loads of the meshes.
 
 
@@ -211,9 +187,11 @@ class GearSeat:
     around: bool  # True if several planets stand around the gear: their radial forces cancel.
 
     def load(self, torque: float) -> ShaftLoad:
-        """BearingLoad of the mesh on the shaft."""
-        load = mesh_load(
-            self.position,
+        """Load of the mesh, at the middle of the gear, on the shaft. Theory (J20).
+
+        The axial force acts at the pitch point: its moment about the axis is r_w F_z e x z.
+        """
+        force = mesh_force(
             self.lever * torque,
             self.radius,
             self.pressure_angle,
@@ -222,9 +200,12 @@ class GearSeat:
             self.direction,
             internal=self.internal,
         )
-        if not self.around:
-            return load
-        return ShaftLoad(self.position, (0.0, 0.0, load.force[2]))
+        x, y, z = map(float, force)
+        if self.around:
+            return ShaftLoad(self.position, (0.0, 0.0, z))
+        outward = np.array([math.cos(self.direction), math.sin(self.direction), 0.0])
+        moment = np.cross(self.radius * outward, force)
+        return ShaftLoad(self.position, (x, y, z), (float(moment[0]), float(moment[1])))
 
 
 @dataclass(frozen=True, slots=True)

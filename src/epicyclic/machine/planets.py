@@ -414,11 +414,6 @@ def _rising_root(rising: Callable[[float], float], reach: float) -> float:
     return float(brentq(rising, -reach, reach, xtol=TILT_TOLERANCE * SMALL_TILT))
 
 
-def _turning(contact: PlanetContact) -> float:
-    """Moment of a mesh on its planet, about the middle of the face. [N m]"""
-    return contact.face_sense * _mesh_moment(contact.duty)
-
-
 def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
     """The meshes with a planet tilted by `tilt` in t and r. Theory (B18)."""
     return [
@@ -436,7 +431,9 @@ def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
 
 def _load_at(tilt: FloatArray, contacts: Contacts, centrifugal: float) -> PlanetLoad:
     """Load of a planet tilted by `tilt`."""
-    moments = [_turning(contact) for contact in _misaligned(contacts, tilt)]
+    moments = [
+        contact.face_sense * _mesh_moment(contact.duty) for contact in _misaligned(contacts, tilt)
+    ]
     return planet_load(contacts, centrifugal, moments)
 
 
@@ -486,12 +483,10 @@ class PlanetBearing:
     def method(self) -> tuple[str, str]:
         """How the load-dependent loss is found, and where that is printed."""
         if isinstance(self.model, FittedRolling):
+            title, source = self.model.title, self.model.source
             if self.palmgren_beyond:
-                return (
-                    f"{self.model.title}, beyond them {PALMGREN_METHOD}",
-                    f"{self.model.source}; {PALMGREN_SOURCE}",
-                )
-            return self.model.title, self.model.source
+                return f"{title}, beyond them {PALMGREN_METHOD}", f"{source}; {PALMGREN_SOURCE}"
+            return title, source
         if self.model == "mixed-ehl":
             return BEARING_METHOD, BEARING_SOURCE
         return PALMGREN_METHOD, PALMGREN_SOURCE

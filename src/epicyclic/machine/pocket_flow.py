@@ -104,7 +104,7 @@ def _spaces(gear: Gear) -> float:
 
 def flow_family(duty: MeshDuty) -> FlowFamily:
     """The flows that that of a mesh belongs to."""
-    settings, mesh, tools, drives1 = duty.models.pockets, duty.mesh, duty.tools, duty.drives1
+    settings, mesh, tools, drives1 = duty.models.pockets, duty.mesh, duty.gears.tools, duty.drives1
     if _exchanged(duty):
         mesh = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
         tools, drives1 = tools[::-1], not drives1

@@ -177,10 +177,8 @@ def seal_flags(
     """Flags of `seal_loss` for the seal called `where`; none at rest."""
     if speed == 0:
         return ()
-    values = {
-        "lip_speed": abs(speed) * diameter / 2,
-        "bracket": linke_bracket(temperature, viscosity_40),
-    }
+    bracket = linke_bracket(temperature, viscosity_40)
+    values = {"lip_speed": abs(speed) * diameter / 2, "bracket": bracket}
     return check_ranges(ModelUse("seal", formula, where), _RANGES[formula], values)
 
 
@@ -242,10 +240,7 @@ class Seal:
             speed=abs(speed),
             lip_speed=abs(speed) * self.diameter / 2,
             friction_torque=watts / abs(speed) if speed != 0 else math.nan,
-            iso_14179_1_viton=spread["iso-14179-1-viton"],
-            iso_14179_1_buna_n=spread["iso-14179-1-buna-n"],
-            iso_14179_2=spread["iso-14179-2"],
-            linke=spread["linke"],
+            **{formula.replace("-", "_"): loss for formula, loss in spread.items()},
         )
 
 
@@ -337,7 +332,9 @@ class ShaftBearing:
         if speed == 0:
             return ()
         notes = []
-        carried = self._carried(load)
+        # what holds the rolling elements to the races [N]
+        both = self.bearing.type in ("deep-groove", "tapered")
+        carried = math.hypot(load.radial, load.axial) if both else load.radial
         if carried < least:
             notes.append(
                 f"{self.key}: the load of {format_number(carried, 3)} N is below the minimum load "
@@ -350,9 +347,3 @@ class ShaftBearing:
                 "hand; give drag_variable."
             )
         return tuple(notes)
-
-    def _carried(self, load: BearingLoad) -> float:
-        """What holds the rolling elements to the races. [N]"""
-        if self.bearing.type in ("deep-groove", "tapered"):
-            return math.hypot(load.radial, load.axial)
-        return load.radial

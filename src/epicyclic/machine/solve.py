@@ -636,13 +636,8 @@ def _torques(machine: Machine, solution: Solution) -> Iterator[tuple[str, str, f
     for stage, result in solution.results.items():
         _, frictions = effects_of(machine, solution.rolling, [result])
         for friction in frictions:
-            for body, torque in _friction_torques(friction, solution):
-                yield stage, body, torque
-
-
-def _friction_torques(friction: Friction, solution: Solution) -> Iterator[tuple[str, float]]:
-    one, two = friction.between
-    difference = solution.speeds[one] - solution.speeds[two]
-    if difference:
-        yield one, friction.watts / difference
-        yield two, -friction.watts / difference
+            one, two = friction.between
+            difference = solution.speeds[one] - solution.speeds[two]
+            if difference:
+                yield stage, one, friction.watts / difference
+                yield stage, two, -friction.watts / difference
