@@ -125,8 +125,7 @@ class ToothPlate:
         terms = shape.shape[1]
         load[:, :terms] = shape * np.cos(inclination)[:, None]
         load[:, terms : 2 * terms] = -shape * (np.sin(inclination) * thickness / 2)[:, None]
-        amplitudes: FloatArray = load @ self.half_inverse.T
-        return amplitudes
+        return load @ self.half_inverse.T
 
     def _place(self, curvature: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Height above the root section, and inclination of the normal force to the plate."""
@@ -240,8 +239,7 @@ def _add_foundation(
 
 def _integral(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
     """Integrals of products of the columns of `a` and `b`, values at Gauss points."""
-    integral: FloatArray = a.T @ (weights[:, None] * b)
-    return integral
+    return a.T @ (weights[:, None] * b)
 
 
 def _kron(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -339,7 +337,7 @@ class ElasticRing:
         shear = np.array([-n / r, -1 / r, 1.0])
         bending = np.array([0.0, 0.0, n / r])
         area = self.thickness * self.width
-        stiffness: FloatArray = (
+        return (
             math.pi
             * r
             * (
@@ -348,7 +346,6 @@ class ElasticRing:
                 + self.modulus * area * self.thickness**2 / 12 * np.outer(bending, bending)
             )
         )
-        return stiffness
 
     def _even(self) -> FloatArray:
         """Flexibility of the even part: stretching by W, shear by T and M against the outside."""
@@ -552,8 +549,7 @@ class LoadedMesh:
     @property
     def pattern(self) -> NDArray[np.bool_]:
         """Which segments carry load, shape (positions, lines, segments)."""
-        carrying: NDArray[np.bool_] = self.line_load > 0
-        return carrying
+        return self.line_load > 0
 
     @property
     def pair_force(self) -> FloatArray:
@@ -568,8 +564,7 @@ class LoadedMesh:
         Lag of the driven member against the motion of rigid flanks without deviations, as an arc on
         the base circle: the normal approach over cos(beta_b). Theory (E8). [m]
         """
-        error: FloatArray = self.normal_approach / self._cosine
-        return error
+        return self.normal_approach / self._cosine
 
     @property
     def transmission_error_range(self) -> float:
@@ -579,14 +574,12 @@ class LoadedMesh:
     @property
     def secant_stiffness(self) -> FloatArray:
         """Transverse force over transmission error: deviations lower it. Theory (E9). [N/m]"""
-        stiffness: FloatArray = self.force / self.transmission_error
-        return stiffness
+        return self.force / self.transmission_error
 
     @property
     def tangent_stiffness(self) -> FloatArray:
         """Slope of the transverse force over the transmission error. Theory (E9). [N/m]"""
-        stiffness: FloatArray = self.normal_stiffness * self._cosine**2
-        return stiffness
+        return self.normal_stiffness * self._cosine**2
 
     def mean(self, over_period: FloatArray) -> float:
         """Mean over the mesh period of a figure of shape (positions,)."""

@@ -67,8 +67,7 @@ class Regression:
 
     def value(self, states: LineContacts, coefficients: FloatArray) -> FloatArray:
         """See the class."""
-        value: FloatArray = np.exp(self._matrix(states) @ coefficients) * self.scale(states)
-        return value
+        return np.exp(self._matrix(states) @ coefficients) * self.scale(states)
 
     def fit(self, states: LineContacts, target: FloatArray, weight: FloatArray) -> FloatArray:
         """Linear least squares of the logarithm, all branches at once.
@@ -109,8 +108,7 @@ class Regression:
 def _blend(ratio: FloatArray, limit: float) -> FloatArray:
     """Weight of the branch above `limit`. Theory (F4)."""
     t = np.clip((np.log(ratio / limit) + BLEND_HALF_WIDTH) / (2 * BLEND_HALF_WIDTH), 0, 1)
-    weight: FloatArray = t * t * (3 - 2 * t)
-    return weight
+    return t * t * (3 - 2 * t)
 
 
 class RegressionGroups(NamedTuple):
@@ -345,8 +343,7 @@ def eyring_friction(
     highest = states.hertz_pressure / (1 + light_load / states.moes_load)
     slope = states.pressure_viscosity * np.ones(rate.shape)
     mean = eyring_means(rate, highest, slope, SLOPE_RATIO, TRANSITION, _COSINES, _WEIGHTS)
-    friction: FloatArray = mean * stress / highest
-    return friction
+    return mean * stress / highest
 
 
 def _pairing(states: LineContacts) -> FloatArray:
@@ -551,8 +548,7 @@ class NearbySimulations(BaseModel):
 
     def _placed(self, states: LineContacts) -> FloatArray:
         centre, spread = self._scale
-        places: FloatArray = (_coordinates(states) - centre) / spread
-        return places
+        return (_coordinates(states) - centre) / spread
 
     @cached_property
     def _places(self) -> FloatArray:
@@ -571,8 +567,7 @@ class NearbySimulations(BaseModel):
         for place, row in zip(self._places, alike, strict=True):
             covariances(place, self._others, row)
         noise = np.diag(NOISE / np.array(self.weight))
-        shares: FloatArray = np.linalg.solve(alike + noise, np.array(self.excess))
-        return shares
+        return np.linalg.solve(alike + noise, np.array(self.excess))
 
     @property
     def _states(self) -> LineContacts:

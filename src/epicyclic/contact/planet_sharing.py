@@ -169,8 +169,7 @@ def closed_form_branch_forces(
     spread = np.eye(n) - 1 / n
     if floating:
         spread -= 2 / n * np.cos(between)
-    forces: FloatArray = force / n + spread @ branches.lead / branches.compliance
-    return forces
+    return force / n + spread @ branches.lead / branches.compliance
 
 
 def mesh_load_factor_shares(count: int, factor: float) -> tuple[float, ...]:

@@ -136,8 +136,7 @@ class Relief:
     def at(self, distance: FloatArray) -> FloatArray:
         """Deviation at a `distance` from the end. Theory (G37). [m]"""
         share = np.clip(1 - distance / self.length, 0.0, 1.0)
-        deviation: FloatArray = self.amount * share ** _EXPONENTS[self.shape]
-        return deviation
+        return self.amount * share ** _EXPONENTS[self.shape]
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,8 +238,7 @@ class FlankDeviations:
             gap = gap + flank.deviation(
                 gear, active_profile(mesh, member), rho, lines.face_position + overhang
             )
-        normal: FloatArray = gap * math.cos(mesh.gear1.rack.base_helix_angle)
-        return normal
+        return gap * math.cos(mesh.gear1.rack.base_helix_angle)
 
 
 def active_profile(mesh: Mesh, member: int) -> tuple[float, float]:

@@ -93,8 +93,7 @@ class Mesh:
         """
         curvature2 = self.curvature2(curvature1)
         transverse = curvature1 * curvature2 / (curvature2 + self.side * curvature1)
-        radius: Real = transverse / math.cos(self.gear1.rack.base_helix_angle)
-        return radius
+        return transverse / math.cos(self.gear1.rack.base_helix_angle)
 
     @cached_property
     def path_start(self) -> float:

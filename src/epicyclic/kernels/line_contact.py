@@ -40,8 +40,7 @@ def line_load_at_pressure(p_h: Real, r_eq: Real, e_eq: float) -> Real:
 
     Theory (C6).
     """
-    load: Real = 2 * math.pi * r_eq * p_h**2 / e_eq
-    return load
+    return 2 * math.pi * r_eq * p_h**2 / e_eq
 
 
 def pan_hamrock_minimum_film(u: Real, g: Real | float, w: Real) -> Real:

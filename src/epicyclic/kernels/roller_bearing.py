@@ -84,8 +84,7 @@ def slice_deflection(
     radial: float, tilt: float, y_over_l: float, clearance: float, crown: float
 ) -> float:
     """Deflection of one contact of a slice; negative where there is a gap. Theory (B8). [m]"""
-    delta: float = 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
-    return delta
+    return 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
 
 
 @kernel

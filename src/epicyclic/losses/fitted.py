@@ -308,8 +308,7 @@ def weight_of_fit(
         if low > 0 and name != NO_LEAST:
             beyond = np.maximum(beyond, low / value)
     t = np.clip(np.log(beyond) / math.log(REACH), 0.0, 1.0)
-    weight: FloatArray = 1 - t * t * (3 - 2 * t)
-    return weight
+    return 1 - t * t * (3 - 2 * t)
 
 
 @dataclass(frozen=True, slots=True)
@@ -374,8 +373,7 @@ class FittedOrSchlenk(NothingToSolve, _FittedOrFormula[FittedFriction]):
         if (weight == 1).all():
             return fitted
         formula = self.beyond.coefficient(contact.seen_by(self.beyond))
-        coefficient: FloatArray = weight * fitted + (1 - weight) * formula
-        return coefficient
+        return weight * fitted + (1 - weight) * formula
 
 
 @dataclass(frozen=True, slots=True)
@@ -393,5 +391,4 @@ class FittedOrGoksem(_FittedOrFormula[FittedRolling]):
         weight, fitted = self.weight(contact), self.fitted.loss_density(contact)
         if (weight == 1).all():
             return fitted
-        density: FloatArray = weight * fitted + (1 - weight) * self.beyond.loss_density(contact)
-        return density
+        return weight * fitted + (1 - weight) * self.beyond.loss_density(contact)

@@ -291,8 +291,7 @@ def _log_argument(contact: MeshContact) -> FloatArray:
     rolling = 2 * contact.rolling_speed
     sliding = np.maximum(np.abs(contact.sliding_speed), SMALLEST_SLIDING * rolling)
     viscosity = contact.oil.dynamic_viscosity * 1e3
-    argument: FloatArray = 29.66 * contact.line_load / (viscosity * sliding * rolling**2)
-    return argument
+    return 29.66 * contact.line_load / (viscosity * sliding * rolling**2)
 
 
 _ARGUMENT = Range(
@@ -318,10 +317,7 @@ def benedict_kelley(contact: MeshContact, settings: FrictionSettings) -> FloatAr
     point v_s is kept at 1 % of v_r, because the formula grows without bound there. [1]
     """
     rms = held_in_range(_mean_rms(contact), _RMS) / MICROINCH
-    mu: FloatArray = (
-        0.0127 * 50 / (50 - rms) * np.log10(held_in_range(_log_argument(contact), _ARGUMENT))
-    )
-    return mu
+    return 0.0127 * 50 / (50 - rms) * np.log10(held_in_range(_log_argument(contact), _ARGUMENT))
 
 
 # Friction as a mixture of dry and separated contact: mu = xi mu_b + (1 - xi) mu_f.
@@ -378,8 +374,7 @@ def paired_friction(contact: LineContacts, settings: FrictionSettings) -> FloatA
     Theory (O13).
     """
     published = mixed_ehl(equally_rough(contact), settings)
-    coefficient: FloatArray = published * pairing_ratio("friction", contact)
-    return coefficient
+    return published * pairing_ratio("friction", contact)
 
 
 _SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Table 5.1"

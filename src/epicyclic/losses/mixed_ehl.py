@@ -115,10 +115,9 @@ def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:
     Below the held load the loss falls with the load, so that it vanishes with it; above, it is
     that of the held load. Beyond the held speed the rolling force is that of the held speed.
     """
-    share: FloatArray = np.minimum(1.0, contact.line_load / held.line_load) * (
+    return np.minimum(1.0, contact.line_load / held.line_load) * (
         contact.rolling_speed / held.rolling_speed
     )
-    return share
 
 
 # The published regressions for flanks of unequal roughness.
@@ -161,10 +160,7 @@ def pairing_ratio(
     array([1.])
     """
     model = _simulated()
-    ratio: FloatArray = model.value(quantity, contact) / model.value(
-        quantity, equally_rough(contact)
-    )
-    return ratio
+    return model.value(quantity, contact) / model.value(quantity, equally_rough(contact))
 
 
 @lru_cache(maxsize=1)

@@ -170,8 +170,7 @@ class RollerBearing:
         """Axial position of the slices, shape (rows, slices). Theory (B7). [m]"""
         within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
         middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (self.roller_length + self.row_gap)
-        positions: FloatArray = middles[:, None] + within
-        return positions
+        return middles[:, None] + within
 
     def crown(self) -> FloatArray:
         """Drop of the profile at each slice, a parabola over the crowned ends. Theory (B6). [m]"""

@@ -123,8 +123,7 @@ def pocket_outlines(
     Points x + iy around the pocket, as many as it has, then NaN; axes as of `centroid`. [m]
     """
     gears, figures = _section(mesh, tools, drives1)
-    outlines: NDArray[np.complex128] = kernels.pocket_outlines(angle, member, gears, figures)
-    return outlines
+    return kernels.pocket_outlines(angle, member, gears, figures)
 
 
 def gap_feet(
@@ -139,8 +138,7 @@ def gap_feet(
     On gear 1 and on gear 2, axes as of `pocket_outlines`. [m]
     """
     gears, figures = _section(mesh, tools, drives1)
-    feet: NDArray[np.complex128] = kernels.gap_feet(angle, 1.0 if leading else -1.0, gears, figures)
-    return feet
+    return kernels.gap_feet(angle, 1.0 if leading else -1.0, gears, figures)
 
 
 def _section(mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool) -> tuple[Any, Any]:
@@ -365,5 +363,4 @@ def _along_mesh(parts: list[Any]) -> Any:
 
 def _mean_of_ends(values: Floats) -> Floats:
     """Mean of the values at both ends of each slice, stations on the third axis."""
-    mean: Floats = (values[:, :, :-1] + values[:, :, 1:]) / 2
-    return mean
+    return (values[:, :, :-1] + values[:, :, 1:]) / 2

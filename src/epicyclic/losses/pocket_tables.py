@@ -255,8 +255,7 @@ def interpolate(place: Floats, values: Floats, at: float) -> Floats:
     for i in range(near.size):
         others = np.delete(near, i)
         weights[i] = np.prod((at - others) / (near[i] - others))
-    result: Floats = weights @ values[first : first + 4]
-    return result
+    return weights @ values[first : first + 4]
 
 
 def make_tables(

@@ -57,8 +57,7 @@ def mixed_ehl_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
     """
     held = held_in_table(contact, oil_held=oil_held)
     number = rolling_loss_number_at(*regression_groups(held))
-    density: FloatArray = number * rolling_scale(held) * beyond_data(contact, held)
-    return density
+    return number * rolling_scale(held) * beyond_data(contact, held)
 
 
 def paired_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
@@ -67,8 +66,7 @@ def paired_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
     Theory (O13).
     """
     published = mixed_ehl_rolling(equally_rough(contact), oil_held)
-    density: FloatArray = published * pairing_ratio("rolling_loss", contact)
-    return density
+    return published * pairing_ratio("rolling_loss", contact)
 
 
 def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
@@ -90,8 +88,7 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
     )
     elastic = number * contact.radius / oil.pressure_viscosity
     rigid = martin_force(contact.line_load, contact.rolling_speed, oil.dynamic_viscosity)
-    density: FloatArray = 2 * np.minimum(elastic, rigid) * contact.rolling_speed
-    return density
+    return 2 * np.minimum(elastic, rigid) * contact.rolling_speed
 
 
 ROLLING_MODELS = {

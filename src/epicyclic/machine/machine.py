@@ -163,8 +163,7 @@ def mesh_force(
     tangential = torque / radius
     radial = (1 if internal else -1) * abs(tangential) * math.tan(pressure_angle)
     axial = -hand * tangential * helix_tangent
-    force: FloatArray = tangential * along + radial * outward + axial * np.array([0.0, 0.0, 1.0])
-    return force
+    return tangential * along + radial * outward + axial * np.array([0.0, 0.0, 1.0])
 
 
 # Forces on the bearings of shafts, from the loads of the meshes.

@@ -292,8 +292,7 @@ def tilt_planet(
     def imbalance(scaled: FloatArray) -> FloatArray:
         load = _load_at(scaled * scale, contacts, centrifugal)
         answer = _tilt_under(load, contacts, bearing, centrifugal)
-        residual: FloatArray = scaled - answer / scale
-        return residual
+        return scaled - answer / scale
 
     found = root(imbalance, tilt / scale, method="hybr", tol=TILT_TOLERANCE / 10)
     if np.abs(found.fun).max() <= TILT_TOLERANCE:

@@ -543,8 +543,7 @@ def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
         with np.errstate(divide="warn", invalid="warn"):
             last = branch.follow(tried)
         new = last.balance if isinstance(last, _Pass) else last
-        step: FloatArray = np.array(list(new.meshes.values())) / size - values
-        return step
+        return np.array(list(new.meshes.values())) / size - values
 
     def left(_: FloatArray) -> float:
         return 0.0 if isinstance(last, _Pass) else 1.0
