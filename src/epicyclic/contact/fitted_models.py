@@ -475,26 +475,16 @@ DIGITS = 5
 
 
 class NearbySimulations(BaseModel):
-    """Simulations that correct a form between them. Theory (O15).
-
-    Attributes
-    ----------
-    conditions : dict of str to tuple of float
-        Conditions of each simulation, SI, the slide-to-roll ratio with its sign.
-    excess : tuple of float
-        ln of the simulated quantity over that of the form. [1]
-    weight : tuple of float
-        What each counts. [1]
-    equivalent_modulus : float
-        Equivalent modulus of all. [Pa]
-    """
+    """Simulations that correct a form between them. Theory (O15)."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
+    # Conditions of each simulation, SI, the slide-to-roll ratio with its sign.
     conditions: dict[str, tuple[float, ...]]
+    # ln of the simulated quantity over that of the form. [1]
     excess: tuple[float, ...] = Field(min_length=1, max_length=MOST_SIMULATIONS)
-    weight: tuple[float, ...]
-    equivalent_modulus: float = Field(gt=0)
+    weight: tuple[float, ...]  # What each counts. [1]
+    equivalent_modulus: float = Field(gt=0)  # Equivalent modulus of all. [Pa]
 
     @model_validator(mode="after")
     def _check(self) -> NearbySimulations:
@@ -633,63 +623,32 @@ class _Data(BaseModel):
 
 
 class FitError(_Data):
-    """Errors of contacts that the fit had not seen, |computed/simulated - 1|. Theory (O8).
+    """Errors of contacts that the fit had not seen, |computed/simulated - 1|. Theory (O8)."""
 
-    Attributes
-    ----------
-    regime : str
-        One of `REGIMES`.
-    contacts : int
-    median, largest_of_90_percent : float
-        [1]
-    """
-
-    regime: str
+    regime: str  # One of `REGIMES`.
     contacts: int = Field(ge=0)
-    median: float = Field(ge=0)
-    largest_of_90_percent: float = Field(ge=0)
+    median: float = Field(ge=0)  # [1]
+    largest_of_90_percent: float = Field(ge=0)  # [1]
 
 
 class FittedForm(_Data):
-    """Coefficients of a form, its correction, and its cross-validated errors.
-
-    Attributes
-    ----------
-    form : str
-    coefficients : tuple of float
-    errors : tuple of FitError
-        With the correction, if there is one.
-    nearby : NearbySimulations, optional
-        What corrects a structured form.
-    """
+    """Coefficients of a form, its correction, and its cross-validated errors."""
 
     form: str
     coefficients: tuple[float, ...]
-    errors: tuple[FitError, ...]
-    nearby: NearbySimulations | None = None
+    errors: tuple[FitError, ...]  # With the correction, if there is one.
+    nearby: NearbySimulations | None = None  # What corrects a structured form.
 
 
 class QuantityFit(_Data):
-    """What was fitted to one quantity.
-
-    Attributes
-    ----------
-    unit : str
-    contacts : int
-        Simulations behind it.
-    domain : dict of str to (float, float)
-        Lowest and highest value of every condition among them, SI.
-    forms : tuple of FittedForm
-        The one that is used by default first.
-    left_out : dict of str to str
-        Forms that could not be fitted, and why.
-    """
+    """What was fitted to one quantity."""
 
     unit: str
-    contacts: int = Field(ge=1)
+    contacts: int = Field(ge=1)  # Simulations behind it.
+    # Lowest and highest value of every condition among them, SI.
     domain: dict[str, tuple[float, float]]
-    forms: tuple[FittedForm, ...] = Field(min_length=1)
-    left_out: dict[str, str] = {}
+    forms: tuple[FittedForm, ...] = Field(min_length=1)  # The one that is used by default first.
+    left_out: dict[str, str] = {}  # Forms that could not be fitted, and why.
 
     @model_validator(mode="after")
     def _check_domain(self) -> QuantityFit:
@@ -702,42 +661,20 @@ class QuantityFit(_Data):
 
 
 class OilModel(_Data):
-    """Friction and rolling loss of an oil.
+    """Friction and rolling loss of an oil."""
 
-    Attributes
-    ----------
-    format : str
-        `FORMAT`.
-    version : str
-        Version of this package, which solved the contacts.
-    settings : dict
-        Tables of a line contact that all simulations shared; the oil is one of them.
-    designs : list
-        The simulated points.
-    seed : int
-        Seed of the profiles; of several campaigns that of the first one.
-    command : str
-        Command that makes the simulations; of several campaigns one after the other.
-    simulations : dict of str to int
-        How many were simulated, failed, and were fitted.
-    notes : tuple of str
-        What to know before using it.
-    equivalent_modulus : float
-        E_eq of the simulations. [Pa]
-    fits : dict of str to QuantityFit
-        By quantity, the keys of `FORMS`.
-    """
-
-    format: Literal["epicyclic oil model 4"]
-    version: str
+    format: Literal["epicyclic oil model 4"]  # `FORMAT`.
+    version: str  # Version of this package, which solved the contacts.
+    # Tables of a line contact that all simulations shared; the oil is one of them.
     settings: dict[str, Any]
-    designs: tuple[dict[str, Any], ...]
-    seed: int
+    designs: tuple[dict[str, Any], ...]  # The simulated points.
+    seed: int  # Seed of the profiles; of several campaigns that of the first one.
+    # Command that makes the simulations; of several campaigns one after the other.
     command: str = ""
-    simulations: dict[str, int]
-    notes: tuple[str, ...] = ()
-    equivalent_modulus: float = Field(gt=0)
-    fits: dict[str, QuantityFit]
+    simulations: dict[str, int]  # How many were simulated, failed, and were fitted.
+    notes: tuple[str, ...] = ()  # What to know before using it.
+    equivalent_modulus: float = Field(gt=0)  # E_eq of the simulations. [Pa]
+    fits: dict[str, QuantityFit]  # By quantity, the keys of `FORMS`.
 
     def __hash__(self) -> int:
         # of a few fields: all of them take longer than what is looked up by it

@@ -67,19 +67,11 @@ class _Motion:
     speed1: float
     speed2: float
 
-    def _speeds(self, path: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def speeds(self, path: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """u_r and u_s. [m/s]"""
         curvature1 = self.mesh.pitch_point + path
-        return self.speed1 * curvature1, self.speed2 * self.mesh.curvature2(curvature1)
-
-    def rolling(self, path: FloatArray) -> FloatArray:
-        """u_r. [m/s]"""
-        one, two = self._speeds(path)
-        return (one + two) / 2
-
-    def sliding(self, path: FloatArray) -> FloatArray:
-        """u_s. [m/s]"""
-        one, two = self._speeds(path)
-        return one - two
+        one, two = self.speed1 * curvature1, self.speed2 * self.mesh.curvature2(curvature1)
+        return (one + two) / 2, one - two
 
     def radius(self, path: FloatArray) -> FloatArray:
         """Equivalent radius. [m]"""
@@ -157,19 +149,20 @@ def _path_table(
     """Arguments of `along_path`: ends, crowding, lowest and highest pressure, values."""
     path = np.array([motion.mesh.path_start, motion.mesh.path_end]) - motion.mesh.pitch_point
     ends = np.array([min(path[0], 0.0), max(path[1], 0.0)])
-    slip = np.abs(motion.sliding(ends)) / motion.rolling(ends)
+    rolling, sliding = motion.speeds(ends)
+    slip = np.abs(sliding) / rolling
     crowding = np.log1p(np.maximum(slip, LEAST_SLIP) / LEAST_SLIP)
     outwards = np.linspace(0.0, crowding, POINTS)
     places = ends * np.expm1(outwards) / np.expm1(crowding)
     # nothing slides at the pitch point, but each side has its sign there too
-    sliding = motion.sliding(places) + NO_SLIP * np.sign(motion.sliding(ends))
+    sliding = motion.speeds(places)[1] + NO_SLIP * np.sign(sliding)
     pressures = np.geomspace(*model.fits[quantity].domain["hertz_pressure"], PRESSURES)
     place, pressure = (grid.ravel() for grid in np.meshgrid(places.T, pressures, indexing="ij"))
     radius = motion.radius(place)
     contacts = LineContacts(
         line_load=line_load_at_pressure(pressure, radius, flanks.equivalent_modulus),
         radius=radius,
-        rolling_speed=motion.rolling(place),
+        rolling_speed=motion.speeds(place)[0],
         sliding_speed=np.repeat(sliding.T, PRESSURES),
         flanks=flanks,
         oil=oil,

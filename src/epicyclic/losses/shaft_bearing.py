@@ -567,11 +567,6 @@ def skf_reduction_factors(
     return 1 / (1 + 1.84e-9 * heating), math.exp(-dry)
 
 
-def _boundary_share(at: _Printed) -> float:
-    """phi_bl, the share of boundary lubrication in the sliding friction. Theory (J9). [1]"""
-    return math.exp(-2.6e-8 * math.pow(at.rpm * at.viscosity, 1.4) * at.pitch)
-
-
 def drag_variable(bearing: CatalogueBearing, oil_level: float) -> float:
     """Estimate of V_M at an oil level, from none to full immersion. Theory (J11). [1]
 
@@ -629,7 +624,8 @@ def skf_moments(
     hot, dry = skf_reduction_factors(bearing, model.constants, model.starvation, speed, viscosity)
     if model.oil_level >= SUBMERGED * bearing.pitch_diameter:
         dry = 1.0
-    boundary = _boundary_share(at)
+    # phi_bl, the share of boundary lubrication in the sliding friction: (J9)
+    boundary = math.exp(-2.6e-8 * math.pow(at.rpm * at.viscosity, 1.4) * at.pitch)
     mu_bl = STARTING_FRICTION if speed == 0 else BOUNDARY_FRICTION
     mu_sl = boundary * mu_bl + (1 - boundary) * model.full_film_friction
     return SkfMoments(

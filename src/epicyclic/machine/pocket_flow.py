@@ -181,7 +181,9 @@ def mesh_flows(
         request = flow_request(duty, fluids)
         figures = _stored_figures(settings, request)
         if figures is None and not _scales(request):
-            figures = _interpolated(settings, request, known)
+            if request[0] in settings.tables:
+                figures = settings.tables[request[0]].figures(*request[1:])
+            figures = known.figures(*request) if figures is None else figures
         if figures is None:
             direct[duty.key] = request
         else:
@@ -208,16 +210,6 @@ def _scales(request: FlowRequest) -> bool:
         return request[0].scales(FlowFamily.number(*request[1:]))
     except ValueError:  # no tooth outline: the solution says so
         return False
-
-
-def _interpolated(
-    settings: PocketSettings, request: FlowRequest, known: KnownFlows
-) -> FlowFigures | None:
-    """From the tables of a sweep or the known flows; None if they do not hold the flow."""
-    figures = None
-    if request[0] in settings.tables:
-        figures = settings.tables[request[0]].figures(*request[1:])
-    return known.figures(*request) if figures is None else figures
 
 
 def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:
