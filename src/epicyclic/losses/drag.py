@@ -31,14 +31,8 @@ SPEED_PARAMETER = Range(
     "speed_parameter", "speed times pitch diameter, rpm mm", None, 1e6, NUMBER, OF_THIS_PACKAGE
 )
 """Range of the formulas of Palmgren and Harris, which come from tests at moderate speed."""
-_FACES = Range(
-    "reynolds_number",
-    "Reynolds number of the faces",
-    None,
-    1e7,
-    NUMBER,
-    "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory",
-)
+_FACES_SOURCE = "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory"
+_FACES = Range("reynolds_number", "Reynolds number of the faces", None, 1e7, NUMBER, _FACES_SOURCE)
 _CREEPING = Range(
     "reynolds_number",
     "Reynolds number of the faces",
@@ -47,14 +41,8 @@ _CREEPING = Range(
     NUMBER,
     "below, a disc in creeping flow, 32/3 mu omega r^3, drags more: Lamb, Hydrodynamics",
 )
-_RIM = Range(
-    "reynolds_number",
-    "Reynolds number of the rim",
-    None,
-    60.0,
-    NUMBER,
-    "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)",
-)
+_RIM_SOURCE = "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)"
+_RIM = Range("reynolds_number", "Reynolds number of the rim", None, 60.0, NUMBER, _RIM_SOURCE)
 
 
 def bearing_viscous_loss(
@@ -370,14 +358,12 @@ _RANGES = {
         ),
     ),
 }
-_SPLASH = Range(
-    "tip_speed",
-    "circumferential speed of what dips",
-    None,
-    20.0,
-    METRE_PER_SECOND,
+_SPLASH_SOURCE = (
     "dip lubrication is recommended below it: P. Walter, after Forsch. Ingenieurwes. 84 (2020), "
-    "doi 10.1007/s10010-020-00423-0",
+    "doi 10.1007/s10010-020-00423-0"
+)
+_SPLASH = Range(
+    "tip_speed", "circumferential speed of what dips", None, 20.0, METRE_PER_SECOND, _SPLASH_SOURCE
 )
 
 

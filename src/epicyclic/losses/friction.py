@@ -297,14 +297,9 @@ def _log_argument(contact: MeshContact) -> FloatArray:
 _ARGUMENT = Range(
     "log_argument", "argument of the logarithm", 10.0, 1e8, NUMBER, OF_THIS_PACKAGE, _log_argument
 )
+_RMS_SOURCE = "AGMA 925-A03: 50/(50 - S) at most 3"
 _RMS = Range(
-    "mean_rms",
-    "mean rms roughness",
-    None,
-    0.0254 * 100 / 3,
-    MICROMETRE,
-    "AGMA 925-A03: 50/(50 - S) at most 3",
-    _mean_rms,
+    "mean_rms", "mean rms roughness", None, 0.0254 * 100 / 3, MICROMETRE, _RMS_SOURCE, _mean_rms
 )
 
 
@@ -381,13 +376,9 @@ _SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Tab
 _REGRESSION_PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SUCCESSOR)
 _REGRESSION_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SUCCESSOR)
 _RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
+_VISCOSITY_SOURCE = "none is in print; a 75W-90 gear oil from 150 to 25 degC"
 _VISCOSITY = Range(
-    "dynamic_viscosity",
-    "dynamic viscosity",
-    5.0,
-    180.0,
-    MILLIPASCAL_SECOND,
-    "none is in print; a 75W-90 gear oil from 150 to 25 degC",
+    "dynamic_viscosity", "dynamic viscosity", 5.0, 180.0, MILLIPASCAL_SECOND, _VISCOSITY_SOURCE
 )
 _REGRESSION_ROUGHNESS = Range(
     "composite_roughness", "composite rms roughness", None, 1.0, MICROMETRE, OF_THIS_PACKAGE

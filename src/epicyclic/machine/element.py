@@ -32,13 +32,9 @@ if TYPE_CHECKING:
 
 # The oil at a temperature, and its mixture with air.
 
+_VISCOSITY_SOURCE = "ASTM D341, form for 2 mm^2/s and more"
 _VISCOSITY = Range(
-    "kinematic_viscosity",
-    "kinematic viscosity",
-    2.0,
-    2e7,
-    SQUARE_MM_PER_SECOND,
-    "ASTM D341, form for 2 mm^2/s and more",
+    "kinematic_viscosity", "kinematic viscosity", 2.0, 2e7, SQUARE_MM_PER_SECOND, _VISCOSITY_SOURCE
 )
 
 
