@@ -42,9 +42,7 @@ def branch_directions(
 ) -> dict[str, FloatArray]:
     """How much a displacement of a member in x and y closes each branch. Theory (S2).
 
-    Returns
-    -------
-    dict of str to ndarray, shape (planets, 2)
+    Each has the shape (planets, 2).
     """
     outward = np.column_stack((np.cos(angles), np.sin(angles)))
     along = np.column_stack((-np.sin(angles), np.cos(angles)))

@@ -112,14 +112,7 @@ def tooth_outline(
 ) -> ToothOutline:
     """Outline of a tooth of `gear` as cut by `tool`.
 
-    Returns
-    -------
-    ToothOutline
-
-    Raises
-    ------
-    ValueError
-        If no such outline exists, with the reason.
+    Raises `ValueError` if no such outline exists, with the reason.
     """
     if points < 2:
         raise ValueError("a section of an outline needs at least two points")

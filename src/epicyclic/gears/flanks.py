@@ -56,10 +56,6 @@ def contact_lines(
     Every line is cut into `segments` equal parts of its own length. The mesh positions are the
     middles of equal parts of the intervals between which lines enter and leave, so that averages
     over the mesh period converge with the second order for spur gears as well.
-
-    Returns
-    -------
-    ContactLines
     """
     rack = mesh.gear1.rack
     pitch = rack.transverse_base_pitch

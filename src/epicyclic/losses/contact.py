@@ -201,11 +201,7 @@ def load_shape(
 ) -> tuple[ContactLines, FloatArray]:
     """Contact lines, and the line load on them for a unit transverse force. Theory (D2).
 
-    Returns
-    -------
-    lines : ContactLines
-    shape : ndarray, shape (positions, lines, segments)
-        W'/F_bt; the normal force F_bt/cos(beta_b) is its integral along the lines. [1/m]
+    That is W'/F_bt; the normal force F_bt/cos(beta_b) is its integral along the lines. [1/m]
     """
     lines = contact_lines(mesh, positions, segments)
     stiffness = STIFFNESS_SHAPES[name](mesh, lines)

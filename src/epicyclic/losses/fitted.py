@@ -93,12 +93,7 @@ def tabulated(
     form: str,  # As for its `value`.
     contacts: MeshContact | RaceContacts,  # n of them.
 ) -> FloatArray:
-    """`OilModel.value` at every contact of a mesh or bearing, interpolated. Theory (O16).
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
+    """`OilModel.value` at every contact of a mesh or bearing, interpolated. Theory (O16)."""
     pressure = np.clip(contacts.hertz_pressure, *model.fits[quantity].domain["hertz_pressure"])
     fit = model, quantity, form
     if isinstance(contacts, MeshContact):
@@ -285,10 +280,6 @@ def weight_of_fit(
     """Weight of a fit at each contact: 1 within its simulations, 0 far beyond them. [1]
 
     Theory (O11).
-
-    Returns
-    -------
-    ndarray, shape (n,)
     """
     domain = model.fits[quantity].domain
     modulus = contacts.flanks.equivalent_modulus / model.equivalent_modulus

@@ -46,10 +46,7 @@ _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")
 class LossTable:
     """Friction torque or power, linear between the points of a table. Theory (J17).
 
-    Raises
-    ------
-    ValueError
-        If `table_problems` finds any.
+    Raises `ValueError` if `table_problems` finds any.
     """
 
     quantity: LossQuantity  # ``"torque"`` or ``"power"``.

@@ -143,10 +143,6 @@ def pairing_ratio(
 ) -> FloatArray:
     """A quantity over what it is with both surfaces as rough as the rougher one. Theory (O13). [1]
 
-    Returns
-    -------
-    ndarray, shape (n,)
-
     Examples
     --------
     >>> import numpy as np

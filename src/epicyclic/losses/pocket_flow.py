@@ -324,14 +324,7 @@ def pocket_flow(
 ) -> PocketFlow:
     """Periodic flow through the pockets. Theory (Q11).
 
-    Returns
-    -------
-    PocketFlow
-
-    Raises
-    ------
-    ConvergenceError
-        If a time step has no solution, not even as one of four times as many.
+    Raises `ConvergenceError` if a time step has no solution, not even as one of four times as many.
     """
     if model == "talbot-2012":
         return _scaled_up(study_flow(geometry), geometry, abs(speed), mixture.density)

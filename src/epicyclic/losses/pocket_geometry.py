@@ -72,17 +72,7 @@ def pocket_geometry(
     drives1: bool,  # True if member 1 drives, which puts the contact on its leading flanks.
     angles: int = ANGLES,  # Angles in each table.
 ) -> PocketGeometry:
-    """Pockets of `mesh`.
-
-    Returns
-    -------
-    PocketGeometry
-
-    Raises
-    ------
-    ValueError
-        If a tool cannot cut its gear.
-    """
+    """Pockets of `mesh`. Raises `ValueError` if a tool cannot cut its gear."""
     gears, figures = _section(mesh, tools, drives1)
     life = _lives(mesh, contact_clearances(mesh, drives1))
     half_pitch = math.pi / mesh.gear1.teeth
