@@ -38,10 +38,7 @@ def read_text(
     noun: str,  # What the file should be, ``"case"`` for a case file, for messages.
     largest: int,  # Size beyond which it is something else. [bytes]
 ) -> str:
-    """The text of a file.
-
-    Raises `InputError` if it is not a file, too large, or not UTF-8 text.
-    """
+    """The text of a file. Raises `InputError` if it is not a file, too large, or not UTF-8 text."""
     return decode(read_bytes(path, noun, largest), noun)
 
 
@@ -153,7 +150,6 @@ def refuse(allowed: str, remedy: str) -> NoReturn:
 # into that folder, and whatever ends the writer leaves the old file as it was. What a killed writer
 # leaves behind is removed by the next one that writes to the same folder.
 
-
 try:
     import fcntl
 except ImportError:  # Windows, where the folder of a living writer cannot be removed anyway
@@ -192,10 +188,8 @@ def whole_file(path: Path, option: str = OPTION) -> Iterator[Path]:
     """A file to be written in a private folder; it replaces `path` if nothing goes wrong.
 
     A file that is replaced keeps its permissions, a new one gets those that the umask of the user
-    leaves it. A link is followed.
-
-    Raises `InputError` if the file cannot be written: the disk is full, the name is too long.
-    `option` is that of its problem.
+    leaves it. A link is followed. Raises `InputError` if the file cannot be written: the disk is
+    full, the name is too long. `option` is that of its problem.
     """
     with _plain_errors(path, option):
         target = path.resolve()
@@ -304,7 +298,6 @@ def _locked(folder: Path, *, wait: bool) -> int | None:
 
 
 # How often Python looks through memory for what nothing refers to any more.
-
 
 NEW_OBJECTS = 100_000
 """So many make Python look for garbage. Imports make several times as many, all of them to stay."""

@@ -214,18 +214,12 @@ def _convert(number: float, unit: str, si: str) -> float:
     if "delta_" in str(parsed):
         raise _UnitError("is a temperature difference", "give the temperature itself")
     if _turns(parsed) != _turns(wanted):
-        raise _wrong_angle(number, unit, si)
+        if si != "rad/s":
+            raise _UnitError("has a unit that measures something else")
+        rate = format_number(ureg.Quantity(number, parsed).to("1/min").magnitude)
+        remedy = f'write "{rate} rpm" if it counts turns'
+        raise _UnitError("has a unit that may count turns or radians", remedy)
     return float(ureg.Quantity(number, parsed).to(wanted).magnitude)
-
-
-def _wrong_angle(number: float, unit: str, si: str) -> _UnitError:
-    if si != "rad/s":
-        return _UnitError("has a unit that measures something else")
-    rate = registry().Quantity(number, _parse_unit(unit)).to("1/min").magnitude
-    return _UnitError(
-        "has a unit that may count turns or radians",
-        f'write "{format_number(rate)} rpm" if it counts turns',
-    )
 
 
 @lru_cache(maxsize=4096)

@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from epicyclic.gears.mesh import admissible_angles, nearest_admissible_angle, smallest_planet_gap
+from epicyclic.gears.mesh import nearest_admissible_angle
+from reference.planetary import admissible_angles, smallest_planet_gap
 
 
 @pytest.mark.parametrize("count", [3, 6])

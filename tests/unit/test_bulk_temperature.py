@@ -7,13 +7,13 @@ import pytest
 from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     bulk_rise_of_flash,
-    bulk_rise_of_integral_flash,
     bulk_rise_of_loss,
     iso_mean_friction,
     mates_factor,
     relief_factor,
     roughness_factor,
 )
+from reference.heat_transfer import bulk_rise_of_integral_flash
 
 
 def test_bulk_temperature_over_loss_size_and_cooling():

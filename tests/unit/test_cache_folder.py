@@ -20,10 +20,11 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX per
 
 @pytest.fixture
 def source(tmp_path):
-    folder = tmp_path / "kernels"
-    folder.mkdir()
-    (folder / "one.py").write_text("x = 1\n")
-    return folder
+    package = tmp_path / "package"
+    (package / "kernels").mkdir(parents=True)
+    (package / "plugins" / "solver").mkdir(parents=True)
+    (package / "kernels" / "one.py").write_text("x = 1\n")
+    return package
 
 
 @pytest.fixture
@@ -36,9 +37,10 @@ def places(tmp_path, monkeypatch):
     return home, temporary
 
 
-def test_the_folder_changes_with_any_kernel(source, places):
+@pytest.mark.parametrize("added", ["kernels/two.py", "plugins/solver/kernels_two.py"])
+def test_the_folder_changes_with_any_kernel(source, places, added):
     before = _jit.cache_directory(source)
-    (source / "two.py").write_text("y = 2\n")
+    (source / added).write_text("y = 2\n")
     after = _jit.cache_directory(source)
     assert before != after
     assert before.parent == after.parent == places[0]

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from epicyclic.case.case import read_case
-from epicyclic.gears.mesh import admissible_angles
 from problems import problems_of
+from reference.planetary import admissible_angles
 
 TALBOT, PAIR = "talbot-2012", "talbot-2012-pair"
 

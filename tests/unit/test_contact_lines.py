@@ -38,7 +38,7 @@ def plane_average(mesh, function):
 @pytest.mark.parametrize(("positions", "segments"), [(4, 2), (20, 20), (37, 11)])
 def test_mean_total_length_is_exact(mesh, positions, segments):
     lines = contact_lines(mesh, positions, segments)
-    mean = float(lines.weight @ lines.total_length)
+    mean = float(lines.weight @ lines.length.sum(axis=(1, 2)))
     # eps_alpha b/cos(beta_b); between the positions where lines enter and leave the total length is
     # linear, so that the midpoint rule makes no error
     expected = mesh.transverse_contact_ratio * mesh.face_width / math.cos(base_helix(mesh))
@@ -78,7 +78,7 @@ def test_number_of_pairs_of_a_spur_mesh(make_mesh):
     ratio = mesh.transverse_contact_ratio
     assert 1 < ratio < 2
     lines = contact_lines(mesh, 20, 4)
-    pairs = lines.total_length / mesh.face_width
+    pairs = lines.length.sum(axis=(1, 2)) / mesh.face_width
     assert set(np.round(pairs, 9)) == {1.0, 2.0}
     # two pairs for eps_alpha - 1 of the period
     assert lines.weight[pairs > 1.5].sum() == pytest.approx(ratio - 1, rel=1e-9)
@@ -89,7 +89,7 @@ def test_number_of_pairs_of_a_spur_mesh(make_mesh):
 def test_total_length_is_constant_for_integer_overlap_ratio(make_mesh, overlap, internal):
     mesh = with_overlap_ratio(make_mesh(30, 100, beta=20.0, internal=internal), overlap)
     assert mesh.overlap_ratio == pytest.approx(overlap, rel=ROUNDING)
-    total = contact_lines(mesh, 30, 10).total_length
+    total = contact_lines(mesh, 30, 10).length.sum(axis=(1, 2))
     expected = mesh.transverse_contact_ratio * mesh.face_width / math.cos(base_helix(mesh))
     assert total == pytest.approx(np.full_like(total, expected), rel=1e-11)
 
@@ -101,7 +101,7 @@ def test_total_length_is_constant_for_integer_transverse_contact_ratio(make_mesh
     tip = math.hypot(path, mesh.gear1.base_radius)
     mesh = replace(mesh, gear1=replace(mesh.gear1, tip_radius=tip))
     assert mesh.transverse_contact_ratio == pytest.approx(2.0, rel=1e-10)
-    total = contact_lines(mesh, 30, 10).total_length
+    total = contact_lines(mesh, 30, 10).length.sum(axis=(1, 2))
     assert total == pytest.approx(np.full_like(total, total[0]), rel=1e-9)
 
 

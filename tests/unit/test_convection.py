@@ -14,7 +14,6 @@ from epicyclic.machine.convection import (
     Fluid,
     air,
     air_conductivity,
-    cylinder_in_air,
     dipped_disc,
     disc_coefficient,
     free_convection,
@@ -22,9 +21,9 @@ from epicyclic.machine.convection import (
     oil_conductivity,
     oil_heat_capacity,
     roller_conductance,
-    room_convection,
 )
 from epicyclic.oil.properties import MixtureState
+from reference.heat_transfer import cylinder_in_air, room_convection
 
 AIR = air(333.15, 101325.0)
 OIL = Fluid(850.0, 20e-3, 0.13, 2000.0)

@@ -6,19 +6,16 @@ import math
 
 import pytest
 
-from epicyclic.machine.convection import (
+from epicyclic.machine.convection import air, forced_convection, free_convection, radiation
+from reference.heat_transfer import (
     FAN_COEFFICIENTS,
     OVERALL_COEFFICIENTS,
-    air,
     cylinder_in_air,
     fan_coefficient,
     fin_conductance,
     fin_factor,
-    forced_convection,
     foundation_conductance,
-    free_convection,
     overall_coefficient,
-    radiation,
     shaft_conductance,
 )
 

@@ -54,7 +54,7 @@ def test_no_negative_loads(mesh, model):
 def test_uniform_load_is_force_over_total_length(mesh):
     lines, shape = load_shape(mesh, "uniform", 20, 20)
     cosine = math.cos(mesh.gear1.rack.base_helix_angle)
-    expected = 1 / (lines.total_length * cosine)
+    expected = 1 / (lines.length.sum(axis=(1, 2)) * cosine)
     assert shape == pytest.approx(np.broadcast_to(expected[:, None, None], shape.shape), rel=1e-12)
 
 

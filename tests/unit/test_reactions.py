@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.machine.machine import ShaftLoad, Support, bearing_reactions, mesh_force, mesh_load
+from epicyclic.machine.machine import GearSeat, ShaftLoad, Support, bearing_reactions, mesh_force
 
 ROUNDING = 1e-12
 """Relative; sums and products of a few dozen numbers of like size."""
@@ -235,7 +235,7 @@ def test_right_hand_gear_that_is_driven_forward_is_pushed_back():
 @pytest.mark.parametrize(("torque", "hand", "direction", "internal"), CASES)
 def test_load_of_a_mesh_acts_at_its_pitch_point(torque, hand, direction, internal):
     at = (RADIUS, ALPHA, TAN_BETA, hand, direction)
-    load = mesh_load(0.2, torque, *at, internal=internal)
+    load = GearSeat("", 1.0, 0.2, *at, internal=internal, around=False).load(torque)
     force = mesh_force(torque, *at, internal=internal)
     pitch_point = RADIUS * np.array([math.cos(direction), math.sin(direction), 0.0])
     moment = np.cross(pitch_point, force)
@@ -247,7 +247,10 @@ def test_load_of_a_mesh_acts_at_its_pitch_point(torque, hand, direction, interna
 def test_torque_does_not_load_the_bearings_of_a_symmetric_planet_ring():
     # three equal meshes a third of a turn apart: only the axial forces are left
     loads = [
-        mesh_load(0.3, 50.0, RADIUS, ALPHA, TAN_BETA, 1, turn * math.tau / 3) for turn in range(3)
+        GearSeat("", 1.0, 0.3, RADIUS, ALPHA, TAN_BETA, 1, turn * math.tau / 3, False, False).load(
+            50.0
+        )
+        for turn in range(3)
     ]
     found = bearing_reactions([Support(0.0, "both"), Support(1.0)], loads)
     one = np.linalg.norm(loads[0].force)

@@ -8,9 +8,6 @@ import numpy as np
 import pytest
 
 from epicyclic.errors import InputError, Status
-from epicyclic.kernels.ehl_fluid import mean_shear, thinning_factor
-from epicyclic.kernels.ehl_rough import face_terms
-from epicyclic.kernels.ehl_steady import deflection_matrix, solve_steady
 from epicyclic.oil.rheology import Barus, Carreau, LimitingStress, Newtonian, ReeEyring, Roelands
 from epicyclic.plugins.contact_solver import rough
 from epicyclic.plugins.contact_solver.conditions import (
@@ -20,6 +17,9 @@ from epicyclic.plugins.contact_solver.conditions import (
     inlet_factor,
     temperature_rise,
 )
+from epicyclic.plugins.contact_solver.kernels_fluid import mean_shear, thinning_factor
+from epicyclic.plugins.contact_solver.kernels_rough import face_terms
+from epicyclic.plugins.contact_solver.kernels_steady import deflection_matrix, solve_steady
 from epicyclic.plugins.contact_solver.rough import AsperityContact, solve_rough
 from epicyclic.plugins.contact_solver.steady import solve_smooth
 from epicyclic.plugins.contact_solver.surfaces import SMOOTH, generate_profile, sinusoidal_profile

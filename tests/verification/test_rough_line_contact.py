@@ -8,16 +8,15 @@ import numpy as np
 import pytest
 
 from epicyclic.errors import Status
-from epicyclic.kernels import ehl_linear, ehl_rough
-from epicyclic.kernels.ehl_rough import Column
 from epicyclic.oil.rheology import Roelands
-from epicyclic.plugins.contact_solver import rough
+from epicyclic.plugins.contact_solver import kernels_linear, kernels_rough, rough
 from epicyclic.plugins.contact_solver.conditions import (
     FEWEST_KEPT,
     SOLVER_BOX,
     ContactOil,
     LineContact,
 )
+from epicyclic.plugins.contact_solver.kernels_rough import Column
 from epicyclic.plugins.contact_solver.rough import AsperityContact, solve_rough
 from epicyclic.plugins.contact_solver.steady import solve_smooth
 from epicyclic.plugins.contact_solver.surfaces import (
@@ -245,8 +244,8 @@ def test_dense_factors_solve_systems_of_any_size(n):
     rng = np.random.default_rng(n)
     matrix, right = rng.standard_normal((n, n)), rng.standard_normal(n)
     order = np.empty(n, dtype=np.int64)
-    factors = ehl_linear.factor_dense(matrix.copy(), order)
-    found = ehl_linear.solve_dense(factors, order, right)
+    factors = kernels_linear.factor_dense(matrix.copy(), order)
+    found = kernels_linear.solve_dense(factors, order, right)
     # rounding, times the condition of these matrices
     np.testing.assert_allclose(found, np.linalg.solve(matrix, right), rtol=1e-9)
 
@@ -254,17 +253,17 @@ def test_dense_factors_solve_systems_of_any_size(n):
 def test_coarse_matrix_sums_the_full_one_over_groups():
     """Rows and columns of active nodes; the last group is not a whole one."""
     rng = np.random.default_rng(8)
-    n, group, weight = 41, ehl_linear.GROUP, 0.3
+    n, group, weight = 41, kernels_linear.GROUP, 0.3
     row = 0.02 * (4 - np.log(np.abs(np.arange(1 - n, n)) + 0.5))
     active = rng.random(n) < 0.8
     active[[0, -1]] = False
     active[group : 2 * group] = False  # a group that carries nothing
     local, by_film = rng.standard_normal((2, n, 3))
     local[~active], by_film[~active] = 0, 0
-    groups = ehl_linear.groups_for(n)
-    ehl_linear.update_groups(row, np.ones(n, dtype=bool), groups)
-    ehl_linear.update_groups(row, active, groups)
-    found = ehl_linear.coarse_matrix(local, by_film, groups.across, active, weight)
+    groups = kernels_linear.groups_for(n)
+    kernels_linear.update_groups(row, np.ones(n, dtype=bool), groups)
+    kernels_linear.update_groups(row, active, groups)
+    found = kernels_linear.coarse_matrix(local, by_film, groups.across, active, weight)
 
     influence = row[n - 1 + np.subtract.outer(np.arange(n), np.arange(n))]
     full = np.zeros((n, n))
@@ -297,17 +296,17 @@ def test_two_level_solver_solves_the_full_equations():
     local[:, 1] = diffusion[:-1] + diffusion[1:]
     by_film = np.tile([-0.05, 1.5, 0.05], (n, 1))
     local[~active], by_film[~active] = 0, 0
-    groups = ehl_linear.groups_for(n)
-    ehl_linear.update_groups(row, active, groups)
-    band = np.empty((n + ehl_linear.BAND, 2 * ehl_linear.BAND + 1))
-    ehl_linear.factor_band(local, by_film, ehl_linear.near_coefficients(row), active, band)
-    coarse = ehl_linear.coarse_matrix(local, by_film, groups.across, active, 0.1)
+    groups = kernels_linear.groups_for(n)
+    kernels_linear.update_groups(row, active, groups)
+    band = np.empty((n + kernels_linear.BAND, 2 * kernels_linear.BAND + 1))
+    kernels_linear.factor_band(local, by_film, kernels_linear.near_coefficients(row), active, band)
+    coarse = kernels_linear.coarse_matrix(local, by_film, groups.across, active, 0.1)
     order = np.empty(coarse.shape[0], dtype=np.int64)
-    coarse = ehl_linear.factor_dense(coarse, order)
+    coarse = kernels_linear.factor_dense(coarse, order)
     right = np.append(np.where(active, rng.standard_normal(n), 0.0), 0.3)
     found = np.empty(n + 1)
-    space, bend, bent = ehl_linear.space_for(n), np.empty(n), np.empty(n)
-    steps = ehl_linear.solve_linear(
+    space, bend, bent = kernels_linear.space_for(n), np.empty(n), np.empty(n)
+    steps = kernels_linear.solve_linear(
         right,
         row,
         coarse,
@@ -323,7 +322,7 @@ def test_two_level_solver_solves_the_full_equations():
         found,
         bend,
     )
-    ehl_linear.deflect(row, found[:n], bent)
+    kernels_linear.deflect(row, found[:n], bent)
     np.testing.assert_allclose(bend, bent + found[n], rtol=1e-9, atol=1e-12)
 
     full = np.zeros((n + 1, n + 1))
@@ -337,7 +336,7 @@ def test_two_level_solver_solves_the_full_equations():
             full[i, :n] += by_film[i, k] * influence[i - 1 + k]
             full[i, n] += by_film[i, k]
     full[n, :n] = 0.1
-    assert steps <= ehl_linear.KRYLOV
+    assert steps <= kernels_linear.KRYLOV
     assert (found[:n][~active] == 0).all()
     residual = full @ found - right
     assert np.linalg.norm(residual) <= 1.01 * 0.07 * np.linalg.norm(right)
@@ -411,7 +410,7 @@ def test_profiles_pass_the_grid_at_any_shift_and_come_round_again():
     padded = np.take(heights, np.arange(-1, period + nodes + 1), mode="wrap")
     gap = np.linspace(5.0, 9.0, nodes)
     found = gap.copy()
-    ehl_rough.lower_by(padded, start, amplitude, found)
+    kernels_rough.lower_by(padded, start, amplitude, found)
     for i in range(nodes):
         whole = math.floor(start + i)
         points = [heights[(whole + offset) % period] for offset in range(-1, 3)]

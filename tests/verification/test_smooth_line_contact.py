@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from epicyclic.errors import InputError, Status
-from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, pan_hamrock_minimum_film
 from epicyclic.oil.rheology import Barus, Roelands, TwoSlope
 from epicyclic.plugins.contact_solver.conditions import (
@@ -19,6 +18,7 @@ from epicyclic.plugins.contact_solver.conditions import (
     LineContact,
     moes_central_film,
 )
+from epicyclic.plugins.contact_solver.kernels_steady import deflection_matrix
 from epicyclic.plugins.contact_solver.steady import graded_nodes, grid_for, solve_smooth
 
 WITNESS = tomllib.loads(

@@ -22,7 +22,7 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import Element, Fluids, State, joined_key
 from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.gear_set import GearSet
-from epicyclic.machine.heat import Settled, ThermalModel, isothermal, settle
+from epicyclic.machine.heat import Answer, Settled, ThermalModel, settle
 from epicyclic.machine.machine import GearSeat, Machine, Operation, ShaftLayout, Support
 from epicyclic.machine.planets import PlanetLoad
 from epicyclic.machine.solve import lossless_state, solve_machine
@@ -53,7 +53,8 @@ class Built:
     def solve(self) -> Settled:
         """Torques, losses and temperatures that agree."""
         if self.thermal is None:
-            return isothermal(solve_machine(self.machine, self.operation, self.known_fluids))
+            solution = solve_machine(self.machine, self.operation, self.known_fluids)
+            return Settled(solution, Answer({}), 1)
         return settle(self.machine, self.operation, self.thermal)
 
     def state(self) -> State:

@@ -452,7 +452,10 @@ def _gap(
     one: str,
     two: str,
 ) -> float:
-    """Smallest distance of the tip circles of two gears on any arms that do not mesh. [m]"""
+    """Smallest distance of the tip circles of two gears on any arms that do not mesh. [m]
+
+    Theory (K8).
+    """
     first, second = pins[gearing.bodies[one]], pins[gearing.bodies[two]]
     mates = any({mesh.first, mesh.second} == {one, two} for mesh in gearing.meshes)
     tips = sound[one].tip_radius + sound[two].tip_radius

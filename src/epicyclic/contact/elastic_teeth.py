@@ -65,7 +65,6 @@ def _blas() -> ThreadpoolController:
 # 1949; R. W. Cornell, J. Mech. Des. 103 (1981) 447). Because the thickness does not change along
 # the tooth, the stiffness matrix is a sum of Kronecker products of one-dimensional integrals.
 
-
 FloatArray = NDArray[np.float64]
 
 SHEAR_FACTOR = 5 / 6
@@ -114,9 +113,7 @@ class ToothPlate:
         The force acts along the common normal; in the section of the tooth it bends the plate by
         its part across the middle line and, acting beside that line, by the moment of the rest.
 
-        Theory (E3).
-
-        [m^0.5 N^-0.5]
+        Theory (E3). [m^0.5 N^-0.5]
         """
         height, inclination = self._place(curvature)
         thickness = np.interp(height, self.section_height, self.section_thickness)
@@ -128,8 +125,7 @@ class ToothPlate:
         terms = shape.shape[1]
         load[:, :terms] = shape * np.cos(inclination)[:, None]
         load[:, terms : 2 * terms] = -shape * (np.sin(inclination) * thickness / 2)[:, None]
-        amplitudes: FloatArray = load @ self.half_inverse.T
-        return amplitudes
+        return load @ self.half_inverse.T
 
     def _place(self, curvature: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Height above the root section, and inclination of the normal force to the plate."""
@@ -243,8 +239,7 @@ def _add_foundation(
 
 def _integral(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
     """Integrals of products of the columns of `a` and `b`, values at Gauss points."""
-    integral: FloatArray = a.T @ (weights[:, None] * b)
-    return integral
+    return a.T @ (weights[:, None] * b)
 
 
 def _kron(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -323,9 +318,7 @@ class ElasticRing:
         Waves shorter than the thickness of the ring are left out: they belong to the foundation
         of the tooth. One wave around the ring moves it as a whole, which its support prevents.
 
-        Theory (E6).
-
-        [m/N], [1/N], [1/(N m)]
+        Theory (E6). [m/N], [1/N], [1/(N m)]
         """
         influence = np.broadcast_to(loads * self._even(), (*angle.shape, 3, 3)).copy()
         shortest = math.floor(2 * math.pi * self.radius / self.thickness)
@@ -344,7 +337,7 @@ class ElasticRing:
         shear = np.array([-n / r, -1 / r, 1.0])
         bending = np.array([0.0, 0.0, n / r])
         area = self.thickness * self.width
-        stiffness: FloatArray = (
+        return (
             math.pi
             * r
             * (
@@ -353,7 +346,6 @@ class ElasticRing:
                 + self.modulus * area * self.thickness**2 / 12 * np.outer(bending, bending)
             )
         )
-        return stiffness
 
     def _even(self) -> FloatArray:
         """Flexibility of the even part: stretching by W, shear by T and M against the outside."""
@@ -379,11 +371,9 @@ def rim_coupling(
     modulus: float,  # [Pa], [1]
     poisson_ratio: float,  # [Pa], [1]
 ) -> FloatArray:
-    """Deflection along the normal at each contact line under a unit force on each.
+    """Deflection along the normal at each contact line under a unit force on each. Theory (E7).
 
     The force of a line acts at its middle, in the plane of action; the tooth is rigid here.
-
-    Theory (E7).
 
     [m/N]
     """
@@ -415,7 +405,6 @@ def rim_coupling(
 # Influence coefficients of a mesh.
 #
 # The coefficients depend on geometry and materials only; every load is solved with the same ones.
-
 
 FACE_TERMS_PER_HEIGHT = 2.5
 """Polynomials along a tooth for each tooth height in its length: shorter ones decay fast. [1]"""
@@ -460,9 +449,7 @@ def mesh_compliance(
     positions: int,  # As for `contact_lines`.
     segments: int,  # As for `contact_lines`.
 ) -> MeshCompliance:
-    """Influence coefficients of `mesh`, shared by all loads.
-
-    Theory (E4).
+    """Influence coefficients of `mesh`, shared by all loads. Theory (E4).
 
     Raises `ConvergenceError` if the stiffness of a tooth cannot be inverted. Raises `ValueError` if
     no tool generates a tooth.
@@ -523,7 +510,6 @@ def _plate(gear: Gear, body: GearBody) -> ToothPlate:
 
 # The load that elastic teeth put on the contact lines of a mesh, and what follows from it.
 
-
 TOLERANCE = 1e-9
 """Gap or penetration that may remain, over the approach; error of the balance, over the force."""
 STEPS_PER_SEGMENT = 10
@@ -563,8 +549,7 @@ class LoadedMesh:
     @property
     def pattern(self) -> NDArray[np.bool_]:
         """Which segments carry load, shape (positions, lines, segments)."""
-        carrying: NDArray[np.bool_] = self.line_load > 0
-        return carrying
+        return self.line_load > 0
 
     @property
     def pair_force(self) -> FloatArray:
@@ -579,8 +564,7 @@ class LoadedMesh:
         Lag of the driven member against the motion of rigid flanks without deviations, as an arc on
         the base circle: the normal approach over cos(beta_b). Theory (E8). [m]
         """
-        error: FloatArray = self.normal_approach / self._cosine
-        return error
+        return self.normal_approach / self._cosine
 
     @property
     def transmission_error_range(self) -> float:
@@ -590,14 +574,12 @@ class LoadedMesh:
     @property
     def secant_stiffness(self) -> FloatArray:
         """Transverse force over transmission error: deviations lower it. Theory (E9). [N/m]"""
-        stiffness: FloatArray = self.force / self.transmission_error
-        return stiffness
+        return self.force / self.transmission_error
 
     @property
     def tangent_stiffness(self) -> FloatArray:
         """Slope of the transverse force over the transmission error. Theory (E9). [N/m]"""
-        stiffness: FloatArray = self.normal_stiffness * self._cosine**2
-        return stiffness
+        return self.normal_stiffness * self._cosine**2
 
     def mean(self, over_period: FloatArray) -> float:
         """Mean over the mesh period of a figure of shape (positions,)."""
@@ -621,9 +603,8 @@ def load_mesh_elastically(
     """Line loads of all segments under the transverse `force` of the mesh.
 
     Contact is looked for on the contact lines of rigid flanks: that deflection and relief may move
-    the first and the last contact of a tooth beyond the ends of the path is left out.
-
-    Raises `ConvergenceError` if no loads are found that satisfy all conditions of the contact.
+    the first and the last contact of a tooth beyond the ends of the path is left out. Raises
+    `ConvergenceError` if no loads are found that satisfy all conditions of the contact.
     """
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
     separation = _separation(mesh, deviations, positions, segments)

@@ -21,7 +21,7 @@ from epicyclic import library
 from epicyclic.contact.line_contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, sealed, unsealed
-from epicyclic.kernels.ehl_fluid import eyring_means
+from epicyclic.kernels.eyring import eyring_means
 from epicyclic.kernels.interpolation import covariance_sums, covariances
 from epicyclic.kernels.line_contact import pan_hamrock_central_film
 from epicyclic.kernels.mixed_ehl import (
@@ -67,8 +67,7 @@ class Regression:
 
     def value(self, states: LineContacts, coefficients: FloatArray) -> FloatArray:
         """See the class."""
-        value: FloatArray = np.exp(self._matrix(states) @ coefficients) * self.scale(states)
-        return value
+        return np.exp(self._matrix(states) @ coefficients) * self.scale(states)
 
     def fit(self, states: LineContacts, target: FloatArray, weight: FloatArray) -> FloatArray:
         """Linear least squares of the logarithm, all branches at once.
@@ -109,8 +108,7 @@ class Regression:
 def _blend(ratio: FloatArray, limit: float) -> FloatArray:
     """Weight of the branch above `limit`. Theory (F4)."""
     t = np.clip((np.log(ratio / limit) + BLEND_HALF_WIDTH) / (2 * BLEND_HALF_WIDTH), 0, 1)
-    weight: FloatArray = t * t * (3 - 2 * t)
-    return weight
+    return t * t * (3 - 2 * t)
 
 
 class RegressionGroups(NamedTuple):
@@ -248,7 +246,6 @@ NEEDLE_REGRESSION = Regression(
 # a polished one keeps the ridges of the other from meeting any, and a rough surface that moves
 # slower than the oil touches more than one that moves faster.
 
-
 EYRING_STRESS = 5e6
 """Unit of the stress of the fit. [Pa]"""
 SLOPE_RATIO, TRANSITION = 0.41, 0.38e9
@@ -346,8 +343,7 @@ def eyring_friction(
     highest = states.hertz_pressure / (1 + light_load / states.moes_load)
     slope = states.pressure_viscosity * np.ones(rate.shape)
     mean = eyring_means(rate, highest, slope, SLOPE_RATIO, TRANSITION, _COSINES, _WEIGHTS)
-    friction: FloatArray = mean * stress / highest
-    return friction
+    return mean * stress / highest
 
 
 def _pairing(states: LineContacts) -> FloatArray:
@@ -463,7 +459,6 @@ STRUCTURED_ROLLING = Structured(
 #
 # Far from all simulations nothing is corrected.
 
-
 MOST_SIMULATIONS = 512
 """As many of a larger campaign take part: each costs time wherever the fit is used."""
 LENGTH = 2.0
@@ -480,26 +475,16 @@ DIGITS = 5
 
 
 class NearbySimulations(BaseModel):
-    """Simulations that correct a form between them. Theory (O15).
-
-    Attributes
-    ----------
-    conditions : dict of str to tuple of float
-        Conditions of each simulation, SI, the slide-to-roll ratio with its sign.
-    excess : tuple of float
-        ln of the simulated quantity over that of the form. [1]
-    weight : tuple of float
-        What each counts. [1]
-    equivalent_modulus : float
-        Equivalent modulus of all. [Pa]
-    """
+    """Simulations that correct a form between them. Theory (O15)."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
+    # Conditions of each simulation, SI, the slide-to-roll ratio with its sign.
     conditions: dict[str, tuple[float, ...]]
+    # ln of the simulated quantity over that of the form. [1]
     excess: tuple[float, ...] = Field(min_length=1, max_length=MOST_SIMULATIONS)
-    weight: tuple[float, ...]
-    equivalent_modulus: float = Field(gt=0)
+    weight: tuple[float, ...]  # What each counts. [1]
+    equivalent_modulus: float = Field(gt=0)  # Equivalent modulus of all. [Pa]
 
     @model_validator(mode="after")
     def _check(self) -> NearbySimulations:
@@ -553,8 +538,7 @@ class NearbySimulations(BaseModel):
 
     def _placed(self, states: LineContacts) -> FloatArray:
         centre, spread = self._scale
-        places: FloatArray = (_coordinates(states) - centre) / spread
-        return places
+        return (_coordinates(states) - centre) / spread
 
     @cached_property
     def _places(self) -> FloatArray:
@@ -573,8 +557,7 @@ class NearbySimulations(BaseModel):
         for place, row in zip(self._places, alike, strict=True):
             covariances(place, self._others, row)
         noise = np.diag(NOISE / np.array(self.weight))
-        shares: FloatArray = np.linalg.solve(alike + noise, np.array(self.excess))
-        return shares
+        return np.linalg.solve(alike + noise, np.array(self.excess))
 
     @property
     def _states(self) -> LineContacts:
@@ -604,7 +587,6 @@ def _rounded(values: FloatArray) -> tuple[float, ...]:
 
 
 # The file of the models fitted for an oil: it says what was simulated, what fits, and how well.
-
 
 Form = Regression | Structured
 
@@ -641,63 +623,32 @@ class _Data(BaseModel):
 
 
 class FitError(_Data):
-    """Errors of contacts that the fit had not seen, |computed/simulated - 1|. Theory (O8).
+    """Errors of contacts that the fit had not seen, |computed/simulated - 1|. Theory (O8)."""
 
-    Attributes
-    ----------
-    regime : str
-        One of `REGIMES`.
-    contacts : int
-    median, largest_of_90_percent : float
-        [1]
-    """
-
-    regime: str
+    regime: str  # One of `REGIMES`.
     contacts: int = Field(ge=0)
-    median: float = Field(ge=0)
-    largest_of_90_percent: float = Field(ge=0)
+    median: float = Field(ge=0)  # [1]
+    largest_of_90_percent: float = Field(ge=0)  # [1]
 
 
 class FittedForm(_Data):
-    """Coefficients of a form, its correction, and its cross-validated errors.
-
-    Attributes
-    ----------
-    form : str
-    coefficients : tuple of float
-    errors : tuple of FitError
-        With the correction, if there is one.
-    nearby : NearbySimulations, optional
-        What corrects a structured form.
-    """
+    """Coefficients of a form, its correction, and its cross-validated errors."""
 
     form: str
     coefficients: tuple[float, ...]
-    errors: tuple[FitError, ...]
-    nearby: NearbySimulations | None = None
+    errors: tuple[FitError, ...]  # With the correction, if there is one.
+    nearby: NearbySimulations | None = None  # What corrects a structured form.
 
 
 class QuantityFit(_Data):
-    """What was fitted to one quantity.
-
-    Attributes
-    ----------
-    unit : str
-    contacts : int
-        Simulations behind it.
-    domain : dict of str to (float, float)
-        Lowest and highest value of every condition among them, SI.
-    forms : tuple of FittedForm
-        The one that is used by default first.
-    left_out : dict of str to str
-        Forms that could not be fitted, and why.
-    """
+    """What was fitted to one quantity."""
 
     unit: str
-    contacts: int = Field(ge=1)
+    contacts: int = Field(ge=1)  # Simulations behind it.
+    # Lowest and highest value of every condition among them, SI.
     domain: dict[str, tuple[float, float]]
-    forms: tuple[FittedForm, ...] = Field(min_length=1)
-    left_out: dict[str, str] = {}
+    forms: tuple[FittedForm, ...] = Field(min_length=1)  # The one that is used by default first.
+    left_out: dict[str, str] = {}  # Forms that could not be fitted, and why.
 
     @model_validator(mode="after")
     def _check_domain(self) -> QuantityFit:
@@ -710,42 +661,20 @@ class QuantityFit(_Data):
 
 
 class OilModel(_Data):
-    """Friction and rolling loss of an oil.
+    """Friction and rolling loss of an oil."""
 
-    Attributes
-    ----------
-    format : str
-        `FORMAT`.
-    version : str
-        Version of this package, which solved the contacts.
-    settings : dict
-        Tables of a line contact that all simulations shared; the oil is one of them.
-    designs : list
-        The simulated points.
-    seed : int
-        Seed of the profiles; of several campaigns that of the first one.
-    command : str
-        Command that makes the simulations; of several campaigns one after the other.
-    simulations : dict of str to int
-        How many were simulated, failed, and were fitted.
-    notes : tuple of str
-        What to know before using it.
-    equivalent_modulus : float
-        E_eq of the simulations. [Pa]
-    fits : dict of str to QuantityFit
-        By quantity, the keys of `FORMS`.
-    """
-
-    format: Literal["epicyclic oil model 4"]
-    version: str
+    format: Literal["epicyclic oil model 4"]  # `FORMAT`.
+    version: str  # Version of this package, which solved the contacts.
+    # Tables of a line contact that all simulations shared; the oil is one of them.
     settings: dict[str, Any]
-    designs: tuple[dict[str, Any], ...]
-    seed: int
+    designs: tuple[dict[str, Any], ...]  # The simulated points.
+    seed: int  # Seed of the profiles; of several campaigns that of the first one.
+    # Command that makes the simulations; of several campaigns one after the other.
     command: str = ""
-    simulations: dict[str, int]
-    notes: tuple[str, ...] = ()
-    equivalent_modulus: float = Field(gt=0)
-    fits: dict[str, QuantityFit]
+    simulations: dict[str, int]  # How many were simulated, failed, and were fitted.
+    notes: tuple[str, ...] = ()  # What to know before using it.
+    equivalent_modulus: float = Field(gt=0)  # E_eq of the simulations. [Pa]
+    fits: dict[str, QuantityFit]  # By quantity, the keys of `FORMS`.
 
     def __hash__(self) -> int:
         # of a few fields: all of them take longer than what is looked up by it
@@ -875,7 +804,6 @@ def _file_error(path: Path, allowed: str) -> InputError:
 
 
 # The fitted models that come with the package, for oils whose properties are those simulated.
-
 
 _SIMULATED = (
     "kinematic_viscosity",

@@ -66,10 +66,7 @@ class InletOil:
 
 @dataclass(frozen=True, eq=False)
 class LineContacts:
-    """Line contacts, one for each entry of the arrays, all of shape (n,).
-
-    Theory (O1).
-    """
+    """Line contacts, one for each entry of the arrays, all of shape (n,). Theory (O1)."""
 
     line_load: FloatArray  # W'. [N/m]
     radius: FloatArray  # Equivalent radius of curvature in the normal section. [m]
@@ -81,8 +78,7 @@ class LineContacts:
     @cached_property
     def slide_to_roll_ratio(self) -> FloatArray:
         """abs(u_s)/u_r. Theory (C4). [1]"""
-        ratio: FloatArray = np.abs(self.sliding_speed) / self.rolling_speed
-        return ratio
+        return np.abs(self.sliding_speed) / self.rolling_speed
 
     @cached_property
     def hertz_pressure(self) -> FloatArray:
@@ -97,8 +93,7 @@ class LineContacts:
     @property
     def flattening(self) -> FloatArray:
         """b_h/R_eq, that of Hertz's theory far below 1. [1]"""
-        flattening: FloatArray = self.hertz_half_width / self.radius
-        return flattening
+        return self.hertz_half_width / self.radius
 
     @property
     def surface_speeds(self) -> tuple[FloatArray, FloatArray]:
@@ -159,14 +154,12 @@ class LineContacts:
     @cached_property
     def load_number(self) -> FloatArray:
         """W = W'/(E_eq R_eq). Theory (C9). [1]"""
-        number: FloatArray = self.line_load / (self.flanks.equivalent_modulus * self.radius)
-        return number
+        return self.line_load / (self.flanks.equivalent_modulus * self.radius)
 
     @property
     def moes_load(self) -> FloatArray:
         """M = W/sqrt(2 U), the load parameter of Moes. Theory (R8). [1]"""
-        parameter: FloatArray = self.load_number / np.sqrt(2 * self.speed_number)
-        return parameter
+        return self.load_number / np.sqrt(2 * self.speed_number)
 
     @cached_property
     def minimum_film(self) -> FloatArray:

@@ -42,9 +42,7 @@ def branch_directions(
 ) -> dict[str, FloatArray]:
     """How much a displacement of a member in x and y closes each branch. Theory (S2).
 
-    Returns
-    -------
-    dict of str to ndarray, shape (planets, 2)
+    Each has the shape (planets, 2).
     """
     outward = np.column_stack((np.cos(angles), np.sin(angles)))
     along = np.column_stack((-np.sin(angles), np.cos(angles)))
@@ -62,9 +60,7 @@ def solve_branch_forces(
 ) -> FloatArray:
     """Forces of all branches, none negative, in balance with `force` and the supports.
 
-    Theory (S3), (S4).
-
-    [N] Raises `ConvergenceError` if no forces balance.
+    Theory (S3), (S4). [N] Raises `ConvergenceError` if no forces balance.
     """
     loose = [name for name in directions if name in supports]
     if loose:
@@ -171,8 +167,7 @@ def closed_form_branch_forces(
     spread = np.eye(n) - 1 / n
     if floating:
         spread -= 2 / n * np.cos(between)
-    forces: FloatArray = force / n + spread @ branches.lead / branches.compliance
-    return forces
+    return force / n + spread @ branches.lead / branches.compliance
 
 
 def mesh_load_factor_shares(count: int, factor: float) -> tuple[float, ...]:

@@ -29,7 +29,6 @@ class Solid:
 
 # Flash temperature of sliding line contacts, and how its heat is shared, after Blok.
 
-
 FloatArray = NDArray[np.float64]
 Numbers = FloatArray | float
 
@@ -39,9 +38,7 @@ def effusivity(
     heat_capacity: float,  # [J/(kg K)]
     density: float,  # [kg/m^3]
 ) -> float:
-    """Thermal effusivity e = sqrt(k c rho) of a solid. [W s^0.5/(m^2 K)]
-
-    Theory (W1).
+    """Thermal effusivity e = sqrt(k c rho) of a solid. Theory (W1). [W s^0.5/(m^2 K)]
 
     The square root of the thermal contact coefficient B_M of ISO/TS 6336-20 to -22.
 
@@ -67,12 +64,10 @@ def flash_temperature(
 ) -> FloatArray:
     """Largest rise of the surface temperature in a line contact above that of the bodies. [K]
 
-    Theory (W2).
-
-    H. Blok (1937), as in ISO/TS 6336-22, second hand: the heat mu W' |u_s| spread evenly over the
-    width of Hertz, shared so that both surfaces are equally hot. The bodies are half-spaces that
-    move fast: u b/kappa above about 10 for each, kappa its thermal diffusivity. Arguments are
-    numbers or arrays, point by point; 0 without load or speed.
+    Theory (W2). H. Blok (1937), as in ISO/TS 6336-22, second hand: the heat mu W' |u_s| spread
+    evenly over the width of Hertz, shared so that both surfaces are equally hot. The bodies are
+    half-spaces that move fast: u b/kappa above about 10 for each, kappa its thermal diffusivity.
+    Arguments are numbers or arrays, point by point; 0 without load or speed.
 
     Examples
     --------
@@ -94,9 +89,7 @@ def heat_share(
     effusivity1: float,  # [W s^0.5/(m^2 K)]
     effusivity2: float,  # [W s^0.5/(m^2 K)]
 ) -> FloatArray:
-    """Share of the frictional heat that goes into body 1. [1]
-
-    Theory (W3).
+    """Share of the frictional heat that goes into body 1. Theory (W3). [1]
 
     H. Blok (1937). With both surfaces at rest it is the limit of equal speeds.
 
@@ -116,7 +109,6 @@ def heat_share(
 #
 # The three rises are estimates of one quantity, made for pairs of gears. The loss factor of
 # ISO/TS 6336-22 is that of Ohlendorf, `epicyclic.losses.mesh.ohlendorf_loss_factor`.
-
 
 LUBRICATION_FACTORS: Mapping[str, float] = MappingProxyType(
     {"spray": 1.2, "dip": 1.0, "spray-and-dip": 1.0, "submerged": 0.2}
@@ -140,9 +132,7 @@ def iso_mean_friction(
     # X_L: mineral oil 1.0, PAO and ester 0.8, polyglycol 0.7, phosphate ester 0.75. [1]
     lubricant_factor: float,
 ) -> float:
-    """Mean coefficient of friction of ISO/TS 6336-22, second hand. [1]
-
-    Theory (W5).
+    """Mean coefficient of friction of ISO/TS 6336-22, second hand. Theory (W5). [1]
 
     Examples
     --------
@@ -159,9 +149,7 @@ def roughness_factor(
     roughness: float,  # Ra, mean of both flanks. [m]
     radius: float,  # Equivalent radius of curvature at the pitch point, normal section. [m]
 ) -> float:
-    """X_R = 2.2 (Ra/rho)^0.25 of ISO/TS 6336-22, um and mm, second hand. [1]
-
-    Theory (W5).
+    """X_R = 2.2 (Ra/rho)^0.25 of ISO/TS 6336-22, um and mm, second hand. Theory (W5). [1]
 
     Examples
     --------
@@ -177,9 +165,7 @@ def relief_factor(
     # Tip relief over the one that takes up the deflection of the teeth, C_a/C_eff, at most 1. [1]
     relief_share: float,
 ) -> float:
-    """X_Ca of ISO/TS 6336-22, second hand: tip relief cools. [1]
-
-    Theory (W6).
+    """X_Ca of ISO/TS 6336-22, second hand: tip relief cools. Theory (W6). [1]
 
     For flanks without adequate tip relief the rise is taken with 1 instead.
 
@@ -200,9 +186,7 @@ def bulk_rise_of_loss(
     lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
     relief_factor: float = 1.0,  # X_Ca. [1]
 ) -> float:
-    """Bulk temperature above that of the oil, ISO/TS 6336-22, second hand. [K]
-
-    Theory (W4).
+    """Bulk temperature above that of the oil, ISO/TS 6336-22, second hand. Theory (W4). [K]
 
     Examples
     --------
@@ -221,9 +205,7 @@ def bulk_rise_of_flash(
     lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
     mates: int = 1,  # How many gears are in mesh with this one.
 ) -> float:
-    """Bulk temperature above that of the oil, ISO/TS 6336-20, second hand. [K]
-
-    Theory (W7).
+    """Bulk temperature above that of the oil, ISO/TS 6336-20, second hand. Theory (W7). [K]
 
     Examples
     --------
@@ -236,9 +218,7 @@ def bulk_rise_of_flash(
 
 
 def mates_factor(mates: int) -> float:
-    """X_mp = (1 + n_p)/2 of ISO/TS 6336-20 for a gear with n_p mates, second hand. [1]
-
-    Theory (W7).
+    """X_mp = (1 + n_p)/2 of ISO/TS 6336-20 for a gear with n_p mates, second hand. Theory (W7). [1]
 
     Examples
     --------
@@ -246,19 +226,3 @@ def mates_factor(mates: int) -> float:
     2.0
     """
     return (1 + mates) / 2
-
-
-def bulk_rise_of_integral_flash(
-    integral_flash: float,  # Mean flash temperature of the integral temperature method. [K]
-    lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
-) -> float:
-    """Bulk temperature above that of the oil, ISO/TS 6336-21, second hand. [K]
-
-    Theory (W8).
-
-    Examples
-    --------
-    >>> round(bulk_rise_of_integral_flash(20.0, LUBRICATION_FACTORS["dip"]), 2)
-    14.0
-    """
-    return 0.70 * lubrication_factor * integral_flash

@@ -91,9 +91,7 @@ def form_radius(
     gear: Gear,
     tool: Tool | None = None,  # `default_tool` if not given.
 ) -> float:
-    """Root form radius r_Ff, where the involute meets the fillet.
-
-    Theory (G34).
+    """Root form radius r_Ff, where the involute meets the fillet. Theory (G34).
 
     Without undercut this is the point that the last point of the tool flank generates: on the line
     of action, in closed form. With undercut it is where fillet and involute intersect; whether the
@@ -114,14 +112,7 @@ def tooth_outline(
 ) -> ToothOutline:
     """Outline of a tooth of `gear` as cut by `tool`.
 
-    Returns
-    -------
-    ToothOutline
-
-    Raises
-    ------
-    ValueError
-        If no such outline exists, with the reason.
+    Raises `ValueError` if no such outline exists, with the reason.
     """
     if points < 2:
         raise ValueError("a section of an outline needs at least two points")
@@ -237,7 +228,6 @@ def _steps(first: float, last: float, points: int) -> Floats:
 
 # The tool that cuts a gear: as stated, or one that leaves the involute that the mate needs.
 
-
 TOOL_HALVINGS = 30
 """Halvings of the rounding of a tool until it is known: to a billionth."""
 
@@ -248,9 +238,8 @@ def longest_involute(gear: Gear, rounding: float | None) -> float:
 
     That is the tool of the stated tip rounding, or else one with sharp corners. If these undercut
     the tooth, it is the rack with just the rounding that lets the involute begin at the base
-    circle; if they cut away the tips of a ring, the default shaper cutter.
-
-    Raises `ValueError` if no tool generates the tooth.
+    circle; if they cut away the tips of a ring, the default shaper cutter. Raises `ValueError` if
+    no tool generates the tooth.
     """
     stated = stated_tool(gear, rounding)
     if not gear.internal:
@@ -285,9 +274,8 @@ def stated_tool(gear: Gear, rounding: float | None) -> Tool | None:
 def cutting_tool(gear: Gear, rounding: float | None) -> Tool:
     """The tool that leaves the root fillet: as stated, or the default one if it cuts the tooth.
 
-    If that one does not, it is the tool that leaves the longest involute.
-
-    Raises `ValueError` if no tool generates the tooth.
+    If that one does not, it is the tool that leaves the longest involute. Raises `ValueError` if no
+    tool generates the tooth.
     """
     stated = stated_tool(gear, rounding)
     if stated is not None:
@@ -324,9 +312,7 @@ def fitted_tool(
 ) -> Tool:
     """`cutting_tool`, its rounding reduced where it would take away involute that the mate needs.
 
-    A stated rounding is kept.
-
-    Raises `ValueError` if no tool generates the tooth.
+    A stated rounding is kept. Raises `ValueError` if no tool generates the tooth.
     """
     usual = cutting_tool(gear, rounding)
     outward = -1 if gear.internal else 1

@@ -44,12 +44,6 @@ class ContactLines:
     face_position: FloatArray
     length: FloatArray  # Length of each segment along the contact line. [m]
 
-    @property
-    def total_length(self) -> FloatArray:
-        """Total length of the contact lines at each mesh position. [m]"""
-        total: FloatArray = self.length.sum(axis=(1, 2))
-        return total
-
 
 @lru_cache(maxsize=64)
 def contact_lines(
@@ -57,17 +51,11 @@ def contact_lines(
     positions: int,  # Mesh positions over one base pitch, about: each interval gets at least one.
     segments: int,  # Segments on each contact line.
 ) -> ContactLines:
-    """Contact lines of `mesh` over one base pitch.
-
-    Theory (G25), (G26).
+    """Contact lines of `mesh` over one base pitch. Theory (G25), (G26).
 
     Every line is cut into `segments` equal parts of its own length. The mesh positions are the
     middles of equal parts of the intervals between which lines enter and leave, so that averages
     over the mesh period converge with the second order for spur gears as well.
-
-    Returns
-    -------
-    ContactLines
     """
     rack = mesh.gear1.rack
     pitch = rack.transverse_base_pitch
@@ -129,7 +117,6 @@ def _positions(mesh: Mesh, count: int) -> tuple[FloatArray, FloatArray]:
 # are roll lengths: transverse radii of curvature of the involute. Face positions count from the end
 # of the face where contact begins while member 1 drives.
 
-
 _EXPONENTS = {"linear": 1, "parabolic": 2}
 
 
@@ -145,8 +132,7 @@ class Relief:
     def at(self, distance: FloatArray) -> FloatArray:
         """Deviation at a `distance` from the end. Theory (G37). [m]"""
         share = np.clip(1 - distance / self.length, 0.0, 1.0)
-        deviation: FloatArray = self.amount * share ** _EXPONENTS[self.shape]
-        return deviation
+        return self.amount * share ** _EXPONENTS[self.shape]
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,10 +185,7 @@ class MicroGeometry:
         curvature: FloatArray,  # Roll lengths of the points. [m]
         face_position: FloatArray,  # From the end of the face of the gear where contact begins. [m]
     ) -> FloatArray:
-        """Material missing at points of the flank of `gear`.
-
-        Theory (G38).
-        """
+        """Material missing at points of the flank of `gear`. Theory (G38)."""
         root, tip = active
         along = (curvature - root) / (tip - root)
         across = face_position / gear.face_width
@@ -237,9 +220,7 @@ class FlankDeviations:
     def separation(self, mesh: Mesh, lines: ContactLines) -> FloatArray:
         """Gap of the unloaded flanks along the common normal on all segments of `lines`.
 
-        Theory (G39).
-
-        [m]
+        Theory (G39). [m]
         """
         # lines that are not in contact lie beyond the path of contact: any place on it serves
         rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
@@ -253,8 +234,7 @@ class FlankDeviations:
             gap = gap + flank.deviation(
                 gear, active_profile(mesh, member), rho, lines.face_position + overhang
             )
-        normal: FloatArray = gap * math.cos(mesh.gear1.rack.base_helix_angle)
-        return normal
+        return gap * math.cos(mesh.gear1.rack.base_helix_angle)
 
 
 def active_profile(mesh: Mesh, member: int) -> tuple[float, float]:
@@ -268,7 +248,6 @@ def active_profile(mesh: Mesh, member: int) -> tuple[float, float]:
 
 
 # Parameters of rough profiles, and how they are converted into each other.
-
 
 RA_OVER_RQ = math.sqrt(2 / math.pi)
 """Ra/Rq of a Gaussian profile. [1]"""

@@ -136,10 +136,7 @@ class Gear:
 
     @property
     def tip_form_radius(self) -> float:
-        """r_Fa, where the involute ends and the tip chamfer begins. ISO 21771. [m]
-
-        Theory (G41).
-        """
+        """r_Fa, where the involute ends and the tip chamfer begins. ISO 21771. Theory (G41). [m]"""
         return self.tip_radius + (self.tip_chamfer if self.internal else -self.tip_chamfer)
 
     @property
@@ -159,9 +156,7 @@ class Gear:
 def half_angle_from_thickness(
     rack: BasicRack, teeth: int, internal: bool, thickness: float, radius: float
 ) -> float:
-    """Half angle at the reference circle of a tooth `thickness` thick at `radius`.
-
-    Theory (G10).
+    """Half angle at the reference circle of a tooth `thickness` thick at `radius`. Theory (G10).
 
     Raises `ValueError` if `radius` is inside the base circle, where there is no involute.
     """

@@ -99,7 +99,6 @@ def zero_between(function: Callable[[float], float], low: float, high: float) ->
 # is named, the formula was derived from this law. Symbols follow ISO 21771; angles in radians,
 # lengths in metres.
 
-
 Floats = NDArray[np.float64]
 
 RACK_ROUNDING = 0.38
@@ -229,7 +228,6 @@ def default_tool(gear: Gear) -> Tool:
     External gears: a rack with rho_fP = 0.38 m_n, profile A of ISO 53. Internal gears: a shaper
     cutter without profile shift and with a tip rounding of 0.2 m_n; its tooth count is the one
     nearest to a third of the ring's that can generate the ring, between 10 and two thirds of it.
-
     Raises `ValueError` if no such shaper cutter generates the ring.
     """
     module = gear.rack.normal_module
@@ -370,9 +368,7 @@ def _shaper_cut(gear: Gear, tool: ShaperTool) -> ShaperCut:
 
 
 def _generating_pressure_angle(gear: Gear, cutter_teeth: int, cutter_half_angle: float) -> float:
-    """Operating pressure angle of cutter and ring without backlash. [rad]
-
-    Theory (G31).
+    """Operating pressure angle of cutter and ring without backlash. Theory (G31). [rad]
 
     Both thicknesses on the pitch circles add up to the pitch there. ISO 21771 gives the same
     relation in terms of profile shifts: inv(alpha_w) = inv(alpha) + 2 tan(alpha) sum(x)/sum(z).

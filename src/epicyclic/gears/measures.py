@@ -148,7 +148,6 @@ def pin_contact_radius(gear: Gear, pin: float) -> float:
 # The tables of DIN 3967:1978 are second hand: two independent open programs print the same values,
 # and the example of the standard agrees, series 27cd at 100 mm. Lengths are in metres.
 
-
 _MM, _UM = 1e-3, 1e-6
 _DIAMETERS = (10, 50, 125, 280, 560, 1000, 1600, 2500, 4000, 6300, 10000)
 """Largest reference diameter of each row of both tables. [mm]"""

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -87,17 +86,14 @@ class Mesh:
         return self.line_of_action - self.side * curvature1
 
     def equivalent_radius(self, curvature1: Real) -> Real:
-        """Equivalent radius of curvature in the normal section. [m]
-
-        Theory (C3).
+        """Equivalent radius of curvature in the normal section. Theory (C3). [m]
 
         Litvin and Fuentes, Gear Geometry and Applied Theory: the curvature of an involute helicoid
         across its contact line is that of the transverse section times cos(beta_b).
         """
         curvature2 = self.curvature2(curvature1)
         transverse = curvature1 * curvature2 / (curvature2 + self.side * curvature1)
-        radius: Real = transverse / math.cos(self.gear1.rack.base_helix_angle)
-        return radius
+        return transverse / math.cos(self.gear1.rack.base_helix_angle)
 
     @cached_property
     def path_start(self) -> float:
@@ -145,10 +141,7 @@ class Mesh:
 
     @cached_property
     def mean_contact_length(self) -> float:
-        """Mean over the mesh period of the length of all contact lines. [m]
-
-        Theory (G40).
-        """
+        """Mean over the mesh period of the length of all contact lines. Theory (G40). [m]"""
         area = self.face_width * self.transverse_contact_ratio
         return area / math.cos(self.gear1.rack.base_helix_angle)
 
@@ -322,32 +315,6 @@ def nearest_admissible_angle(angle: float, teeth_sun: int, teeth_ring: int) -> f
     """The angle nearest to `angle` at which a planet can be assembled. Theory (K7). [rad]"""
     step = 2 * math.pi / (teeth_sun + teeth_ring)
     return round(angle / step) * step
-
-
-def admissible_angles(count: int, teeth_sun: int, teeth_ring: int) -> tuple[float, ...]:
-    """Positions of `count` planets, each the admissible one nearest to equal spacing. [rad]"""
-    return tuple(
-        nearest_admissible_angle(2 * math.pi * planet / count, teeth_sun, teeth_ring)
-        for planet in range(count)
-    )
-
-
-def smallest_planet_gap(
-    angles: Sequence[float], center_distance: float, tip_radius: float
-) -> float:
-    """Smallest distance between the tip circles of neighbouring planets; negative: they overlap.
-
-    Theory (K8).
-
-    Infinite for a single planet. [m]
-    """
-    if len(angles) < 2:
-        return math.inf
-    ordered = sorted(angle % (2 * math.pi) for angle in angles)
-    steps = [b - a for a, b in pairwise(ordered)]
-    steps.append(2 * math.pi - ordered[-1] + ordered[0])
-    chord = min(2 * center_distance * math.sin(step / 2) for step in steps)
-    return chord - 2 * tip_radius
 
 
 def closing_number(

@@ -112,7 +112,6 @@ def _tell(writer: int) -> None:
 # therefore named after the content of every kernel file. Machine code that was damaged on the disk
 # is compiled again, and what cannot be kept is compiled at every start; `cache_notes` tells.
 
-
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -124,11 +123,12 @@ def cache_notes() -> list[str]:
     return list(_notes)
 
 
-def cache_directory(kernel_folder: Path) -> Path | None:
-    """Folder for the machine code of the kernels now in `kernel_folder`; None if there is none."""
+def cache_directory(package: Path) -> Path | None:
+    """Folder for the machine code of the kernels now in a package; None if there is none."""
     digest = hashlib.sha256()
-    for source in sorted(kernel_folder.glob("*.py")):
-        digest.update(source.read_bytes())
+    for pattern in ("kernels/*.py", "plugins/*/kernels_*.py"):
+        for source in sorted(package.glob(pattern)):
+            digest.update(source.read_bytes())
     return private_folder(f"kernels-{digest.hexdigest()[:16]}")
 
 
@@ -136,7 +136,7 @@ def _chosen_directory() -> Path | None:
     """The folder of NUMBA_CACHE_DIR, or one of our own."""
     given = os.environ.get("NUMBA_CACHE_DIR")
     if given is None:
-        return cache_directory(Path(__file__).parent)
+        return cache_directory(Path(__file__).parents[1])
     folder = Path(given)
     if folder.exists() and not is_private(folder):
         _notes[f"NUMBA_CACHE_DIR is not used: others may write to {folder}."] = None

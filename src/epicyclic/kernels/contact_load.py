@@ -287,10 +287,9 @@ def careful_solution(
 ) -> tuple[FloatArray, float, float, int]:
     """The solution by steps that keep the balance and never increase the energy.
 
-    A step ends where the first segment would pull; a free segment joins only at the least energy
-    of the loaded ones. No set of loaded segments comes back, so that the method ends.
-
-    Parameters and returns as for `solve_contact_loads`.
+    A step ends where the first segment would pull; a free segment joins only at the least energy of
+    the loaded ones. No set of loaded segments comes back, so that the method ends. Parameters and
+    returns as for `solve_contact_loads`.
     """
     forces = force * length / length.sum()
     loaded = length > 0.0
@@ -346,9 +345,7 @@ def solve_contact_loads(
     # Most iterations of the careful method, for which one segment may leave or join at a time.
     max_iterations: int,
 ) -> tuple[FloatArray, float, float, int]:
-    """Forces on all segments of all lines.
-
-    Theory (E5).
+    """Forces on all segments of all lines. Theory (E5).
 
     Returns
     -------

@@ -110,7 +110,6 @@ def _sum(row: FloatArray) -> float:
 
 # Tables over the pressure, and over the place on a path of contact: cubics through four points.
 
-
 Floats = NDArray[np.float64]
 
 
@@ -145,10 +144,7 @@ def over_pressure(
     pressures: Floats,
     values: Floats,
 ) -> Floats:
-    """A quantity under a pressure, shape (n,).
-
-    Theory (O16).
-    """
+    """A quantity under a pressure, shape (n,). Theory (O16)."""
     found, weights = np.empty(pressure.size), np.empty(4)
     low = math.log(pressures[0])
     level = (values.size - 1) / (math.log(pressures[1]) - low)
@@ -163,9 +159,7 @@ def along_path(
     path: Floats, pressure: Floats, ends: Floats, crowding: Floats, pressures: Floats,
     values: Floats,
 ) -> Floats:  # fmt: skip
-    """A quantity at places on the path of contact under a pressure, shape (n,).
-
-    Theory (O16).
+    """A quantity at places on the path of contact under a pressure, shape (n,). Theory (O16).
 
     Parameters
     ----------

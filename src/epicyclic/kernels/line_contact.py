@@ -23,9 +23,7 @@ def equivalent_modulus(e1: float, nu1: float, e2: float, nu2: float) -> float:
 def hertz_half_width(w: Real, r_eq: Real, e_eq: float) -> Real:
     """b_h = sqrt(8 W' R_eq/(pi E_eq)). Johnson, Contact Mechanics (1985), Eq. 4.43. [m]
 
-    Theory (C5).
-
-    `w` line load [N/m], `r_eq` equivalent radius [m], `e_eq` [Pa].
+    Theory (C5). `w` line load [N/m], `r_eq` equivalent radius [m], `e_eq` [Pa].
     """
     half_width: Real = (8 * w * r_eq / (math.pi * e_eq)) ** 0.5
     return half_width
@@ -42,14 +40,11 @@ def line_load_at_pressure(p_h: Real, r_eq: Real, e_eq: float) -> Real:
 
     Theory (C6).
     """
-    load: Real = 2 * math.pi * r_eq * p_h**2 / e_eq
-    return load
+    return 2 * math.pi * r_eq * p_h**2 / e_eq
 
 
 def pan_hamrock_minimum_film(u: Real, g: Real | float, w: Real) -> Real:
-    """h_min/R_eq = 1.714 U^0.694 G^0.568 W^-0.128.
-
-    Theory (C10).
+    """h_min/R_eq = 1.714 U^0.694 G^0.568 W^-0.128. Theory (C10).
 
     Pan and Hamrock, J. Tribol. 111 (1989) 246; Talbot (2012), p. 135. Smooth, isothermal, fully
     flooded line contacts in the elastic-piezoviscous regime.
@@ -65,9 +60,7 @@ def pan_hamrock_central_film(u: Real, g: Real | float, w: Real) -> Real:
 
 
 def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> Real:
-    """Rolling force of one surface: F_r alpha/R_eq = 4.318 (G U)^0.658 W^0.0126 phi_T.
-
-    Theory (R6).
+    """Rolling force of one surface: F_r alpha/R_eq = 4.318 (G U)^0.658 W^0.0126 phi_T. Theory (R6).
 
     Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346, in the form of Zhou and Hoeprich,
     J. Tribol. 113 (1991) 590; phi_T = 1/(1 + 0.29 L^0.78), L = mu beta u^2/k. Smooth, fully
@@ -85,11 +78,9 @@ MARTIN_FORCE = 2.0796
 def martin_force(w: Real, speed: Real, viscosity: float) -> Real:
     """Rolling force per length of one surface of rigid cylinders at constant viscosity. [N/m]
 
-    Theory (R9).
-
-    F_r = 2.080 sqrt(mu u W'), from the pressure of H. M. Martin, Engineering 102 (1916) 119, with
-    the film h_0 = 4.895 mu u R/W'. `w` line load [N/m], `speed` mean surface speed [m/s],
-    `viscosity` [Pa s].
+    Theory (R9). F_r = 2.080 sqrt(mu u W'), from the pressure of H. M. Martin, Engineering 102
+    (1916) 119, with the film h_0 = 4.895 mu u R/W'. `w` line load [N/m], `speed` mean surface speed
+    [m/s], `viscosity` [Pa s].
     """
     force: Real = MARTIN_FORCE * (viscosity * speed * w) ** 0.5
     return force

@@ -131,9 +131,7 @@ def _log_rolling_mixed(
 def _log_rolling_film(
     s: float, u: float, g: float, p: float, r: float, s_co: float, s_eq: float, lam: float
 ) -> float:
-    """ln of Eq. 5.10b without its prefactor, L > 1.
-
-    Theory (R2).
+    """ln of Eq. 5.10b without its prefactor, L > 1. Theory (R2).
 
     The bases of b5 (G) and b6 (R_eq) are set the way in which the two branches meet at L = 1.
     """
@@ -156,9 +154,7 @@ def _log_rolling_film(
 def rolling_loss_number(
     s: float, u: float, g: float, p: float, r: float, s_co: float, s_eq: float, lam: float
 ) -> float:
-    """Dimensionless rolling loss of Talbot (2012) Eq. 5.10, branches blended. [1]
-
-    Theory (R3).
+    """Dimensionless rolling loss of Talbot (2012) Eq. 5.10, branches blended. Theory (R3). [1]
 
     Without the prefactor printed in the source, 1e5 W/m: `oilmodel.regressions.rolling_scale`.
     """

@@ -48,10 +48,8 @@ def mixture(q: float, xi: float) -> Mixture:
 def choking_table(xi: float) -> Floats:
     """Throat pressure over stagnation pressure where the throat runs at the speed of sound.
 
-    Theory (Q13).
-
-    On a grid of the logarithm of the stagnation pressure, ``CHOKE_STEP`` apart from ``-CHOKE_END``
-    to ``CHOKE_END``.
+    Theory (Q13). On a grid of the logarithm of the stagnation pressure, ``CHOKE_STEP`` apart from
+    ``-CHOKE_END`` to ``CHOKE_END``.
     """
     count = round(2 * CHOKE_END / CHOKE_STEP) + 1
     ratio = np.zeros(count)
@@ -142,7 +140,6 @@ def donor(u: float, a: Mixture, b: Mixture) -> tuple[float, float, float]:
 #
 # Cells (i, j): pocket i along the mesh, slice j across the face. Axial face j of pocket i lies
 # before cell (i, j), gap i of slice j before cell (i, j) as well.
-
 
 Flags = NDArray[np.bool_]
 Indices = NDArray[np.int64]

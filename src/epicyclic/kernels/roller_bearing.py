@@ -84,8 +84,7 @@ def slice_deflection(
     radial: float, tilt: float, y_over_l: float, clearance: float, crown: float
 ) -> float:
     """Deflection of one contact of a slice; negative where there is a gap. Theory (B8). [m]"""
-    delta: float = 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
-    return delta
+    return 0.5 * (radial + y_over_l * tilt - 0.5 * clearance) - crown
 
 
 @kernel
@@ -151,11 +150,9 @@ def loaded_lengths(
 ) -> None:
     """Fill `lengths`, (rows, rollers), with the length over which each roller is loaded.
 
-    Theory (B11).
-
-    The source counts loaded slices, a number that jumps. Here the slice in which the load ends
-    counts for the part of it that a straight line between slice middles finds loaded, so that
-    the load distribution is a continuous function of the load.
+    Theory (B11). The source counts loaded slices, a number that jumps. Here the slice in which the
+    load ends counts for the part of it that a straight line between slice middles finds loaded, so
+    that the load distribution is a continuous function of the load.
     """
     rows, slices = y_over_l.shape
     delta = np.empty(slices)

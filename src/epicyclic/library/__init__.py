@@ -48,10 +48,7 @@ def oil_names() -> tuple[str, ...]:
 
 
 def oil_table(name: str) -> dict[str, Any]:
-    """The data of one built-in oil.
-
-    Raises `KeyError` if there is no such oil.
-    """
+    """The data of one built-in oil. Raises `KeyError` if there is no such oil."""
     if name not in oil_names():
         raise KeyError(name)
     return _read(_root().joinpath("oils", f"{name}.toml")) | {"name": name}
@@ -105,10 +102,8 @@ def minimal_case(kind: str) -> str:
 def builtin_case(name: str) -> dict[str, Any]:
     """The tables of a built-in case or of one of its variants.
 
-    A variant is named by words after the name of its case, at most one of each group, in any
-    order: ``talbot-2012-n6-polished-40C``.
-
-    Raises `KeyError` if there is no such case or variant.
+    A variant is named by words after the name of its case, at most one of each group, in any order:
+    ``talbot-2012-n6-polished-40C``. Raises `KeyError` if there is no such case or variant.
     """
     bases = (file for file in case_files() if f"{name}-".startswith(f"{file}-"))
     base = max(bases, key=len, default="")

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 # sliding velocity is perpendicular to the plane of action. Curvatures are those of the normal
 # section of the helicoid, rho_n = rho_t/cos(beta_b).
 
-
 FloatArray = NDArray[np.float64]
 
 
@@ -100,10 +99,7 @@ def mesh_contact(
     flanks: Flanks[float],  # Oil at the contacts, and the surfaces.
     around: OilState | None = None,  # Oil around the gears, if its temperature differs.
 ) -> MeshContact:
-    """Conditions at the loaded segments of `lines`.
-
-    Theory (C2).
-    """
+    """Conditions at the loaded segments of `lines`. Theory (C2)."""
     loaded = (lines.length > 0) & (line_load > 0)
     speed2 = speed1 / mesh.ratio
     rho1, rho2 = lines.curvature1[loaded], lines.curvature2[loaded]
@@ -174,9 +170,7 @@ def _uniform(mesh: Mesh, lines: ContactLines) -> FloatArray:
 
 
 def _minimum_energy(mesh: Mesh, lines: ContactLines) -> FloatArray:
-    """Stiffness cos[b0 (xi - xi_m)] along the path of contact, xi in base pitches.
-
-    Theory (D4).
+    """Stiffness cos[b0 (xi - xi_m)] along the path of contact, xi in base pitches. Theory (D4).
 
     Sanchez, Pleguezuelos, Pedrero, Mech. Mach. Theory 109 (2017) 231: b0 = [(1.11 +
     epsilon_alpha/2)^2/2 - 1.17]^-1/2, for 1 <= epsilon_alpha <= 2; beyond, the value at the limit
@@ -205,15 +199,9 @@ def load_shape(
     positions: int,  # As for `contact_lines`.
     segments: int,  # As for `contact_lines`.
 ) -> tuple[ContactLines, FloatArray]:
-    """Contact lines, and the line load on them for a unit transverse force.
+    """Contact lines, and the line load on them for a unit transverse force. Theory (D2).
 
-    Theory (D2).
-
-    Returns
-    -------
-    lines : ContactLines
-    shape : ndarray, shape (positions, lines, segments)
-        W'/F_bt; the normal force F_bt/cos(beta_b) is its integral along the lines. [1/m]
+    That is W'/F_bt; the normal force F_bt/cos(beta_b) is its integral along the lines. [1/m]
     """
     lines = contact_lines(mesh, positions, segments)
     stiffness = STIFFNESS_SHAPES[name](mesh, lines)

@@ -31,14 +31,8 @@ SPEED_PARAMETER = Range(
     "speed_parameter", "speed times pitch diameter, rpm mm", None, 1e6, NUMBER, OF_THIS_PACKAGE
 )
 """Range of the formulas of Palmgren and Harris, which come from tests at moderate speed."""
-_FACES = Range(
-    "reynolds_number",
-    "Reynolds number of the faces",
-    None,
-    1e7,
-    NUMBER,
-    "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory",
-)
+_FACES_SOURCE = "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory"
+_FACES = Range("reynolds_number", "Reynolds number of the faces", None, 1e7, NUMBER, _FACES_SOURCE)
 _CREEPING = Range(
     "reynolds_number",
     "Reynolds number of the faces",
@@ -47,14 +41,8 @@ _CREEPING = Range(
     NUMBER,
     "below, a disc in creeping flow, 32/3 mu omega r^3, drags more: Lamb, Hydrodynamics",
 )
-_RIM = Range(
-    "reynolds_number",
-    "Reynolds number of the rim",
-    None,
-    60.0,
-    NUMBER,
-    "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)",
-)
+_RIM_SOURCE = "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)"
+_RIM = Range("reynolds_number", "Reynolds number of the rim", None, 60.0, NUMBER, _RIM_SOURCE)
 
 
 def bearing_viscous_loss(
@@ -63,9 +51,7 @@ def bearing_viscous_loss(
     speed: float,  # Speed of one ring against the other. [rad/s]
     pitch_diameter: float,  # d_m. [m]
 ) -> float:
-    """Viscous loss of a rolling bearing after Palmgren and Harris. [W]
-
-    Theory (V1).
+    """Viscous loss of a rolling bearing after Palmgren and Harris. Theory (V1). [W]
 
     M0 = 1e-7 f0 (nu n)^(2/3) d_m^3 for nu n >= 2000, else 160e-7 f0 d_m^3; N mm, mm^2/s, rpm, mm.
     Talbot (2012), Eq. 5.6 for the first branch; Harris, Rolling Bearing Analysis, 3rd ed. (1991)
@@ -108,9 +94,7 @@ def disc_drag(
     speed: float,  # Against the housing. [rad/s]
     mixture: MixtureState,
 ) -> DiscDrag:
-    """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5).
-
-    Theory (V3), (V6).
+    """Drag of a disc in the mixture: rim (Eq. 5.4) and both faces (Eq. 5.5). Theory (V3), (V6).
 
     Seetharaman and Kahraman (2010), Talbot (2012), p. 130. The branches of the face formula do not
     meet; here the flow is laminar within the radius at which it turns turbulent, and the turbulent
@@ -160,7 +144,6 @@ def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float
 
 
 # Churning of parts that dip into an oil sump: Changenet and Velex, and ISO/TR 14179-1.
-
 
 ChurningModel = Literal["changenet-velex", "iso-14179-1"]
 
@@ -375,14 +358,12 @@ _RANGES = {
         ),
     ),
 }
-_SPLASH = Range(
-    "tip_speed",
-    "circumferential speed of what dips",
-    None,
-    20.0,
-    METRE_PER_SECOND,
+_SPLASH_SOURCE = (
     "dip lubrication is recommended below it: P. Walter, after Forsch. Ingenieurwes. 84 (2020), "
-    "doi 10.1007/s10010-020-00423-0",
+    "doi 10.1007/s10010-020-00423-0"
+)
+_SPLASH = Range(
+    "tip_speed", "circumferential speed of what dips", None, 20.0, METRE_PER_SECOND, _SPLASH_SOURCE
 )
 
 
@@ -402,7 +383,6 @@ def churning_flags(
 
 
 # Momentum that gears give to the oil of jets.
-
 
 NozzleSide = Literal["in-mesh", "out-of-mesh", "radial"]
 JET_METHOD = "momentum of the oil of jets"

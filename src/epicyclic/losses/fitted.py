@@ -67,19 +67,11 @@ class _Motion:
     speed1: float
     speed2: float
 
-    def _speeds(self, path: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def speeds(self, path: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """u_r and u_s. [m/s]"""
         curvature1 = self.mesh.pitch_point + path
-        return self.speed1 * curvature1, self.speed2 * self.mesh.curvature2(curvature1)
-
-    def rolling(self, path: FloatArray) -> FloatArray:
-        """u_r. [m/s]"""
-        one, two = self._speeds(path)
-        return (one + two) / 2
-
-    def sliding(self, path: FloatArray) -> FloatArray:
-        """u_s. [m/s]"""
-        one, two = self._speeds(path)
-        return one - two
+        one, two = self.speed1 * curvature1, self.speed2 * self.mesh.curvature2(curvature1)
+        return (one + two) / 2, one - two
 
     def radius(self, path: FloatArray) -> FloatArray:
         """Equivalent radius. [m]"""
@@ -101,12 +93,7 @@ def tabulated(
     form: str,  # As for its `value`.
     contacts: MeshContact | RaceContacts,  # n of them.
 ) -> FloatArray:
-    """`OilModel.value` at every contact of a mesh or bearing, interpolated. Theory (O16).
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
+    """`OilModel.value` at every contact of a mesh or bearing, interpolated. Theory (O16)."""
     pressure = np.clip(contacts.hertz_pressure, *model.fits[quantity].domain["hertz_pressure"])
     fit = model, quantity, form
     if isinstance(contacts, MeshContact):
@@ -157,19 +144,20 @@ def _path_table(
     """Arguments of `along_path`: ends, crowding, lowest and highest pressure, values."""
     path = np.array([motion.mesh.path_start, motion.mesh.path_end]) - motion.mesh.pitch_point
     ends = np.array([min(path[0], 0.0), max(path[1], 0.0)])
-    slip = np.abs(motion.sliding(ends)) / motion.rolling(ends)
+    rolling, sliding = motion.speeds(ends)
+    slip = np.abs(sliding) / rolling
     crowding = np.log1p(np.maximum(slip, LEAST_SLIP) / LEAST_SLIP)
     outwards = np.linspace(0.0, crowding, POINTS)
     places = ends * np.expm1(outwards) / np.expm1(crowding)
     # nothing slides at the pitch point, but each side has its sign there too
-    sliding = motion.sliding(places) + NO_SLIP * np.sign(motion.sliding(ends))
+    sliding = motion.speeds(places)[1] + NO_SLIP * np.sign(sliding)
     pressures = np.geomspace(*model.fits[quantity].domain["hertz_pressure"], PRESSURES)
     place, pressure = (grid.ravel() for grid in np.meshgrid(places.T, pressures, indexing="ij"))
     radius = motion.radius(place)
     contacts = LineContacts(
         line_load=line_load_at_pressure(pressure, radius, flanks.equivalent_modulus),
         radius=radius,
-        rolling_speed=motion.rolling(place),
+        rolling_speed=motion.speeds(place)[0],
         sliding_speed=np.repeat(sliding.T, PRESSURES),
         flanks=flanks,
         oil=oil,
@@ -179,7 +167,6 @@ def _path_table(
 
 
 # Friction and rolling loss of an oil that was characterised: fits to its simulated contacts.
-
 
 _LABELS: dict[str, tuple[str, Quantity]] = {
     "slide_to_roll_ratio": ("slide-to-roll ratio", NUMBER),
@@ -227,10 +214,7 @@ class _Fit(RangeFlags):
 
 @dataclass(frozen=True)
 class FittedFriction(NothingToSolve, _Fit):
-    """Coefficients fitted to the simulated contacts of one oil.
-
-    Theory (O9).
-    """
+    """Coefficients fitted to the simulated contacts of one oil. Theory (O9)."""
 
     takes_oil_temperature: ClassVar[bool] = False
 
@@ -243,9 +227,7 @@ class FittedFriction(NothingToSolve, _Fit):
 
 @dataclass(frozen=True)
 class FittedRolling(_Fit):
-    """Rolling loss fitted to the simulated contacts of one oil.
-
-    Theory (O9).
+    """Rolling loss fitted to the simulated contacts of one oil. Theory (O9).
 
     Beyond the loads and speeds of the simulations the loss goes on as that of the regressions,
     Theory (R5).
@@ -277,7 +259,6 @@ def domain_ranges(model: OilModel, quantity: str) -> tuple[Range, ...]:
 # Beyond the simulations the weight of the fit falls smoothly, so that losses over speed, load or
 # temperature have no step.
 
-
 Fit = TypeVar("Fit", FittedFriction, FittedRolling)
 
 REACH = 1.5
@@ -299,10 +280,6 @@ def weight_of_fit(
     """Weight of a fit at each contact: 1 within its simulations, 0 far beyond them. [1]
 
     Theory (O11).
-
-    Returns
-    -------
-    ndarray, shape (n,)
     """
     domain = model.fits[quantity].domain
     modulus = contacts.flanks.equivalent_modulus / model.equivalent_modulus
@@ -315,8 +292,7 @@ def weight_of_fit(
         if low > 0 and name != NO_LEAST:
             beyond = np.maximum(beyond, low / value)
     t = np.clip(np.log(beyond) / math.log(REACH), 0.0, 1.0)
-    weight: FloatArray = 1 - t * t * (3 - 2 * t)
-    return weight
+    return 1 - t * t * (3 - 2 * t)
 
 
 @dataclass(frozen=True, slots=True)
@@ -381,8 +357,7 @@ class FittedOrSchlenk(NothingToSolve, _FittedOrFormula[FittedFriction]):
         if (weight == 1).all():
             return fitted
         formula = self.beyond.coefficient(contact.seen_by(self.beyond))
-        coefficient: FloatArray = weight * fitted + (1 - weight) * formula
-        return coefficient
+        return weight * fitted + (1 - weight) * formula
 
 
 @dataclass(frozen=True, slots=True)
@@ -400,5 +375,4 @@ class FittedOrGoksem(_FittedOrFormula[FittedRolling]):
         weight, fitted = self.weight(contact), self.fitted.loss_density(contact)
         if (weight == 1).all():
             return fitted
-        density: FloatArray = weight * fitted + (1 - weight) * self.beyond.loss_density(contact)
-        return density
+        return weight * fitted + (1 - weight) * self.beyond.loss_density(contact)

@@ -188,7 +188,6 @@ def mean_roughness_ra(contact: MeshContact) -> float:
 
 # Friction formulas fitted to gear and disc tests, each held within the range of its tests.
 
-
 _NIEMANN = "Niemann and Winter, Maschinenelemente II"
 _SPEED = Range("pitch_line_speed", "pitch-line speed", 1.0, 50.0, METRE_PER_SECOND, _NIEMANN)
 _LOAD = Range(
@@ -224,11 +223,6 @@ def _mean_group(contact: MeshContact, load_factor: float = 1.0) -> float:
     return float(group**0.2 * viscosity**-0.05)
 
 
-def _held_ra(contact: MeshContact) -> float:
-    """Mean Ra of the flanks in its range. [um]"""
-    return held_in_range(mean_roughness_ra(contact), _ROUGHNESS) * 1e6
-
-
 def _relative_roughness(contact: MeshContact) -> float:
     """Ra/d1 in um/mm, as in the X_R of Niemann and Winter; d1 is that of the pinion."""
     pinion = min(contact.mesh.gear1.reference_radius, contact.mesh.gear2.reference_radius)
@@ -243,12 +237,10 @@ def _mean_rms(contact: MeshContact) -> float:
 def schlenk(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
     """mu = 0.048 [(F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 Ra^0.25 X_L, one value for the mesh.
 
-    Theory (F15).
-
-    N/mm, m/s, mm, mPa s, um; Ra the mean of both flanks. The standard's text was not read; the
-    constants agree in several independent implementations. [1]
+    Theory (F15). N/mm, m/s, mm, mPa s, um; Ra the mean of both flanks. The standard's text was not
+    read; the constants agree in several independent implementations. [1]
     """
-    rough = _held_ra(contact) ** 0.25
+    rough = (held_in_range(mean_roughness_ra(contact), _ROUGHNESS) * 1e6) ** 0.25
     mu = 0.048 * _mean_group(contact) * rough * contact.oil.lubricant_factor
     return np.full_like(contact.line_load, mu)
 
@@ -267,10 +259,9 @@ _RELATIVE_ROUGHNESS = Range(
 def niemann_winter(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
     """mu = 0.045 [K (F_bt/b)/(v_SigmaC rho_redC)]^0.2 eta^-0.05 X_R X_L, X_R = 3.8 (Ra/d1)^0.25.
 
-    Theory (F16).
-
-    N/mm, m/s, mm, mPa s, um; K = K_A K_gamma is `load_factor`. Standard formula from general
-    knowledge, its text not read; X_R agrees with the form 2.2 (Ra/rho)^0.25 of DIN 3990-4. [1]
+    Theory (F16). N/mm, m/s, mm, mPa s, um; K = K_A K_gamma is `load_factor`. Standard formula from
+    general knowledge, its text not read; X_R agrees with the form 2.2 (Ra/rho)^0.25 of DIN 3990-4.
+    [1]
     """
     rough = held_in_range(_relative_roughness(contact), _RELATIVE_ROUGHNESS)
     group = _mean_group(contact, settings.load_factor)
@@ -300,28 +291,20 @@ def _log_argument(contact: MeshContact) -> FloatArray:
     rolling = 2 * contact.rolling_speed
     sliding = np.maximum(np.abs(contact.sliding_speed), SMALLEST_SLIDING * rolling)
     viscosity = contact.oil.dynamic_viscosity * 1e3
-    argument: FloatArray = 29.66 * contact.line_load / (viscosity * sliding * rolling**2)
-    return argument
+    return 29.66 * contact.line_load / (viscosity * sliding * rolling**2)
 
 
 _ARGUMENT = Range(
     "log_argument", "argument of the logarithm", 10.0, 1e8, NUMBER, OF_THIS_PACKAGE, _log_argument
 )
+_RMS_SOURCE = "AGMA 925-A03: 50/(50 - S) at most 3"
 _RMS = Range(
-    "mean_rms",
-    "mean rms roughness",
-    None,
-    0.0254 * 100 / 3,
-    MICROMETRE,
-    "AGMA 925-A03: 50/(50 - S) at most 3",
-    _mean_rms,
+    "mean_rms", "mean rms roughness", None, 0.0254 * 100 / 3, MICROMETRE, _RMS_SOURCE, _mean_rms
 )
 
 
 def benedict_kelley(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
-    """mu = 0.0127 [50/(50 - S)] log10[29.66 w/(eta v_s v_r^2)], local.
-
-    Theory (F7).
+    """mu = 0.0127 [50/(50 - S)] log10[29.66 w/(eta v_s v_r^2)], local. Theory (F7).
 
     w in N/m, eta in mPa s, v_s and v_r = u1 + u2 in m/s, S rms roughness in microinches. The
     argument of the logarithm is held: below 10, with little load on much oil, it has no meaning;
@@ -329,10 +312,7 @@ def benedict_kelley(contact: MeshContact, settings: FrictionSettings) -> FloatAr
     point v_s is kept at 1 % of v_r, because the formula grows without bound there. [1]
     """
     rms = held_in_range(_mean_rms(contact), _RMS) / MICROINCH
-    mu: FloatArray = (
-        0.0127 * 50 / (50 - rms) * np.log10(held_in_range(_log_argument(contact), _ARGUMENT))
-    )
-    return mu
+    return 0.0127 * 50 / (50 - rms) * np.log10(held_in_range(_log_argument(contact), _ARGUMENT))
 
 
 # Friction as a mixture of dry and separated contact: mu = xi mu_b + (1 - xi) mu_f.
@@ -340,7 +320,6 @@ def benedict_kelley(contact: MeshContact, settings: FrictionSettings) -> FloatAr
 # The share xi of dry contact follows from a film ratio. The coefficients mu_b and mu_f belong to
 # the oil and the surfaces; the original works give them from disc tests of single oils, so that
 # here they are keys of the case. Film thicknesses are those of smooth, isothermal contacts.
-
 
 _FILM_SOURCE = "films of Pan and Hamrock, J. Tribol. 111 (1989) 246"
 FILM_RANGES = (
@@ -357,10 +336,7 @@ def _mixed(dry: FloatArray, settings: FrictionSettings) -> FloatArray:
 
 
 def doleschel(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
-    """xi = (1 - lambda/2)^2 for lambda < 2, else 0; lambda = h_c/[(Ra1 + Ra2)/2].
-
-    Theory (F9).
-    """
+    """xi = (1 - lambda/2)^2 for lambda < 2, else 0; lambda = h_c/[(Ra1 + Ra2)/2]. Theory (F9)."""
     film = contact.radius * pan_hamrock_central_film(
         contact.speed_number, contact.material_number, contact.load_number
     )
@@ -393,21 +369,16 @@ def paired_friction(contact: LineContacts, settings: FrictionSettings) -> FloatA
     Theory (O13).
     """
     published = mixed_ehl(equally_rough(contact), settings)
-    coefficient: FloatArray = published * pairing_ratio("friction", contact)
-    return coefficient
+    return published * pairing_ratio("friction", contact)
 
 
 _SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Table 5.1"
 _REGRESSION_PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SUCCESSOR)
 _REGRESSION_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SUCCESSOR)
 _RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
+_VISCOSITY_SOURCE = "none is in print; a 75W-90 gear oil from 150 to 25 degC"
 _VISCOSITY = Range(
-    "dynamic_viscosity",
-    "dynamic viscosity",
-    5.0,
-    180.0,
-    MILLIPASCAL_SECOND,
-    "none is in print; a 75W-90 gear oil from 150 to 25 degC",
+    "dynamic_viscosity", "dynamic viscosity", 5.0, 180.0, MILLIPASCAL_SECOND, _VISCOSITY_SOURCE
 )
 _REGRESSION_ROUGHNESS = Range(
     "composite_roughness", "composite rms roughness", None, 1.0, MICROMETRE, OF_THIS_PACKAGE
@@ -423,9 +394,7 @@ SMALLEST_SLIDE_TO_ROLL = 1e-9
 
 
 def xu_2007(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
-    """Regression of EHL simulations of a 75W-90 gear oil, full film only.
-
-    Theory (F6).
+    """Regression of EHL simulations of a 75W-90 gear oil, full film only. Theory (F6).
 
     Xu, Kahraman, Anderson and Maddock, J. Mech. Des. 129 (2007) 58: with p_h in GPa, u_r in m/s,
     dynamic viscosity in mPa s, composite rms roughness S in um, radius in m. The range of the
@@ -451,7 +420,6 @@ def xu_2007(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
 
 
 # Coefficients of friction that the user gives.
-
 
 _AXES: dict[str, tuple[str, Quantity]] = {
     "slide_to_roll_ratio": ("slide-to-roll ratio", NUMBER),
@@ -512,7 +480,6 @@ def _table_of(settings: FrictionSettings) -> FrictionMap:
 
 
 # The friction models by name.
-
 
 _SCATTER_UNKNOWN = "fitted to gear tests, whose scatter was not found in print"
 _NOT_COMPARED = "no comparison with measurements was found"

@@ -44,14 +44,9 @@ _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LossTable:
-    """Friction torque or power, linear between the points of a table.
+    """Friction torque or power, linear between the points of a table. Theory (J17).
 
-    Theory (J17).
-
-    Raises
-    ------
-    ValueError
-        If `table_problems` finds any.
+    Raises `ValueError` if `table_problems` finds any.
     """
 
     quantity: LossQuantity  # ``"torque"`` or ``"power"``.
@@ -175,9 +170,8 @@ def read_loss_table(
     The header names one or two of the columns ``speed``, ``temperature`` and ``radial_force`` and
     either ``torque`` or ``power``, each with its unit: ``speed [rpm],torque [N*m]``. Of two axes,
     every point of one goes with every point of the other, in any order. Lines that begin with ``#``
-    do not count; the separator is a comma, a semicolon or a tab.
-
-    Raises `InputError` with every mistake in the file.
+    do not count; the separator is a comma, a semicolon or a tab. Raises `InputError` with every
+    mistake in the file.
     """
     try:
         return _parse(read_text(path, "loss table", _LARGEST_FILE), str(path))
@@ -230,20 +224,12 @@ def _columns(header: Sequence[str]) -> tuple[dict[int, tuple[str, str]], list[Pr
             problems.append(Problem(_shown(text), "", "is a second such column.", "Delete one."))
         else:
             columns[number] = (name, match["unit"].strip())
-            problems += _unit_problems(text, *columns[number])
-    names = [name for name, _ in columns.values()]
-    if not problems:
-        problems = _missing(names)
-    return columns, problems
-
-
-def _unit_problems(header: str, name: str, unit: str) -> list[Problem]:
-    try:
-        _COLUMNS[name][1].scale_from(unit)
-    except PydanticCustomError as error:
-        remedy = f"Write it as {name} [{_COLUMNS[name][1].display}]."
-        return [Problem(_shown(header), "", f"{error.message()}.", remedy)]
-    return []
+            try:
+                _COLUMNS[name][1].scale_from(columns[number][1])
+            except PydanticCustomError as error:
+                remedy = f"Write it as {name} [{_COLUMNS[name][1].display}]."
+                problems.append(Problem(_shown(text), "", f"{error.message()}.", remedy))
+    return columns, problems or _missing([name for name, _ in columns.values()])
 
 
 def _missing(names: Sequence[str]) -> list[Problem]:

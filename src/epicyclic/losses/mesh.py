@@ -79,7 +79,6 @@ def flash_temperatures(
 #
 # Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
 
-
 CLOSED_LIMIT = 1.0
 """Tip contact ratio up to which Ohlendorf's closed form holds. [1]"""
 
@@ -129,9 +128,7 @@ def mean_friction(contact: MeshContact, coefficient: FloatArray) -> float:
 
 
 def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
-    """The quick method: P = P_in mu_m H_V. Niemann and Winter, vol. II, Eq. 21.11/3.
-
-    Theory (M4).
+    """The quick method: P = P_in mu_m H_V. Niemann and Winter, vol. II, Eq. 21.11/3. Theory (M4).
 
     A local friction model enters with its mean over the sliding power.
     """
@@ -150,9 +147,7 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
 
 
 def ohlendorf_loss_factor(mesh: Mesh) -> float:
-    """H_V = pi (u +- 1)/(z1 u cos(beta_b)) (1 - eps_alpha + eps_1^2 + eps_2^2). [1]
-
-    Theory (M5).
+    """H_V = pi (u +- 1)/(z1 u cos(beta_b)) (1 - eps_alpha + eps_1^2 + eps_2^2). Theory (M5). [1]
 
     H. Ohlendorf, Diss. TH Muenchen (1958); minus for internal meshes. Constant friction, tooth
     pairs in contact sharing the load equally. The last bracket holds for 1 <= eps_alpha <= 2 with
@@ -165,9 +160,7 @@ def ohlendorf_loss_factor(mesh: Mesh) -> float:
 def ohlendorf_closed_form(mesh: Mesh) -> float:
     """`ohlendorf_loss_factor` with the bracket as printed, within its range and beyond. [1]
 
-    Theory (M5).
-
-    What other programs state, KISSsoft among them.
+    Theory (M5). What other programs state, KISSsoft among them.
     """
     tip1, tip2 = mesh.tip_contact_ratio1, mesh.tip_contact_ratio2
     return _ratio_term(mesh) * (1 - tip1 - tip2 + tip1**2 + tip2**2)

@@ -110,17 +110,14 @@ def without_oil(limits: Limits) -> Limits:
 
 
 def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:
-    """Rolling loss over that of the same contacts with conditions `held`. [1]
-
-    Theory (R5).
+    """Rolling loss over that of the same contacts with conditions `held`. Theory (R5). [1]
 
     Below the held load the loss falls with the load, so that it vanishes with it; above, it is
     that of the held load. Beyond the held speed the rolling force is that of the held speed.
     """
-    share: FloatArray = np.minimum(1.0, contact.line_load / held.line_load) * (
+    return np.minimum(1.0, contact.line_load / held.line_load) * (
         contact.rolling_speed / held.rolling_speed
     )
-    return share
 
 
 # The published regressions for flanks of unequal roughness.
@@ -129,7 +126,6 @@ def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:
 # polished; but a polished flank keeps the ridges of the other from meeting any. The regression is
 # therefore taken where both flanks are as rough as the rougher one, and from there the solver of
 # this package tells what the smoother flank changes, by its fit to contacts of the same oil.
-
 
 SIMULATED = "atf-talbot-2012"
 """The oil of the regressions, whose contacts were simulated."""
@@ -147,10 +143,6 @@ def pairing_ratio(
 ) -> FloatArray:
     """A quantity over what it is with both surfaces as rough as the rougher one. Theory (O13). [1]
 
-    Returns
-    -------
-    ndarray, shape (n,)
-
     Examples
     --------
     >>> import numpy as np
@@ -164,10 +156,7 @@ def pairing_ratio(
     array([1.])
     """
     model = _simulated()
-    ratio: FloatArray = model.value(quantity, contact) / model.value(
-        quantity, equally_rough(contact)
-    )
-    return ratio
+    return model.value(quantity, contact) / model.value(quantity, equally_rough(contact))
 
 
 @lru_cache(maxsize=1)

@@ -170,8 +170,7 @@ class RollerBearing:
         """Axial position of the slices, shape (rows, slices). Theory (B7). [m]"""
         within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
         middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (self.roller_length + self.row_gap)
-        positions: FloatArray = middles[:, None] + within
-        return positions
+        return middles[:, None] + within
 
     def crown(self) -> FloatArray:
         """Drop of the profile at each slice, a parabola over the crowned ends. Theory (B6). [m]"""
@@ -362,11 +361,9 @@ def mixed_ehl_rolling_loss(
 ) -> BearingLoss:
     """P_mb = w sum P_WD over the loaded slices. Talbot (2012), Eq. 3.5 and 3.6. [W]
 
-    Theory (B13), (B15).
-
-    As printed, one evaluation for each loaded slice; with the radius of the outer race, the
-    reading that reproduces the published effects of roughness and size. Conditions outside
-    Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
+    Theory (B13), (B15). As printed, one evaluation for each loaded slice; with the radius of the
+    outer race, the reading that reproduces the published effects of roughness and size. Conditions
+    outside Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
     contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius,))
@@ -398,10 +395,8 @@ def fitted_rolling_loss(
 ) -> BearingLoss:
     """Rolling loss of the contacts of all rollers with both races, fitted to simulated ones. [W]
 
-    Theory (O9), (O11).
-
-    What was simulated is one contact, and a roller has two; the published formula is evaluated once
-    for a slice, as its source does.
+    Theory (O9), (O11). What was simulated is one contact, and a roller has two; the published
+    formula is evaluated once for a slice, as its source does.
     """
     contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius, bearing.inner_radius))
     if contacts is None:

@@ -241,7 +241,6 @@ def _before(values: Any, ended: float) -> Any:
 
 # Flow through the pockets of a mesh and the power it takes. Talbot (2012), section 4.3.
 
-
 PocketModel = Literal[
     "incompressible", "isentropic", "mean-density", "central-differences", "talbot-2012"
 ]
@@ -323,18 +322,9 @@ def pocket_flow(
     # resolution.
     end_length: float = 1.0,
 ) -> PocketFlow:
-    """Periodic flow through the pockets.
+    """Periodic flow through the pockets. Theory (Q11).
 
-    Theory (Q11).
-
-    Returns
-    -------
-    PocketFlow
-
-    Raises
-    ------
-    ConvergenceError
-        If a time step has no solution, not even as one of four times as many.
+    Raises `ConvergenceError` if a time step has no solution, not even as one of four times as many.
     """
     if model == "talbot-2012":
         return _scaled_up(study_flow(geometry), geometry, abs(speed), mixture.density)

@@ -72,17 +72,7 @@ def pocket_geometry(
     drives1: bool,  # True if member 1 drives, which puts the contact on its leading flanks.
     angles: int = ANGLES,  # Angles in each table.
 ) -> PocketGeometry:
-    """Pockets of `mesh`.
-
-    Returns
-    -------
-    PocketGeometry
-
-    Raises
-    ------
-    ValueError
-        If a tool cannot cut its gear.
-    """
+    """Pockets of `mesh`. Raises `ValueError` if a tool cannot cut its gear."""
     gears, figures = _section(mesh, tools, drives1)
     life = _lives(mesh, contact_clearances(mesh, drives1))
     half_pitch = math.pi / mesh.gear1.teeth
@@ -123,8 +113,7 @@ def pocket_outlines(
     Points x + iy around the pocket, as many as it has, then NaN; axes as of `centroid`. [m]
     """
     gears, figures = _section(mesh, tools, drives1)
-    outlines: NDArray[np.complex128] = kernels.pocket_outlines(angle, member, gears, figures)
-    return outlines
+    return kernels.pocket_outlines(angle, member, gears, figures)
 
 
 def gap_feet(
@@ -139,8 +128,7 @@ def gap_feet(
     On gear 1 and on gear 2, axes as of `pocket_outlines`. [m]
     """
     gears, figures = _section(mesh, tools, drives1)
-    feet: NDArray[np.complex128] = kernels.gap_feet(angle, 1.0 if leading else -1.0, gears, figures)
-    return feet
+    return kernels.gap_feet(angle, 1.0 if leading else -1.0, gears, figures)
 
 
 def _section(mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool) -> tuple[Any, Any]:
@@ -203,7 +191,6 @@ def _crossing(tip1: float, tip2: float, center_distance: float, internal: bool) 
 
 
 # Geometry of the cells into which the pockets of a mesh are cut, over one mesh period.
-
 
 SLICES_PER_PITCH = 10
 """Fewest slices for each pitch that the helix turns over the face."""
@@ -366,5 +353,4 @@ def _along_mesh(parts: list[Any]) -> Any:
 
 def _mean_of_ends(values: Floats) -> Floats:
     """Mean of the values at both ends of each slice, stations on the third axis."""
-    mean: Floats = (values[:, :, :-1] + values[:, :, 1:]) / 2
-    return mean
+    return (values[:, :, :-1] + values[:, :, 1:]) / 2

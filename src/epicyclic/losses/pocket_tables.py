@@ -100,16 +100,11 @@ class FlowFamily:
 
     def flow(self, speed: float, mixture: MixtureState, pressure: float) -> PocketFlow:
         """The flow itself. Parameters as for `pocket_flow`."""
-        return pocket_flow(
-            self.geometry,
-            speed,
-            mixture,
-            pressure,
-            self.model,
-            self.slices,
-            self.steps,
-            self.end_length,
-        )
+        return pocket_flow(self.geometry, speed, mixture, pressure, self.model, *self._resolution)
+
+    @property
+    def _resolution(self) -> tuple[int, int, float]:
+        return self.slices, self.steps, self.end_length
 
     @staticmethod
     def number(speed: float, mixture: MixtureState, pressure: float) -> float:
@@ -119,8 +114,7 @@ class FlowFamily:
     def scales(self, number: float) -> bool:
         """Whether the flow at a number is another one times density and powers of the speed."""
         if self.model == "incompressible":
-            size = (self.slices, self.steps, self.end_length)
-            return number <= void_number(self.geometry, *size)
+            return number <= void_number(self.geometry, *self._resolution)
         return self.model in NETWORK_MODELS
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
@@ -141,9 +135,7 @@ class FlowFamily:
                 MixtureState(self.oil_fraction, 1.0, 0.0),
                 1.0,
                 self.model,
-                self.slices,
-                self.steps,
-                self.end_length,
+                *self._resolution,
             )
         except ConvergenceError:
             return np.full(5, math.nan)
@@ -201,7 +193,6 @@ def from_scaled(
 # A table is made for the numbers that are asked of it. It starts from few of them and adds the one
 # nearest to the middle of every interval until the flow there was predicted by the others well
 # enough; where that does not come to pass, all numbers asked for are solved.
-
 
 WIDEST = math.log(2.0)
 """Largest distance of the first nodes, where the numbers asked for lie closer: an octave."""
@@ -264,8 +255,7 @@ def interpolate(place: Floats, values: Floats, at: float) -> Floats:
     for i in range(near.size):
         others = np.delete(near, i)
         weights[i] = np.prod((at - others) / (near[i] - others))
-    result: Floats = weights @ values[first : first + 4]
-    return result
+    return weights @ values[first : first + 4]
 
 
 def make_tables(
@@ -380,7 +370,6 @@ def _gaps(places: list[int]) -> list[tuple[int, int]]:
 # one number that the flow depends on. Between two flows so near to each other scaled figures follow
 # straight lines, so that not every pass has to solve its flow.
 
-
 CURVATURE = 20.0
 """Second derivative of the scaled power over ln(number), over that power, at most: 15 in second
 differences over 1 and 4 % of the number, in meshes of the built-in cases, of asymmetric ones and of
@@ -446,7 +435,6 @@ class KnownFlows:
 
 
 # Tables of flows through pockets in a file, with the pockets that they were made for.
-
 
 ATTRIBUTE = "flows"
 """Attribute of the NetCDF file that holds the tables as JSON."""

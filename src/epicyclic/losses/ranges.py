@@ -6,15 +6,12 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent
-
-if TYPE_CHECKING:
-    pass
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
 
@@ -226,7 +223,7 @@ def describe_flags(
     concerned = flags_with_loss(flags, loss_of)
     small = [pair for pair in concerned if pair[0] < SMALLEST_APART * total]
     large = [pair for pair in concerned if pair not in small]
-    large.sort(key=_unknown_first)
+    large.sort(key=lambda pair: -math.inf if math.isnan(pair[0]) else -pair[0])
     sentences = [_sentence(watts, group) for watts, group in large]
     if len(small) == 1:
         sentences.append(_sentence(*small[0]))
@@ -251,11 +248,6 @@ def flags_with_loss(
     return [
         (sum(flag.share * loss_of(flag.use) for flag in group), group) for group in groups.values()
     ]
-
-
-def _unknown_first(pair: tuple[float, object]) -> float:
-    """By the loss concerned, the largest first."""
-    return -math.inf if math.isnan(pair[0]) else -pair[0]
 
 
 def _sentence(watts: float, group: list[ValidityFlag]) -> str:
@@ -301,10 +293,7 @@ def check_ranges(
     weight: FloatArray | float = 1.0,  # The loss at each value.
     part: float = 1.0,  # Part of the whole loss that the model is asked for here. [1]
 ) -> tuple[ValidityFlag, ...]:
-    """Flags for every quantity that leaves its range.
-
-    Theory (P8).
-    """
+    """Flags for every quantity that leaves its range. Theory (P8)."""
     left = [(item, values[item.name]) for item in ranges if not _holds(item, values[item.name])]
     return tuple(_flag(use, item, value, weight, part) for item, value in left)
 

@@ -53,14 +53,11 @@ class RollingFormula(Formula):
 def mixed_ehl_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
     """Regression of 33,600 mixed-EHL simulations of an automatic transmission fluid. [W/m]
 
-    Theory (R5).
-
-    Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
+    Theory (R5). Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
     """
     held = held_in_table(contact, oil_held=oil_held)
     number = rolling_loss_number_at(*regression_groups(held))
-    density: FloatArray = number * rolling_scale(held) * beyond_data(contact, held)
-    return density
+    return number * rolling_scale(held) * beyond_data(contact, held)
 
 
 def paired_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
@@ -69,17 +66,15 @@ def paired_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
     Theory (O13).
     """
     published = mixed_ehl_rolling(equally_rough(contact), oil_held)
-    density: FloatArray = published * pairing_ratio("rolling_loss", contact)
-    return density
+    return published * pairing_ratio("rolling_loss", contact)
 
 
 def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
     """Rolling force of both surfaces of a smooth, fully flooded contact, times u_r. [W/m]
 
-    Theory (R7), (R10).
-
-    The formula belongs to elastic contacts, and its force does not vanish with the load. That of
-    rigid cylinders and an oil of constant viscosity does; where it is smaller, it takes over.
+    Theory (R7), (R10). The formula belongs to elastic contacts, and its force does not vanish with
+    the load. That of rigid cylinders and an oil of constant viscosity does; where it is smaller, it
+    takes over.
     """
     oil = contact.oil
     heating = (
@@ -93,8 +88,7 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
     )
     elastic = number * contact.radius / oil.pressure_viscosity
     rigid = martin_force(contact.line_load, contact.rolling_speed, oil.dynamic_viscosity)
-    density: FloatArray = 2 * np.minimum(elastic, rigid) * contact.rolling_speed
-    return density
+    return 2 * np.minimum(elastic, rigid) * contact.rolling_speed
 
 
 ROLLING_MODELS = {

@@ -142,9 +142,7 @@ def bearing_types(model: str) -> tuple[BearingType, ...]:
 
 
 def friction_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
-    """Load P1 that sets the load-dependent friction of a bearing. [N]
-
-    Theory (J1).
+    """Load P1 that sets the load-dependent friction of a bearing. Theory (J1). [N]
 
     Deep groove: the larger of F_r and 3 F_a - 0.1 F_r; tapered: of F_r and 2 Y F_a; cylindrical and
     needle: F_r. Harris (1991), second hand.
@@ -157,9 +155,7 @@ def friction_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
 
 
 def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
-    """Equivalent static load P0 of ISO 76. [N]
-
-    Theory (J2).
+    """Equivalent static load P0 of ISO 76. Theory (J2). [N]
 
     Deep groove: the larger of F_r and 0.6 F_r + 0.5 F_a; tapered: of F_r and 0.5 F_r + 0.55 Y F_a;
     cylindrical and needle: F_r.
@@ -172,14 +168,11 @@ def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
 
 
 def harris_coefficient(bearing: CatalogueBearing, load: BearingLoad) -> float:
-    """Coefficient f1 after Harris. [1]
-
-    Theory (J3).
+    """Coefficient f1 after Harris. Theory (J3). [1]
 
     Deep groove: 0.0009 (P0/C0)^0.55; rollers: constant, 0.0003 caged cylindrical, 0.00055 full
-    complement, 0.0004 tapered. Harris (1991), second hand.
-
-    Raises `ValueError` for needle roller bearings, which Harris's table does not have.
+    complement, 0.0004 tapered. Harris (1991), second hand. Raises `ValueError` for needle roller
+    bearings, which Harris's table does not have.
     """
     if bearing.type not in bearing_types("harris"):
         raise ValueError(f"Harris gives no coefficient for {bearing.type} bearings")
@@ -194,9 +187,8 @@ def load_moment(
 ) -> float:
     """Load-dependent friction moment f1 P1 d_m, with flange friction f_f F_a d_m. [N m]
 
-    Theory (J4).
-
-    Palmgren; Harris (1991), second hand. Only the flanges of cylindrical roller bearings count.
+    Theory (J4). Palmgren; Harris (1991), second hand. Only the flanges of cylindrical roller
+    bearings count.
     """
     moment = coefficient * friction_load(bearing, load)
     if bearing.type == "cylindrical":
@@ -214,16 +206,12 @@ class PalmgrenModel:
     flange_coefficient: float = 0.0  # f_f of a cylindrical roller bearing under axial force. [1]
 
     terms: ClassVar = ("mechanical", "viscous")
+    depends_on_load: ClassVar = True
 
     @property
     def name(self) -> str:
         """As a case has it."""
         return "harris" if self.constant is None else "palmgren"
-
-    @property
-    def depends_on_load(self) -> bool:
-        """True."""
-        return True
 
     def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
         """f1. [1]"""
@@ -341,7 +329,6 @@ def load_flags(
 # conversion is done once, in `_Printed`. The constants of the series are in the library,
 # ``bearings/skf-2018.toml``.
 
-
 STARVATION: Mapping[str, float] = {"jet": 3e-8, "oil-bath": 3e-8, "grease": 6e-8, "oil-air": 6e-8}
 """K_rs by lubrication: oil jet, low oil bath, grease, oil and air (SKF 2018). [1]"""
 LARGEST_DRAG_VARIABLE = 0.0012
@@ -414,11 +401,7 @@ class SkfModel:
 
     name: ClassVar = "skf-2018"
     terms: ClassVar = ("mechanical", "drag")
-
-    @property
-    def depends_on_load(self) -> bool:
-        """True."""
-        return True
+    depends_on_load: ClassVar = True
 
     @property
     def drag_is_estimated(self) -> bool:
@@ -540,9 +523,7 @@ class _Printed:
 def skf_load_variables(
     constants: SkfConstants, bearing: CatalogueBearing, load: BearingLoad
 ) -> tuple[float, float]:
-    """G_rr and G_sl of SKF's model, in its units of N and mm.
-
-    Theory (J5), (J6), (J7).
+    """G_rr and G_sl of SKF's model, in its units of N and mm. Theory (J5), (J6), (J7).
 
     Raises `ValueError` for needle roller bearings, which SKF's table does not have.
     """
@@ -586,15 +567,8 @@ def skf_reduction_factors(
     return 1 / (1 + 1.84e-9 * heating), math.exp(-dry)
 
 
-def _boundary_share(at: _Printed) -> float:
-    """phi_bl, the share of boundary lubrication in the sliding friction. Theory (J9). [1]"""
-    return math.exp(-2.6e-8 * math.pow(at.rpm * at.viscosity, 1.4) * at.pitch)
-
-
 def drag_variable(bearing: CatalogueBearing, oil_level: float) -> float:
-    """Estimate of V_M at an oil level, from none to full immersion. [1]
-
-    Theory (J11).
+    """Estimate of V_M at an oil level, from none to full immersion. Theory (J11). [1]
 
     SKF gives V_M in a diagram, which was not at hand: 0.0012 for a fully submerged ball bearing,
     and 0 without a bath; between, here, in proportion to the area under the oil. Rollers: the same.
@@ -612,10 +586,7 @@ def _immersion_angle(bearing: CatalogueBearing, oil_level: float) -> float:
 def skf_drag_moment(
     model: SkfModel, bearing: CatalogueBearing, speed: float, viscosity: float
 ) -> float:
-    """M_drag in an oil bath. [N m]
-
-    Theory (J10).
-    """
+    """M_drag in an oil bath. Theory (J10). [N m]"""
     if model.oil_level <= 0 or speed == 0:
         return 0.0
     at, constants = _Printed.of(bearing, speed, viscosity), model.constants
@@ -647,16 +618,14 @@ def skf_moments(
     speed: float,  # Speed of one ring against the other. [rad/s]
     viscosity: float,  # Kinematic, of the oil at its temperature in the bearing. [m^2/s]
 ) -> SkfMoments:
-    """Friction moments of SKF's model of 2018.
-
-    Theory (J8), (J9).
-    """
+    """Friction moments of SKF's model of 2018. Theory (J8), (J9)."""
     rolling, sliding = skf_load_variables(model.constants, bearing, load)
     at = _Printed.of(bearing, speed, viscosity)
     hot, dry = skf_reduction_factors(bearing, model.constants, model.starvation, speed, viscosity)
     if model.oil_level >= SUBMERGED * bearing.pitch_diameter:
         dry = 1.0
-    boundary = _boundary_share(at)
+    # phi_bl, the share of boundary lubrication in the sliding friction: (J9)
+    boundary = math.exp(-2.6e-8 * math.pow(at.rpm * at.viscosity, 1.4) * at.pitch)
     mu_bl = STARTING_FRICTION if speed == 0 else BOUNDARY_FRICTION
     mu_sl = boundary * mu_bl + (1 - boundary) * model.full_film_friction
     return SkfMoments(

@@ -36,7 +36,6 @@ def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
 #
 # Speeds are positive in one common sense of rotation.
 
-
 SINGULAR = 1e-10
 """Singular values below this share of the largest count as zero: rows are scaled to length 1."""
 TOGETHER = 1e-12
@@ -152,7 +151,6 @@ def _null_space(matrix: FloatArray) -> FloatArray:
 #
 # A torque is the one that acts on a body from outside, so that torque times speed is the power that
 # enters there.
-
 
 UNBALANCED = 1e-9
 """Torque left over, relative to the largest one, beyond which there is no balance. [1]"""
@@ -302,7 +300,6 @@ def _known_torques(
 # Which gear of a mesh drives decides on which side its efficiency stands, and the torques with
 # these efficiencies decide which gear drives. Near self-locking, losses turn some directions round
 # against those of the lossless flow, and more than one set of directions may agree with itself.
-
 
 MOST_TRIED = 2000
 """Sets of directions that are tried; all of them for up to ten meshes that pass power."""

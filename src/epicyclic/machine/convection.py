@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +44,7 @@ def oil_conductivity(
     # Density at 15.6 degC over that of water at the same temperature, 999 kg/m^3. [1]
     specific_gravity: float,
 ) -> float:
-    """Thermal conductivity of a petroleum oil. [W/(m K)]
-
-    Theory (W22).
+    """Thermal conductivity of a petroleum oil. Theory (W22). [W/(m K)]
 
     C. S. Cragoe, Natl. Bur. Stand. Misc. Publ. 97 (1929), second hand; petroleum liquids from 0 to
     200 degC, of specific gravity 0.75 to 0.95. Within 10 %.
@@ -62,9 +58,7 @@ def oil_conductivity(
 
 
 def oil_heat_capacity(temperature: float, specific_gravity: float) -> float:
-    """Specific heat capacity of a petroleum oil. [J/(kg K)]
-
-    Theory (W22).
+    """Specific heat capacity of a petroleum oil. Theory (W22). [J/(kg K)]
 
     Cragoe (1929), second hand; source, range and parameters as for `oil_conductivity`. Within 4 %.
 
@@ -96,9 +90,7 @@ def air(temperature: float, pressure: float) -> Fluid:
 
 
 def air_conductivity(temperature: float) -> float:
-    """Thermal conductivity of air at `temperature` [K], ISO 2533. [W/(m K)]
-
-    Theory (W23).
+    """Thermal conductivity of air at `temperature` [K], ISO 2533. Theory (W23). [W/(m K)]
 
     General knowledge, 100 to 1900 K as the viscosity.
 
@@ -112,9 +104,7 @@ def air_conductivity(temperature: float) -> float:
 
 
 def mixture(oil: Fluid, air: Fluid, state: MixtureState) -> Fluid:
-    """Mixture of `oil` and `air` with density and viscosity of `state`.
-
-    Theory (W24).
+    """Mixture of `oil` and `air` with density and viscosity of `state`. Theory (W24).
 
     Heat capacity by mass, which is exact; conductivity by volume, an upper bound.
 
@@ -137,7 +127,6 @@ def mixture(oil: Fluid, air: Fluid, state: MixtureState) -> Fluid:
 
 # Heat transfer from what turns: discs, shafts, gears in an oil bath; through loaded rollers.
 
-
 FloatArray = NDArray[np.float64]
 
 TRANSITION_REYNOLDS = 2.4e5
@@ -152,10 +141,8 @@ def disc_coefficient(
 ) -> float:
     """Mean heat transfer coefficient of one face of a disc turning in a fluid at rest. [W/(m^2 K)]
 
-    Theory (W17).
-
-    Area mean of the laminar coefficient within the radius of transition and the turbulent one
-    outside. The face is equally hot all over, the fluid around it free of walls.
+    Theory (W17). Area mean of the laminar coefficient within the radius of transition and the
+    turbulent one outside. The face is equally hot all over, the fluid around it free of walls.
 
     Examples
     --------
@@ -196,10 +183,8 @@ def _turbulent_disc(fluid: Fluid, omega: float) -> float:
 def dipped_disc(fluid: Fluid, speed: float, diameter: float) -> float:
     """Heat transfer coefficient of the faces of a gear in an oil bath, Handschuh. [W/(m^2 K)]
 
-    Theory (W20).
-
-    Second hand; the formula of a plate across a flow, made for Reynolds numbers of 4e3 to 1.5e4.
-    Parameters and sense as for `disc_coefficient`.
+    Theory (W20). Second hand; the formula of a plate across a flow, made for Reynolds numbers of
+    4e3 to 1.5e4. Parameters and sense as for `disc_coefficient`.
 
     Examples
     --------
@@ -210,42 +195,6 @@ def dipped_disc(fluid: Fluid, speed: float, diameter: float) -> float:
     reynolds = abs(speed) * diameter**2 / (2 * fluid.kinematic_viscosity)
     nusselt = 0.228 * math.pow(reynolds, 0.731) * math.pow(fluid.prandtl, 1 / 3)
     return nusselt * fluid.conductivity / diameter
-
-
-def cylinder_in_air(
-    speed: float,  # Against the air, of either sign. [rad/s]
-    radius: float,  # [m]
-) -> float:
-    """Heat transfer coefficient of a shaft turning in air. [W/(m^2 K)]
-
-    Theory (W18).
-
-    Film law of the program Thermca, second hand.
-
-    Examples
-    --------
-    >>> round(cylinder_in_air(314.16, 20e-3), 1)
-    43.9
-    """
-    return 3.75 * math.pow(abs(speed), 0.7) * math.pow(radius, 0.4)
-
-
-def room_convection(
-    surface_temperature: float,  # [K]
-    air_temperature: float,  # [K]
-) -> float:
-    """Heat transfer coefficient of a surface at rest in a room, without radiation. [W/(m^2 K)]
-
-    Theory (W19).
-
-    Film law of the program Thermca, second hand.
-
-    Examples
-    --------
-    >>> round(room_convection(333.0, 293.0), 1)
-    7.5
-    """
-    return 1.7 * 1.3 * math.pow(abs(surface_temperature - air_temperature), 0.33)
 
 
 def roller_conductance(
@@ -261,10 +210,8 @@ def roller_conductance(
 ) -> float:
     """Heat from race to race through loaded rollers, by the temperature difference. [W/K]
 
-    Theory (W21).
-
-    Derived here: constriction of the heat in either race and in the roller, contacts at rest and
-    dry. Rollers that touch one race only, with half-width 0, lead nothing.
+    Theory (W21). Derived here: constriction of the heat in either race and in the roller, contacts
+    at rest and dry. Rollers that touch one race only, with half-width 0, lead nothing.
 
     Examples
     --------
@@ -288,20 +235,6 @@ def roller_conductance(
 # ISO/TR 14179-2 (after W. Funck, Diss. TU Muenchen, 1985) is second hand. Its coefficients are
 # means over the outside of a housing in air at about 100 kPa.
 
-
-OVERALL_COEFFICIENTS: Mapping[str, tuple[float, float]] = MappingProxyType(
-    {"small-confined": (10.0, 14.0), "large-indoor": (17.0, 20.0), "outdoor": (19.0, 24.0)}
-)
-"""Overall coefficients of ISO/TR 14179-1 from oil to air, from and to. Large rooms: air above
-1.4 m/s; outdoors: above 3.7 m/s. General knowledge; confirm before relying on them. [W/(m^2 K)]"""
-FAN_COEFFICIENTS: tuple[tuple[float, float], ...] = (
-    (2.5, 15.0),
-    (5.0, 24.0),
-    (10.0, 42.0),
-    (15.0, 58.0),
-)
-"""Air speed [m/s] and overall coefficient [W/(m^2 K)] with a fan on a shaft, ISO/TR 14179-1;
-general knowledge, as `OVERALL_COEFFICIENTS`."""
 SPLASHED_WALL = 200.0
 """Coefficient between the oil and the wall that it splashes, ISO/TR 14179-2. [W/(m^2 K)]"""
 STANDARD_PRESSURE = 101325.0
@@ -315,9 +248,7 @@ def free_convection(
     housing_temperature: float,  # [K]
     air_temperature: float,  # [K]
 ) -> float:
-    """Coefficient of free convection from a housing, ISO/TR 14179-2. [W/(m^2 K)]
-
-    Theory (W9).
+    """Coefficient of free convection from a housing, ISO/TR 14179-2. Theory (W9). [W/(m^2 K)]
 
     Examples
     --------
@@ -338,10 +269,8 @@ def forced_convection(
 ) -> float:
     """Coefficient of convection from a housing in moving air, ISO/TR 14179-2. [W/(m^2 K)]
 
-    Theory (W10).
-
-    The buoyancy of the warm air enters through the Reynolds number. Air has the temperature midway
-    between housing and surroundings.
+    Theory (W10). The buoyancy of the warm air enters through the Reynolds number. Air has the
+    temperature midway between housing and surroundings.
 
     Examples
     --------
@@ -371,127 +300,3 @@ def radiation(
     6.3
     """
     return 0.23e-6 * emissivity * ((housing_temperature + air_temperature) / 2) ** 3
-
-
-def overall_coefficient(
-    # From the wall to the air: convection, times the factor of its fins, plus radiation. [W/(m^2
-    # K)]
-    outside: float,
-    inside: float = SPLASHED_WALL,  # From the oil to the wall. [W/(m^2 K)]
-    area_ratio: float = 1.0,  # Outer over inner area of the housing. [1]
-    wall_thickness: float = 0.0,  # [m]
-    wall_conductivity: float = 50.0,  # [W/(m K)]
-) -> float:
-    """Coefficient from the oil to the air, for the outer area, ISO/TR 14179-2. [W/(m^2 K)]
-
-    Theory (W12).
-
-    Examples
-    --------
-    >>> round(overall_coefficient(17.0), 1)
-    15.7
-    """
-    within = area_ratio / inside + wall_thickness / wall_conductivity
-    return outside / (1 + outside * within)
-
-
-def fin_factor(
-    convection: float,  # Coefficient of convection without fins. [W/(m^2 K)]
-    # Area of the housing as if it had no fins, for which the factor holds. [m^2]
-    plain_area: float,
-    fin_area: float,  # Area of both faces of all fins, less what they cover of the housing. [m^2]
-    fin_height: float,  # [m]
-    fin_thickness: float,  # [m]
-    conductivity: float,  # Conductivity of the fins. [W/(m K)]
-) -> float:
-    """Factor on the convection of a housing that has fins; radiation gains nothing. [1]
-
-    Theory (W13).
-
-    The efficiency is that of a straight fin of constant thickness, general knowledge.
-
-    Examples
-    --------
-    >>> round(fin_factor(10.0, 1.0, 1.5, 40e-3, 5e-3, 50.0), 2)
-    2.44
-    """
-    slope = math.sqrt(2 * convection / (conductivity * fin_thickness)) * fin_height
-    efficiency = math.tanh(slope) / slope if slope > 0 else 1.0
-    return 1 + efficiency * fin_area / plain_area
-
-
-def fin_conductance(
-    coefficient: float,  # From the rod to the air. [W/(m^2 K)]
-    perimeter: float,  # Through which the cross-section gives heat to the air. [m]
-    area: float,  # Area of the cross-section. [m^2]
-    length: float,  # [m]
-    conductivity: float,  # [W/(m K)]
-) -> float:
-    """Heat that a rod leads from a housing to the air, by the temperature of its root. [W/K]
-
-    Theory (W14).
-
-    ISO/TR 14179-2 for foundations and shaft ends; the end of the rod is insulated.
-
-    Examples
-    --------
-    >>> round(fin_conductance(20.0, 0.126, 1.26e-3, 0.2, 50.0), 3)
-    0.34
-    """
-    slope = math.sqrt(coefficient * perimeter / (conductivity * area))
-    return conductivity * area * slope * math.tanh(slope * length)
-
-
-def foundation_conductance(
-    coefficient: float,  # From the plate to the air. [W/(m^2 K)]
-    width: float,  # Width of the joint to the housing. [m]
-    thickness: float,  # [m]
-    length: float,  # From the housing to the edge of the plate. [m]
-    conductivity: float,  # [W/(m K)]
-) -> float:
-    """`fin_conductance` of a plate that gives heat to the air on one face. [W/K]
-
-    Theory (W14).
-
-    Examples
-    --------
-    >>> round(foundation_conductance(10.0, 0.5, 20e-3, 0.3, 50.0), 2)
-    1.17
-    """
-    return fin_conductance(coefficient, width, width * thickness, length, conductivity)
-
-
-def shaft_conductance(
-    # From the shaft to the air, as `epicyclic.machine.convection.cylinder_in_air`. [W/(m^2 K)]
-    coefficient: float,
-    diameter: float,  # [m]
-    length: float,  # [m]
-    conductivity: float,  # [W/(m K)]
-) -> float:
-    """`fin_conductance` of a shaft end of circular cross-section. [W/K]
-
-    Theory (W14).
-
-    Examples
-    --------
-    >>> round(shaft_conductance(20.0, 40e-3, 0.2, 50.0), 3)
-    0.339
-    """
-    area = math.pi * diameter**2 / 4
-    return fin_conductance(coefficient, math.pi * diameter, area, length, conductivity)
-
-
-def fan_coefficient(
-    air_speed: float,  # [m/s]
-) -> float:
-    """Overall coefficient with a fan on a shaft, ISO/TR 14179-1. [W/(m^2 K)]
-
-    Linear between `FAN_COEFFICIENTS`, held at the first and the last.
-
-    Examples
-    --------
-    >>> fan_coefficient(7.5)
-    33.0
-    """
-    speeds, coefficients = zip(*FAN_COEFFICIENTS, strict=True)
-    return float(np.interp(air_speed, speeds, coefficients))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from epicyclic.gears.gear import HOUSING
@@ -89,55 +89,48 @@ def disc_loss(
     state: State,
     struck: int = 1,  # Gears that turn and share the oil of the jets.
 ) -> Outcome:
-    """The drag of `discs` together, each on its own shaft, and its flags.
-
-    Theory (N2).
-    """
+    """The drag of `discs` together, each on its own shaft, and its flags. Theory (N2)."""
     flags: tuple[ValidityFlag, ...] = ()
     drags: dict[str, float] = {}
     methods: dict[str, str] = {}
     for disc in discs:
         speed = state.speeds[disc.body]
-        drag, found = _drag(disc, speed, state)
-        drags[disc.body] = drag + _jet_loss(disc, speed, state, struck)
+        drag, found, (method, source) = _drag(disc, speed, state)
+        methods[method] = source
+        if disc.jets is not None:
+            drag += _jet_loss(disc.jets, speed, state, struck)
+            methods[JET_METHOD] = JET_SOURCE
+        drags[disc.body] = drag
         flags += found
-        methods |= dict(_methods(disc))
     watts = sum(drags.values())
     brakes = tuple((body, HOUSING, drag / watts) for body, drag in drags.items() if drag)
     method, source = "; ".join(methods), "; ".join(methods.values())
     return Loss(LOAD_INDEPENDENT, watts, method, source, brakes=brakes), flags
 
 
-def _drag(disc: Disc, speed: float, state: State) -> tuple[float, tuple[ValidityFlag, ...]]:
-    """Churning of a body that dips into a sump, drag in the mixture of another. [W]"""
+def _drag(
+    disc: Disc, speed: float, state: State
+) -> tuple[float, tuple[ValidityFlag, ...], tuple[str, str]]:
+    """Churning of a body that dips into a sump, drag in the mixture of another [W]; its method."""
     if disc.sump is not None and disc.dips:
+        model = CHURNING_MODELS[disc.sump.model]
         flags = churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
-        return disc.sump.power(disc.sump.model, speed, state), flags
+        power = disc.sump.power(disc.sump.model, speed, state)
+        return power, flags, (model.title, model.source)
     mixture = state.fluids.mixed(disc.oil_fraction)
     drag = disc_drag(disc.radius, disc.width, speed, mixture)
-    return drag.total, disc_drag_flags(disc.where, disc.radius, drag, speed, mixture)
+    flags = disc_drag_flags(disc.where, disc.radius, drag, speed, mixture)
+    return drag.total, flags, (DRAG_METHOD, DRAG_SOURCE)
 
 
-def _jet_loss(disc: Disc, speed: float, state: State, struck: int) -> float:
+def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:
     """What the oil of jets takes from a gear. [W]"""
-    jets = disc.jets
-    if jets is None or not speed:
+    if not speed:
         return 0.0
     pitch_speed = abs(speed) * jets.pitch_radius
     return jet_loss(
         state.fluids.oil.density, jets.flow / struck, pitch_speed, jets.speed, jets.side
     )
-
-
-def _methods(disc: Disc) -> Iterator[tuple[str, str]]:
-    """Methods of what drags a body, each with its source."""
-    if disc.sump is not None and disc.dips:
-        model = CHURNING_MODELS[disc.sump.model]
-        yield model.title, model.source
-    else:
-        yield DRAG_METHOD, DRAG_SOURCE
-    if disc.jets is not None:
-        yield JET_METHOD, JET_SOURCE
 
 
 def churned(discs: Iterable[Disc], state: State) -> dict[str, float]:

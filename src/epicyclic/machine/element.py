@@ -32,14 +32,9 @@ if TYPE_CHECKING:
 
 # The oil at a temperature, and its mixture with air.
 
-
+_VISCOSITY_SOURCE = "ASTM D341, form for 2 mm^2/s and more"
 _VISCOSITY = Range(
-    "kinematic_viscosity",
-    "kinematic viscosity",
-    2.0,
-    2e7,
-    SQUARE_MM_PER_SECOND,
-    "ASTM D341, form for 2 mm^2/s and more",
+    "kinematic_viscosity", "kinematic viscosity", 2.0, 2e7, SQUARE_MM_PER_SECOND, _VISCOSITY_SOURCE
 )
 
 
@@ -188,7 +183,6 @@ class FluidFigures:
 
 
 # What an element of a gearbox sees, and what it answers.
-
 
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"

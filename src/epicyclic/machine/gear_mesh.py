@@ -118,11 +118,6 @@ class MeshDuty:
         return self.gears.mesh
 
     @property
-    def tools(self) -> tuple[Tool, Tool]:
-        """The tools that cut both gears."""
-        return self.gears.tools
-
-    @property
     def models(self) -> MeshModels:
         """How its losses are computed."""
         return self.gears.models

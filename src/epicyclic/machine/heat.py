@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.contact.temperatures import bulk_rise_of_flash, bulk_rise_of_loss
-from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
+from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine import convection as shell
 from epicyclic.machine.convection import Fluid
@@ -90,11 +90,6 @@ class Settled:
     change: float = 0.0  # Largest change of a temperature in the last of them. [K]
 
 
-def isothermal(solution: Solution) -> Settled:
-    """A solution at temperatures that nothing was asked about."""
-    return Settled(solution, Answer({}), 1)
-
-
 def heat_of(solution: Solution) -> dict[str, float]:
     """Heat that the losses bring to each thermal node. [W]"""
     heat: dict[str, float] = {}
@@ -113,9 +108,8 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     """Temperatures and losses that agree. Theory (W27).
 
     Plain repetition of losses and temperatures as long as that is quick, as where nothing but the
-    gears gets warm; else Broyden's method on the temperatures.
-
-    Raises `ConvergenceError` if there is no equilibrium, or only one that no gearbox survives.
+    gears gets warm; else Broyden's method on the temperatures. Raises `ConvergenceError` if there
+    is no equilibrium, or only one that no gearbox survives.
     """
     nodes = tuple(model.start)
     unheated = start_of(machine, operation)
@@ -174,27 +168,19 @@ def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
     for _, answer in found:  # the first to leave the bounds tells on which side they are left
         coldest, hottest = (end(answer.temperatures.values()) for end in (min, max))
         if coldest < COLDEST:
-            return _overcooled(answer.temperatures)
+            node = min(answer.temperatures, key=answer.temperatures.__getitem__)
+            return ConvergenceError(
+                f"more heat is taken away than arises: the {node.replace('_', ' ')} would be "
+                f"colder than {CELSIUS.text(COLDEST, 4)}, down to which losses are computed. Give "
+                "a smaller thermal.cooler_power, or thermal.cooler_conductance, which takes no "
+                "more than there is."
+            )
         if hottest > HOTTEST:
             break
-    return _runaway(found[-1][1].temperatures, found)
-
-
-def _overcooled(temperatures: Mapping[str, float]) -> ConvergenceError:
-    coldest = min(temperatures, key=lambda node: temperatures[node])
-    return ConvergenceError(
-        f"more heat is taken away than arises: the {coldest.replace('_', ' ')} would be colder "
-        f"than {CELSIUS.text(COLDEST, 4)}, down to which losses are computed. Give a smaller "
-        "thermal.cooler_power, or thermal.cooler_conductance, which takes no more than there is."
-    )
-
-
-def _runaway(
-    temperatures: Mapping[str, float], found: list[tuple[Solution, Answer]]
-) -> ConvergenceError:
-    hottest = max(temperatures, key=lambda node: temperatures[node])
-    reached = f"{hottest.replace('_', ' ')} {CELSIUS.text(temperatures[hottest], 4)}"
-    if OIL in temperatures and hottest != OIL:
+    temperatures = found[-1][1].temperatures
+    node = max(temperatures, key=temperatures.__getitem__)
+    reached = f"{node.replace('_', ' ')} {CELSIUS.text(temperatures[node], 4)}"
+    if OIL in temperatures and node != OIL:
         reached += f", oil {CELSIUS.text(temperatures[OIL], 4)}"
     return ConvergenceError(
         "the gearbox runs away: its heat would leave only beyond "
@@ -205,7 +191,6 @@ def _runaway(
 
 
 # Bulk temperatures of gears from their own meshes, with the oil at its inlet temperature.
-
 
 BulkMethod = Literal["iso-6336-20", "iso-6336-22"]
 
@@ -228,17 +213,12 @@ class FlankModel:
     oil: float  # Temperature of the oil. [K]
     method: BulkMethod  # One of `BULK_METHODS`.
     lubrication_factors: Mapping[str, float]  # X_S of each set, by its key. [1]
-    # Oil and mixture at the temperatures of all nodes.
-    fluids_at: Callable[[Mapping[str, float]], Fluids]
+    fluids: Callable[[Mapping[str, float]], Fluids]  # As of `ThermalModel`.
 
     @property
     def start(self) -> Mapping[str, float]:
         """All gears as warm as the oil. [K]"""
         return dict.fromkeys(_sides(self.machine), self.oil)
-
-    def fluids(self, temperatures: Mapping[str, float]) -> Fluids:
-        """Oil and mixture at the temperatures of the nodes that they meet."""
-        return self.fluids_at(temperatures)
 
     def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
         """Bulk temperatures of all gears."""
@@ -267,19 +247,15 @@ def _sides(machine: Machine) -> dict[str, list[_Side]]:
 
 def _rise_of_flash(sides: list[_Side], solution: Solution, lubrication_factor: float) -> float:
     """ISO/TS 6336-20 with the mean flash temperature of its loaded meshes. Theory (W7)."""
-    loaded = [(side, flash) for side, flash in _flashes(sides, solution) if not math.isnan(flash)]
-    if not loaded:
-        return 0.0
-    mean = sum(flash for _, flash in loaded) / len(loaded)
-    mates = sum(side.mates for side, _ in loaded)
-    return bulk_rise_of_flash(mean, lubrication_factor, mates)
-
-
-def _flashes(sides: list[_Side], solution: Solution) -> Iterator[tuple[_Side, float]]:
+    flashes, mates = [], 0
     for side in sides:
         figures = solution.results[side.element].figures[side.mesh.key]
         assert isinstance(figures, MeshFigures)
-        yield side, figures.flash_temperature_mean
+        if not math.isnan(figures.flash_temperature_mean):
+            flashes.append(figures.flash_temperature_mean)
+            mates += side.mates
+    mean = sum(flashes) / len(flashes) if flashes else 0.0
+    return bulk_rise_of_flash(mean, lubrication_factor, mates)
 
 
 def _rise_of_loss(sides: list[_Side], solution: Solution, lubrication_factor: float) -> float:
@@ -305,7 +281,6 @@ BULK_METHODS: Mapping[str, Callable[[list[_Side], Solution, float], float]] = {
 
 
 # The network of a machine: nodes of its parts, the oil and the housing, and the ways between.
-
 
 AMBIENT = "air"
 COOLANT = "coolant"
@@ -351,7 +326,7 @@ class Housing:
         return self.fin_factor * convection + shell.radiation(self.emissivity, wall, air)
 
     def links(self, wall: float, air: float) -> Iterator[Link]:
-        """From the oil to the wall, and from there to the air."""
+        """From the oil to the wall, and from there to the air. Theory (W12)."""
         inside = self.inner_coefficient * self.inner_area
         if self.method == "iso-14179-1":
             whole = self.coefficient * self.area
@@ -419,8 +394,7 @@ class NetworkModel:
 
     machine: Machine
     settings: HeatSettings
-    # Oil and mixture at the temperatures of all nodes.
-    fluids_at: Callable[[Mapping[str, float]], Fluids]
+    fluids: Callable[[Mapping[str, float]], Fluids]  # As of `ThermalModel`.
     # The oil, and its mixture with air, as heat sees them, at a temperature.
     media_at: Callable[[float], tuple[Fluid, Fluid]]
 
@@ -464,10 +438,6 @@ class NetworkModel:
             for body, nodes in on.items()
             if len(set(nodes.values())) > 1
         }
-
-    def fluids(self, temperatures: Mapping[str, float]) -> Fluids:
-        """Oil and mixture at the temperatures of the nodes that they meet."""
-        return self.fluids_at(temperatures)
 
     def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
         """Temperatures at which the heat of the losses leaves. Theory (W26).
@@ -534,9 +504,14 @@ class NetworkModel:
         self._check_names(network)
         left = network.cut_off()
         if any(node == OIL or heat.get(node) for node in left):
-            raise _no_way_out(left)
+            allowed = f"the heat of {', '.join(left)} has no way out."
+            raise one_problem("thermal", "", allowed, _WAYS_OUT)
         # parts at rest, which nothing heats or cools, are as warm as the oil
-        return replace(network, links=(*links, *map(_as_the_oil, left))) if left else network
+        resting = (
+            Link(f"{node}-oil", node, OIL, AT_REST, "at rest", "any conductance serves")
+            for node in left
+        )
+        return replace(network, links=(*links, *resting))
 
     def _fixed_links(
         self,
@@ -579,12 +554,22 @@ class NetworkModel:
         found[OIL] = oil.density * oil.heat_capacity * volume if volume else None
         found[HOUSING] = mass * STEEL.heat_capacity if mass else None
         known = {node: found[node] for node in self.nodes}
-        problems = [_no_such_node(name, known) for name in own.capacity_changes.keys() - known]
+        strangers = own.capacity_changes.keys() - known.keys()
+        problems = _no_such("thermal.capacities", "part", strangers, known)
         for node in own.capacity_changes.keys() & known:
             change, computed = own.capacity_changes[node], known[node]
             if change.value is not None or computed is not None:
                 known[node] = change(computed or 0.0)
-        problems += [_UNKNOWN_CAPACITY[node] for node, value in known.items() if value is None]
+        problems += [
+            Problem(
+                key,
+                "",
+                f"is not given: how fast the {node} warms up depends on it.",
+                f'Give it, as "{example}", or thermal.capacities.{node}.value.',
+            )
+            for node, (key, example) in _STATED_CAPACITIES.items()
+            if node in known and known[node] is None
+        ]
         raise_any(problems)
         return {node: value for node, value in known.items() if value is not None}
 
@@ -648,25 +633,21 @@ class NetworkModel:
     def _check_names(self, network: Network) -> None:
         """Names of the case that are not known here are errors."""
         strangers = set(self.settings.jet_shares) - set(self.wetted)
-        if strangers:
-            raise _no_such("thermal.jet_shares", "part", strangers, self.wetted)
+        raise_any(_no_such("thermal.jet_shares", "part", strangers, self.wetted))
         known = [link.key for link in network.links]
         unknown = set(self.settings.changes) - set(known)
-        if unknown:
-            raise _no_such("thermal.conductances", "way of the heat", unknown, known)
+        raise_any(_no_such("thermal.conductances", "way of the heat", unknown, known))
 
 
-def _no_way_out(nodes: Iterable[str]) -> InputError:
-    allowed = f"the heat of {', '.join(nodes)} has no way out."
-    remedy = (
-        "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] or "
-        "thermal.cooler_conductance; for single parts thermal.jet_shares or thermal.conductances."
-    )
-    return InputError([Problem("thermal", "", allowed, remedy)])
-
-
-def _as_the_oil(node: str) -> Link:
-    return Link(f"{node}-oil", node, OIL, AT_REST, "at rest", "any conductance serves")
+_WAYS_OUT = (
+    "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] or "
+    "thermal.cooler_conductance; for single parts thermal.jet_shares or thermal.conductances."
+)
+_STATED_CAPACITIES = {
+    OIL: ("thermal.oil_volume", "5 l"),
+    HOUSING: ("thermal.housing.mass", "40 kg"),
+}
+"""Key and example of what the heat capacities of oil and housing follow from."""
 
 
 def _wetted_nodes(own: GearSet) -> Iterator[str]:
@@ -689,40 +670,9 @@ def _seats(own: object) -> Iterator[tuple[str, str]]:
         yield from ((body, own.key) for body in own.between)
 
 
-_UNKNOWN_CAPACITY = {
-    OIL: Problem(
-        "thermal.oil_volume",
-        "",
-        "is not given: how fast the oil warms up depends on it.",
-        'Give it, as "5 l", or thermal.capacities.oil.value.',
-    ),
-    HOUSING: Problem(
-        "thermal.housing.mass",
-        "",
-        "is not given: how fast the housing warms up depends on it.",
-        'Give it, as "40 kg", or thermal.capacities.housing.value.',
-    ),
-}
-
-
-def _no_such_node(name: str, known: Iterable[str]) -> Problem:
-    return Problem(
-        f"thermal.capacities.{name}",
-        "",
-        f"is no part here; there are {', '.join(known)}.",
-        "Take one of these names.",
-    )
-
-
-def _no_such(table: str, noun: str, unknown: Iterable[str], known: Iterable[str]) -> InputError:
-    return InputError(
-        [
-            Problem(
-                f"{table}.{name}",
-                "",
-                f"is no {noun} here; there are {', '.join(known)}.",
-                "Take one of these names.",
-            )
-            for name in sorted(unknown)
-        ]
-    )
+def _no_such(table: str, noun: str, unknown: Iterable[str], known: Iterable[str]) -> list[Problem]:
+    allowed = f"is no {noun} here; there are {', '.join(known)}."
+    return [
+        Problem(f"{table}.{name}", "", allowed, "Take one of these names.")
+        for name in sorted(unknown)
+    ]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from epicyclic.contact.temperatures import Solid
 from epicyclic.gears.gear import HOUSING, Gear
@@ -15,9 +14,6 @@ from epicyclic.machine.gear_set import GearSet, Planet
 from epicyclic.machine.heat_flow import Link
 from epicyclic.machine.planets import BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
-
-if TYPE_CHECKING:
-    from epicyclic.machine.gear_set import GearSet, Planet
 
 # Paths of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other.
 
@@ -197,7 +193,6 @@ def bearing_width(own: ShaftBearing) -> float:
 
 
 # Heat that gears, pins, carriers and bearings store, from their sizes.
-
 
 STEEL = Solid(conductivity=46.0, heat_capacity=460.0, density=7850.0)
 """Material of parts for which no case states one: pins, carriers, shaft bearings."""

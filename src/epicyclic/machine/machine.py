@@ -64,9 +64,7 @@ def bearing_reactions(
     supports: Sequence[Support],  # Two; or one, if the loads leave no moment about it.
     loads: Sequence[ShaftLoad],
 ) -> tuple[Reaction, ...]:
-    """Forces of the bearings of a rigid shaft, in the order of `supports`.
-
-    Theory (J18).
+    """Forces of the bearings of a rigid shaft, in the order of `supports`. Theory (J18).
 
     With supports at z_1 and z_2, loads F at z and moments M, the moments about z_1 give ::
 
@@ -74,9 +72,8 @@ def bearing_reactions(
         R_2y = -sum(F_y (z - z_1) - M_x)/(z_2 - z_1)
 
     and the forces R_1 = -R_2 - sum F. The axial force -sum F_z falls on the first support that
-    takes it in this sense; on the first of all if none is marked.
-
-    Raises `ValueError` if statics alone does not give the reactions; the message says why.
+    takes it in this sense; on the first of all if none is marked. Raises `ValueError` if statics
+    alone does not give the reactions; the message says why.
     """
     if not supports:
         raise ValueError("the shaft has no bearing that could take its loads")
@@ -146,9 +143,7 @@ def mesh_force(
     *,
     internal: bool = False,  # True for a ring gear.
 ) -> FloatArray:
-    """BearingLoad of a mesh on a gear, shape (3,). [N]
-
-    Theory (J19).
+    """BearingLoad of a mesh on a gear, shape (3,). Theory (J19). [N]
 
     Let e be the unit vector from the axis of the gear to the pitch point and t = z x e, the sense
     in which the gear turns there about +z. A torque tau about +z is the moment of the component
@@ -168,34 +163,7 @@ def mesh_force(
     tangential = torque / radius
     radial = (1 if internal else -1) * abs(tangential) * math.tan(pressure_angle)
     axial = -hand * tangential * helix_tangent
-    force: FloatArray = tangential * along + radial * outward + axial * np.array([0.0, 0.0, 1.0])
-    return force
-
-
-def mesh_load(
-    position: float,
-    torque: float,
-    radius: float,
-    pressure_angle: float,
-    helix_tangent: float,
-    hand: int,
-    direction: float,
-    *,
-    internal: bool = False,
-) -> ShaftLoad:
-    """The load of a mesh on the shaft of a gear whose middle is at `position`.
-
-    Theory (J20).
-
-    The axial force acts at the pitch point: its moment about the axis is r_w F_z e x z. Parameters
-    as for `mesh_force`.
-    """
-    force = mesh_force(
-        torque, radius, pressure_angle, helix_tangent, hand, direction, internal=internal
-    )
-    moment = np.cross(radius * np.array([math.cos(direction), math.sin(direction), 0.0]), force)
-    x, y, z = map(float, force)
-    return ShaftLoad(position, (x, y, z), (float(moment[0]), float(moment[1])))
+    return tangential * along + radial * outward + axial * np.array([0.0, 0.0, 1.0])
 
 
 # Forces on the bearings of shafts, from the loads of the meshes.
@@ -218,9 +186,11 @@ class GearSeat:
     around: bool  # True if several planets stand around the gear: their radial forces cancel.
 
     def load(self, torque: float) -> ShaftLoad:
-        """BearingLoad of the mesh on the shaft."""
-        load = mesh_load(
-            self.position,
+        """Load of the mesh, at the middle of the gear, on the shaft. Theory (J20).
+
+        The axial force acts at the pitch point: its moment about the axis is r_w F_z e x z.
+        """
+        force = mesh_force(
             self.lever * torque,
             self.radius,
             self.pressure_angle,
@@ -229,9 +199,12 @@ class GearSeat:
             self.direction,
             internal=self.internal,
         )
-        if not self.around:
-            return load
-        return ShaftLoad(self.position, (0.0, 0.0, load.force[2]))
+        x, y, z = map(float, force)
+        if self.around:
+            return ShaftLoad(self.position, (0.0, 0.0, z))
+        outward = np.array([math.cos(self.direction), math.sin(self.direction), 0.0])
+        moment = np.cross(self.radius * outward, force)
+        return ShaftLoad(self.position, (x, y, z), (float(moment[0]), float(moment[1])))
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,7 +230,6 @@ def forces_of(
 
 
 # What a machine consists of, and how it is driven.
-
 
 Terms = tuple[tuple[str, float], ...]
 """Bodies with the coefficients of their speeds in a constraint."""

@@ -109,7 +109,6 @@ def planet_shares(
     """Share of the load that each planet carries; their sum is 1. Theory (S1).
 
     The closed form holds while all planets carry; where one does not, (S3) and (S4) are solved.
-
     Raises `ConvergenceError` if no loads of the planets balance.
     """
     count = sharing.count
@@ -164,7 +163,6 @@ def _branches(
 # Axes, right-handed: t along the circle of the planets; r outward from the centre of the set; y
 # along the planet's axis, from the middle of the bearing. They are turned about r so that the first
 # mesh turns the planet from t to r: for a sun, t is then the sense in which it pushes the planet.
-
 
 FloatArray = NDArray[np.float64]
 
@@ -249,11 +247,9 @@ def planet_load(
 ) -> PlanetLoad:
     """Load on the bearing of a planet from all its meshes and the centrifugal force.
 
-    Theory (A2), (B1), (B2), (B17).
-
-    Talbot (2012), Eq. 3.7 and 3.8, for any number of meshes and any pressure angles: the transverse
-    forces add as vectors, the axial ones form couples in the planes of the axes, and a force beside
-    the middle of the bearing a moment.
+    Theory (A2), (B1), (B2), (B17). Talbot (2012), Eq. 3.7 and 3.8, for any number of meshes and any
+    pressure angles: the transverse forces add as vectors, the axial ones form couples in the planes
+    of the axes, and a force beside the middle of the bearing a moment.
     """
     moment = 0j  # t + i r
     for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):
@@ -284,12 +280,9 @@ def tilt_planet(
 ) -> tuple[Contacts, PlanetLoad]:
     """Meshes misaligned by the tilt of the planet in its bearing, and the load that belongs to it.
 
-    Theory (B17), (B18).
-
-    The tilt opens one end of each mesh, the load moves to the other end, and its moment tilts the
-    planet back. Carrier and pin are rigid; the bearing stands under the middle of the face.
-
-    Raises `ConvergenceError` if the load of a mesh or of the bearing is not found.
+    Theory (B17), (B18). The tilt opens one end of each mesh, the load moves to the other end, and
+    its moment tilts the planet back. Carrier and pin are rigid; the bearing stands under the middle
+    of the face. Raises `ConvergenceError` if the load of a mesh or of the bearing is not found.
     """
     from scipy.optimize import root
 
@@ -299,8 +292,7 @@ def tilt_planet(
     def imbalance(scaled: FloatArray) -> FloatArray:
         load = _load_at(scaled * scale, contacts, centrifugal)
         answer = _tilt_under(load, contacts, bearing, centrifugal)
-        residual: FloatArray = scaled - answer / scale
-        return residual
+        return scaled - answer / scale
 
     found = root(imbalance, tilt / scale, method="hybr", tol=TILT_TOLERANCE / 10)
     if np.abs(found.fun).max() <= TILT_TOLERANCE:
@@ -421,11 +413,6 @@ def _rising_root(rising: Callable[[float], float], reach: float) -> float:
     return float(brentq(rising, -reach, reach, xtol=TILT_TOLERANCE * SMALL_TILT))
 
 
-def _turning(contact: PlanetContact) -> float:
-    """Moment of a mesh on its planet, about the middle of the face. [N m]"""
-    return contact.face_sense * _mesh_moment(contact.duty)
-
-
 def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
     """The meshes with a planet tilted by `tilt` in t and r. Theory (B18)."""
     return [
@@ -443,7 +430,9 @@ def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
 
 def _load_at(tilt: FloatArray, contacts: Contacts, centrifugal: float) -> PlanetLoad:
     """Load of a planet tilted by `tilt`."""
-    moments = [_turning(contact) for contact in _misaligned(contacts, tilt)]
+    moments = [
+        contact.face_sense * _mesh_moment(contact.duty) for contact in _misaligned(contacts, tilt)
+    ]
     return planet_load(contacts, centrifugal, moments)
 
 
@@ -469,7 +458,6 @@ def _tilt_under(
 
 # The roller bearing between a planet and its pin.
 
-
 BEARING_METHOD = "mixed-EHL rolling-loss regression, slice by slice"
 BEARING_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012), Eq. 3.2 to 3.6"
 PALMGREN_METHOD = "friction coefficient f1 of Palmgren"
@@ -494,12 +482,10 @@ class PlanetBearing:
     def method(self) -> tuple[str, str]:
         """How the load-dependent loss is found, and where that is printed."""
         if isinstance(self.model, FittedRolling):
+            title, source = self.model.title, self.model.source
             if self.palmgren_beyond:
-                return (
-                    f"{self.model.title}, beyond them {PALMGREN_METHOD}",
-                    f"{self.model.source}; {PALMGREN_SOURCE}",
-                )
-            return self.model.title, self.model.source
+                return f"{title}, beyond them {PALMGREN_METHOD}", f"{source}; {PALMGREN_SOURCE}"
+            return title, source
         if self.model == "mixed-ehl":
             return BEARING_METHOD, BEARING_SOURCE
         return PALMGREN_METHOD, PALMGREN_SOURCE

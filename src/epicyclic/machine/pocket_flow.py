@@ -104,7 +104,7 @@ def _spaces(gear: Gear) -> float:
 
 def flow_family(duty: MeshDuty) -> FlowFamily:
     """The flows that that of a mesh belongs to."""
-    settings, mesh, tools, drives1 = duty.models.pockets, duty.mesh, duty.tools, duty.drives1
+    settings, mesh, tools, drives1 = duty.models.pockets, duty.mesh, duty.gears.tools, duty.drives1
     if _exchanged(duty):
         mesh = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
         tools, drives1 = tools[::-1], not drives1
@@ -151,7 +151,6 @@ def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRe
     """The flow of each mesh whose loss is included.
 
     Those that a stored table holds are left out, and those that another flow gives by scaling.
-
     Raises `InputError` if that table was made for other pockets.
     """
     for duty in duties:
@@ -169,10 +168,9 @@ def mesh_flows(
     """Flow through the pockets of each mesh, by its key, and all that are known then.
 
     Read from the stored table of its settings, else scaled from another flow where that can be,
-    else from the tables of a sweep or the known flows, where they have it.
-
-    Raises `ConvergenceError` if a flow is not found. Raises `InputError` if the stored table was
-    made for other pockets.
+    else from the tables of a sweep or the known flows, where they have it. Raises
+    `ConvergenceError` if a flow is not found. Raises `InputError` if the stored table was made for
+    other pockets.
     """
     flows: dict[str, MeshFlow] = {duty.key: MeshFlow() for duty in duties}
     direct: dict[str, FlowRequest] = {}
@@ -183,7 +181,9 @@ def mesh_flows(
         request = flow_request(duty, fluids)
         figures = _stored_figures(settings, request)
         if figures is None and not _scales(request):
-            figures = _interpolated(settings, request, known)
+            if request[0] in settings.tables:
+                figures = settings.tables[request[0]].figures(*request[1:])
+            figures = known.figures(*request) if figures is None else figures
         if figures is None:
             direct[duty.key] = request
         else:
@@ -210,16 +210,6 @@ def _scales(request: FlowRequest) -> bool:
         return request[0].scales(FlowFamily.number(*request[1:]))
     except ValueError:  # no tooth outline: the solution says so
         return False
-
-
-def _interpolated(
-    settings: PocketSettings, request: FlowRequest, known: KnownFlows
-) -> FlowFigures | None:
-    """From the tables of a sweep or the known flows; None if they do not hold the flow."""
-    figures = None
-    if request[0] in settings.tables:
-        figures = settings.tables[request[0]].figures(*request[1:])
-    return known.figures(*request) if figures is None else figures
 
 
 def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:

@@ -75,7 +75,6 @@ class TableLoss:
 
 # A radial lip seal on a shaft: ISO/TR 14179-1, ISO/TR 14179-2, Linke, or a table of the user.
 
-
 SealFormula = Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke"]
 
 SEAL_METHODS: Mapping[SealFormula, str] = {
@@ -127,9 +126,7 @@ def seal_loss(
     # Kinematic viscosity of the oil at 40 degC, more than 0.2 mm^2/s; only Linke. [m^2/s]
     viscosity_40: float,
 ) -> float:
-    """Friction loss of one lip seal. [W]
-
-    Theory (J14), (J15), (J16).
+    """Friction loss of one lip seal. Theory (J14), (J15), (J16). [W]
 
     Examples
     --------
@@ -180,10 +177,8 @@ def seal_flags(
     """Flags of `seal_loss` for the seal called `where`; none at rest."""
     if speed == 0:
         return ()
-    values = {
-        "lip_speed": abs(speed) * diameter / 2,
-        "bracket": linke_bracket(temperature, viscosity_40),
-    }
+    bracket = linke_bracket(temperature, viscosity_40)
+    values = {"lip_speed": abs(speed) * diameter / 2, "bracket": bracket}
     return check_ranges(ModelUse("seal", formula, where), _RANGES[formula], values)
 
 
@@ -245,10 +240,7 @@ class Seal:
             speed=abs(speed),
             lip_speed=abs(speed) * self.diameter / 2,
             friction_torque=watts / abs(speed) if speed != 0 else math.nan,
-            iso_14179_1_viton=spread["iso-14179-1-viton"],
-            iso_14179_1_buna_n=spread["iso-14179-1-buna-n"],
-            iso_14179_2=spread["iso-14179-2"],
-            linke=spread["linke"],
+            **{formula.replace("-", "_"): loss for formula, loss in spread.items()},
         )
 
 
@@ -340,7 +332,9 @@ class ShaftBearing:
         if speed == 0:
             return ()
         notes = []
-        carried = self._carried(load)
+        # what holds the rolling elements to the races [N]
+        both = self.bearing.type in ("deep-groove", "tapered")
+        carried = math.hypot(load.radial, load.axial) if both else load.radial
         if carried < least:
             notes.append(
                 f"{self.key}: the load of {format_number(carried, 3)} N is below the minimum load "
@@ -353,9 +347,3 @@ class ShaftBearing:
                 "hand; give drag_variable."
             )
         return tuple(notes)
-
-    def _carried(self, load: BearingLoad) -> float:
-        """What holds the rolling elements to the races. [N]"""
-        if self.bearing.type in ("deep-groove", "tapered"):
-            return math.hypot(load.radial, load.axial)
-        return load.radial

@@ -159,7 +159,6 @@ def _apart(old: list[float], new: list[float]) -> float:
 
 # Losses and torques of a machine that agree with each other.
 
-
 FloatArray = NDArray[np.float64]
 
 AGREEMENT = 5e-10
@@ -293,9 +292,7 @@ def solve_machine(
     start: Start | None = None,  # As from `start_of`, for solutions that differ in the oil only.
     earlier: Solution | None = None,  # At another temperature of the oil, which saves work.
 ) -> Solution:
-    """Torques and losses that agree.
-
-    Theory (T5), (T6).
+    """Torques and losses that agree. Theory (T5), (T6).
 
     Raises `ConvergenceError` if losses and torques do not agree.
     """
@@ -546,8 +543,7 @@ def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
         with np.errstate(divide="warn", invalid="warn"):
             last = branch.follow(tried)
         new = last.balance if isinstance(last, _Pass) else last
-        step: FloatArray = np.array(list(new.meshes.values())) / size - values
-        return step
+        return np.array(list(new.meshes.values())) / size - values
 
     def left(_: FloatArray) -> float:
         return 0.0 if isinstance(last, _Pass) else 1.0
@@ -639,13 +635,8 @@ def _torques(machine: Machine, solution: Solution) -> Iterator[tuple[str, str, f
     for stage, result in solution.results.items():
         _, frictions = effects_of(machine, solution.rolling, [result])
         for friction in frictions:
-            for body, torque in _friction_torques(friction, solution):
-                yield stage, body, torque
-
-
-def _friction_torques(friction: Friction, solution: Solution) -> Iterator[tuple[str, float]]:
-    one, two = friction.between
-    difference = solution.speeds[one] - solution.speeds[two]
-    if difference:
-        yield one, friction.watts / difference
-        yield two, -friction.watts / difference
+            one, two = friction.between
+            difference = solution.speeds[one] - solution.speeds[two]
+            if difference:
+                yield stage, one, friction.watts / difference
+                yield stage, two, -friction.watts / difference

@@ -98,10 +98,9 @@ def oil_state(oil: Oil, temperature: float) -> OilState:
 def mixture_state(oil: OilState, oil_fraction: float, pressure: float) -> MixtureState:
     """Oil at `oil_fraction` by volume, the rest air at the oil's temperature and `pressure`.
 
-    Theory (L7), (L8).
-
-    The rules reproduce the densities and viscosities printed in Talbot (2012), p. 139, to the
-    last digit: density by volume, viscosity weighted by mass (Cicchitti et al. 1960).
+    Theory (L7), (L8). The rules reproduce the densities and viscosities printed in Talbot (2012),
+    p. 139, to the last digit: density by volume, viscosity weighted by mass (Cicchitti et al.
+    1960).
     """
     air_density = pressure / (AIR_GAS_CONSTANT * oil.temperature)
     density = oil_fraction * oil.density + (1 - oil_fraction) * air_density
@@ -160,7 +159,7 @@ def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> f
     law = oil.pressure_viscosity
     if isinstance(law, GoldLaw):
         return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9
-    # z, linear between the points of the law and constant beyond them, Theory (L5)
+    # z, linear between the points of the law and constant beyond them: (L5)
     index = float(np.interp(temperature, *_roelands_points(oil, law)))
     return index * roelands_slope(mu)
 

@@ -243,7 +243,7 @@ def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.
     gears = {
         gear.name: (gear, tool)
         for duty in duties
-        for gear, tool in zip((duty.mesh.gear1, duty.mesh.gear2), duty.tools, strict=True)
+        for gear, tool in zip((duty.mesh.gear1, duty.mesh.gear2), duty.gears.tools, strict=True)
     }
     meshes = [duty.mesh for duty in duties]
     places, speeds = found.places(meshes), found.relative_speeds(meshes)

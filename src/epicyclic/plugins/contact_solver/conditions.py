@@ -11,17 +11,6 @@ from numpy.typing import NDArray
 
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.errors import InputError, Problem
-from epicyclic.kernels.ehl_fluid import (
-    BARUS,
-    CARREAU,
-    EYRING,
-    LIMITING,
-    NEWTONIAN,
-    ROELANDS,
-    TWO_SLOPE,
-    ScaledFluid,
-    mean_shear,
-)
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.oil.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE, OilState
 from epicyclic.oil.rheology import (
@@ -35,6 +24,17 @@ from epicyclic.oil.rheology import (
     ShearLaw,
     TwoSlope,
     shear_problems,
+)
+from epicyclic.plugins.contact_solver.kernels_fluid import (
+    BARUS,
+    CARREAU,
+    EYRING,
+    LIMITING,
+    NEWTONIAN,
+    ROELANDS,
+    TWO_SLOPE,
+    ScaledFluid,
+    mean_shear,
 )
 
 # Expected film of a smooth contact in all regimes, from a fit.

@@ -32,7 +32,6 @@ from epicyclic.case.tables.models import (
 )
 from epicyclic.case.validation import validate
 from epicyclic.errors import InputError, Problem, Status
-from epicyclic.kernels.ehl_steady import shear_stresses
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges, range_left
 from epicyclic.machine.element import oil_flags
@@ -50,6 +49,7 @@ from epicyclic.plugins.contact_solver.conditions import (
     thinning,
 )
 from epicyclic.plugins.contact_solver.direct import EhlDirect, solver_range
+from epicyclic.plugins.contact_solver.kernels_steady import shear_stresses
 from epicyclic.plugins.contact_solver.rough import (
     MOST_BLOCKS,
     NODES,

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import Status
-from epicyclic.kernels.ehl_linear import groups_for
-from epicyclic.kernels.ehl_rough import Column, march, masses
-from epicyclic.kernels.ehl_steady import deflection_matrix
 from epicyclic.oil.rheology import DEFAULT, PRESETS
 from epicyclic.plugins.contact_solver.conditions import Heating, LineContact, flow_easing, thinning
+from epicyclic.plugins.contact_solver.kernels_linear import groups_for
+from epicyclic.plugins.contact_solver.kernels_rough import Column, march, masses
+from epicyclic.plugins.contact_solver.kernels_steady import deflection_matrix
 from epicyclic.plugins.contact_solver.steady import SmoothSolution, expected_film, solve_smooth
 from epicyclic.plugins.contact_solver.surfaces import SMOOTH, Profile
 from epicyclic.units import percent

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import Status
-from epicyclic.kernels.ehl_steady import deflection_matrix, shear_stresses, solve_steady
 from epicyclic.plugins.contact_solver.conditions import (
     Heating,
     LineContact,
@@ -19,6 +18,11 @@ from epicyclic.plugins.contact_solver.conditions import (
     moes_central_film,
     temperature_rise,
     thinning,
+)
+from epicyclic.plugins.contact_solver.kernels_steady import (
+    deflection_matrix,
+    shear_stresses,
+    solve_steady,
 )
 
 # Nodes of the steady solver: dense where the inlet ends and where the film ruptures.

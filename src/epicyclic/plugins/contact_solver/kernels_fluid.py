@@ -8,10 +8,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from epicyclic.kernels.compiling import kernel
+from epicyclic.kernels.eyring import two_slopes
 
 BARUS, ROELANDS, TWO_SLOPE = 0, 1, 2
 """Codes of the viscosity-pressure laws."""
@@ -24,8 +22,6 @@ PLUG_SHEAR = 5.0
 EVEN = 2e-3
 """Difference of ln(mu) between two nodes below which a series replaces the closed form of their
 mean fluidity, which loses digits; the series is 1e-14 off. [1]"""
-CUBIC_START, CUBIC_END = 0.7, 1.4
-"""Where the cubic between the two slopes starts and ends, over the transition pressure."""
 
 
 class ScaledFluid(NamedTuple):
@@ -57,33 +53,6 @@ def log_viscosity_ratio(pressure: float, fluid: ScaledFluid) -> tuple[float, flo
         scale = fluid.slope / (fluid.second * fluid.third)
         return scale * (power - 1.0), fluid.slope * power / base
     return two_slopes(pressure, fluid.slope, fluid.second, fluid.third)
-
-
-@kernel
-def two_slopes(
-    pressure: float, first: float, second: float, transition: float
-) -> tuple[float, float]:
-    """Exponents of two slopes joined by a cubic: value and derivative. Theory (H7)."""
-    start, end = CUBIC_START * transition, CUBIC_END * transition
-    if pressure <= start:
-        return first * pressure, first
-    if pressure >= end:
-        return first * transition + second * (pressure - transition), second
-    width = end - start
-    t = (pressure - start) / width
-    low, high = first * start, first * transition + second * (end - transition)
-    value = (
-        low * (1.0 + 2.0 * t) * (1.0 - t) ** 2
-        + first * width * t * (1.0 - t) ** 2
-        + high * t * t * (3.0 - 2.0 * t)
-        - second * width * t * t * (1.0 - t)
-    )
-    slope = (
-        6.0 * (high - low) / width * t * (1.0 - t)
-        + first * (1.0 - t) * (1.0 - 3.0 * t)
-        + second * t * (3.0 * t - 2.0)
-    )
-    return value, slope
 
 
 @kernel
@@ -178,49 +147,3 @@ def mean_shear(pressure: float, film: float, thinned: float, fluid: ScaledFluid)
         return -stress * math.expm1(-sigma)
     eased: float = newtonian * (1.0 + sigma * sigma) ** (0.5 * (fluid.exponent - 1.0))
     return eased
-
-
-# Mean shear stress of an Eyring fluid under an elliptic pressure in an even film.
-
-
-FloatArray = NDArray[np.float64]
-
-LARGEST_EXPONENT = 300.0
-"""Largest exponent of the viscosity under pressure: what is larger is solid, and overflows."""
-LEAST_LOGARITHM = 0.01
-"""Stress from which its arsinh is a logarithm: 1 + x keeps 14 digits of x. [1]"""
-
-
-@kernel
-def eyring_means(
-    rate: FloatArray, highest: FloatArray, slope: FloatArray, slope_ratio: float,
-    transition: float, cosines: FloatArray, weights: FloatArray,
-) -> FloatArray:  # fmt: skip
-    """Sum of the weighted arsinh(rate exp(ln mu)), shape (n,). Theory (O4). [1]
-
-    Parameters
-    ----------
-    rate : ndarray, shape (n,)
-        Newtonian stress at ambient viscosity over the Eyring stress. [1]
-    highest, slope : ndarray, shape (n,)
-        Highest pressure [Pa], slope of ln(mu) at ambient pressure [1/Pa].
-    slope_ratio, transition : float
-        For two slopes: high over low [1], pressure where they meet [Pa].
-    cosines, weights : ndarray, shape (k,)
-        Cosines and weights of the quadrature.
-    """
-    total = np.zeros(rate.size)
-    for i in range(rate.size):
-        for k in range(cosines.size):
-            exponent = two_slopes(
-                highest[i] * cosines[k], slope[i], slope_ratio * slope[i], transition
-            )[0]
-            stress = rate[i] * math.exp(min(exponent, LARGEST_EXPONENT))
-            total[i] += weights[k] * cosines[k] * _arsinh(stress)
-    return total
-
-
-@kernel
-def _arsinh(x: float) -> float:
-    """Twice as quick as `math.asinh` where it does not cancel, and as exact there."""
-    return math.log(x + math.sqrt(x * x + 1.0)) if x > LEAST_LOGARITHM else math.asinh(x)

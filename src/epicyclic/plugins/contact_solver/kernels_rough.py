@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.kernels.compiling import kernel
-from epicyclic.kernels.ehl_fluid import (
+from epicyclic.plugins.contact_solver.kernels_fluid import (
     ScaledFluid,
     density_ratio,
     flow_work,
@@ -23,7 +23,7 @@ from epicyclic.kernels.ehl_fluid import (
     mean_shear,
     thinning_factor,
 )
-from epicyclic.kernels.ehl_linear import (
+from epicyclic.plugins.contact_solver.kernels_linear import (
     BAND,
     Groups,
     Space,
@@ -180,9 +180,7 @@ def solve_step(
     load: float, active: BoolArray, groups: Groups, held: float, tolerance: float,
     linear_tolerance: float, max_iterations: int, space: Space,
 ) -> tuple[float, int, float]:  # fmt: skip
-    """Pressure and film after one time step, in place.
-
-    Theory (H21), (H22).
+    """Pressure and film after one time step, in place. Theory (H21), (H22).
 
     Parameters
     ----------
@@ -375,9 +373,7 @@ def march(
     contact_film: float, boundary_friction: float, tolerance: float, linear_tolerance: float,
     max_iterations: int, records: FloatArray,
 ) -> float:  # fmt: skip
-    """Time steps, as many as `records` has rows; state arrays change in place.
-
-    Theory (H21), (H25).
+    """Time steps, as many as `records` has rows; state arrays change in place. Theory (H21), (H25).
 
     Parameters
     ----------

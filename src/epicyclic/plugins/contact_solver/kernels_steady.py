@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.kernels.compiling import kernel
-from epicyclic.kernels.ehl_fluid import (
+from epicyclic.plugins.contact_solver.kernels_fluid import (
     ScaledFluid,
     density_ratio,
     log_viscosity_ratio,
@@ -214,9 +214,7 @@ def solve_steady(
     tolerance: float,  # Largest last step of P over the largest P, and of H over H, at every node.
     max_iterations: int,
 ) -> tuple[FloatArray, FloatArray, FloatArray, float, int, float]:
-    """Pressure and film of a steady contact.
-
-    Theory (H4), (H14), (H15).
+    """Pressure and film of a steady contact. Theory (H4), (H14), (H15).
 
     Returns
     -------
