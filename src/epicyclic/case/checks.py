@@ -120,15 +120,10 @@ def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> list[P
     room = math.pi / math.asin(min(1.0, bearing.roller_diameter / pitch_diameter))
     if bearing.rollers_per_row <= room:
         return []
-    return [
-        Problem(
-            f"{key}.rollers_per_row",
-            str(bearing.rollers_per_row),
-            f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit around "
-            f"the pin of {millimetres(bearing.pin_diameter)}.",
-            "Take fewer or thinner rollers.",
-        )
-    ]
+    allowed = f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit "
+    allowed += f"around the pin of {millimetres(bearing.pin_diameter)}."
+    remedy = "Take fewer or thinner rollers."
+    return [Problem(f"{key}.rollers_per_row", str(bearing.rollers_per_row), allowed, remedy)]
 
 
 def check_bores(
@@ -145,15 +140,11 @@ def check_bores(
             roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
             if not roots or bore < 2 * min(roots):
                 continue
-            problems.append(
-                Problem(
-                    f"{key}.pin_diameter",
-                    millimetres(bearing.pin_diameter),
-                    f"the planet's bore of {millimetres(bore)} reaches its root circle of "
-                    f"{millimetres(2 * min(roots))}.",
-                    "Take a thinner pin or thinner rollers.",
-                )
-            )
+            shown = millimetres(bearing.pin_diameter)
+            allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
+            allowed += f"{millimetres(2 * min(roots))}."
+            remedy = "Take a thinner pin or thinner rollers."
+            problems.append(Problem(f"{key}.pin_diameter", shown, allowed, remedy))
     return problems
 
 
@@ -181,48 +172,30 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     """The model of the bearing loss must be for bearings of this kind."""
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
-    return [
-        Problem(
-            "models.bearing",
-            '"mixed-ehl"',
-            "is for caged bearings: the rollers of a full-complement bearing rub on each other, "
-            "which it leaves out.",
-            'Write bearing = "palmgren".',
-        )
-    ]
+    allowed = "is for caged bearings: the rollers of a full-complement bearing rub on each other, "
+    allowed += "which it leaves out."
+    return [Problem("models.bearing", '"mixed-ehl"', allowed, 'Write bearing = "palmgren".')]
 
 
 def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
     problems, count = [], gearing.count or 1
     if sharing.mesh_load_factor > count:
-        problems.append(
-            Problem(
-                "load_sharing.mesh_load_factor",
-                f"{sharing.mesh_load_factor:g}",
-                f"must be at most planet.count, {count}: then one planet has all the load.",
-                "Take a smaller factor.",
-            )
-        )
+        shown = f"{sharing.mesh_load_factor:g}"
+        allowed = f"must be at most planet.count, {count}: then one planet has all the load."
+        remedy = "Take a smaller factor."
+        problems.append(Problem("load_sharing.mesh_load_factor", shown, allowed, remedy))
     if len(sharing.position_errors or ()) not in (0, count):
-        problems.append(
-            Problem(
-                "load_sharing.position_errors",
-                f"{len(sharing.position_errors or ())} values",
-                f"must have one value for each of the {count} planets.",
-                "Give as many values as there are planets.",
-            )
-        )
+        shown = f"{len(sharing.position_errors or ())} values"
+        allowed = f"must have one value for each of the {count} planets."
+        remedy = "Give as many values as there are planets."
+        problems.append(Problem("load_sharing.position_errors", shown, allowed, remedy))
     if sharing.method == "closed-form":
         problems += _check_closed_form(sharing, gearing)
     if sharing.method == "direct" and count == 1 and sharing.floating_member != "none":
-        problems.append(
-            Problem(
-                "load_sharing.floating_member",
-                f'"{sharing.floating_member}"',
-                "must be supported: one planet cannot hold it in place.",
-                'Write floating_member = "none".',
-            )
-        )
+        shown = f'"{sharing.floating_member}"'
+        allowed = "must be supported: one planet cannot hold it in place."
+        remedy = 'Write floating_member = "none".'
+        problems.append(Problem("load_sharing.floating_member", shown, allowed, remedy))
     return problems
 
 
@@ -260,39 +233,24 @@ def _check_friction_table(table: FrictionTable) -> list[Problem]:
     axes = table.axes()
     known = ", ".join(FrictionTable.AXES)
     if not 1 <= len(axes) <= 2:
-        return [
-            Problem(
-                "friction_table",
-                f"{len(axes)} axes",
-                f"must have one or two of the axes {known}.",
-                "Give the values of the axes to which the coefficients belong.",
-            )
-        ]
+        allowed = f"must have one or two of the axes {known}."
+        remedy = "Give the values of the axes to which the coefficients belong."
+        return [Problem("friction_table", f"{len(axes)} axes", allowed, remedy)]
     problems = rising_problems(axes, "friction_table.")
     wanted = " x ".join(f"{len(points)}" for points in axes.values())
     if table.shape() != tuple(len(points) for points in axes.values()):
-        problems.append(
-            Problem(
-                "friction_table.friction",
-                f"{len(table.friction)} entries",
-                f"must have {wanted} values, for the points of {' and '.join(axes)}.",
-                "Give one value, or one row, for each value of the first axis.",
-            )
-        )
+        shown = f"{len(table.friction)} entries"
+        allowed = f"must have {wanted} values, for the points of {' and '.join(axes)}."
+        remedy = "Give one value, or one row, for each value of the first axis."
+        problems.append(Problem("friction_table.friction", shown, allowed, remedy))
     return problems
 
 
 def _check_friction_model(models: GearPairModels, given: Collection[str]) -> list[Problem]:
     if models.friction != "table" or "friction_table" in given:
         return []
-    return [
-        Problem(
-            "models.friction",
-            '"table"',
-            "needs a table of coefficients.",
-            "Add [friction_table], or choose another model.",
-        )
-    ]
+    remedy = "Add [friction_table], or choose another model."
+    return [Problem("models.friction", '"table"', "needs a table of coefficients.", remedy)]
 
 
 def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
@@ -357,14 +315,9 @@ def _check_void(models: GearPairModels, surroundings: Surroundings) -> list[Prob
     """A void has less pressure than the surroundings."""
     if models.pocket_void_pressure < surroundings.pressure:
         return []
-    return [
-        Problem(
-            "models.pocket_void_pressure",
-            BAR.text(models.pocket_void_pressure),
-            f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}.",
-            "Take 0.01 bar.",
-        )
-    ]
+    shown = BAR.text(models.pocket_void_pressure)
+    allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
+    return [Problem("models.pocket_void_pressure", shown, allowed, "Take 0.01 bar.")]
 
 
 def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:

@@ -6,7 +6,14 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength, Table, ThicknessFit
+from epicyclic.case.tables.base import (
+    NamedMaterial,
+    Roughness,
+    ShortLength,
+    Table,
+    ThicknessFit,
+    option,
+)
 from epicyclic.units import (
     Angle,
     Deviation,
@@ -16,7 +23,6 @@ from epicyclic.units import (
     Number,
     Quantity,
     SmallLength,
-    as_stated,
 )
 
 PressureAngle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
@@ -28,33 +34,22 @@ class SharedGears(Table):
 
     AT_MOST_ONE = (("basic_rack", "addendum_coefficient"), ("basic_rack", "dedendum_coefficient"))
 
-    normal_module: Length | None = Field(default=None, description="m_n.")
-    transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
-    normal_pressure_angle: PressureAngle | None = Field(
-        default=None, description="alpha_n at the reference circle."
+    normal_module: Length | None = option(None, "m_n.")
+    transverse_module: Length | None = option(None, "m_t = m_n/cos(beta).")
+    normal_pressure_angle: PressureAngle | None = option(None, "alpha_n at the reference circle.")
+    transverse_pressure_angle: PressureAngle | None = option(
+        None, "alpha_t at the reference circle."
     )
-    transverse_pressure_angle: PressureAngle | None = Field(
-        default=None, description="alpha_t at the reference circle."
+    helix_angle: HelixAngle | None = option(None, "beta at the reference circle, magnitude.")
+    center_distance: Length | None = option(None, "Of every mesh.")
+    addendum_coefficient: Number = option(
+        1.0, "h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.", gt=0, le=3
     )
-    helix_angle: HelixAngle | None = Field(
-        default=None, description="beta at the reference circle, magnitude."
+    dedendum_coefficient: Number = option(
+        1.25, "h_fP/m_n, for gears without root_diameter. ISO 53, profile A.", gt=0, le=4
     )
-    center_distance: Length | None = Field(default=None, description="Of every mesh.")
-    addendum_coefficient: Number = Field(
-        default=1.0,
-        gt=0,
-        le=3,
-        description="h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.",
-    )
-    dedendum_coefficient: Number = Field(
-        default=1.25,
-        gt=0,
-        le=4,
-        description="h_fP/m_n, for gears without root_diameter. ISO 53, profile A.",
-    )
-    basic_rack: RackName | None = Field(
-        default=None,
-        description="A profile of ISO 53 instead of both coefficients, also for the tool's tip.",
+    basic_rack: RackName | None = option(
+        None, "A profile of ISO 53 instead of both coefficients, also for the tool's tip."
     )
 
 
@@ -68,10 +63,10 @@ class Gears(SharedGears):
 
     transverse_pressure_angle: (
         Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=40.0)] | None
-    ) = Field(default=None, description="alpha_t at the reference circle.")
+    ) = option(None, "alpha_t at the reference circle.")
     helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
-    center_distance: Length | None = Field(
-        default=None, description="Of every mesh. Default: from the profile shifts, x."
+    center_distance: Length | None = option(
+        None, "Of every mesh. Default: from the profile shifts, x."
     )
 
     @property
@@ -99,42 +94,33 @@ class TopographyTable(Table):
 class MicroGeometryTable(Table):
     """Modifications and deviations of the working flanks, positive where material is missing."""
 
-    tip_relief: SmallLength = Field(default=as_stated("0 um"), description="At the tip.")
-    tip_relief_roll_length: Length | None = Field(
-        default=None, description="Roll length from the tip to the start of the relief."
+    tip_relief: SmallLength = option("0 um", "At the tip.")
+    tip_relief_roll_length: Length | None = option(
+        None, "Roll length from the tip to the start of the relief."
     )
-    tip_relief_diameter: Length | None = Field(
-        default=None, description="Instead of it: the diameter where the relief starts."
+    tip_relief_diameter: Length | None = option(
+        None, "Instead of it: the diameter where the relief starts."
     )
     tip_relief_shape: ReliefShape = "linear"
-    root_relief: SmallLength = Field(
-        default=as_stated("0 um"), description="At the start of the active profile."
+    root_relief: SmallLength = option("0 um", "At the start of the active profile.")
+    root_relief_roll_length: Length | None = option(
+        None, "Roll length from the start of the active profile."
     )
-    root_relief_roll_length: Length | None = Field(
-        default=None, description="Roll length from the start of the active profile."
-    )
-    root_relief_diameter: Length | None = Field(
-        default=None, description="Instead of it: the diameter where the relief starts."
+    root_relief_diameter: Length | None = option(
+        None, "Instead of it: the diameter where the relief starts."
     )
     root_relief_shape: ReliefShape = "linear"
-    profile_crown: Deviation = Field(
-        default=as_stated("0 um"), description="Parabola over the active profile."
+    profile_crown: Deviation = option("0 um", "Parabola over the active profile.")
+    profile_slope: Deviation = option("0 um", "Positive: material is missing at the tip.")
+    lead_crown: Deviation = option("0 um", "Parabola over the face width of the gear.")
+    lead_slope: Deviation = option(
+        "0 um", "Positive: material is missing at the end where contact ends."
     )
-    profile_slope: Deviation = Field(
-        default=as_stated("0 um"), description="Positive: material is missing at the tip."
-    )
-    lead_crown: Deviation = Field(
-        default=as_stated("0 um"), description="Parabola over the face width of the gear."
-    )
-    lead_slope: Deviation = Field(
-        default=as_stated("0 um"),
-        description="Positive: material is missing at the end where contact ends.",
-    )
-    end_relief: SmallLength = Field(default=as_stated("0 um"), description="At both ends.")
-    end_relief_length: Length | None = Field(default=None, description="From each end.")
+    end_relief: SmallLength = option("0 um", "At both ends.")
+    end_relief_length: Length | None = option(None, "From each end.")
     end_relief_shape: ReliefShape = "linear"
-    topography: TopographyTable | None = Field(
-        default=None, description="Deviations over the flank, added to the others."
+    topography: TopographyTable | None = option(
+        None, "Deviations over the flank, added to the others."
     )
 
 
@@ -172,66 +158,59 @@ class GearTable(Table):
 
     teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
     face_width: Length
-    tip_diameter: Length | None = Field(
-        default=None, description="Inner diameter of a ring. Default: from addendum_coefficient."
+    tip_diameter: Length | None = option(
+        None, "Inner diameter of a ring. Default: from addendum_coefficient."
     )
-    root_diameter: Length | None = Field(
-        default=None, description="Default: from dedendum_coefficient."
+    root_diameter: Length | None = option(None, "Default: from dedendum_coefficient.")
+    tip_chamfer: ShortLength = option(
+        "0 mm", "Radial height of the 45 degree chamfers of the tip corners."
     )
-    tip_chamfer: ShortLength = Field(
-        default=as_stated("0 mm"),
-        description="Radial height of the 45 degree chamfers of the tip corners.",
-    )
-    tooth_thickness: Length | None = Field(
-        default=None, description="Transverse arc thickness at thickness_diameter."
-    )
+    tooth_thickness: Length | None = option(None, "Transverse arc thickness at thickness_diameter.")
     thickness_diameter: Length | None = None
-    span_measurement: Length | None = Field(
-        default=None, description="W_k, base tangent length over teeth_in_span teeth."
+    span_measurement: Length | None = option(
+        None, "W_k, base tangent length over teeth_in_span teeth."
     )
-    teeth_in_span: int | None = Field(default=None, ge=1, le=2000, description="k.")
-    dimension_over_pins: Length | None = Field(
-        default=None, description="M_d over two balls, or between them in a ring."
+    teeth_in_span: int | None = option(None, "k.", ge=1, le=2000)
+    dimension_over_pins: Length | None = option(
+        None, "M_d over two balls, or between them in a ring."
     )
-    measuring_pin_diameter: Length | None = Field(
-        default=None, description="D_M of the balls; of a spur gear pins are the same."
+    measuring_pin_diameter: Length | None = option(
+        None, "D_M of the balls; of a spur gear pins are the same."
     )
     tooth_thickness_allowance: (
         Annotated[tuple[Deviation, ...], Field(min_length=2, max_length=2)] | None
-    ) = Field(
-        default=None,
-        description="Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth "
-        "are thinner by their mean.",
+    ) = option(
+        None,
+        "Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth are thinner "
+        "by their mean.",
     )
-    tooth_thickness_fit: ThicknessFit | None = Field(
-        default=None,
-        description='Series of both by DIN 3967 instead, "27cd": tolerance 21 to 30, allowance a '
-        "to h.",
+    tooth_thickness_fit: ThicknessFit | None = option(
+        None, 'Series of both by DIN 3967 instead, "27cd": tolerance 21 to 30, allowance a to h.'
     )
-    profile_shift_coefficient: Number | None = Field(
-        default=None,
+    profile_shift_coefficient: Number | None = option(
+        None,
+        "x; positive thickens the teeth, on a ring too. Default: what the mate and the centre "
+        "distance leave.",
         ge=-3,
         le=5,
-        description="x; positive thickens the teeth, on a ring too. Default: what the mate and "
-        "the centre distance leave.",
     )
     roughness: Roughness = Field(
         description='rms roughness Rq of the flanks, also as "Ra 0.4 um" or "Rz 3 um", or a finish.'
     )
-    material: NamedMaterial = Field(default=as_stated("steel"), description="A name or a table.")
-    accuracy_class: int | None = Field(
-        default=None,
+    material: NamedMaterial = option("steel", "A name or a table.")
+    accuracy_class: int | None = option(
+        None,
+        "Flank tolerance class of ISO 1328-1:2013: its slopes are uncertain by it.",
         ge=1,
         le=11,
-        description="Flank tolerance class of ISO 1328-1:2013: its slopes are uncertain by it.",
     )
-    tool_tip_radius: ShortLength | None = Field(
-        default=None,
-        description="Rounding of the cutting tool's tip, which leaves the root fillet. Default: "
-        "0.38 m_n (rack) or 0.2 m_n (shaper), or less where the mate needs the involute.",
+    tool_tip_radius: ShortLength | None = option(
+        None,
+        "Rounding of the cutting tool's tip, which leaves the root fillet. Default: 0.38 m_n "
+        "(rack) or 0.2 m_n (shaper), or less where the mate needs the involute.",
     )
-    micro_geometry: MicroGeometryTable | None = Field(
-        default=None, description="Modifications and deviations of the flanks."
+    micro_geometry: MicroGeometryTable | None = option(
+        None, "Modifications and deviations of the flanks."
     )
 
     @property
@@ -283,7 +262,7 @@ class PairGear(GearTable):
     _sign = model_validator(mode="before")(internal_if_negative)
 
     teeth: int = RING_TEETH
-    internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
+    internal: bool = option(False, "true: a ring gear around the pinion.")
     rim_thickness: _RimThickness = None
 
 
@@ -297,20 +276,19 @@ class Planet(GearTable):
     }
 
     count: int = Field(ge=1, le=24, description="Number of planets.")
-    angles: tuple[Angle, ...] | None = Field(
-        default=None,
-        description="Position of each planet on the carrier. Default: the admissible positions "
-        "nearest to equal spacing.",
+    angles: tuple[Angle, ...] | None = option(
+        None,
+        "Position of each planet on the carrier. Default: the admissible positions nearest to "
+        "equal spacing.",
     )
-    mass: Mass | None = Field(
-        default=None,
-        description="Of one planet with its rollers: its centrifugal force loads the planet "
-        "bearing. Default: from the sizes of gear and rollers and the density of their materials.",
+    mass: Mass | None = option(
+        None,
+        "Of one planet with its rollers: its centrifugal force loads the planet bearing. Default: "
+        "from the sizes of gear and rollers and the density of their materials.",
     )
-    micro_geometry_ring_side: MicroGeometryTable | None = Field(
-        default=None,
-        description="Of the flanks that work against the ring. Default: micro_geometry holds on "
-        "both sides.",
+    micro_geometry_ring_side: MicroGeometryTable | None = option(
+        None,
+        "Of the flanks that work against the ring. Default: micro_geometry holds on both sides.",
     )
 
 
@@ -329,18 +307,18 @@ class MeshTable(Table):
 
     STAND_INS: ClassVar[dict[str, object]] = {"misalignment": None}
 
-    misalignment: Deviation = Field(
-        default=as_stated("0 um"),
-        description="F_beta_x over the common face width, in the plane of action; positive: the "
-        "flanks open towards the end where contact ends.",
+    misalignment: Deviation = option(
+        "0 um",
+        "F_beta_x over the common face width, in the plane of action; positive: the flanks open "
+        "towards the end where contact ends.",
     )
 
 
 class SetMesh(MeshTable):
     """A mesh whose gears or centre distance may be found from it."""
 
-    normal_backlash: ShortLength | None = Field(
-        default=None,
-        description="j_bn, for what is left out: a profile shift or the centre distance. Default: "
-        "none, as the profile shifts of ISO 21771.",
+    normal_backlash: ShortLength | None = option(
+        None,
+        "j_bn, for what is left out: a profile shift or the centre distance. Default: none, as "
+        "the profile shifts of ISO 21771.",
     )

@@ -172,13 +172,12 @@ def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         ]
         gears = stated or [mesh.first, mesh.second]
         words = "the same hand" if mesh.internal else "opposite hands"
-        yield Problem(
-            ", ".join(f"gears.{gear}.hand" for gear in gears),
-            ", ".join(f'"{getattr(gearing.tables[it], "hand", None)}"' for it in stated),
-            f"{mesh.first} and {mesh.second} must have {words} of helix to mesh"
-            + ("." if len(stated) == 2 else ", and the other hands given forbid it."),
-            "Correct or leave out hand.",
+        shown = ", ".join(f'"{getattr(gearing.tables[it], "hand", None)}"' for it in stated)
+        allowed = f"{mesh.first} and {mesh.second} must have {words} of helix to mesh" + (
+            "." if len(stated) == 2 else ", and the other hands given forbid it."
         )
+        remedy = "Correct or leave out hand."
+        yield Problem(", ".join(f"gears.{gear}.hand" for gear in gears), shown, allowed, remedy)
 
 
 # --- meshes ---------------------------------------------------------------------------------------
@@ -217,12 +216,9 @@ def _pin_radius_problems(
     first, wanted = own[0]
     others = [mesh for mesh, a in own if abs(a - wanted) > SAME_PLACE]
     fits = " ".join(_shifts_for(gearing, mesh, wanted) for mesh in others)
-    yield Problem(
-        ", ".join(keys),
-        "",
-        f"the pin of {body} would stand at different radii: {shown}.",
-        f"Give all the same; that of {'-'.join(first.pair)} would do: {fits}",
-    )
+    allowed = f"the pin of {body} would stand at different radii: {shown}."
+    remedy = f"Give all the same; that of {'-'.join(first.pair)} would do: {fits}"
+    yield Problem(", ".join(keys), "", allowed, remedy)
 
 
 def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
@@ -268,13 +264,10 @@ def _triangle_problems(
         low, high = abs(radii[one] - radii[two]), radii[one] + radii[two]
         if not low <= distance <= high:
             wide = True
-            yield Problem(
-                gearing.distance_key(mesh),
-                millimetres(distance),
-                f"cannot be: the pins of {one} and {two} stand at {millimetres(radii[one])} and "
-                f"{millimetres(radii[two])} from the axis.",
-                f"It must be from {millimetres(low)} to {millimetres(high)}.",
-            )
+            allowed = f"cannot be: the pins of {one} and {two} stand at {millimetres(radii[one])} "
+            allowed += f"and {millimetres(radii[two])} from the axis."
+            remedy = f"It must be from {millimetres(low)} to {millimetres(high)}."
+            yield Problem(gearing.distance_key(mesh), millimetres(distance), allowed, remedy)
     if wide:
         return
     pins = gearing.pins
@@ -283,13 +276,10 @@ def _triangle_problems(
             continue
         apart, distance = math.dist(pins[one].place, pins[two].place), distances[mesh.key] or 0.0
         if abs(apart - distance) > SAME_PLACE:
-            yield Problem(
-                gearing.distance_key(mesh),
-                millimetres(distance),
-                f"does not close the ring of planets: {one} and {two} stand "
-                f"{millimetres(apart)} apart by their other meshes.",
-                f"Give {millimetres(apart)}.",
-            )
+            allowed = f"does not close the ring of planets: {one} and {two} stand "
+            allowed += f"{millimetres(apart)} apart by their other meshes."
+            remedy = f"Give {millimetres(apart)}."
+            yield Problem(gearing.distance_key(mesh), millimetres(distance), allowed, remedy)
 
 
 def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
@@ -301,12 +291,10 @@ def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         different = _rack_difference(mesh)
         if different:
             one, two = drawn.pair
-            yield Problem(
-                f"meshes[{gearing.meshes.index(drawn)}]",
-                f'["{one}", "{two}"]',
-                f"cannot mesh: {different}.",
-                "Give both the same normal module, pressure angle and helix angle.",
-            )
+            shown = f'["{one}", "{two}"]'
+            allowed = f"cannot mesh: {different}."
+            remedy = "Give both the same normal module, pressure angle and helix angle."
+            yield Problem(f"meshes[{gearing.meshes.index(drawn)}]", shown, allowed, remedy)
             continue
         yield from check_mesh(gearing, mesh, gearing.distance_key(drawn))
 
@@ -361,24 +349,19 @@ def _angle_problems(gearing: Gearing) -> Iterator[Problem]:
     if angles is None:
         return
     if len(angles) != count:
-        yield Problem(
-            "planet.angles",
-            f"{len(angles)} angles",
-            f"must be one angle for each of the {count} planets (planet.count).",
-            f"Give {count} angles, or none for the nearest admissible positions.",
-        )
+        allowed = f"must be one angle for each of the {count} planets (planet.count)."
+        remedy = f"Give {count} angles, or none for the nearest admissible positions."
+        yield Problem("planet.angles", f"{len(angles)} angles", allowed, remedy)
     sun, ring = gearing.tables["sun"].teeth, gearing.tables["ring"].teeth
     for number, angle in enumerate(angles):
         relative = angle - angles[0]
         admissible = nearest_admissible_angle(relative, sun, ring)
         if abs(relative - admissible) > ANGLE_TOLERANCE:
-            yield Problem(
-                f"planet.angles[{number}]",
-                f"{math.degrees(angle):.6g} deg",
-                "a planet cannot be assembled there: positions differ by multiples of "
-                f"360/({sun} + {ring}) deg.",
-                f"The nearest is {math.degrees(angles[0] + admissible):.6f} deg.",
-            )
+            shown = f"{math.degrees(angle):.6g} deg"
+            allowed = "a planet cannot be assembled there: positions differ by multiples of "
+            allowed += f"360/({sun} + {ring}) deg."
+            remedy = f"The nearest is {math.degrees(angles[0] + admissible):.6f} deg."
+            yield Problem(f"planet.angles[{number}]", shown, allowed, remedy)
 
 
 def _place_problems(gearing: Gearing) -> Iterator[Problem]:
@@ -388,13 +371,10 @@ def _place_problems(gearing: Gearing) -> Iterator[Problem]:
         return
     number = arrangement.number
     fitting = [str(n) for n in range(1, MOST_PLANETS + 1) if number % n == 0]
-    yield Problem(
-        gearing.count_key,
-        str(count),
-        f"cannot be assembled: by the numbers of teeth, a planet fits only at multiples of "
-        f"360/{number} deg from another one.",
-        f"Take {' or '.join(fitting)}, or other numbers of teeth.",
-    )
+    allowed = "cannot be assembled: by the numbers of teeth, a planet fits only at multiples of "
+    allowed += f"360/{number} deg from another one."
+    remedy = f"Take {' or '.join(fitting)}, or other numbers of teeth."
+    yield Problem(gearing.count_key, str(count), allowed, remedy)
 
 
 def _axial_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
@@ -436,12 +416,9 @@ def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
             if gearing.listed
             else ("neighbouring planets overlap by")
         )
-        yield Problem(
-            gearing.count_key if gearing.stated_angles is None else "planet.angles",
-            str(gearing.count),
-            f"{which} {millimetres(-gap)}.",
-            _fewer(gearing, sound, pins, close, apart),
-        )
+        key = gearing.count_key if gearing.stated_angles is None else "planet.angles"
+        allowed = f"{which} {millimetres(-gap)}."
+        yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, pins, close, apart))
 
 
 def _gap(

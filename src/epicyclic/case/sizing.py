@@ -291,12 +291,10 @@ class _Solver:
         try:
             return closed_center_distance(mesh.rack, mesh.teeth, total, mesh.backlash or 0.0)
         except ValueError as error:
-            raise _refused(
-                ", ".join(map(self._shift_key, mesh.gears)),
-                "",
-                f"leave no centre distance: {error}.",
-                f"Correct the profile shifts, or give {'.'.join(mesh.place)}.",
-            ) from None
+            key = ", ".join(map(self._shift_key, mesh.gears))
+            allowed = f"leave no centre distance: {error}."
+            remedy = f"Correct the profile shifts, or give {'.'.join(mesh.place)}."
+            raise _refused(key, "", allowed, remedy) from None
 
     # --- profile shifts ---
 
@@ -322,13 +320,10 @@ class _Solver:
                     yield mesh, mate
 
     def _no_shift(self, free: list[str]) -> InputError:
-        return _refused(
-            ", ".join(self._shift_key(name) for name in free),
-            "",
-            "is missing, and so is that of every mate.",
-            "Add one of them, or tooth_thickness with thickness_diameter: the others "
-            "follow from the centre distance.",
-        )
+        allowed = "is missing, and so is that of every mate."
+        remedy = "Add one of them, or tooth_thickness with thickness_diameter: the others follow "
+        remedy += "from the centre distance."
+        return _refused(", ".join(self._shift_key(name) for name in free), "", allowed, remedy)
 
     def _sum(self, mesh: _Sized) -> float:
         """Nominal x1 + x2 of a mesh; 0 if its gears cannot mesh, which is told with the meshes."""
@@ -348,14 +343,11 @@ class _Solver:
 
     def _set(self, name: str, shift: float, mesh: _Sized) -> None:
         if not LEAST_SHIFT <= shift <= LARGEST_SHIFT:
-            raise _refused(
-                self._shift_key(name),
-                "",
-                f"would have to be {shift:.3g} at the centre distance of "
-                f"{millimetres(self.distances[mesh.group])}, and must be >= {LEAST_SHIFT:g} and <= "
-                f"{LARGEST_SHIFT:g}.",
-                f"Correct {'.'.join(mesh.place)}, the tooth numbers or the module.",
-            )
+            allowed = f"would have to be {shift:.3g} at the centre distance of "
+            allowed += f"{millimetres(self.distances[mesh.group])}, and must be >= {LEAST_SHIFT:g} "
+            allowed += f"and <= {LARGEST_SHIFT:g}."
+            remedy = f"Correct {'.'.join(mesh.place)}, the tooth numbers or the module."
+            raise _refused(self._shift_key(name), "", allowed, remedy)
         self.shifts[name] = shift
         keys = {key: None for choice in GearTable.THICKNESS for key in choice.split("+")}
         self.tables[name] = self.tables[name].model_copy(
@@ -383,13 +375,10 @@ class _Solver:
             over += sum(self.thinned[name] for name in mesh.gears)
         backlash = over * -2 * mesh.rack.normal_module * math.sin(mesh.rack.normal_pressure_angle)
         if mesh.backlash is not None and abs(backlash) > AGREES:
-            raise _refused(
-                mesh.backlash_key,
-                millimetres(mesh.backlash),
-                f"contradicts the teeth and the centre distance, which leave "
-                f"{micrometres(backlash + mesh.backlash)}.",
-                "Leave out normal_backlash, a profile shift or the centre distance.",
-            )
+            allowed = "contradicts the teeth and the centre distance, which leave "
+            allowed += f"{micrometres(backlash + mesh.backlash)}."
+            remedy = "Leave out normal_backlash, a profile shift or the centre distance."
+            raise _refused(mesh.backlash_key, millimetres(mesh.backlash), allowed, remedy)
         if mesh.backlash is not None or backlash > -ROUNDING or over > self._printed(mesh):
             return
         name = mesh.gives_way
@@ -434,12 +423,10 @@ def _no_distance(meshes: Sequence[_Sized]) -> InputError:
     place = ".".join(meshes[0].place)
     pairs = " or ".join(" and ".join(mesh.gears) for mesh in meshes)
     table, _, key = place.rpartition(".")
-    return _refused(
-        place,
-        "",
-        f"is missing, and no mesh tells it: that takes the tooth thickness of both gears, {pairs}.",
-        f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.',
-    )
+    allowed = "is missing, and no mesh tells it: that takes the tooth thickness of both gears, "
+    allowed += f"{pairs}."
+    remedy = f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.'
+    return _refused(place, "", allowed, remedy)
 
 
 def _refused(key: str, value: str, allowed: str, remedy: str) -> InputError:

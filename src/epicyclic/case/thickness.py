@@ -124,13 +124,10 @@ def check_fit(gear: Gear, key: str, table: GearTable) -> Problem | None:
     """DIN 3967 has no allowances for larger gears."""
     if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
         return None
-    return Problem(
-        f"{key}.tooth_thickness_fit",
-        f'"{table.tooth_thickness_fit}"',
-        f"is for reference diameters up to {millimetres(LARGEST_FIT)}, and this one has "
-        f"{millimetres(2 * gear.reference_radius)}.",
-        "Give tooth_thickness_allowance.",
-    )
+    allowed = f"is for reference diameters up to {millimetres(LARGEST_FIT)}, and this one has "
+    allowed += f"{millimetres(2 * gear.reference_radius)}."
+    remedy = "Give tooth_thickness_allowance."
+    return Problem(f"{key}.tooth_thickness_fit", f'"{table.tooth_thickness_fit}"', allowed, remedy)
 
 
 def check_measure(gear: Gear, key: str, table: GearTable) -> Problem | None:
@@ -157,10 +154,7 @@ def check_measure(gear: Gear, key: str, table: GearTable) -> Problem | None:
     if low < radius < high:
         return None
     value = getattr(table, what)
-    return Problem(
-        f"{key}.{what}",
-        millimetres(value),
-        f"touches at diameter {millimetres(2 * radius)}, beyond the flanks, which reach from "
-        f"{millimetres(2 * low)} to {millimetres(2 * high)}.",
-        f"Check it, tooth number and module. {remedy}",
-    )
+    shown = millimetres(value)
+    allowed = f"touches at diameter {millimetres(2 * radius)}, beyond the flanks, which reach from "
+    allowed += f"{millimetres(2 * low)} to {millimetres(2 * high)}."
+    return Problem(f"{key}.{what}", shown, allowed, f"Check it, tooth number and module. {remedy}")

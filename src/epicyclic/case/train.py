@@ -316,14 +316,9 @@ def _read_set_cached(given: _Given) -> _ReadSet:
             as_given(problem, raw) for problem in cross_check(checked, tables, given.folder)
         ]
     if all(key in raw for key in _GIVEN):
-        problems.append(
-            Problem(
-                "efficiency",
-                written(raw["efficiency"]),
-                "conflicts with mesh_efficiency.",
-                "Give one of them: of the set from sun to ring, or of each of its meshes.",
-            )
-        )
+        allowed = "conflicts with mesh_efficiency."
+        remedy = "Give one of them: of the set from sun to ring, or of each of its meshes."
+        problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
     return _ReadSet(None if problems else read.case, problems, told)
 
 

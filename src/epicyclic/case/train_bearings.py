@@ -43,58 +43,38 @@ def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Prob
     """Two bearings at two known places carry a shaft."""
     for name, table in own.items():
         if table.position is None:
-            yield Problem(
-                f"bearings.{name}.position",
-                "",
-                f"is missing: the force on the bearing follows from its place along {shaft}.",
-                f'Add position = "... mm". {GIVE_FORCE}',
-            )
+            allowed = f"is missing: the force on the bearing follows from its place along {shaft}."
+            remedy = f'Add position = "... mm". {GIVE_FORCE}'
+            yield Problem(f"bearings.{name}.position", "", allowed, remedy)
     names = ", ".join(own)
     if len(own) > 2:
-        yield Problem(
-            "bearings",
-            names,
-            f"are {len(own)} bearings on {shaft}; statics gives the forces of two.",
-            "Give radial_force of all but two.",
-        )
+        allowed = f"are {len(own)} bearings on {shaft}; statics gives the forces of two."
+        yield Problem("bearings", names, allowed, "Give radial_force of all but two.")
     places = [table.position for table in own.values() if table.position is not None]
     if len(own) == 2 and len(places) == 2 and places[0] == places[1]:
-        yield Problem(
-            f"bearings.{next(iter(own))}.position",
-            millimetres(places[0]),
-            f"is that of the other bearing of {shaft} too.",
-            "Give both their own positions.",
-        )
+        key = f"bearings.{next(iter(own))}.position"
+        allowed = f"is that of the other bearing of {shaft} too."
+        yield Problem(key, millimetres(places[0]), allowed, "Give both their own positions.")
 
 
 def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
     """The forces of gears, and where they act."""
     names = ", ".join(own)
     if len(own) == 1 and any(True for _ in _gears(train, shaft)):
-        yield Problem(
-            f"bearings.{names}",
-            "",
-            f"is the only bearing of {shaft}, whose gears would tilt it.",
-            f"Add a second bearing. {GIVE_FORCE}",
-        )
+        allowed = f"is the only bearing of {shaft}, whose gears would tilt it."
+        yield Problem(f"bearings.{names}", "", allowed, f"Add a second bearing. {GIVE_FORCE}")
     for gear in _gears(train, shaft):
         if train.position_of(gear) is None:
-            yield Problem(
-                f'positions."{gear}"',
-                "",
-                f"is missing: the forces on the bearings {names} follow from it.",
-                f'Add "{gear}" = "... mm" to [positions]. {GIVE_FORCE}',
-            )
+            allowed = f"is missing: the forces on the bearings {names} follow from it."
+            remedy = f'Add "{gear}" = "... mm" to [positions]. {GIVE_FORCE}'
+            yield Problem(f'positions."{gear}"', "", allowed, remedy)
     for name, gearing in train.shape.sets.items():
         if gearing.computed:
             continue
         if shaft in train.shape.bodies_of(name).values():
-            yield Problem(
-                f"bearings.{next(iter(own))}.radial_force",
-                "",
-                f"is missing: the forces of {name}, whose efficiency is given, are not known.",
-                f"Give it for {names}.",
-            )
+            allowed = f"is missing: the forces of {name}, whose efficiency is given, are not known."
+            remedy = f"Give it for {names}."
+            yield Problem(f"bearings.{next(iter(own))}.radial_force", "", allowed, remedy)
 
 
 def _gears(train: TrainCase, shaft: str) -> Iterator[str]:

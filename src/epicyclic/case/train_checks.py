@@ -67,14 +67,10 @@ def _temperature_problems(train: TrainCase) -> list[Problem]:
         if table.models.temperatures not in ("inlet", train.models.temperatures)
     ]
     if train.models.temperatures != "inlet" and not train.computed:
-        found.append(
-            Problem(
-                "models.temperatures",
-                written(train.models.temperatures),
-                "needs losses that are computed; all sets have given efficiencies.",
-                'Take "inlet", or give sets their gears in place of efficiencies.',
-            )
-        )
+        shown = written(train.models.temperatures)
+        allowed = "needs losses that are computed; all sets have given efficiencies."
+        remedy = 'Take "inlet", or give sets their gears in place of efficiencies.'
+        found.append(Problem("models.temperatures", shown, allowed, remedy))
     return found
 
 

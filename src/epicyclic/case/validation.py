@@ -320,14 +320,8 @@ def _check_group(
         return []
     if not started:
         missing = alternatives[0][0]
-        return [
-            Problem(
-                f"{name}.{missing}",
-                "",
-                f"is missing; needed is {choice}.",
-                f"Add {choice} to [{name}].",
-            )
-        ]
+        allowed = f"is missing; needed is {choice}."
+        return [Problem(f"{name}.{missing}", "", allowed, f"Add {choice} to [{name}].")]
     if len(started) == 1:
         return [
             Problem(
@@ -342,14 +336,9 @@ def _check_group(
         ]
     both = [key for keys in started for key in keys if key in given]
     extra = next(key for key in started[1] if key in given)
-    return [
-        Problem(
-            f"{name}.{extra}",
-            written(given[extra]),
-            f"conflicts with {' and '.join(key for key in both if key != extra)}.",
-            f"Give exactly one: {choice}.",
-        )
-    ]
+    allowed = f"conflicts with {' and '.join(key for key in both if key != extra)}."
+    remedy = f"Give exactly one: {choice}."
+    return [Problem(f"{name}.{extra}", written(given[extra]), allowed, remedy)]
 
 
 def _sound_sections(

@@ -39,6 +39,12 @@ from epicyclic.units import (
     as_stated,
 )
 
+
+def option(default: Any, description: str, **limits: Any) -> Any:
+    """The field of a key with a default, which is stated as a file has it, with its unit."""
+    return Field(default=default, description=description, **limits)
+
+
 # An oil by its ISO viscosity grade or by two viscosities.
 #
 # What such a table leaves out is typical of its kind, and its source says so.
@@ -68,10 +74,10 @@ class ShortOil(BaseModel):
     model_config = ConfigDict(extra="allow")
 
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
-    iso_vg: int | None = Field(default=None, description="Grade of ISO 3448.")
-    viscosity_40: KinematicViscosity | None = Field(default=None, description="At 40 degC.")
-    viscosity_100: KinematicViscosity | None = Field(default=None, description="At 100 degC.")
-    density_15: OilDensity | None = Field(default=None, description="At 15 degC.")
+    iso_vg: int | None = option(None, "Grade of ISO 3448.")
+    viscosity_40: KinematicViscosity | None = option(None, "At 40 degC.")
+    viscosity_100: KinematicViscosity | None = option(None, "At 100 degC.")
+    density_15: OilDensity | None = option(None, "At 15 degC.")
 
 
 _SHORT_KEYS = ("iso_vg", "viscosity_40", "viscosity_100", "density_15")

@@ -8,10 +8,10 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from epicyclic.case.messages import did_you_mean
-from epicyclic.case.tables.base import Condition, Table, broken_conditions
+from epicyclic.case.tables.base import Condition, Table, broken_conditions, option
 from epicyclic.case.tables.thermal import ThermalTable
 from epicyclic.errors import Problem
-from epicyclic.units import LITRE, Length, Number, Quantity, Speed, VolumeFlow, as_stated
+from epicyclic.units import LITRE, Length, Number, Quantity, Speed, VolumeFlow
 
 Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged"]
 SHARE_KEY = "surroundings.oil_air_ratio"
@@ -45,51 +45,40 @@ class LubricationTable(Table):
         description="drained: mist only; flow: oil fed through shafts or carrier; dip: some of the "
         "gears reach into the sump."
     )
-    oil_flow: VolumeFlow | None = Field(
-        default=None, description="That jet, spray or flow brings to the gears of one set."
+    oil_flow: VolumeFlow | None = option(
+        None, "That jet, spray or flow brings to the gears of one set."
     )
-    jet_speed: Speed = Field(
-        default=as_stated("0 m/s"),
-        description="Of the oil of jets, along the teeth; 0: not known, or across.",
+    jet_speed: Speed = option(
+        "0 m/s", "Of the oil of jets, along the teeth; 0: not known, or across."
     )
-    nozzle_side: Literal["in-mesh", "out-of-mesh", "radial"] = Field(
-        default="in-mesh",
-        description="Jets with the teeth as they mesh, against them as they part, or radial.",
+    nozzle_side: Literal["in-mesh", "out-of-mesh", "radial"] = option(
+        "in-mesh", "Jets with the teeth as they mesh, against them as they part, or radial."
     )
-    oil_level: _Level | None = Field(
-        default=None,
-        description="With dip: oil at rest above the axis of the set, or both axes of a pair; "
-        "negative: below.",
+    oil_level: _Level | None = option(
+        None,
+        "With dip: oil at rest above the axis of the set, or both axes of a pair; negative: below.",
     )
-    immersion: dict[str, Length] = Field(
-        default={},
-        description="With dip, instead of oil_level: depth of the lowest point of each gear, or of "
-        "the carrier, below the oil at rest.",
+    immersion: dict[str, Length] = option(
+        {},
+        "With dip, instead of oil_level: depth of the lowest point of each gear, or of the "
+        "carrier, below the oil at rest.",
     )
-    oil_volume: _Sump | None = Field(
-        default=None, description="With dip: in the sump. Default: thermal.oil_volume."
-    )
-    churning: Literal["changenet-velex", "iso-14179-1"] = Field(
-        default="changenet-velex", description="With dip."
-    )
-    oil_share: Number | None = Field(
-        default=None,
+    oil_volume: _Sump | None = option(None, "With dip: in the sump. Default: thermal.oil_volume.")
+    churning: Literal["changenet-velex", "iso-14179-1"] = option("changenet-velex", "With dip.")
+    oil_share: Number | None = option(
+        None,
+        "Share of oil by volume around the gears, where it is known. Default: an estimate by "
+        "method.",
         ge=0,
         le=1,
-        description="Share of oil by volume around the gears, where it is known. Default: an "
-        "estimate by method.",
     )
-    oil_share_factor: Number = Field(
-        default=1.0, gt=0, le=100, description="Multiplies that estimate, at most to 1."
-    )
+    oil_share_factor: Number = option(1.0, "Multiplies that estimate, at most to 1.", gt=0, le=100)
 
     def __hash__(self) -> int:  # a table of names cannot be hashed
         return hash((self.method, self.oil_flow, self.oil_level, self.oil_share_factor))
 
 
-LUBRICATION: Any = Field(
-    default=None, description="With it surroundings.oil_air_ratio has no effect."
-)
+LUBRICATION: Any = option(None, "With it surroundings.oil_air_ratio has no effect.")
 """The field of a case."""
 
 
@@ -188,14 +177,9 @@ def check_wetting(table: LubricationTable, thermal: ThermalTable) -> list[Proble
     if "lubrication" not in thermal.model_fields_set or thermal.lubrication in wetting:
         return []
     fitting = " or ".join(f'"{name}"' for name in wetting)
-    return [
-        Problem(
-            "thermal.lubrication",
-            f'"{thermal.lubrication}"',
-            f'contradicts lubrication.method = "{table.method}", with which it is {fitting}.',
-            "Remove it: it follows from the method.",
-        )
-    ]
+    allowed = f'contradicts lubrication.method = "{table.method}", with which it is {fitting}.'
+    remedy = "Remove it: it follows from the method."
+    return [Problem("thermal.lubrication", f'"{thermal.lubrication}"', allowed, remedy)]
 
 
 def check_immersion(table: LubricationTable, parts: Collection[str]) -> list[Problem]:

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, Tag, model_validator
 
 from epicyclic.case.read import value_at
-from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table
+from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table, option
 from epicyclic.errors import Problem
 from epicyclic.oil.oil import Conductivity, HeatCapacity
 from epicyclic.oil.rheology import (
@@ -33,7 +33,6 @@ from epicyclic.units import (
     SmallLength,
     Speed,
     Stiffness,
-    as_stated,
 )
 
 # Keys that choose how an oil behaves in a line contact.
@@ -86,38 +85,39 @@ KEYS = {"stress": "shear_stress", "slope": "shear_stress_slope", "exponent": "sh
 class OilBehaviour(Table):
     """Viscosity under pressure and under shear."""
 
-    pressure_law: Literal["roelands", "barus", "two-slope"] = Field(
-        default=PRESSURE_NAMES[USUAL.pressure_law], description="Viscosity under pressure."
+    pressure_law: Literal["roelands", "barus", "two-slope"] = option(
+        PRESSURE_NAMES[USUAL.pressure_law], "Viscosity under pressure."
     )
-    slope_ratio: Number = Field(
-        default=SLOPE_RATIO, gt=0.0, le=1.0,
-        description="For two-slope: slope at high over that at ambient pressure (estimate).",
-    )  # fmt: skip
-    second_slope: PressureViscosity | None = Field(
-        default=None, description="For two-slope: slope at high pressure, instead of slope_ratio."
+    slope_ratio: Number = option(
+        SLOPE_RATIO,
+        "For two-slope: slope at high over that at ambient pressure (estimate).",
+        gt=0.0,
+        le=1.0,
     )
-    transition_pressure: LoadPressure = Field(
-        default=as_stated(f"{TRANSITION * 1e-9:g} GPa"),
-        description="For two-slope: where the slopes meet (estimate).",
+    second_slope: PressureViscosity | None = option(
+        None, "For two-slope: slope at high pressure, instead of slope_ratio."
     )
-    eyring_stress: Stress = Field(
-        default=as_stated(stress_text(USUAL)),
-        description="Of the default law: stress beyond which the oil thins (estimate; mineral "
-        "oils 2 to 10 MPa).",
+    transition_pressure: LoadPressure = option(
+        f"{TRANSITION * 1e-9:g} GPa", "For two-slope: where the slopes meet (estimate)."
     )
-    shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = Field(
-        default="ree-eyring", description="Viscosity under shear."
+    eyring_stress: Stress = option(
+        stress_text(USUAL),
+        "Of the default law: stress beyond which the oil thins (estimate; mineral oils 2 to 10 "
+        "MPa).",
     )
-    shear_stress: Stress | None = Field(
-        default=None, description="For limiting-stress and carreau: the stress of the law."
+    shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = option(
+        "ree-eyring", "Viscosity under shear."
     )
-    shear_stress_slope: Number = Field(
-        default=0.0, ge=0.0, le=1.0,
-        description="Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
-    )  # fmt: skip
-    shear_exponent: Number | None = Field(
-        default=None, gt=0.0, le=1.0, description="For carreau: n."
+    shear_stress: Stress | None = option(
+        None, "For limiting-stress and carreau: the stress of the law."
     )
+    shear_stress_slope: Number = option(
+        0.0,
+        "Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
+        ge=0.0,
+        le=1.0,
+    )
+    shear_exponent: Number | None = option(None, "For carreau: n.", gt=0.0, le=1.0)
 
 
 def law_problems(section: str, table: OilBehaviour) -> list[Problem]:
@@ -147,9 +147,12 @@ _USUAL_OIL = OilBehaviour()
 def oil_laws(table: OilBehaviour) -> OilLaws:
     """The laws that a table without problems chooses."""
     return OilLaws(
-        PRESSURE_LAWS[table.pressure_law], _shear_law(table), table.second_slope,
-        table.slope_ratio, table.transition_pressure,
-    )  # fmt: skip
+        PRESSURE_LAWS[table.pressure_law],
+        _shear_law(table),
+        table.second_slope,
+        table.slope_ratio,
+        table.transition_pressure,
+    )
 
 
 def _shear_law(table: OilBehaviour) -> ShearLaw:
@@ -171,32 +174,30 @@ _PinStiffness = Annotated[
 class LoadSharing(Table):
     """How the planets share the load."""
 
-    method: Literal["equal", "mesh-load-factor", "closed-form", "direct"] = Field(
-        default="equal",
-        description="mesh-load-factor: one planet takes more; closed-form, direct: from "
-        "position_errors and stiffness.",
+    method: Literal["equal", "mesh-load-factor", "closed-form", "direct"] = option(
+        "equal",
+        "mesh-load-factor: one planet takes more; closed-form, direct: from position_errors and "
+        "stiffness.",
     )
-    mesh_load_factor: Number = Field(
-        default=1.0,
+    mesh_load_factor: Number = option(
+        1.0,
+        "K_gamma: load of the most loaded planet over the mean, at most planet.count.",
         ge=1,
         le=24,
-        description="K_gamma: load of the most loaded planet over the mean, at most planet.count.",
     )
-    position_errors: tuple[Deviation, ...] | None = Field(
-        default=None,
-        description="Of each planet pin, against the sense in which a positive torque of the sun "
-        "pushes it: a positive error loads its planet more.",
+    position_errors: tuple[Deviation, ...] | None = option(
+        None,
+        "Of each planet pin, against the sense in which a positive torque of the sun pushes it: a "
+        "positive error loads its planet more.",
     )
-    floating_member: Literal["sun", "ring", "carrier", "none"] = Field(
-        default="sun", description="The member that gives way in the transverse plane."
+    floating_member: Literal["sun", "ring", "carrier", "none"] = option(
+        "sun", "The member that gives way in the transverse plane."
     )
-    support_stiffness: Stiffness = Field(
-        default=as_stated("0 N/um"), description="Radial, of the floating member; 0: it floats."
-    )
-    pin_stiffness: _PinStiffness | None = Field(
-        default=None,
-        description="Radial, of one planet pin in the carrier, in series with the planet bearing. "
-        "Default: rigid.",
+    support_stiffness: Stiffness = option("0 N/um", "Radial, of the floating member; 0: it floats.")
+    pin_stiffness: _PinStiffness | None = option(
+        None,
+        "Radial, of one planet pin in the carrier, in series with the planet bearing. Default: "
+        "rigid.",
     )
 
     def idle_keys(self) -> tuple[str, ...]:
@@ -276,27 +277,21 @@ class FrictionTable(PointsTable):
 class ContactSolver(OilBehaviour):
     """How the contacts of a mesh are solved for friction = ehl-direct."""
 
-    preset: PresetName = Field(default=DEFAULT, description=PRESET)
-    heating: HeatingModel = Field(default="isothermal", description=HEATING)
-    solid_conductivity: Conductivity | None = Field(
-        default=None, description="With heating. Default: that of the material of each gear."
+    preset: PresetName = option(DEFAULT, PRESET)
+    heating: HeatingModel = option("isothermal", HEATING)
+    solid_conductivity: Conductivity | None = option(
+        None, "With heating. Default: that of the material of each gear."
     )
-    solid_heat_capacity: HeatCapacity | None = Field(
-        default=None, description="With heating. Default: that of the material of each gear."
+    solid_heat_capacity: HeatCapacity | None = option(
+        None, "With heating. Default: that of the material of each gear."
     )
-    asperity_film: SmallLength = Field(
-        default=as_stated(film_text(USUAL)), description="Film below which flanks touch (estimate)."
+    asperity_film: SmallLength = option(
+        film_text(USUAL), "Film below which flanks touch (estimate)."
     )
-    correlation_length: SmallLength = Field(
-        default=as_stated("20 um"), description="Of the roughness of both flanks (estimate)."
-    )
-    seed: int = Field(default=1, ge=0, description="Of the generated profiles.")
-    error: Number = Field(
-        default=0.05, gt=0, le=1, description="Mean error wanted at contacts that take no part."
-    )
-    most_contacts: int = Field(
-        default=48, ge=12, le=5000, description="Solved for one mesh at most."
-    )
+    correlation_length: SmallLength = option("20 um", "Of the roughness of both flanks (estimate).")
+    seed: int = option(1, "Of the generated profiles.", ge=0)
+    error: Number = option(0.05, "Mean error wanted at contacts that take no part.", gt=0, le=1)
+    most_contacts: int = option(48, "Solved for one mesh at most.", ge=12, le=5000)
 
     @model_validator(mode="before")
     @classmethod
@@ -339,33 +334,27 @@ class GearPairModels(Table):
         "planet_tilt": None,
     }
 
-    friction: FrictionName = Field(
-        default="auto",
-        description="auto: mixed-ehl for the fluid it was made for, fitted-or-schlenk for an oil "
-        "with fitted models, else schlenk; ehl-direct: the contacts of the mesh solved.",
+    friction: FrictionName = option(
+        "auto",
+        "auto: mixed-ehl for the fluid it was made for, fitted-or-schlenk for an oil with fitted "
+        "models, else schlenk; ehl-direct: the contacts of the mesh solved.",
     )
-    constant_friction: Number = Field(
-        default=0.04, ge=0, le=1, description="For friction = constant."
-    )
-    boundary_friction: Number | None = Field(
-        default=None,
+    constant_friction: Number = option(0.04, "For friction = constant.", ge=0, le=1)
+    boundary_friction: Number | None = option(
+        None,
+        "Of dry contact (estimate; an oil's own is measured). Default: 0.10 for matsumoto and "
+        "doleschel, 0.12 for ehl-direct.",
         ge=0,
         le=1,
-        description="Of dry contact (estimate; an oil's own is measured). Default: 0.10 for "
-        "matsumoto and doleschel, 0.12 for ehl-direct.",
     )
-    fluid_friction: Number = Field(
-        default=0.02,
-        ge=0,
-        le=1,
-        description="Of separated contact, for matsumoto and doleschel (estimate, as above).",
+    fluid_friction: Number = option(
+        0.02, "Of separated contact, for matsumoto and doleschel (estimate, as above).", ge=0, le=1
     )
-    application_factor: LoadFactor = Field(
-        default=1.0, description="K_A, in the load of the formula niemann-winter only."
+    application_factor: LoadFactor = option(
+        1.0, "K_A, in the load of the formula niemann-winter only."
     )
-    mesh_load_factor: LoadFactor = Field(
-        default=1.0,
-        description="K_gamma, in the same place; what planets carry is up to load_sharing.",
+    mesh_load_factor: LoadFactor = option(
+        1.0, "K_gamma, in the same place; what planets carry is up to load_sharing."
     )
     rolling: Literal[
         "auto",
@@ -374,87 +363,79 @@ class GearPairModels(Table):
         "goksem-hargreaves",
         "fitted",
         "fitted-or-goksem-hargreaves",
-    ] = Field(
-        default="auto",
-        description="auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves "
-        "for an oil with fitted models, else goksem-hargreaves.",
+    ] = option(
+        "auto",
+        "auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves for an oil "
+        "with fitted models, else goksem-hargreaves.",
     )
-    oil_model: str | None = Field(
-        default=None,
-        description="For fitted and auto: a file of 'epicyclic oil characterise', from the folder "
-        "of the case. Default: the models built in for the oil.",
+    oil_model: str | None = option(
+        None,
+        "For fitted and auto: a file of 'epicyclic oil characterise', from the folder of the "
+        "case. Default: the models built in for the oil.",
     )
-    fitted_form: Literal["structured", "regression"] = Field(
-        default="structured", description="For fitted: which form of the file."
+    fitted_form: Literal["structured", "regression"] = option(
+        "structured", "For fitted: which form of the file."
     )
-    load_distribution: Literal["uniform", "minimum-energy", "compliance"] = Field(
-        default="compliance",
-        description="Along the contact lines: even, after a stiffness, or from elastic teeth.",
+    load_distribution: Literal["uniform", "minimum-energy", "compliance"] = option(
+        "compliance", "Along the contact lines: even, after a stiffness, or from elastic teeth."
     )
-    mesh_loads: Literal["with-losses", "without-losses"] = Field(
-        default="with-losses",
-        description="What the teeth carry: the torques in balance with all losses; or those of the "
-        "set without its own losses, at the given torque, as in the source.",
+    mesh_loads: Literal["with-losses", "without-losses"] = option(
+        "with-losses",
+        "What the teeth carry: the torques in balance with all losses; or those of the set "
+        "without its own losses, at the given torque, as in the source.",
     )
-    load_dependent: Literal["computed", "as-tested"] = Field(
-        default="computed",
-        description="Which loss counts as load-dependent: each by its kind; or, as on a test rig, "
-        "what torque adds to the total.",
+    load_dependent: Literal["computed", "as-tested"] = option(
+        "computed",
+        "Which loss counts as load-dependent: each by its kind; or, as on a test rig, what torque "
+        "adds to the total.",
     )
-    mesh: Literal["local", "loss-factor"] = Field(
-        default="local",
-        description="local: along the contact lines; loss-factor: mean friction times Ohlendorf's.",
+    mesh: Literal["local", "loss-factor"] = option(
+        "local", "local: along the contact lines; loss-factor: mean friction times Ohlendorf's."
     )
     pocketing: Literal[
         "auto", "incompressible", "isentropic", "mean-density", "central-differences", "talbot-2012"
-    ] = Field(
-        default="auto",
-        description="Fluid in the pockets: incompressible: mixture of constant density above the "
-        "pressure of a void; isentropic, mean-density: compressible mixture; auto: incompressible, "
-        "isentropic with less oil than 0.005; central-differences: mean-density with the "
-        "convective term of the source, for low speed; talbot-2012: for comparison with that "
-        "study.",
+    ] = option(
+        "auto",
+        "Fluid in the pockets: incompressible: mixture of constant density above the pressure of "
+        "a void; isentropic, mean-density: compressible mixture; auto: incompressible, isentropic "
+        "with less oil than 0.005; central-differences: mean-density with the convective term of "
+        "the source, for low speed; talbot-2012: for comparison with that study.",
     )
-    pocket_void_pressure: _VoidPressure = Field(
-        default=as_stated("0.01 bar"),
-        description="Absolute pressure of a void in the pockets, for pocketing = incompressible.",
+    pocket_void_pressure: _VoidPressure = option(
+        "0.01 bar", "Absolute pressure of a void in the pockets, for pocketing = incompressible."
     )
-    pocketing_table: str | None = Field(
-        default=None,
-        description="Read the flow through the pockets from this file of 'epicyclic "
-        "pockets-table', from the folder of the case.",
+    pocketing_table: str | None = option(
+        None,
+        "Read the flow through the pockets from this file of 'epicyclic pockets-table', from the "
+        "folder of the case.",
     )
-    pocket_end_length: Number = Field(
-        default=1.0,
-        ge=0.1,
-        le=10,
-        description="Of the control volumes at the ends of the face, in normal modules.",
+    pocket_end_length: Number = option(
+        1.0, "Of the control volumes at the ends of the face, in normal modules.", ge=0.1, le=10
     )
     drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
-    temperatures: TemperatureModel = Field(
-        default="inlet",
-        description="inlet: everything at the oil inlet temperature; flank: gears warmed by their "
-        "own meshes; network: heat flows between all parts, the oil and the surroundings.",
+    temperatures: TemperatureModel = option(
+        "inlet",
+        "inlet: everything at the oil inlet temperature; flank: gears warmed by their own meshes; "
+        "network: heat flows between all parts, the oil and the surroundings.",
     )
-    oil_beyond_range: Literal["held", "extrapolated"] = Field(
-        default="held",
-        description="Viscosity and pressure-viscosity outside the range of the mixed-EHL "
-        "regressions: held at its limit, or the formula continued.",
+    oil_beyond_range: Literal["held", "extrapolated"] = option(
+        "held",
+        "Viscosity and pressure-viscosity outside the range of the mixed-EHL regressions: held at "
+        "its limit, or the formula continued.",
     )
 
 
 class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
-    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = Field(
-        default="auto",
-        description="auto: of caged rollers mixed-ehl for the fluid it was made for and "
-        "fitted-or-palmgren for an oil with fitted models, else palmgren.",
+    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = option(
+        "auto",
+        "auto: of caged rollers mixed-ehl for the fluid it was made for and fitted-or-palmgren "
+        "for an oil with fitted models, else palmgren.",
     )
     bearing_viscous: Literal["harris"] = "harris"
-    planet_tilt: Literal["left-out", "coupled"] = Field(
-        default="left-out",
-        description="coupled: the planet tilts in its bearing and misaligns its meshes.",
+    planet_tilt: Literal["left-out", "coupled"] = option(
+        "left-out", "coupled: the planet tilts in its bearing and misaligns its meshes."
     )
 
 
@@ -463,26 +444,22 @@ class Numerics(Table):
 
     mesh_positions: int = Field(default=20, ge=4, le=1000)
     contact_segments: int = Field(default=20, ge=2, le=1000)
-    bearing_slices: int = Field(default=20, ge=3, le=500, description="On each roller.")
-    pocket_slices: int = Field(
-        default=24, ge=3, le=200, description="Of the pockets, across the face; at least."
-    )
-    pocket_steps: int = Field(
-        default=32, ge=8, le=1000, description="Time steps of the pocket flow in one pitch."
-    )
-    pocket_interpolation: Number = Field(
-        default=0.002,
+    bearing_slices: int = option(20, "On each roller.", ge=3, le=500)
+    pocket_slices: int = option(24, "Of the pockets, across the face; at least.", ge=3, le=200)
+    pocket_steps: int = option(32, "Time steps of the pocket flow in one pitch.", ge=8, le=1000)
+    pocket_interpolation: Number = option(
+        0.002,
+        "Largest error of pocketing losses that sweeps interpolate; 0 solves each.",
         ge=0,
         le=0.1,
-        description="Largest error of pocketing losses that sweeps interpolate; 0 solves each.",
     )
 
 
 class LossOption(Table):
     """What becomes of one loss term."""
 
-    include: bool = Field(default=True, description="false leaves the term out.")
-    factor: Number = Field(default=1.0, ge=0, le=100, description="Multiplies the term.")
+    include: bool = option(True, "false leaves the term out.")
+    factor: Number = option(1.0, "Multiplies the term.", ge=0, le=100)
 
 
 _AS_COMPUTED = LossOption()

@@ -6,8 +6,8 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.tables.base import NamedOil, Table
-from epicyclic.units import Number, Pressure, RotationalSpeed, Temperature, Torque, as_stated
+from epicyclic.case.tables.base import NamedOil, Table, option
+from epicyclic.units import Number, Pressure, RotationalSpeed, Temperature, Torque
 
 Member = Literal["sun", "ring", "carrier"]
 
@@ -26,14 +26,10 @@ class PlanetaryOperation(Table):
     EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
 
     input: Member = Field(description="The member to which torque and speed belong.")
-    fixed: Member | None = Field(
-        default=None, description="The member held still; the third one is the output."
-    )
-    second_input: Member | None = Field(
-        default=None, description="Instead of fixed: a second member of given speed."
-    )
-    second_speed: RotationalSpeed | None = Field(
-        default=None, description="Speed of the second member; same sign = same sense of rotation."
+    fixed: Member | None = option(None, "The member held still; the third one is the output.")
+    second_input: Member | None = option(None, "Instead of fixed: a second member of given speed.")
+    second_speed: RotationalSpeed | None = option(
+        None, "Speed of the second member; same sign = same sense of rotation."
     )
     torque: Torque = Field(
         description="On the input member; negative = coasting, power flows back through it."
@@ -61,18 +57,13 @@ class Lubricant(Table):
         description="A name of the oil library (epicyclic oils), a table of properties, or in "
         'short { iso_vg = 220, kind = "mineral" }.'
     )
-    pressure_viscosity_factor: Number = Field(
-        default=1.0,
-        ge=0.1,
-        le=10,
-        description="Multiplies the pressure-viscosity coefficient of the oil.",
+    pressure_viscosity_factor: Number = option(
+        1.0, "Multiplies the pressure-viscosity coefficient of the oil.", ge=0.1, le=10
     )
 
 
 class Surroundings(Table):
     """What surrounds the gears."""
 
-    oil_air_ratio: Number = Field(
-        default=0.05, ge=0, le=1, description="Oil share by volume at ambient pressure."
-    )
-    pressure: Pressure = Field(default=as_stated("1.01325 bar"), description="Ambient pressure.")
+    oil_air_ratio: Number = option(0.05, "Oil share by volume at ambient pressure.", ge=0, le=1)
+    pressure: Pressure = option("1.01325 bar", "Ambient pressure.")
