@@ -215,7 +215,8 @@ def duty_seconds() -> tuple[float, float]:
 
 def clear_caches() -> None:
     from epicyclic.builders import gear_sets
-    from epicyclic.case import flanks, gearing
+    from epicyclic.case import gear_tables as flanks
+    from epicyclic.case import gearing
     from epicyclic.contact import elastic_teeth
     from epicyclic.gears import flanks as contact_lines
     from epicyclic.losses import contact as load_distribution

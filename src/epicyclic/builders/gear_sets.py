@@ -16,7 +16,7 @@ from epicyclic.builders.models import (
 )
 from epicyclic.builders.set_case import SetCase
 from epicyclic.builders.wetting import carrier_disc, gear_disc
-from epicyclic.case import flanks
+from epicyclic.case import gear_tables as flanks
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing, outward_of, rim_thickness
 from epicyclic.case.tables.elements import PlanetBearing as BearingTable

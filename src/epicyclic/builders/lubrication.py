@@ -6,9 +6,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from epicyclic import library
-from epicyclic.case.tables.lubrication import OWN_SHARE_KEY, SHARE_KEY, WETTING, LubricationTable
-from epicyclic.case.tables.operation import Surroundings
-from epicyclic.case.tables.thermal import ThermalTable
+from epicyclic.case.tables.operation import (
+    OWN_SHARE_KEY,
+    SHARE_KEY,
+    WETTING,
+    LubricationTable,
+    Surroundings,
+    ThermalTable,
+)
 
 _BAND = 1.96
 """Half the width of a band of 95 %, in standard deviations of a normal distribution. [1]"""

@@ -9,11 +9,11 @@ import numpy as np
 
 from epicyclic.builders.models import fitted_oil_model, friction_of, resolve_models, rolling_of
 from epicyclic.builders.set_case import SetCase
-from epicyclic.case import flanks
+from epicyclic.case import gear_tables as flanks
 from epicyclic.case.gear_rules import backlash_notes
 from epicyclic.case.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
-from epicyclic.case.tables.lubrication import SHARE_KEY
 from epicyclic.case.tables.models import LoadSharing
+from epicyclic.case.tables.operation import SHARE_KEY
 from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS

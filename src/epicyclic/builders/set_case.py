@@ -9,7 +9,6 @@ from pathlib import Path
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gearing import Gearing
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
-from epicyclic.case.tables.lubrication import LubricationTable
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -18,8 +17,7 @@ from epicyclic.case.tables.models import (
     Numerics,
     PlanetaryModels,
 )
-from epicyclic.case.tables.operation import Lubricant, Surroundings
-from epicyclic.case.tables.thermal import ThermalTable
+from epicyclic.case.tables.operation import Lubricant, LubricationTable, Surroundings, ThermalTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ComputedSet, ListedSet
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.train import TrainCase
-from epicyclic.case.train_bearings import needs_force
+from epicyclic.case.train_rules import needs_force
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.machine import GearSeat, ShaftLayout, Support

@@ -11,8 +11,7 @@ from epicyclic.builders.lubrication import oil_share, with_lubrication
 from epicyclic.builders.models import fluids_of
 from epicyclic.builders.set_case import set_cases
 from epicyclic.case.case import Case
-from epicyclic.case.tables.lubrication import LubricationTable
-from epicyclic.case.tables.thermal import HousingTable, ThermalTable
+from epicyclic.case.tables.operation import HousingTable, LubricationTable, ThermalTable
 from epicyclic.contact.temperatures import LUBRICATION_FACTORS
 from epicyclic.losses.ranges import Flags, ValidityFlag
 from epicyclic.machine.convection import Fluid, air, mixture, oil_conductivity, oil_heat_capacity

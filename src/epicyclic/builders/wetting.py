@@ -6,7 +6,7 @@ from epicyclic.builders.lubrication import oil_share
 from epicyclic.builders.set_case import SetCase
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import outside_radius
-from epicyclic.case.tables.lubrication import LubricationTable
+from epicyclic.case.tables.operation import LubricationTable
 from epicyclic.gears.gear import Gear
 from epicyclic.losses.drag import Dipped
 from epicyclic.machine.disc import Disc, Jets, Sump

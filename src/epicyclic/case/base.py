@@ -32,8 +32,7 @@ from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from epicyclic.case.gearing import Gearing
-    from epicyclic.case.tables.lubrication import LubricationTable
-    from epicyclic.case.tables.operation import Surroundings
+    from epicyclic.case.tables.operation import LubricationTable, Surroundings
 
 FILE_KEYS = ("oil_model", "pocketing_table", "file")
 """Keys that name files, wherever they stand."""

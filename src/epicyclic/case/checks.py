@@ -19,13 +19,6 @@ from epicyclic.case.messages import millimetres
 from epicyclic.case.set_rules import set_problems
 from epicyclic.case.tables.base import Table
 from epicyclic.case.tables.elements import PlanetBearing
-from epicyclic.case.tables.lubrication import (
-    LubricationTable,
-    check_immersion,
-    check_lubrication,
-    check_sump,
-    check_wetting,
-)
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -38,10 +31,18 @@ from epicyclic.case.tables.models import (
 from epicyclic.case.tables.operation import (
     GearPairOperation,
     Lubricant,
+    LubricationTable,
     PlanetaryOperation,
     Surroundings,
+    ThermalTable,
+    check_immersion,
+    check_lubrication,
+    check_outlet,
+    check_sump,
+    check_thermal,
+    check_ways_out,
+    check_wetting,
 )
-from epicyclic.case.tables.thermal import ThermalTable, check_outlet, check_thermal, check_ways_out
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.contact.fitted_models import OilModel
 from epicyclic.errors import InputError, Problem, rising_problems

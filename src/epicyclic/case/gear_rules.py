@@ -10,11 +10,20 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from epicyclic.case.flanks import roll_length_at, working_flank
-from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, TopographyTable
+from epicyclic.case.gear_tables import (
+    DIGITS,
+    GearTable,
+    MicroGeometryTable,
+    TopographyTable,
+    check_fit,
+    check_measure,
+    fitting,
+    roll_length_at,
+    thickness_key,
+    working_flank,
+)
 from epicyclic.case.gearing import Gearing, rim_thickness
 from epicyclic.case.messages import micrometres, millimetres
-from epicyclic.case.thickness import DIGITS, check_fit, check_measure, fitting, thickness_key
 from epicyclic.errors import Problem, rising_problems
 from epicyclic.gears.cutting import longest_involute
 from epicyclic.gears.flanks import active_profile

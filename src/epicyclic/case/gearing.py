@@ -11,8 +11,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
-from epicyclic.case.gear_tables import GearTable, PairGear, Ring, SetMesh, SharedGears
-from epicyclic.case.thickness import allowance_shift, half_angle
+from epicyclic.case.gear_tables import (
+    GearTable,
+    PairGear,
+    Ring,
+    SetMesh,
+    SharedGears,
+    allowance_shift,
+    half_angle,
+)
 from epicyclic.gears.gear import CARRIER, BasicRack, Gear
 from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle
 

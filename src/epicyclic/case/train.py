@@ -21,7 +21,6 @@ from epicyclic.case.set_rules import listed_problems, rack_problems, set_problem
 from epicyclic.case.sizing import Found, complete, told_oil
 from epicyclic.case.tables.base import Table
 from epicyclic.case.tables.elements import ELEMENT_CHECKS, ElementTables, placing_problems
-from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -29,11 +28,15 @@ from epicyclic.case.tables.models import (
     Numerics,
     PlanetaryModels,
 )
-from epicyclic.case.tables.operation import Lubricant, Surroundings
-from epicyclic.case.tables.thermal import ThermalTable
+from epicyclic.case.tables.operation import (
+    LUBRICATION,
+    Lubricant,
+    LubricationTable,
+    Surroundings,
+    ThermalTable,
+)
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable
-from epicyclic.case.train_bearings import bearing_force_problems
-from epicyclic.case.train_checks import operation_problems
+from epicyclic.case.train_rules import bearing_force_problems, operation_problems
 from epicyclic.case.train_shape import TrainShape, shape_of_train
 from epicyclic.case.train_tables import (
     ComputedSet,

@@ -22,7 +22,6 @@ from epicyclic.case.gear_tables import (
 )
 from epicyclic.case.tables.base import Table, option
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
-from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
 from epicyclic.case.tables.models import (
     GearPairLosses,
     GearPairModels,
@@ -32,6 +31,7 @@ from epicyclic.case.tables.models import (
     PlanetaryLosses,
     PlanetaryModels,
 )
+from epicyclic.case.tables.operation import LUBRICATION, LubricationTable
 from epicyclic.units import (
     Angle,
     HelixAngle,

@@ -15,7 +15,7 @@ from epicyclic.case.fields import Parameter, field_at, parameter_of, quantity_of
 from epicyclic.case.messages import did_you_mean, dotted, path_of, refused, written
 from epicyclic.case.read import owner_without_keys, value_at
 from epicyclic.case.tables.base import Table, option
-from epicyclic.case.tables.lubrication import FACTOR_KEY, SHARE_KEY
+from epicyclic.case.tables.operation import FACTOR_KEY, SHARE_KEY
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, Number, Quantity, format_number
 
