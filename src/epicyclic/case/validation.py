@@ -10,7 +10,6 @@ from functools import cache, partial
 from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
-from annotated_types import Gt
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
@@ -31,9 +30,6 @@ from epicyclic.case.read import changed_at, control_problems, value_at
 from epicyclic.case.tables.base import Table
 from epicyclic.errors import Problem
 from epicyclic.units import format_number, range_remedy
-
-# Errors of the schema, told in the user's terms: what is allowed and what to change.
-
 
 _PLAIN_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(%?)\s*")
 
@@ -138,11 +134,8 @@ def _wrong_tag(place: Place, detail: ErrorDetails) -> Problem:
 def _remedy(place: Place, kind: str, value: Any) -> str:
     """What to change about a `value` that is not what `place` may hold."""
     if kind in _OUT_OF_RANGE:
-        low, high = bounds_of(place.annotation, place.metadata)
-        open_low = isinstance(low, Gt)
-        lowest: Any = low.gt if isinstance(low, Gt) else low and low.ge
-        highest: Any = high and high.le
-        return range_remedy(value, lowest, highest, open_low=open_low)
+        low, high, is_open = bounds_of(place.annotation, place.metadata)
+        return range_remedy(value, low, high, open_low=is_open)
     if kind == "literal_error":
         choices = choices_of(place.annotation)
         only = f'write "{choices[0]}"' if len(choices) == 1 else "choose one of them"
