@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from epicyclic.case.expand import gearing_of
 from epicyclic.case.gear_rules import gears_by_name
-from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing
 from epicyclic.case.messages import millimetres
 from epicyclic.case.set_rules import set_problems
@@ -82,21 +81,14 @@ def cross_check(
     gearing = gearing_of(sections)
     if gearing is not None and gearing.computed:
         problems += set_problems(gearing)
-        problems += _check_planets(gearing, sections)
+        bearing, sharing = sections.get("planet_bearing"), sections.get("load_sharing")
+        if isinstance(bearing, PlanetBearing) and gearing.planets:
+            problems += check_bores(gearing, {"planet_bearing": (bearing, gearing.planets)})
+        if isinstance(sharing, LoadSharing) and gearing.count is not None:
+            problems += _check_load_sharing(sharing, gearing)
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))
-    return problems
-
-
-def _check_planets(gearing: Gearing, sections: Mapping[str, Table]) -> list[Problem]:
-    """Problems of planets with their bearing, and with the way in which they share the load."""
-    bearing, sharing = sections.get("planet_bearing"), sections.get("load_sharing")
-    problems = []
-    if isinstance(bearing, PlanetBearing) and gearing.planets:
-        problems += check_bores(gearing, {"planet_bearing": (bearing, gearing.planets)})
-    if isinstance(sharing, LoadSharing) and gearing.count is not None:
-        problems += _check_load_sharing(sharing, gearing)
     return problems
 
 
@@ -256,10 +248,6 @@ def _check_friction_model(models: GearPairModels, given: Collection[str]) -> lis
 
 def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
-    chosen = (models.friction, models.rolling, getattr(models, "bearing", ""))
-    if models.oil_model is None and not any(name.startswith("fitted") for name in chosen):
-        return []
-
     asked = {
         key: quantity
         for key, quantity in FITTED_QUANTITIES.items()
@@ -338,20 +326,6 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
     ]
 
 
-def _check_outlet(
-    thermal: ThermalTable, operation: PlanetaryOperation | GearPairOperation
-) -> list[Problem]:
-    return check_outlet(thermal, operation.oil_inlet_temperature)
-
-
-def _check_planetary_immersion(table: LubricationTable, sun: GearTable) -> list[Problem]:
-    return check_immersion(table, ("sun", "ring", "carrier"))
-
-
-def _check_pair_immersion(table: LubricationTable, pinion: GearTable) -> list[Problem]:
-    return check_immersion(table, ("pinion", "gear"))
-
-
 _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_rollers, ("planet_bearing",)),
@@ -360,10 +334,10 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_resolution, ("models", "numerics")),
     (_check_void, ("models", "surroundings")),
     (check_thermal, ("thermal",)),
-    (_check_outlet, ("thermal", "operation")),
+    (lambda it, run: check_outlet(it, run.oil_inlet_temperature), ("thermal", "operation")),
     (check_lubrication, ("lubrication",)),
     (check_sump, ("lubrication", "thermal")),
     (check_wetting, ("lubrication", "thermal")),
-    (_check_planetary_immersion, ("lubrication", "sun")),
-    (_check_pair_immersion, ("lubrication", "pinion")),
+    (lambda it, _: check_immersion(it, ("sun", "ring", "carrier")), ("lubrication", "sun")),
+    (lambda it, _: check_immersion(it, ("pinion", "gear")), ("lubrication", "pinion")),
 )
