@@ -284,7 +284,6 @@ def _to_input(value: Any, quantity: Quantity | None) -> Any:
 
 # Keys of one case: those of its schema, with the names that the user chose in it.
 
-
 _UNCERTAINTY = "uncertainty."
 _GEARS, _MEMBERS = "gears", "members"
 """Key of the gears of a listed set in a file, and in its table, which has the shared keys apart."""
@@ -356,7 +355,6 @@ def _keys(table: BaseModel, prefix: str) -> Iterator[str]:
 
 
 # Keys of one case that hold a continuous number: their values and bounds.
-
 
 OFF_OPEN_BOUND = 1e-6
 """Distance kept from a bound that is no value itself, over that of the start value. [1]"""

@@ -132,19 +132,15 @@ def _check_tooth(gear: Gear, key: str, table: GearTable) -> Problem | None:
         remedy = f"Shorten the teeth, or make them thicker with {thickness}."
         return Problem(tip, tip_shown, allowed, remedy)
     if gear.tip_form_radius <= gear.base_radius or gear.tip_half_angle <= 0:
-        return _too_large_chamfer(gear, key)
+        allowed = "leaves no tip land or no involute: the tooth is "
+        allowed += f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, "
+        allowed += "and each of its two chamfers takes about its height of that."
+        return Problem(f"{key}.tip_chamfer", millimetres(gear.tip_chamfer), allowed, "Reduce it.")
     if gear.half_angle_at(max(gear.root_radius, gear.base_radius)) >= math.pi / gear.teeth:
         allowed = "there is no space left between the teeth at the root."
         remedy = f"Make the teeth less deep, or thinner with {thickness}."
         return Problem(root, root_shown, allowed, remedy)
     return None
-
-
-def _too_large_chamfer(gear: Gear, key: str) -> Problem:
-    allowed = "leaves no tip land or no involute: the tooth is "
-    allowed += f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, and "
-    allowed += "each of its two chamfers takes about its height of that."
-    return Problem(f"{key}.tip_chamfer", millimetres(gear.tip_chamfer), allowed, "Reduce it.")
 
 
 def _diameter(radius: float, given: float | None) -> str:
@@ -206,11 +202,11 @@ def _negative_clearance(gearing: Gearing, mesh: Mesh, tip: Gear, root: Gear) -> 
     else:
         stricter = max if tip.internal else min
         limit = stricter(limit, _tip_radius_for(mesh, tip, end))
-    shown = _diameter(tip.tip_radius, gearing.tables[tip.name].tip_diameter)
+    key, shown = _tips(gearing, tip)
     allowed = f"the tip of the {tip.name} reaches {millimetres(-clearance)} into the root of the "
     allowed += f"{root.name} (negative tip clearance)."
     remedy = f"{_tip_limit(gearing, tip, limit)}or cut the {root.name} deeper."
-    return Problem(f"{gearing.key(tip.name)}.tip_diameter", shown, allowed, remedy)
+    return Problem(key, shown, allowed, remedy)
 
 
 def _tip_limit(gearing: Gearing, gear: Gear, limit: float) -> str:
@@ -234,17 +230,18 @@ def _check_contact_ratio(gearing: Gearing, mesh: Mesh, distance_key: str) -> lis
     else:
         return []
     chamfers = ", reduce tip_chamfer" if one.tip_chamfer > 0 or two.tip_chamfer > 0 else ""
-    key = f"{gearing.key(one.name)}.tip_diameter, {gearing.key(two.name)}.tip_diameter"
+    key, shown = _tips(gearing, one, two)
     allowed = f"{fault}: motion is not passed on."
     remedy = f"Lengthen the teeth{chamfers} or correct {distance_key}. {_reference_distance(mesh)}"
-    return [Problem(key, _tip_diameters(gearing, mesh), allowed, remedy)]
+    return [Problem(key, shown, allowed, remedy)]
 
 
-def _tip_diameters(gearing: Gearing, mesh: Mesh) -> str:
-    gears = (mesh.gear1, mesh.gear2)
-    return ", ".join(
-        _diameter(gear.tip_radius, gearing.tables[gear.name].tip_diameter) for gear in gears
-    )
+def _tips(gearing: Gearing, *gears: Gear) -> tuple[str, str]:
+    """Keys and values of the tip diameters of gears."""
+    keys = [f"{gearing.key(gear.name)}.tip_diameter" for gear in gears]
+    given = [gearing.tables[gear.name].tip_diameter for gear in gears]
+    shown = [_diameter(gear.tip_radius, it) for gear, it in zip(gears, given, strict=True)]
+    return ", ".join(keys), ", ".join(shown)
 
 
 def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) -> list[Problem]:
@@ -274,10 +271,10 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
         )
         if gearing.tables[gear.name].tool_tip_radius is not None:
             change = f"reduce {gearing.key(gear.name)}.tool_tip_radius"
-    shown = _diameter(mate.tip_radius, gearing.tables[mate.name].tip_diameter)
+    key, shown = _tips(gearing, mate)
     allowed = f"the tip of the {mate.name} {fault}."
     remedy = f"{_tip_limit(gearing, mate, _tip_radius_for(mesh, mate, end))}or {change}."
-    return [Problem(f"{gearing.key(mate.name)}.tip_diameter", shown, allowed, remedy)]
+    return [Problem(key, shown, allowed, remedy)]
 
 
 def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
@@ -308,11 +305,11 @@ def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> list[Problem]:
     one, two = mesh.gear1, mesh.gear2
     if not mesh.internal or mesh.tip_clearance2 < -ROUNDING or mesh.tip_passage >= 0:
         return []
-    key = f"{gearing.key(one.name)}.tip_diameter, {gearing.key(two.name)}.tip_diameter"
+    key, shown = _tips(gearing, one, two)
     allowed = f"the tips of {one.name} and {two.name} collide beside the mesh, by "
     allowed += f"{-math.degrees(mesh.tip_passage):.3g} deg of the {two.name} (tip interference)."
     remedy = f"Shorten the teeth or choose more teeth for the {two.name}."
-    return [Problem(key, _tip_diameters(gearing, mesh), allowed, remedy)]
+    return [Problem(key, shown, allowed, remedy)]
 
 
 # --- backlash ---
@@ -404,10 +401,8 @@ def _other_sign(gearing: Gearing, mesh: Mesh) -> str:
     over = _over(mesh) - 2 * shift
     if not -GROSS * _recommended_shift(mesh) <= over <= 10.0**-DIGITS:
         return ""
-    return (
-        f" With the other sign, {-shift:g}, x of the {ring.name} fits: in ISO 21771 positive x "
-        "thickens the teeth."
-    )
+    hint = f" With the other sign, {-shift:g}, x of the {ring.name} fits: in ISO 21771 "
+    return f"{hint}positive x thickens the teeth."
 
 
 # --- flanks ---

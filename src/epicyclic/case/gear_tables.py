@@ -46,9 +46,6 @@ from epicyclic.units import (
     SmallLength,
 )
 
-# Tables of a case file on gears, their flanks and their meshes.
-
-
 PressureAngle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
 RackName = Literal["iso-53-a", "iso-53-b", "iso-53-c", "iso-53-d"]
 
@@ -350,7 +347,6 @@ class SetMesh(MeshTable):
 
 # How thick the teeth of a gear are, in each of the ways in which a case can state it.
 
-
 DIGITS = 4
 """Decimals of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm."""
 
@@ -495,7 +491,6 @@ def check_measure(gear: Gear, key: str, table: GearTable) -> Problem | None:
 
 
 # From the tables of a case to the deviations of its flanks.
-
 
 Tables = tuple[GearTable, GearTable]
 

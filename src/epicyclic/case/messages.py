@@ -12,9 +12,6 @@ from rapidfuzz.distance import OSA
 
 from epicyclic.errors import InputError, Problem, printable
 
-# Keys and values in messages, as a case file has them.
-
-
 _LONGEST_SHOWN = 60
 """Text that users wrote is cut to this many characters in messages."""
 
@@ -116,7 +113,6 @@ def micrometres(value: float) -> str:
 
 
 # Suggestions for misspelt names.
-
 
 _LIKENESS = 60.0
 """Smallest likeness, in percent, at which a name is worth suggesting."""

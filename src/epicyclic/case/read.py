@@ -21,9 +21,6 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, refuse
 from epicyclic.units import format_number, from_pint, unit_text
 
-# The tables of a case as plain values, such as TOML can hold.
-
-
 _DEEPEST = 20
 """Tables of a case are nested a few levels deep; deeper ones are something else."""
 
@@ -141,7 +138,6 @@ def without(tables: dict[str, Any], path: Sequence[str]) -> dict[str, Any]:
 
 # From a case file to plain tables, with every line that is not TOML reported.
 
-
 _LARGEST_FILE = 1_000_000
 """A case file is a page of text; anything larger than this is something else. [bytes]"""
 
@@ -159,6 +155,9 @@ _KEY_DOT = re.compile(r"[\w\"'-]\s*\.")
 _PLACE = re.compile(r" \(at line (?P<line>\d+), column \d+\)")
 _KEY_LINE = re.compile(r"(?P<key>[\w.\"'-]+)\s*=(?P<value>[^#\[{]*)(#.*)?")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
+
+_GIVES_AGAIN = "Cannot overwrite"
+"""How the reason of a key that is given twice begins."""
 
 _MARK = "\ue000"
 """Encloses the number of the line before a mended value; a character of no script."""
@@ -229,14 +228,10 @@ def _mended(line: _BadLine) -> str | None:
     match = _KEY_LINE.fullmatch(line.text)
     if match is None:
         return None
-    if _gives_again(line):
+    if line.reason.startswith(_GIVES_AGAIN):
         return ""
     value = f"{_MARK}{line.number}{_MARK}{_value(match)}"
     return f"{match['key']} = {json.dumps(value)}"
-
-
-def _gives_again(line: _BadLine) -> bool:
-    return line.reason.startswith("Cannot overwrite")
 
 
 def _value(match: re.Match[str]) -> str:
@@ -270,7 +265,7 @@ def _problem(line: _BadLine, key: str) -> Problem:
         given = f"line {line.number}: {one_line(line.text)}"
     else:
         given = one_line(match["value"].strip())
-    if _gives_again(line):
+    if line.reason.startswith(_GIVES_AGAIN):
         return Problem(key, given, "gives a key that is given before.", "Keep one of the two.")
     if line.reason.startswith("Cannot declare"):
         return Problem(
@@ -295,9 +290,6 @@ def _remedy(key: str, value: str) -> str:
         return f"Write {format_number(float(value), 12)}."
     except ValueError:
         return f'Put the value in quotes: {key} = "{one_line(value)}".'
-
-
-# Values typed on a command line.
 
 
 def parse_value(text: str) -> Any:
@@ -338,11 +330,7 @@ def case_html(name: str, given: Mapping[str, Any]) -> str:
 def _row(table: str, key: str, value: object) -> str:
     text = unit_text(value) if isinstance(value, str) else str(value)
     cells = (f"<strong>{escape(table)}</strong>", escape(key), escape(text))
-    return f"<tr>{''.join(map(_cell, cells))}</tr>"
-
-
-def _cell(content: str) -> str:
-    return f'<td style="text-align: left">{content}</td>'
+    return "<tr>" + "".join(f'<td style="text-align: left">{it}</td>' for it in cells) + "</tr>"
 
 
 def owner_without_keys(tables: Mapping[str, Any], key: str) -> Problem | None:

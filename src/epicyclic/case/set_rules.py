@@ -15,8 +15,8 @@ from epicyclic.case.gearing import RACK_KEYS, Gearing, GearPairing, Pin
 from epicyclic.case.messages import did_you_mean, millimetres
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import Problem
-from epicyclic.gears.gear import CARRIER, HOUSING, Gear, involute
-from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places
+from epicyclic.gears.gear import CARRIER, HOUSING, Gear
+from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places, profile_shift_sum
 
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
@@ -44,12 +44,15 @@ def set_problems(gearing: Gearing) -> list[Problem]:
 
 def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
     """Problems of the tables that a listed set has beside its gears."""
-    return [
-        *_name_problems(gearing),
-        *_loss_problems(table, gearing),
-        *_planet_problems(table, gearing),
-        *_sharing_problems(table),
+    known = gearing.terms
+    losses = [
+        Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
+        for name in table.losses
+        if name not in known
+        for remedy in [did_you_mean(name, known) or f"Known are: {', '.join(known)}."]
     ]
+    planets = _planet_problems(table, gearing)
+    return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
 
 
 def _name_problems(gearing: Gearing) -> Iterator[Problem]:
@@ -62,21 +65,6 @@ def _name_problems(gearing: Gearing) -> Iterator[Problem]:
         if "." in name:
             allowed = "is not a valid name for a gear: a dot stands between set and gear."
             yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
-    keys = [mesh.key for mesh in gearing.meshes]
-    for one, two in combinations(gearing.meshes, 2):
-        if one.key == two.key:
-            pairs = [f'["{mesh.first}", "{mesh.second}"]' for mesh in (one, two)]
-            allowed = f"have the same name, {one.key}."
-            key = f"meshes[{keys.index(one.key)}], meshes[{gearing.meshes.index(two)}]"
-            yield Problem(key, ", ".join(pairs), allowed, "Rename one of the gears.")
-
-
-def _loss_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
-    known = gearing.terms
-    for name in table.losses:
-        if name not in known:
-            remedy = did_you_mean(name, known) or f"Known are: {', '.join(known)}."
-            yield Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
 
 
 def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
@@ -100,13 +88,10 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
             remedy = remedy or f"Known are: {', '.join(gearing.planets) or 'none'}."
             key = f"planet_bearings.{name}"
             yield Problem(key, "", "is no body of a planet of this set.", remedy)
+    placed = {gearing.planet_of(mesh) for mesh in gearing.meshes}
     for body in gearing.planets:
-        if not any(
-            gearing.central_gear(mesh) is not None
-            and body in (gearing.bodies[mesh.first], gearing.bodies[mesh.second])
-            for mesh in gearing.meshes
-        ):
-            gear = next(gear for gear, own in gearing.bodies.items() if own == body)
+        if body not in placed:
+            gear = gearing.gears_of(body)[0]
             allowed = "meshes with planets only, so that nothing determines where its pin stands."
             remedy = "Let it mesh with a central gear too."
             yield Problem(f"gears.{gear}", "", allowed, remedy)
@@ -205,9 +190,7 @@ def _pin_radius_problems(
     own = [
         (mesh, distance)
         for mesh in gearing.meshes
-        if gearing.central_gear(mesh) is not None
-        and body in (gearing.bodies[mesh.first], gearing.bodies[mesh.second])
-        and (distance := distances[mesh.key]) is not None
+        if gearing.planet_of(mesh) == body and (distance := distances[mesh.key]) is not None
     ]
     if not own or max(a for _, a in own) - min(a for _, a in own) <= SAME_PLACE:
         return
@@ -232,10 +215,7 @@ def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
     name = "-".join(mesh.pair)
     if not 0 < bases < distance:
         return f"{name} cannot work there."
-    rack = one.rack
-    difference = involute(math.acos(bases / distance)) - involute(rack.transverse_pressure_angle)
-    teeth = one.teeth + side * two.teeth
-    total = teeth * difference / (2 * math.tan(rack.normal_pressure_angle))
+    total = profile_shift_sum(one.rack, one.teeth + side * two.teeth, distance)
     return (
         f"{name} then has no backlash with profile shift coefficients of {total:.4f} in sum "
         f"(now {one.profile_shift_coefficient + two.profile_shift_coefficient:.4f})."
@@ -246,15 +226,7 @@ def _triangle_problems(
     gearing: Gearing, distances: Mapping[str, float | None]
 ) -> Iterator[Problem]:
     """Two planets that mesh must stand at their centre distance from each other."""
-    radii: dict[str, float] = {}
-    for mesh in gearing.meshes:
-        if gearing.central_gear(mesh) is not None:
-            planet = next(
-                body
-                for body in (gearing.bodies[mesh.first], gearing.bodies[mesh.second])
-                if body in gearing.planets
-            )
-            radii.setdefault(planet, distances[mesh.key] or 0.0)
+    radii = gearing.pin_radii(distances)
     pairs = [(mesh, pair) for mesh in gearing.meshes if (pair := gearing.planet_pair(mesh))]
     wide = False
     for mesh, (one, two) in pairs:

@@ -22,7 +22,7 @@ from epicyclic.case.messages import micrometres, millimetres
 from epicyclic.case.read import value_at
 from epicyclic.case.set_rules import rack_problems
 from epicyclic.case.tables.base import roughness_told, short_oil_told
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.gear import BasicRack, Gear
 from epicyclic.gears.mesh import (
     closed_center_distance,
@@ -293,7 +293,7 @@ class _Solver:
             key = ", ".join(map(self._shift_key, mesh.gears))
             allowed = f"leave no centre distance: {error}."
             remedy = f"Correct the profile shifts, or give {'.'.join(mesh.place)}."
-            raise _refused(key, "", allowed, remedy) from None
+            raise one_problem(key, "", allowed, remedy) from None
 
     # --- profile shifts ---
 
@@ -322,7 +322,7 @@ class _Solver:
         allowed = "is missing, and so is that of every mate."
         remedy = "Add one of them, or tooth_thickness with thickness_diameter: the others follow "
         remedy += "from the centre distance."
-        return _refused(", ".join(self._shift_key(name) for name in free), "", allowed, remedy)
+        return one_problem(", ".join(self._shift_key(name) for name in free), "", allowed, remedy)
 
     def _sum(self, mesh: _Sized) -> float:
         """Nominal x1 + x2 of a mesh; 0 if its gears cannot mesh, which is told with the meshes."""
@@ -346,7 +346,7 @@ class _Solver:
             allowed += f"{millimetres(self.distances[mesh.group])}, and must be >= {LEAST_SHIFT:g} "
             allowed += f"and <= {LARGEST_SHIFT:g}."
             remedy = f"Correct {'.'.join(mesh.place)}, the tooth numbers or the module."
-            raise _refused(self._shift_key(name), "", allowed, remedy)
+            raise one_problem(self._shift_key(name), "", allowed, remedy)
         self.shifts[name] = shift
         keys = {key: None for choice in GearTable.THICKNESS for key in choice.split("+")}
         self.tables[name] = self.tables[name].model_copy(
@@ -377,7 +377,7 @@ class _Solver:
             allowed = "contradicts the teeth and the centre distance, which leave "
             allowed += f"{micrometres(backlash + mesh.backlash)}."
             remedy = "Leave out normal_backlash, a profile shift or the centre distance."
-            raise _refused(mesh.backlash_key, millimetres(mesh.backlash), allowed, remedy)
+            raise one_problem(mesh.backlash_key, millimetres(mesh.backlash), allowed, remedy)
         if mesh.backlash is not None or backlash > -ROUNDING or over > self._printed(mesh):
             return
         name = mesh.gives_way
@@ -425,8 +425,4 @@ def _no_distance(meshes: Sequence[_Sized]) -> InputError:
     allowed = "is missing, and no mesh tells it: that takes the tooth thickness of both gears, "
     allowed += f"{pairs}."
     remedy = f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.'
-    return _refused(place, "", allowed, remedy)
-
-
-def _refused(key: str, value: str, allowed: str, remedy: str) -> InputError:
-    return InputError([Problem(key, value, allowed, remedy)])
+    return one_problem(place, "", allowed, remedy)

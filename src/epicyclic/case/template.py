@@ -239,8 +239,6 @@ def toml_value(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-# Of trains, as far as the tables are known.
-
 _LISTS = {
     "shafts": "what turns together, always; members not named turn alone",
     "positions": "of gears along their shafts, for the forces on bearings",

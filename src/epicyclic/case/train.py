@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal, Self, cast
+from typing import Any, Literal, NamedTuple, Self, cast
 
 from pydantic import Field, PrivateAttr
 
@@ -148,7 +148,7 @@ class TrainCase(_TrainHead):
         return hash((self.title, *self.sets, operation.state, operation.torque, operation.speed))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _read, (self.given(), self.source)
+        return TrainCase.from_tables, (self.given(), self.source)
 
     @classmethod
     def from_tables(
@@ -176,7 +176,9 @@ class TrainCase(_TrainHead):
             )
         ]
         if not named:
-            found.append(_no_sets(given))
+            shown, allowed = "" if given is None else written(given), "must hold at least one set."
+            remedy = "Add [sets.NAME] and its gears."
+            found.append(Problem("sets", shown, allowed, remedy))
         shared = {key: tables[key] for key in _SHARED if key in tables and key in whole.sections}
         sets: dict[str, SetTable] = {}
         shapes: dict[str, Gearing] = {}
@@ -216,15 +218,6 @@ class TrainCase(_TrainHead):
         return cls._made(cast(Self, train), tables, source, found)
 
 
-def _read(tables: dict[str, Any], source: str) -> TrainCase:
-    return TrainCase.from_tables(tables, source)
-
-
-def _no_sets(given: Any) -> Problem:
-    shown = "" if given is None else written(given)
-    return Problem("sets", shown, "must hold at least one set.", "Add [sets.NAME] and its gears.")
-
-
 def _below(prefix: str, problem: Problem) -> Problem:
     """A problem of a set or part as one of the train."""
     keys = ", ".join(f"{prefix}.{key}" if key else prefix for key in problem.key.split(", "))
@@ -256,15 +249,12 @@ def _texts(value: Any) -> Iterator[str]:
 # --- sets -----------------------------------------------------------------------------------------
 
 
-class _ReadSet:
+class _ReadSet(NamedTuple):
     """A set, or its problems."""
 
-    def __init__(
-        self, table: SetTable | None, problems: list[Problem], found: tuple[Found, ...] = ()
-    ) -> None:
-        self.table = table
-        self.problems = problems
-        self.found = found
+    table: SetTable | None
+    problems: list[Problem]
+    found: tuple[Found, ...] = ()
 
 
 def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
@@ -349,51 +339,38 @@ def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
     split = {key: value for key, value in raw.items() if key != "gears"} | {"members": members}
     if given:
         known = GivenListedSet.model_fields.keys() | {"members"}
-        own = ("teeth", "internal", "body", "planet")
+        idle = ListedGear.model_fields.keys() - {"teeth", "internal", "body", "planet"}
         split["members"] = {
-            name: {key: item for key, item in gear.items() if key in own or not _is_gear_key(key)}
-            if isinstance(gear, dict)
-            else gear
+            name: _without_keys(gear, idle) if isinstance(gear, dict) else gear
             for name, gear in members.items()
         }
         if isinstance(split.get("mesh"), dict):
+            computed = ListedMesh.model_fields.keys()
             split["mesh"] = {
-                name: {k: item for k, item in mesh.items() if k not in ListedMesh.model_fields}
-                if isinstance(mesh, dict)
-                else mesh
+                name: _without_keys(mesh, computed) if isinstance(mesh, dict) else mesh
                 for name, mesh in split["mesh"].items()
-                if not isinstance(mesh, dict) or mesh.keys() - ListedMesh.model_fields.keys()
+                if not isinstance(mesh, dict) or mesh.keys() - computed
             }
-        return {
-            key: value
-            for key, value in split.items()
-            if key in known or key not in ListedSet.model_fields
-        }
+        return _without_keys(split, ListedSet.model_fields.keys() - known)
     return split | {"gears": shared}
 
 
-def _is_gear_key(key: str) -> bool:
-    """True for keys of a gear whose losses are computed; of no effect with a given efficiency."""
-    return key in ListedGear.model_fields
+def _without_keys(table: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key not in keys}
 
 
 def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:
     """The tables of a set without those that do not matter with a given efficiency."""
     computed = PlanetarySet.model_fields.keys() | PairSet.model_fields.keys()
-    own = {"sun", "ring", "planet", "pinion", "gear", *_GIVEN}
-    kept = {key: value for key, value in raw.items() if key in own or key not in computed}
+    kept = _without_keys(raw, computed - {"sun", "ring", "planet", "pinion", "gear", *_GIVEN})
     form = GivenPair if "pinion" in raw or "gear" in raw else GivenPlanetarySet
     for name in ("sun", "ring", "planet", "pinion", "gear"):
         table = kept.get(name)
         if isinstance(table, dict) and name in form.model_fields:
             annotation = form.model_fields[name].annotation
             assert annotation is not None
-            known = annotation.model_fields
-            kept[name] = {
-                key: value
-                for key, value in table.items()
-                if key in known or key == "internal" or not _is_gear_key(key)
-            }
+            idle = ListedGear.model_fields.keys() - {*annotation.model_fields, "internal"}
+            kept[name] = _without_keys(table, idle)
     return kept
 
 

@@ -23,20 +23,22 @@ if TYPE_CHECKING:
     from epicyclic.machine.machine import Machine
 
 
-# Checks of how oil gets to the gears of the sets of a train.
-
-
 def lubrication_problems(train: TrainCase) -> list[Problem]:
     """What cannot be about the lubrication of the sets; a shared table is checked by itself."""
     problems: list[Problem] = []
-    if train.lubrication is not None:
-        problems += _shared_immersion(train)
+    if train.lubrication is not None and train.lubrication.immersion:
+        allowed = "is stated of each set, whose gears it names."
+        remedy = "Write [sets.NAME.lubrication], or give oil_level."
+        problems.append(Problem("lubrication.immersion", "", allowed, remedy))
     for name, table in train.computed_sets:
         own = table.lubrication
         if own is None or own == train.lubrication:
             continue
         if train.lubrication is None:
-            problems.append(_not_shared(name))
+            # the oil around everything that is in no set follows from the train's own table
+            allowed = "needs [lubrication] of the train, which it then replaces for this set."
+            remedy = "Add it, for all other parts."
+            problems.append(Problem(f"sets.{name}.lubrication", "", allowed, remedy))
         found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
         if train.shape.sets[name].listed:
             found += check_immersion(own, train.shape.sets[name].members)
@@ -44,27 +46,11 @@ def lubrication_problems(train: TrainCase) -> list[Problem]:
     return problems
 
 
-def _shared_immersion(train: TrainCase) -> Iterator[Problem]:
-    if train.lubrication is not None and train.lubrication.immersion:
-        allowed = "is stated of each set, whose gears it names."
-        remedy = "Write [sets.NAME.lubrication], or give oil_level."
-        yield Problem("lubrication.immersion", "", allowed, remedy)
-
-
-def _not_shared(name: str) -> Problem:
-    """The oil around everything that is in no set follows from the train's own table."""
-    allowed = "needs [lubrication] of the train, which it then replaces for this set."
-    return Problem(f"sets.{name}.lubrication", "", allowed, "Add it, for all other parts.")
-
-
 def _key(name: str, keys: str) -> str:
     """Keys of a set as those of the train."""
     return ", ".join(
         f"sets.{name}.{key}" if key.startswith("lubrication") else key for key in keys.split(", ")
     )
-
-
-# Can the forces on the shaft bearings of a train be found from what is given?
 
 
 GIVE_FORCE = "Or give radial_force (and axial_force) of the bearings of this shaft."
@@ -140,11 +126,6 @@ def _gears(train: TrainCase, shaft: str) -> Iterator[str]:
         for gear, body in gearing.bodies.items():
             if body not in gearing.planets and bodies[body] == shaft and shaft != HOUSING:
                 yield f"{name}.{gear}"
-
-
-# Can this train run as stated: shafts, states, freedom, and the assembly of listed sets?
-#
-# Every function returns the problems it finds; none stops at the first.
 
 
 def operation_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:

@@ -173,7 +173,6 @@ def _number_remedy(value: Any) -> str:
 
 # The tables of a case against the schema: what is sound, and every problem of the rest.
 
-
 AnyCase = TypeVar("AnyCase", bound=Table)
 
 

@@ -49,7 +49,6 @@ def option(default: Any, description: str, **limits: Any) -> Any:
 #
 # What such a table leaves out is typical of its kind, and its source says so.
 
-
 GOLD: dict[str, tuple[float, float, str]] = {
     "mineral": (9.904, 0.1390, "mineral oil"),
     "pao": (7.382, 0.1335, "polyalphaolefin"),
@@ -174,13 +173,6 @@ def short_oil_told(table: object) -> tuple[str, str] | None:
             "measured on this oil"
         )
     return f"an oil of the kind {table['kind']}", f"{'; '.join(told) or 'all stated'}."
-
-
-# What the tables of a case file are made of: their base class, named presets, shared values.
-#
-# Each table is one class, in the modules `*_tables` beside this one; field descriptions become the
-# JSON Schema and the commented template. Values are SI after validation. Checks across keys and
-# tables live in `epicyclic.case.checks`.
 
 
 class Table(BaseModel):
@@ -331,7 +323,6 @@ def roughness_told(text: object) -> tuple[float, str] | None:
 
 
 Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]
-
 
 ShortLength = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5)]
 

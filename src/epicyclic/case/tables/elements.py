@@ -107,7 +107,6 @@ ReferenceSpeed = Annotated[
 DragTorque = Annotated[float, Quantity("a drag torque", "N*m", "N*m", low=0.0, high=1e9)]
 LostPower = Annotated[float, Quantity("a power loss", "W", "W", low=0.0, high=1e9)]
 
-
 Torques = Annotated[
     Annotated[tuple[DragTorque, ...], Tag("values")]
     | Annotated[tuple[tuple[DragTorque, ...], ...], Tag("rows")],

@@ -37,7 +37,6 @@ from epicyclic.units import (
 
 # Keys that choose how an oil behaves in a line contact.
 
-
 LoadPressure = Annotated[
     float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
 ]
@@ -162,9 +161,6 @@ def _shear_law(table: OilBehaviour) -> ShearLaw:
     return law(*(getattr(table, KEYS[field.name]) for field in fields(law)))
 
 
-# Tables of a case file on how it is computed: models, their settings, resolution, losses.
-
-
 _VoidPressure = Annotated[float, Quantity("a pressure", "Pa", "bar", low=0.0, high=1.0)]
 _PinStiffness = Annotated[
     float, Quantity("a stiffness", "N/m", "N/um", low=0.0, high=1e7, open_low=True)
@@ -238,10 +234,8 @@ FrictionName = Literal[
     "ehl-direct",
 ]
 
-
 Coefficient = Annotated[Number, Field(ge=0, le=1)]
 LoadFactor = Annotated[Number, Field(ge=1, le=10)]
-
 
 Coefficients = Annotated[
     Annotated[tuple[Coefficient, ...], Tag("values")]

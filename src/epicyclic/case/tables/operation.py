@@ -31,11 +31,7 @@ from epicyclic.units import (
     VolumeFlow,
 )
 
-# Tables of a case file on how it runs: operating point, oil, surroundings.
-
-
 Member = Literal["sun", "ring", "carrier"]
-
 
 _ANY_OPERATION: dict[str, object] = {
     "torque": "0 N*m",
@@ -92,9 +88,6 @@ class Surroundings(Table):
 
     oil_air_ratio: Number = option(0.05, "Oil share by volume at ambient pressure.", ge=0, le=1)
     pressure: Pressure = option("1.01325 bar", "Ambient pressure.")
-
-
-# Tables of a case file on heat, and their checks.
 
 
 # Tables of a case file on heat: how gears are wetted, where heat leaves, what stores it.
@@ -197,9 +190,6 @@ class ThermalTable(Table):
         return hash((self.lubrication, self.oil_flow, self.ambient_temperature, self.housing))
 
 
-# Checks of what a case states about heat.
-
-
 ROUNDING = 1e-9
 """Rounding of shares that add up to 1. [1]"""
 
@@ -253,9 +243,6 @@ def check_ways_out(
     remedy = "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] with its "
     remedy += "area, or thermal.cooler_conductance."
     return [Problem("thermal", "", allowed, remedy)]
-
-
-# The table [lubrication], how oil gets to the gears, and its checks.
 
 
 Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged"]
@@ -326,7 +313,6 @@ class LubricationTable(Table):
 LUBRICATION: Any = option(None, "With it surroundings.oil_air_ratio has no effect.")
 """The field of a case."""
 
-
 _EVERY = {"method", "oil_share", "oil_share_factor"}
 _KEYS: Mapping[Method, Collection[str]] = {
     "jet": ("oil_flow", "jet_speed", "nozzle_side"),
@@ -337,7 +323,6 @@ _KEYS: Mapping[Method, Collection[str]] = {
     "submerged": (),
 }
 """Keys that have an effect with each method."""
-
 
 _JETS = ("jet_speed", "nozzle_side")
 _CONDITIONS = (

@@ -60,10 +60,8 @@ UNCERTAINTY: Any = option(
 )
 """The field of a case."""
 
-
 MODEL_FORM = "model_form."
 """What keys of [uncertainty] begin with that are no keys of the case, but kinds of losses."""
-
 
 Kind = Literal["normal", "uniform", "lognormal"]
 
