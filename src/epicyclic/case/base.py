@@ -34,8 +34,7 @@ if TYPE_CHECKING:
     from epicyclic.case.gearing import Gearing
     from epicyclic.case.tables.operation import LubricationTable, Surroundings
 
-FILE_KEYS = ("oil_model", "pocketing_table", "file")
-"""Keys that name files, wherever they stand."""
+FILE_KEYS = ("oil_model", "pocketing_table", "file")  # Keys that name files, wherever they stand.
 _DECIDED = (
     ("surroundings", "oil_air_ratio"),
     ("thermal", "lubrication"),

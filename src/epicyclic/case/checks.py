@@ -95,13 +95,9 @@ def cross_check(
 def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> list[Problem]:
     if not isinstance(operation, PlanetaryOperation):
         return []
+    allowed = f'must be another member than operation.input, "{operation.input}".'
     return [
-        Problem(
-            f"operation.{key}",
-            operation.input,
-            f'must be another member than operation.input, "{operation.input}".',
-            "Name one of the other two.",
-        )
+        Problem(f"operation.{key}", operation.input, allowed, "Name one of the other two.")
         for key in ("fixed", "second_input")
         if getattr(operation, key) == operation.input
     ]

@@ -15,8 +15,7 @@ from epicyclic.case.train_tables import ListedMesh
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER
 
-Parts = Mapping[str, Any]
-"""The tables of a set by their keys, as ``dict(table)`` gives them."""
+Parts = Mapping[str, Any]  # The tables of a set by their keys, as ``dict(table)`` gives them.
 
 
 def expand(

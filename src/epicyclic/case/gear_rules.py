@@ -36,11 +36,9 @@ from epicyclic.gears.mesh import (
     thinning,
 )
 
-THINNEST_RIM = 0.25
-"""A thinner rim is foil, and its teeth find no balance. [normal modules]"""
+THINNEST_RIM = 0.25  # A thinner rim is foil, and its teeth find no balance. [normal modules]
 
-LARGEST_RIM_RATIO = 1000.0
-"""Root radius over thickness of a rim, for the same reason. [1]"""
+LARGEST_RIM_RATIO = 1000.0  # Root radius over thickness of a rim, for the same reason. [1]
 
 
 def gears_by_name(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
@@ -314,11 +312,9 @@ def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> list[Problem]:
 
 # --- backlash ---
 
-ROUNDING = 1e-9
-"""Clearances count as negative beyond this: drawings may state exactly zero. [m]"""
+ROUNDING = 1e-9  # Clearances count as negative beyond this: drawings may state exactly zero. [m]
 
-GROSS = 5.0
-"""Backlash over the recommended one from which a result says so; an estimate. [1]"""
+GROSS = 5.0  # Backlash over the recommended one from which a result says so; an estimate. [1]
 
 TOO_THIN = "its teeth are too thin for their centre distance"
 """By which a warning of that is known."""
@@ -494,12 +490,8 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
             return roll_length
         allowed = f"within {millimetres(flank.active_length)} of roll"
         shown = millimetres(roll_length)
-    return Problem(
-        f"{key}_{given[0]}",
-        shown,
-        f"the relief must start in {inside}, {allowed}.",
-        "Correct where it starts.",
-    )
+    reason = f"the relief must start in {inside}, {allowed}."
+    return Problem(f"{key}_{given[0]}", shown, reason, "Correct where it starts.")
 
 
 def _without_amount(flank: _Flank) -> list[Problem]:

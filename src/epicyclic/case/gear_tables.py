@@ -347,8 +347,7 @@ class SetMesh(MeshTable):
 
 # How thick the teeth of a gear are, in each of the ways in which a case can state it.
 
-DIGITS = 4
-"""Decimals of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm."""
+DIGITS = 4  # Decimals of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm.
 
 
 def half_angle(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
@@ -464,12 +463,10 @@ def check_measure(gear: Gear, key: str, table: GearTable) -> Problem | None:
     """A span or balls must touch the flanks."""
     if table.span_measurement is not None:
         if gear.internal and gear.rack.helix_angle > 0:
-            return Problem(
-                f"{key}.span_measurement",
-                millimetres(table.span_measurement),
-                "cannot be measured on a helical ring.",
-                "Give dimension_over_pins with measuring_pin_diameter.",
-            )
+            place = f"{key}.span_measurement"
+            reason = "cannot be measured on a helical ring."
+            advice = "Give dimension_over_pins with measuring_pin_diameter."
+            return Problem(place, millimetres(table.span_measurement), reason, advice)
         radius = measures.span_contact_radius(gear, table.span_measurement)
         remedy = f"Over {measures.usual_span_teeth(gear)} teeth it would touch in the middle."
         what = "span_measurement"

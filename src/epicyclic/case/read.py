@@ -21,16 +21,12 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, refuse
 from epicyclic.units import format_number, from_pint, unit_text
 
-_DEEPEST = 20
-"""Tables of a case are nested a few levels deep; deeper ones are something else."""
+_DEEPEST = 20  # Tables of a case are nested a few levels deep; deeper ones are something else.
 
-_CONTROLS = ("Cc", "Cs")
-"""Unicode categories of control characters and of halves of characters."""
-_LAYOUT = "\t\r\n"
-"""What texts of several lines may have."""
+_CONTROLS = ("Cc", "Cs")  # Unicode categories of control characters and of halves of characters.
+_LAYOUT = "\t\r\n"  # What texts of several lines may have.
 
-_MOST_VALUES = 20_000
-"""A case has a hundred values, a large friction table some thousand."""
+_MOST_VALUES = 20_000  # A case has a hundred values, a large friction table some thousand.
 
 
 def plain(value: Any) -> Any:
@@ -141,11 +137,9 @@ def without(tables: dict[str, Any], path: Sequence[str]) -> dict[str, Any]:
 _LARGEST_FILE = 1_000_000
 """A case file is a page of text; anything larger than this is something else. [bytes]"""
 
-_LONGEST_PATH = 500
-"""Paths in messages are cut to this many characters."""
+_LONGEST_PATH = 500  # Paths in messages are cut to this many characters.
 
-_MOST_BAD_LINES = 50
-"""A file with more lines that are not TOML is something else."""
+_MOST_BAD_LINES = 50  # A file with more lines that are not TOML is something else.
 
 _DEEPEST_KEY = 50
 """Dots of one key; the TOML reader would need memory as the square of their number."""
@@ -156,11 +150,9 @@ _PLACE = re.compile(r" \(at line (?P<line>\d+), column \d+\)")
 _KEY_LINE = re.compile(r"(?P<key>[\w.\"'-]+)\s*=(?P<value>[^#\[{]*)(#.*)?")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 
-_GIVES_AGAIN = "Cannot overwrite"
-"""How the reason of a key that is given twice begins."""
+_GIVES_AGAIN = "Cannot overwrite"  # How the reason of a key that is given twice begins.
 
-_MARK = "\ue000"
-"""Encloses the number of the line before a mended value; a character of no script."""
+_MARK = "\ue000"  # Encloses the number of the line before a mended value; a character of no script.
 
 
 class _BadLine(NamedTuple):
@@ -268,13 +260,9 @@ def _problem(line: _BadLine, key: str) -> Problem:
     if line.reason.startswith(_GIVES_AGAIN):
         return Problem(key, given, "gives a key that is given before.", "Keep one of the two.")
     if line.reason.startswith("Cannot declare"):
-        return Problem(
-            key,
-            given,
-            f"declares a table twice (line {line.number}).",
-            "Put all its keys under one header; a dotted key, such as micro_geometry.tip_relief "
-            "under [sun], declares its table too.",
-        )
+        advice = "Put all its keys under one header; a dotted key, such as "
+        advice += "micro_geometry.tip_relief under [sun], declares its table too."
+        return Problem(key, given, f"declares a table twice (line {line.number}).", advice)
     remedy = "Mend this line." if match is None else _remedy(match["key"], _value(match))
     return Problem(key, given, f"is not TOML (line {line.number}): {line.reason}.", remedy)
 

@@ -20,8 +20,7 @@ from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places,
 
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
-SAME_PLACE = 1e-7
-"""Pin radii and overlaps that differ by less are equal: rounding of drawings. [m]"""
+SAME_PLACE = 1e-7  # Pin radii and overlaps that differ by less are equal: rounding of drawings. [m]
 MOST_PLANETS = 24
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""
@@ -109,12 +108,9 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
         remedy = 'Write method = "equal" or "mesh-load-factor".'
         yield Problem("load_sharing.method", f'"{sharing.method}"', allowed, remedy)
     if sharing.mesh_load_factor > planets:
-        yield Problem(
-            "load_sharing.mesh_load_factor",
-            f"{sharing.mesh_load_factor:g}",
-            f"must be at most planets, {planets}: then one planet has all the load.",
-            "Take a smaller factor.",
-        )
+        shown = f"{sharing.mesh_load_factor:g}"
+        reason = f"must be at most planets, {planets}: then one planet has all the load."
+        yield Problem("load_sharing.mesh_load_factor", shown, reason, "Take a smaller factor.")
 
 
 # --- gears ----------------------------------------------------------------------------------------

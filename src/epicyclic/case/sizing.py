@@ -41,16 +41,13 @@ BASIC_RACKS = {
 """h_fP and the rounding rho_fP of the tool's tip, in normal modules; ISO 53:1998 (second hand)."""
 FINEST_SHIFT = 0.5e-3
 """Half a unit of the last digit of a profile shift counts at most as this: 0.3 means 0.300. [1]"""
-FINEST_LENGTH = 0.5e-6
-"""The same of lengths: 39 mm means 39.000 mm. [m]"""
+FINEST_LENGTH = 0.5e-6  # The same of lengths: 39 mm means 39.000 mm. [m]
 AGREES = 0.5e-6
 """A stated backlash that differs less from that of the teeth is that of the teeth. [m]"""
 ROUNDING = 0.5e-9
 """Teeth that are too thick by less than this pass as they are; see `backlash.ROUNDING`. [m]"""
-_ALIKE = 1e-9
-"""Modules and angles that differ by less are equal, relatively."""
-LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0
-"""What a case may state."""
+_ALIKE = 1e-9  # Modules and angles that differ by less are equal, relatively.
+LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0  # What a case may state.
 
 
 @dataclass(frozen=True, slots=True)

@@ -433,12 +433,7 @@ def _element_problems(train: TrainCase) -> list[Problem]:
         allowed = "the table [lubricant] is missing, which computed losses need."
         problems.append(Problem("lubricant", "", allowed, remedy))
     if train.operation.oil_inlet_temperature is None:
-        problems.append(
-            Problem(
-                "operation.oil_inlet_temperature",
-                "",
-                "is missing, and computed losses need it.",
-                'Add oil_inlet_temperature = "... degC" to [operation].',
-            )
-        )
+        reason = "is missing, and computed losses need it."
+        advice = 'Add oil_inlet_temperature = "... degC" to [operation].'
+        problems.append(Problem("operation.oil_inlet_temperature", "", reason, advice))
     return problems

@@ -272,12 +272,8 @@ def _ends_problems(train: TrainCase, shape: TrainShape, complete: bool) -> Itera
             allowed = "stands still, as the housing does."
             if shaft != HOUSING:
                 allowed = f"is held by a brake in {_state_words(train)}."
-            yield Problem(
-                f"operation.{key}",
-                written(getattr(operation, key)),
-                allowed,
-                "Name a shaft that turns, or release it.",
-            )
+            advice = "Name a shaft that turns, or release it."
+            yield Problem(f"operation.{key}", written(getattr(operation, key)), allowed, advice)
     if complete:
         yield from _given_problems(train, shape, ends)
 
@@ -329,15 +325,11 @@ def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> li
     problems = []
     if found.blocked:
         means = _means(train.state, held, train.operation.speeds)
-        problems.append(
-            Problem(
-                key,
-                shown,
-                f"blocks the train: the input shaft {driven} cannot turn"
-                + (f" with {means}." if means else "."),
-                "Release one of these." if means else "Check the shafts: they join too much.",
-            )
+        reason = f"blocks the train: the input shaft {driven} cannot turn" + (
+            f" with {means}." if means else "."
         )
+        remedy = "Release one of these." if means else "Check the shafts: they join too much."
+        problems.append(Problem(key, shown, reason, remedy))
     if not complete:
         return problems
     if found.loose:

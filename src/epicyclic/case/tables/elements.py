@@ -285,8 +285,7 @@ class SealTable(Table):
 
 # What contradicts itself, or is missing, in one of these tables; keys are relative to the table.
 
-_DRAG_AXES = ("speed", "temperature")
-"""Axes of the tables of parts that carry no load."""
+_DRAG_AXES = ("speed", "temperature")  # Axes of the tables of parts that carry no load.
 
 
 def bearing_problems(table: ShaftBearingTable) -> list[Problem]:

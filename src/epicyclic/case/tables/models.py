@@ -71,8 +71,7 @@ def behaviour_of(preset: object) -> dict[str, object]:
 
 
 HeatingModel = Literal["isothermal", "inlet-and-film"]
-HEATING = "With or without thinner inlet film, flash and film temperature."
-"""What the key says."""
+HEATING = "With or without thinner inlet film, flash and film temperature."  # What the key says.
 NEEDED = {"limiting-stress": ("shear_stress",), "carreau": ("shear_stress", "shear_exponent")}
 """Keys without which a law cannot be used."""
 OF_TWO_SLOPES = ("second_slope", "slope_ratio", "transition_pressure")

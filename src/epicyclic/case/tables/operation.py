@@ -190,8 +190,7 @@ class ThermalTable(Table):
         return hash((self.lubrication, self.oil_flow, self.ambient_temperature, self.housing))
 
 
-ROUNDING = 1e-9
-"""Rounding of shares that add up to 1. [1]"""
+ROUNDING = 1e-9  # Rounding of shares that add up to 1. [1]
 
 
 def check_thermal(thermal: ThermalTable) -> list[Problem]:
@@ -361,13 +360,10 @@ def check_lubrication(table: LubricationTable) -> list[Problem]:
         users = [f'"{name}"' for name, keys in _KEYS.items() if key in keys]
         allowed = f'has no effect with method = "{method}", but with {" or ".join(users)}.'
         problems.append(Problem(f"lubrication.{key}", "", allowed, "Remove it, or change method."))
+    reason = "has no effect without oil_flow, the flow of the jets."
+    remedy = 'Give that, as oil_flow = "2 l/min", or remove this key.'
     problems += [
-        Problem(
-            f"lubrication.{key}",
-            "",
-            "has no effect without oil_flow, the flow of the jets.",
-            'Give that, as oil_flow = "2 l/min", or remove this key.',
-        )
+        Problem(f"lubrication.{key}", "", reason, remedy)
         for key in sorted(given.intersection(_JETS))
         if method == "jet" and table.oil_flow is None
     ]
@@ -391,14 +387,9 @@ def check_sump(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:
         return [Problem("lubrication.oil_volume", "", allowed, 'Give it, as "1.5 l".')]
     if own is None or other is None or own == other:
         return []
-    return [
-        Problem(
-            "lubrication.oil_volume, thermal.oil_volume",
-            f"{LITRE.text(own)}, {LITRE.text(other)}",
-            "are one volume, and differ.",
-            "Give one of them.",
-        )
-    ]
+    key = "lubrication.oil_volume, thermal.oil_volume"
+    reason = "are one volume, and differ."
+    return [Problem(key, f"{LITRE.text(own)}, {LITRE.text(other)}", reason, "Give one of them.")]
 
 
 def check_wetting(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:
