@@ -43,7 +43,6 @@ from epicyclic.case.tables.operation import (
     check_wetting,
 )
 from epicyclic.case.train_tables import ListedSet
-from epicyclic.contact.fitted_models import OilModel
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.ranges import FITTED_QUANTITIES
@@ -275,6 +274,7 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
 
 
 def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> OilModel | None:
+    # cases without fitted models need no kernel
     from epicyclic.contact.fitted_models import builtin_model, read_oil_model
 
     if models.oil_model is not None:
@@ -287,7 +287,7 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
 def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:
     """That the file is one; whether it is for these pockets shows when they are known."""
     if models.pocketing_table is not None:
-        from epicyclic.losses.pocket_tables import read_stored
+        from epicyclic.losses.pocket_tables import read_stored  # needs kernels
 
         try:
             read_stored(folder / models.pocketing_table)

@@ -573,11 +573,5 @@ def _check_place(flank: _Flank, table: TopographyTable) -> list[Problem]:
             "Give the deviations where the flank works.",
         )
         for name, points, where, (low, high) in places
-        if not _shares_half((points[0], points[-1]), (low, high))
+        if min(points[-1], high) - max(points[0], low) < max(points[-1] - points[0], high - low) / 2
     ]
-
-
-def _shares_half(one: tuple[float, float], two: tuple[float, float]) -> bool:
-    """Two ranges have at least half of the longer one in common."""
-    common = min(one[1], two[1]) - max(one[0], two[0])
-    return common >= max(one[1] - one[0], two[1] - two[0]) / 2

@@ -55,22 +55,20 @@ class SharedGears(Table):
 
     AT_MOST_ONE = (("basic_rack", "addendum_coefficient"), ("basic_rack", "dedendum_coefficient"))
 
-    normal_module: Length | None = option(None, "m_n.")
-    transverse_module: Length | None = option(None, "m_t = m_n/cos(beta).")
-    normal_pressure_angle: PressureAngle | None = option(None, "alpha_n at the reference circle.")
-    transverse_pressure_angle: PressureAngle | None = option(
-        None, "alpha_t at the reference circle."
-    )
-    helix_angle: HelixAngle | None = option(None, "beta at the reference circle, magnitude.")
-    center_distance: Length | None = option(None, "Of every mesh.")
+    normal_module: Length | None = option("m_n.")
+    transverse_module: Length | None = option("m_t = m_n/cos(beta).")
+    normal_pressure_angle: PressureAngle | None = option("alpha_n at the reference circle.")
+    transverse_pressure_angle: PressureAngle | None = option("alpha_t at the reference circle.")
+    helix_angle: HelixAngle | None = option("beta at the reference circle, magnitude.")
+    center_distance: Length | None = option("Of every mesh.")
     addendum_coefficient: Number = option(
-        1.0, "h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.", gt=0, le=3
+        "h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.", 1.0, gt=0, le=3
     )
     dedendum_coefficient: Number = option(
-        1.25, "h_fP/m_n, for gears without root_diameter. ISO 53, profile A.", gt=0, le=4
+        "h_fP/m_n, for gears without root_diameter. ISO 53, profile A.", 1.25, gt=0, le=4
     )
     basic_rack: RackName | None = option(
-        None, "A profile of ISO 53 instead of both coefficients, also for the tool's tip."
+        "A profile of ISO 53 instead of both coefficients, also for the tool's tip."
     )
 
 
@@ -84,11 +82,9 @@ class Gears(SharedGears):
 
     transverse_pressure_angle: (
         Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=40.0)] | None
-    ) = option(None, "alpha_t at the reference circle.")
+    ) = option("alpha_t at the reference circle.")
     helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
-    center_distance: Length | None = option(
-        None, "Of every mesh. Default: from the profile shifts, x."
-    )
+    center_distance: Length | None = option("Of every mesh. Default: from the profile shifts, x.")
 
     @property
     def distance(self) -> float:
@@ -115,34 +111,32 @@ class TopographyTable(Table):
 class MicroGeometryTable(Table):
     """Modifications and deviations of the working flanks, positive where material is missing."""
 
-    tip_relief: SmallLength = option("0 um", "At the tip.")
+    tip_relief: SmallLength = option("At the tip.", "0 um")
     tip_relief_roll_length: Length | None = option(
-        None, "Roll length from the tip to the start of the relief."
+        "Roll length from the tip to the start of the relief."
     )
     tip_relief_diameter: Length | None = option(
-        None, "Instead of it: the diameter where the relief starts."
+        "Instead of it: the diameter where the relief starts."
     )
     tip_relief_shape: ReliefShape = "linear"
-    root_relief: SmallLength = option("0 um", "At the start of the active profile.")
+    root_relief: SmallLength = option("At the start of the active profile.", "0 um")
     root_relief_roll_length: Length | None = option(
-        None, "Roll length from the start of the active profile."
+        "Roll length from the start of the active profile."
     )
     root_relief_diameter: Length | None = option(
-        None, "Instead of it: the diameter where the relief starts."
+        "Instead of it: the diameter where the relief starts."
     )
     root_relief_shape: ReliefShape = "linear"
-    profile_crown: Deviation = option("0 um", "Parabola over the active profile.")
-    profile_slope: Deviation = option("0 um", "Positive: material is missing at the tip.")
-    lead_crown: Deviation = option("0 um", "Parabola over the face width of the gear.")
+    profile_crown: Deviation = option("Parabola over the active profile.", "0 um")
+    profile_slope: Deviation = option("Positive: material is missing at the tip.", "0 um")
+    lead_crown: Deviation = option("Parabola over the face width of the gear.", "0 um")
     lead_slope: Deviation = option(
-        "0 um", "Positive: material is missing at the end where contact ends."
+        "Positive: material is missing at the end where contact ends.", "0 um"
     )
-    end_relief: SmallLength = option("0 um", "At both ends.")
-    end_relief_length: Length | None = option(None, "From each end.")
+    end_relief: SmallLength = option("At both ends.", "0 um")
+    end_relief_length: Length | None = option("From each end.")
     end_relief_shape: ReliefShape = "linear"
-    topography: TopographyTable | None = option(
-        None, "Deviations over the flank, added to the others."
-    )
+    topography: TopographyTable | None = option("Deviations over the flank, added to the others.")
 
 
 LEAST_TEETH, MOST_TEETH = 5, 2000
@@ -180,36 +174,30 @@ class GearTable(Table):
     teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
     face_width: Length
     tip_diameter: Length | None = option(
-        None, "Inner diameter of a ring. Default: from addendum_coefficient."
+        "Inner diameter of a ring. Default: from addendum_coefficient."
     )
-    root_diameter: Length | None = option(None, "Default: from dedendum_coefficient.")
+    root_diameter: Length | None = option("Default: from dedendum_coefficient.")
     tip_chamfer: ShortLength = option(
-        "0 mm", "Radial height of the 45 degree chamfers of the tip corners."
+        "Radial height of the 45 degree chamfers of the tip corners.", "0 mm"
     )
-    tooth_thickness: Length | None = option(None, "Transverse arc thickness at thickness_diameter.")
+    tooth_thickness: Length | None = option("Transverse arc thickness at thickness_diameter.")
     thickness_diameter: Length | None = None
-    span_measurement: Length | None = option(
-        None, "W_k, base tangent length over teeth_in_span teeth."
-    )
-    teeth_in_span: int | None = option(None, "k.", ge=1, le=2000)
-    dimension_over_pins: Length | None = option(
-        None, "M_d over two balls, or between them in a ring."
-    )
+    span_measurement: Length | None = option("W_k, base tangent length over teeth_in_span teeth.")
+    teeth_in_span: int | None = option("k.", ge=1, le=2000)
+    dimension_over_pins: Length | None = option("M_d over two balls, or between them in a ring.")
     measuring_pin_diameter: Length | None = option(
-        None, "D_M of the balls; of a spur gear pins are the same."
+        "D_M of the balls; of a spur gear pins are the same."
     )
     tooth_thickness_allowance: (
         Annotated[tuple[Deviation, ...], Field(min_length=2, max_length=2)] | None
     ) = option(
-        None,
         "Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth are thinner "
-        "by their mean.",
+        "by their mean."
     )
     tooth_thickness_fit: ThicknessFit | None = option(
-        None, 'Series of both by DIN 3967 instead, "27cd": tolerance 21 to 30, allowance a to h.'
+        'Series of both by DIN 3967 instead, "27cd": tolerance 21 to 30, allowance a to h.'
     )
     profile_shift_coefficient: Number | None = option(
-        None,
         "x; positive thickens the teeth, on a ring too. Default: what the mate and the centre "
         "distance leave.",
         ge=-3,
@@ -218,20 +206,16 @@ class GearTable(Table):
     roughness: Roughness = Field(
         description='rms roughness Rq of the flanks, also as "Ra 0.4 um" or "Rz 3 um", or a finish.'
     )
-    material: NamedMaterial = option("steel", "A name or a table.")
+    material: NamedMaterial = option("A name or a table.", "steel")
     accuracy_class: int | None = option(
-        None,
-        "Flank tolerance class of ISO 1328-1:2013: its slopes are uncertain by it.",
-        ge=1,
-        le=11,
+        "Flank tolerance class of ISO 1328-1:2013: its slopes are uncertain by it.", ge=1, le=11
     )
     tool_tip_radius: ShortLength | None = option(
-        None,
         "Rounding of the cutting tool's tip, which leaves the root fillet. Default: 0.38 m_n "
-        "(rack) or 0.2 m_n (shaper), or less where the mate needs the involute.",
+        "(rack) or 0.2 m_n (shaper), or less where the mate needs the involute."
     )
     micro_geometry: MicroGeometryTable | None = option(
-        None, "Modifications and deviations of the flanks."
+        "Modifications and deviations of the flanks."
     )
 
     @property
@@ -283,7 +267,7 @@ class PairGear(GearTable):
     _sign = model_validator(mode="before")(internal_if_negative)
 
     teeth: int = RING_TEETH
-    internal: bool = option(False, "true: a ring gear around the pinion.")
+    internal: bool = option("true: a ring gear around the pinion.", False)
     rim_thickness: _RimThickness = None
 
 
@@ -298,18 +282,15 @@ class Planet(GearTable):
 
     count: int = Field(ge=1, le=24, description="Number of planets.")
     angles: tuple[Angle, ...] | None = option(
-        None,
         "Position of each planet on the carrier. Default: the admissible positions nearest to "
-        "equal spacing.",
+        "equal spacing."
     )
     mass: Mass | None = option(
-        None,
         "Of one planet with its rollers: its centrifugal force loads the planet bearing. Default: "
-        "from the sizes of gear and rollers and the density of their materials.",
+        "from the sizes of gear and rollers and the density of their materials."
     )
     micro_geometry_ring_side: MicroGeometryTable | None = option(
-        None,
-        "Of the flanks that work against the ring. Default: micro_geometry holds on both sides.",
+        "Of the flanks that work against the ring. Default: micro_geometry holds on both sides."
     )
 
 
@@ -329,9 +310,9 @@ class MeshTable(Table):
     STAND_INS: ClassVar[dict[str, object]] = {"misalignment": None}
 
     misalignment: Deviation = option(
-        "0 um",
         "F_beta_x over the common face width, in the plane of action; positive: the flanks open "
         "towards the end where contact ends.",
+        "0 um",
     )
 
 
@@ -339,9 +320,8 @@ class SetMesh(MeshTable):
     """A mesh whose gears or centre distance may be found from it."""
 
     normal_backlash: ShortLength | None = option(
-        None,
         "j_bn, for what is left out: a profile shift or the centre distance. Default: none, as "
-        "the profile shifts of ISO 21771.",
+        "the profile shifts of ISO 21771."
     )
 
 

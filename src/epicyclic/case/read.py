@@ -306,19 +306,16 @@ def case_html(name: str, given: Mapping[str, Any]) -> str:
     """The keys of a case that were given, table by table; parameters as for `case_line`."""
     alone = {key: value for key, value in given.items() if not isinstance(value, Mapping)}
     tables = {"": alone} | {key: it for key, it in given.items() if isinstance(it, Mapping)}
+    cell = '<td style="text-align: left">'
     rows = "".join(
-        _row(key if number == 0 else "", name, value)
+        f"<tr>{cell}<strong>{escape(key if number == 0 else '')}</strong></td>"
+        f"{cell}{escape(name)}</td>"
+        f"{cell}{escape(unit_text(value) if isinstance(value, str) else str(value))}</td></tr>"
         for key, table in tables.items()
         for number, (name, value) in enumerate(flattened(table))
     )
     title = escape(str(given.get("title") or name))
     return f"<table><caption><strong>{title}</strong></caption><tbody>{rows}</tbody></table>"
-
-
-def _row(table: str, key: str, value: object) -> str:
-    text = unit_text(value) if isinstance(value, str) else str(value)
-    cells = (f"<strong>{escape(table)}</strong>", escape(key), escape(text))
-    return "<tr>" + "".join(f'<td style="text-align: left">{it}</td>' for it in cells) + "</tr>"
 
 
 def owner_without_keys(tables: Mapping[str, Any], key: str) -> Problem | None:

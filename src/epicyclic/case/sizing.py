@@ -266,7 +266,10 @@ class _Solver:
             raise _no_distance(without)
         free = [name for name in self.thinned if name not in self.shifts]
         if free:
-            raise self._no_shift(free)
+            allowed = "is missing, and so is that of every mate."
+            remedy = "Add one of them, or tooth_thickness with thickness_diameter: the others "
+            remedy += "follow from the centre distance."
+            raise one_problem(", ".join(map(self._shift_key, free)), "", allowed, remedy)
         for mesh in doubly:
             self._adjust(mesh)
 
@@ -297,29 +300,20 @@ class _Solver:
     def _find_shift(self) -> bool:
         """Profile shift of the first gear without one, the thinner of what its mates leave."""
         for name in self.thinned:
-            known = [] if name in self.shifts else list(self._known_mates(name))
+            known = [
+                (self._sum(mesh) - self.shifts[mate], mesh)
+                for mesh in self.meshes
+                if name in mesh.gears
+                and name not in self.shifts
+                and mesh.group in self.distances
+                and (mate := mesh.gears[1 - mesh.gears.index(name)]) in self.shifts
+            ]
             if known:
-                shift, mesh = min(
-                    ((self._sum(mesh) - self.shifts[mate], mesh) for mesh, mate in known),
-                    key=lambda item: item[0],
-                )
+                shift, mesh = min(known, key=lambda item: item[0])
                 self._set(name, shift, mesh)
                 self._tell(self._shift_key(name), f"{shift:z.4f}", mesh)
                 return True
         return False
-
-    def _known_mates(self, name: str) -> Iterator[tuple[_Sized, str]]:
-        for mesh in self.meshes:
-            if name in mesh.gears and mesh.group in self.distances:
-                mate = mesh.gears[1 - mesh.gears.index(name)]
-                if mate in self.shifts:
-                    yield mesh, mate
-
-    def _no_shift(self, free: list[str]) -> InputError:
-        allowed = "is missing, and so is that of every mate."
-        remedy = "Add one of them, or tooth_thickness with thickness_diameter: the others follow "
-        remedy += "from the centre distance."
-        return one_problem(", ".join(self._shift_key(name) for name in free), "", allowed, remedy)
 
     def _sum(self, mesh: _Sized) -> float:
         """Nominal x1 + x2 of a mesh; 0 if its gears cannot mesh, which is told with the meshes."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -261,21 +261,18 @@ def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
     if not isinstance(raw, dict):
         remedy = "Write [sets.NAME] and its keys below it."
         return _ReadSet(None, [Problem("", written(raw), "must be a table of keys.", remedy)])
-    return _read_set_cached(_Given(raw, dict(shared), folder))
+    key = (_frozen(raw), _frozen(dict(shared)))
+    return _read_set_cached(_Given(raw, dict(shared), folder, key))
 
 
+@dataclass(frozen=True)
 class _Given:
     """What a set is read from: equal if every value is the same and of the same type."""
 
-    def __init__(self, raw: dict[str, Any], shared: dict[str, Any], folder: Path) -> None:
-        self.raw, self.shared, self.folder = raw, shared, folder
-        self.key = (_frozen(raw), _frozen(shared), folder)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Given) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
+    raw: dict[str, Any] = field(compare=False)
+    shared: dict[str, Any] = field(compare=False)
+    folder: Path
+    key: Hashable  # Both tables, frozen.
 
 
 def _frozen(value: Any) -> Hashable:
@@ -291,7 +288,10 @@ def _frozen(value: Any) -> Hashable:
 def _read_set_cached(given: _Given) -> _ReadSet:
     form, raw = form_of_set(given.raw)
     if form is None:
-        return _ReadSet(None, [_formless(raw)])
+        names = ("sun", "ring", "planet", "pinion", "gear", "meshes", "gears")
+        near = [text for key in raw if (text := did_you_mean(key, names))]
+        remedy = "Give sun and ring, or pinion and gear, or gears and meshes."
+        return _ReadSet(None, [Problem("", "", "has no gears.", (*near, remedy)[0])])
     if not any(key in raw for key in _GIVEN):
         raw = {key: value for key, value in given.shared.items() if key in form.model_fields} | raw
     if "models" in raw and form is PairSet:
@@ -372,13 +372,6 @@ def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:
             idle = ListedGear.model_fields.keys() - {*annotation.model_fields, "internal"}
             kept[name] = _without_keys(table, idle)
     return kept
-
-
-def _formless(raw: Mapping[str, Any]) -> Problem:
-    remedy = "Give sun and ring, or pinion and gear, or gears and meshes."
-    names = ("sun", "ring", "planet", "pinion", "gear", "meshes", "gears")
-    near = [did_you_mean(key, names) for key in raw]
-    return Problem("", "", "has no gears.", next((text for text in near if text), remedy))
 
 
 def _with_gears(problem: Problem) -> Problem:

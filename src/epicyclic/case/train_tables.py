@@ -65,8 +65,8 @@ class GivenRing(Teeth):
 class GivenPlanet(Table):
     """The planets of a set of given efficiency."""
 
-    teeth: int | None = option(None, "Default: half the difference of ring and sun.", ge=5, le=2000)
-    count: int = option(3, "Number of planets.", ge=1, le=24)
+    teeth: int | None = option("Default: half the difference of ring and sun.", ge=5, le=2000)
+    count: int = option("Number of planets.", 3, ge=1, le=24)
 
 
 class GivenGear(Teeth):
@@ -76,15 +76,15 @@ class GivenGear(Teeth):
 
     teeth: int = RING_TEETH
 
-    internal: bool = option(False, "true: a ring gear around the pinion.")
+    internal: bool = option("true: a ring gear around the pinion.", False)
 
 
 class GivenListedGear(GivenGear):
     """A gear of a listed set of given efficiency."""
 
-    body: str | None = option(None, "Gears with the same body turn together. Default: its own.")
+    body: str | None = option("Gears with the same body turn together. Default: its own.")
     planet: bool | None = option(
-        None, "true: it stands on the carrier. Default: as the meshes and shafts suggest."
+        "true: it stands on the carrier. Default: as the meshes and shafts suggest."
     )
 
 
@@ -102,7 +102,7 @@ class PlanetarySet(Table):
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
     hand: Literal["right", "left"] = option(
-        "right", "Of the helix of the sun, for the forces on shaft bearings."
+        "Of the helix of the sun, for the forces on shaft bearings.", "right"
     )
     lubrication: LubricationTable | None = LUBRICATION
     models: PlanetaryModels = PlanetaryModels()
@@ -118,9 +118,9 @@ class GivenPlanetarySet(Table):
     sun: Teeth
     ring: GivenRing
     planet: GivenPlanet = GivenPlanet()
-    efficiency: Efficiency | None = option(None, "With the carrier at rest, sun to ring.")
+    efficiency: Efficiency | None = option("With the carrier at rest, sun to ring.")
     mesh_efficiency: Efficiency | None = option(
-        None, "Of each of the two meshes, with the carrier at rest."
+        "Of each of the two meshes, with the carrier at rest."
     )
 
 
@@ -132,10 +132,10 @@ class PairSet(Table):
     gear: PairGear
     mesh: SetMesh = SetMesh()
     direction: Angle = option(
-        "0 deg",
         "From the axis of the pinion to that of the gear, for the forces on shaft bearings.",
+        "0 deg",
     )
-    hand: Literal["right", "left"] = option("right", "Of the helix of the pinion, for the same.")
+    hand: Literal["right", "left"] = option("Of the helix of the pinion, for the same.", "right")
     lubrication: LubricationTable | None = LUBRICATION
     models: GearPairModels = GearPairModels()
     numerics: Numerics = Numerics()
@@ -153,29 +153,26 @@ class GivenPair(Table):
 class ListedGear(PairGear):
     """A gear of a listed set whose losses are computed."""
 
-    body: str | None = option(None, "Gears with the same body turn together. Default: its own.")
+    body: str | None = option("Gears with the same body turn together. Default: its own.")
     planet: bool | None = option(
-        None, "true: it stands on the carrier. Default: as the meshes and shafts suggest."
+        "true: it stands on the carrier. Default: as the meshes and shafts suggest."
     )
-    normal_module: Length | None = option(None, "Default: of [gears].")
-    transverse_module: Length | None = option(None, "Default: of [gears].")
-    normal_pressure_angle: PressureAngle | None = option(None, "Default: of [gears].")
-    transverse_pressure_angle: PressureAngle | None = option(None, "Default: of [gears].")
-    helix_angle: HelixAngle | None = option(None, "Default: of [gears].")
+    normal_module: Length | None = option("Default: of [gears].")
+    transverse_module: Length | None = option("Default: of [gears].")
+    normal_pressure_angle: PressureAngle | None = option("Default: of [gears].")
+    transverse_pressure_angle: PressureAngle | None = option("Default: of [gears].")
+    helix_angle: HelixAngle | None = option("Default: of [gears].")
     hand: Literal["right", "left"] | None = option(
-        None,
         "Of the helix. Default: the first gear right, the others as their mates demand, gears of "
-        "one body alike.",
+        "one body alike."
     )
     mass: Mass | None = option(
-        None,
         "Of one planet with its rollers, at one of the gears of its body: its centrifugal force "
-        "loads the planet bearing. Default: from its sizes.",
+        "loads the planet bearing. Default: from its sizes."
     )
     axial_position: Position | None = option(
-        None,
         "Of the middle of its face from the middle of the planet bearing. Default: gears of one "
-        "body side by side, in the order of meshes.",
+        "body side by side, in the order of meshes."
     )
 
 
@@ -183,14 +180,13 @@ class ListedMesh(SetMesh):
     """What belongs to one mesh of a listed set, ``[sets.NAME.mesh.GEAR-GEAR]``."""
 
     center_distance: Length | None = option(
-        None,
         "Default: of [gears], that of another mesh of the same planet with a central gear, or "
-        "from the profile shifts, x.",
+        "from the profile shifts, x."
     )
     direction: Angle = option(
-        "0 deg",
         "Of fixed axes, from that of the first gear of the pair to that of the second, for the "
         "forces on shaft bearings.",
+        "0 deg",
     )
 
 
@@ -206,9 +202,7 @@ MeshPair = tuple[str, str]
 class _Listed(Table):
     """A set whose gears and meshes are listed."""
 
-    planets: int | None = option(
-        None, "Number of planets of each kind; none: fixed axes.", ge=1, le=24
-    )
+    planets: int | None = option("Number of planets of each kind; none: fixed axes.", ge=1, le=24)
     meshes: tuple[MeshPair, ...] = Field(min_length=1, description="Pairs of gears.")
 
     @classmethod
@@ -237,9 +231,9 @@ class ListedSet(_Listed):
     members: dict[str, ListedGear]
     mesh: dict[str, ListedMesh] = Field(default={})
     planet_bearing: PlanetBearing | None = option(
-        None, "Of every planet that planet_bearings does not name."
+        "Of every planet that planet_bearings does not name."
     )
-    planet_bearings: dict[str, PlanetBearing] = option({}, "By the body of the planet.")
+    planet_bearings: dict[str, PlanetBearing] = option("By the body of the planet.", {})
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     lubrication: LubricationTable | None = LUBRICATION
@@ -263,8 +257,8 @@ SetTable = PlanetarySet | PairSet | ListedSet | GivenPlanetarySet | GivenPair | 
 class StateTable(Table):
     """What brakes and clutches make of a train."""
 
-    fixed: tuple[str, ...] = option((), "Shafts that brakes hold.")
-    joined: tuple[tuple[str, ...], ...] = option((), "Groups of shafts that clutches join.")
+    fixed: tuple[str, ...] = option("Shafts that brakes hold.", ())
+    joined: tuple[tuple[str, ...], ...] = option("Groups of shafts that clutches join.", ())
 
 
 def _state_name(value: object) -> object:
@@ -284,7 +278,7 @@ class TrainOperation(Table):
         "oil_inlet_temperature": None,
     }
 
-    state: StateName | None = option(None, "One of [states].")
+    state: StateName | None = option("One of [states].")
     input: str = Field(description="The shaft to which torque and speed belong.")
     output: str = Field(description="The shaft whose torque balances.")
     torque: Torque = Field(
@@ -292,11 +286,11 @@ class TrainOperation(Table):
     )
     speed: RotationalSpeed = Field(description="Of the input shaft.")
     oil_inlet_temperature: Temperature | None = option(
-        None, "Oil temperature at all contacts; needed for computed losses."
+        "Oil temperature at all contacts; needed for computed losses."
     )
     speeds: dict[str, RotationalSpeed] = option(
-        {}, "Of further driven shafts, if the train has more freedom."
+        "Of further driven shafts, if the train has more freedom.", {}
     )
     torques: dict[str, Torque] = option(
-        {}, "From outside on further shafts, such as a power take-off."
+        "From outside on further shafts, such as a power take-off.", {}
     )

@@ -224,13 +224,13 @@ def _try(kind: type[AnyCase], raw: dict[str, Any]) -> tuple[AnyCase | None, list
         return kind.model_validate(raw, strict=True), []
     except ValidationError as error:
         details = error.errors(include_url=False)
-    return None, [detail for detail in details if not _is_echo(detail)]
-
-
-def _is_echo(detail: ErrorDetails) -> bool:
-    """True if an array only counts as too short because some of its entries are wrong."""
-    needed = detail.get("ctx", {}).get("min_length", 0)
-    return detail["type"] == "too_short" and len(detail["input"]) >= needed
+    # an array only counts as too short because some of its entries are wrong
+    return None, [
+        detail
+        for detail in details
+        if detail["type"] != "too_short"
+        or len(detail["input"]) < detail.get("ctx", {}).get("min_length", 0)
+    ]
 
 
 @cache

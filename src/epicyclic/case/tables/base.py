@@ -40,7 +40,7 @@ from epicyclic.units import (
 )
 
 
-def option(default: Any, description: str, **limits: Any) -> Any:
+def option(description: str, default: Any = None, **limits: Any) -> Any:
     """The field of a key with a default, which is stated as a file has it, with its unit."""
     return Field(default=default, description=description, **limits)
 
@@ -73,10 +73,10 @@ class ShortOil(BaseModel):
     model_config = ConfigDict(extra="allow")
 
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
-    iso_vg: int | None = option(None, "Grade of ISO 3448.")
-    viscosity_40: KinematicViscosity | None = option(None, "At 40 degC.")
-    viscosity_100: KinematicViscosity | None = option(None, "At 100 degC.")
-    density_15: OilDensity | None = option(None, "At 15 degC.")
+    iso_vg: int | None = option("Grade of ISO 3448.")
+    viscosity_40: KinematicViscosity | None = option("At 40 degC.")
+    viscosity_100: KinematicViscosity | None = option("At 100 degC.")
+    density_15: OilDensity | None = option("At 15 degC.")
 
 
 _SHORT_KEYS = ("iso_vg", "viscosity_40", "viscosity_100", "density_15")

@@ -53,7 +53,6 @@ class PlanetBearing(Table):
     roller_roughness: Roughness
     race_roughness: Roughness
     viscous_factor: Number | None = option(
-        None,
         "f0 of the viscous loss, of the whole bearing: caged cylindrical 2.2-4 a row, needle up "
         "to 12. Default: 3 a row.",
         ge=0,
@@ -61,17 +60,14 @@ class PlanetBearing(Table):
     )
     cage: Literal["caged", "full-complement"] = "caged"
     palmgren_coefficient: Number | None = option(
-        None,
-        "f1 of the method palmgren. Default: 0.0003 caged, 0.00055 full complement.",
-        gt=0,
-        le=0.05,
+        "f1 of the method palmgren. Default: 0.0003 caged, 0.00055 full complement.", gt=0, le=0.05
     )
-    crown_drop: SmallLength = option("3 um", "Drop of the profile at the roller's end (estimate).")
+    crown_drop: SmallLength = option("Drop of the profile at the roller's end (estimate).", "3 um")
     crown_length_fraction: Number = option(
-        0.2, "Crowned part of the length, at each end.", ge=0, le=0.5
+        "Crowned part of the length, at each end.", 0.2, ge=0, le=0.5
     )
-    row_gap: ShortLength = option("0 mm", "Axial gap between the rollers of neighbouring rows.")
-    material: NamedMaterial = option("steel", "Of rollers and races.")
+    row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
+    material: NamedMaterial = option("Of rollers and races.", "steel")
 
 
 class Carrier(Table):
@@ -87,8 +83,8 @@ class ThrustBearing(Table):
     mean_diameter: Length
     between: Literal[
         "sun-carrier", "sun-ring", "ring-carrier", "sun-housing", "carrier-housing"
-    ] = option("carrier-housing", "The two parts whose speeds differ.")
-    viscous_factor: Number = option(3.5, "f0 (Harris).", ge=0, le=100)
+    ] = option("The two parts whose speeds differ.", "carrier-housing")
+    viscous_factor: Number = option("f0 (Harris).", 3.5, ge=0, le=100)
     count: int = Field(default=1, ge=1, le=10)
 
 
@@ -128,16 +124,15 @@ class LossTableTable(PointsTable):
     AXES: ClassVar = ("speed", "temperature", "radial_force")
 
     speed: tuple[SpeedDifference, ...] | None = option(
-        None, "Magnitudes of the speed difference, rising."
+        "Magnitudes of the speed difference, rising."
     )
-    temperature: tuple[Temperature, ...] | None = option(None, "Of the oil, rising.")
-    radial_force: tuple[Force, ...] | None = option(None, "On a bearing, rising.")
+    temperature: tuple[Temperature, ...] | None = option("Of the oil, rising.")
+    radial_force: tuple[Force, ...] | None = option("On a bearing, rising.")
     torque: Torques | None = option(
-        None, "Friction torque: one value, or one row, for each value of the first axis."
+        "Friction torque: one value, or one row, for each value of the first axis."
     )
-    power: Powers | None = option(None, "Power lost instead of the torque; needs the axis speed.")
+    power: Powers | None = option("Power lost instead of the torque; needs the axis speed.")
     file: str | None = option(
-        None,
         "CSV file beside the case, its columns with units: speed [rpm],torque [N*m].",
         max_length=1000,
     )
@@ -162,7 +157,7 @@ class BearingSealTable(Table):
     counterface_diameter: Length = Field(description="d_s, on which the lips run.")
     factor: Number = Field(ge=0, le=10, description="K_S1, for mm and N mm.")
     exponent: Number = Field(ge=0, le=4, description="beta.")
-    constant: DragTorque = option("0 N*m", "K_S2.")
+    constant: DragTorque = option("K_S2.", "0 N*m")
 
 
 class ShaftBearingTable(Table):
@@ -182,105 +177,94 @@ class ShaftBearingTable(Table):
     }
 
     shaft: str = Field(description="The shaft in its bore.")
-    against: str = option("housing", "The body that holds its outer ring.")
+    against: str = option("The body that holds its outer ring.", "housing")
     type: Literal["deep-groove", "cylindrical", "tapered", "needle"]
     bore: Length
     outside_diameter: Length
-    width: Length | None = option(None, "Needed for the drag of rollers in an oil bath.")
+    width: Length | None = option("Needed for the drag of rollers in an oil bath.")
     cage: Literal["caged", "full-complement"] = option(
-        "caged", "full-complement: cylindrical and needle rollers only."
+        "full-complement: cylindrical and needle rollers only.", "caged"
     )
     model: Literal["palmgren", "harris", "skf-2018", "table"] = option(
-        "palmgren", "skf-2018: needs series; harris: of ball bearings, static_load_rating."
+        "skf-2018: needs series; harris: of ball bearings, static_load_rating.", "palmgren"
     )
-    series: str | None = option(
-        None, "For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ...", max_length=20
-    )
+    series: str | None = option("For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ...", max_length=20)
     dynamic_load_rating: LoadRating | None = option(
-        None, "C, for the minimum load of tapered and needle rollers."
+        "C, for the minimum load of tapered and needle rollers."
     )
     static_load_rating: LoadRating | None = option(
-        None, "C0, for ball bearings with harris and skf-2018."
+        "C0, for ball bearings with harris and skf-2018."
     )
     contact_angle: ContactAngle | None = option(
-        None, "Of a tapered roller bearing, instead of axial_factor."
+        "Of a tapered roller bearing, instead of axial_factor."
     )
     axial_factor: Number | None = option(
-        None, "Y of a tapered roller bearing, 0.4 cot of the angle.", gt=0, le=10
+        "Y of a tapered roller bearing, 0.4 cot of the angle.", gt=0, le=10
     )
-    position: Position | None = option(
-        None, "Along the shaft; for its reactions from the gear forces."
-    )
-    locating: bool = option(False, "True if it takes axial force.")
+    position: Position | None = option("Along the shaft; for its reactions from the gear forces.")
+    locating: bool = option("True if it takes axial force.", False)
     axial_sense: Literal["both", "positive", "negative"] = option(
-        "both", "In which sense of the shaft's axis a locating bearing holds the shaft."
+        "In which sense of the shaft's axis a locating bearing holds the shaft.", "both"
     )
-    radial_force: Force | None = option(None, "Instead of the reaction to the gear forces.")
+    radial_force: Force | None = option("Instead of the reaction to the gear forces.")
     axial_force: Force | None = option(
-        None, "Beside radial_force. Default: none if radial_force is given."
+        "Beside radial_force. Default: none if radial_force is given."
     )
     viscous_factor: Number | None = option(
-        None,
         "f0 of palmgren and harris. Default: deep-groove 2, cylindrical 3 or 7.5 (full "
         "complement), tapered 6, needle 12.",
         ge=0,
         le=100,
     )
     palmgren_coefficient: Number | None = option(
-        None,
         "f1 of palmgren. Default: 0.0003, full complement 0.00055, tapered 0.0004, needle 0.0005 "
         "(estimate).",
         gt=0,
         le=0.05,
     )
     flange_coefficient: Number | None = option(
-        None,
         "f_f of cylindrical rollers under axial force. Default: 0.002 caged, 0.003 full "
         "complement.",
         ge=0,
         le=0.05,
     )
     lubrication: Literal["jet", "oil-bath", "grease", "oil-air"] = option(
-        "jet", "For skf-2018: how soon the contacts starve."
+        "For skf-2018: how soon the contacts starve.", "jet"
     )
     oil_level: ShortLength = option(
-        "0 mm", "Above the lowest point of the outer raceway, for skf-2018; 0: no bath."
+        "Above the lowest point of the outer raceway, for skf-2018; 0: no bath.", "0 mm"
     )
     drag_variable: Number | None = option(
-        None,
         "V_M of skf-2018 at this oil level. Default: 0.0012 times the immersed share (estimate).",
         ge=0,
         le=0.01,
     )
     sliding_friction: Number | None = option(
-        None,
         "mu_EHL of skf-2018. Default: 0.02 cylindrical, 0.002 tapered; balls by the oil: 0.05 "
         "mineral, 0.10 ATF, 0.04 others.",
         ge=0,
         le=0.5,
     )
-    seal: BearingSealTable | None = option(None, "Contact seals of the bearing, for skf-2018.")
+    seal: BearingSealTable | None = option("Contact seals of the bearing, for skf-2018.")
     minimum_load_factor: Number | None = option(
-        None, "k_r of the product table. Default: 0.025 deep-groove, 0.15 cylindrical.", gt=0, le=10
+        "k_r of the product table. Default: 0.025 deep-groove, 0.15 cylindrical.", gt=0, le=10
     )
-    reference_speed: ReferenceSpeed | None = option(
-        None, "Of cylindrical rollers, for the minimum load."
-    )
-    table: LossTableTable | None = option(None, "For model = table.")
+    reference_speed: ReferenceSpeed | None = option("Of cylindrical rollers, for the minimum load.")
+    table: LossTableTable | None = option("For model = table.")
 
 
 class SealTable(Table):
     """A radial lip seal on a shaft."""
 
     shaft: str = Field(description="The shaft under the lip.")
-    against: str = option("housing", "The body that holds the seal.")
+    against: str = option("The body that holds the seal.", "housing")
     diameter: Length = Field(description="Of the shaft under the lip.")
     model: Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke", "table"] = (
         option(
-            "iso-14179-2", "The formulas differ by a factor of 2 and more; the figures show all."
+            "The formulas differ by a factor of 2 and more; the figures show all.", "iso-14179-2"
         )
     )
-    table: LossTableTable | None = option(None, "For model = table.")
+    table: LossTableTable | None = option("For model = table.")
 
 
 # What contradicts itself, or is missing, in one of these tables; keys are relative to the table.

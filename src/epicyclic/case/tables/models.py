@@ -84,38 +84,36 @@ class OilBehaviour(Table):
     """Viscosity under pressure and under shear."""
 
     pressure_law: Literal["roelands", "barus", "two-slope"] = option(
-        PRESSURE_NAMES[USUAL.pressure_law], "Viscosity under pressure."
+        "Viscosity under pressure.", PRESSURE_NAMES[USUAL.pressure_law]
     )
     slope_ratio: Number = option(
-        SLOPE_RATIO,
         "For two-slope: slope at high over that at ambient pressure (estimate).",
+        SLOPE_RATIO,
         gt=0.0,
         le=1.0,
     )
     second_slope: PressureViscosity | None = option(
-        None, "For two-slope: slope at high pressure, instead of slope_ratio."
+        "For two-slope: slope at high pressure, instead of slope_ratio."
     )
     transition_pressure: LoadPressure = option(
-        f"{TRANSITION * 1e-9:g} GPa", "For two-slope: where the slopes meet (estimate)."
+        "For two-slope: where the slopes meet (estimate).", f"{TRANSITION * 1e-9:g} GPa"
     )
     eyring_stress: Stress = option(
-        stress_text(USUAL),
         "Of the default law: stress beyond which the oil thins (estimate; mineral oils 2 to 10 "
         "MPa).",
+        stress_text(USUAL),
     )
     shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = option(
-        "ree-eyring", "Viscosity under shear."
+        "Viscosity under shear.", "ree-eyring"
     )
-    shear_stress: Stress | None = option(
-        None, "For limiting-stress and carreau: the stress of the law."
-    )
+    shear_stress: Stress | None = option("For limiting-stress and carreau: the stress of the law.")
     shear_stress_slope: Number = option(
-        0.0,
         "Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
+        0.0,
         ge=0.0,
         le=1.0,
     )
-    shear_exponent: Number | None = option(None, "For carreau: n.", gt=0.0, le=1.0)
+    shear_exponent: Number | None = option("For carreau: n.", gt=0.0, le=1.0)
 
 
 def law_problems(section: str, table: OilBehaviour) -> list[Problem]:
@@ -170,50 +168,40 @@ class LoadSharing(Table):
     """How the planets share the load."""
 
     method: Literal["equal", "mesh-load-factor", "closed-form", "direct"] = option(
-        "equal",
         "mesh-load-factor: one planet takes more; closed-form, direct: from position_errors and "
         "stiffness.",
+        "equal",
     )
     mesh_load_factor: Number = option(
-        1.0,
         "K_gamma: load of the most loaded planet over the mean, at most planet.count.",
+        1.0,
         ge=1,
         le=24,
     )
     position_errors: tuple[Deviation, ...] | None = option(
-        None,
         "Of each planet pin, against the sense in which a positive torque of the sun pushes it: a "
-        "positive error loads its planet more.",
+        "positive error loads its planet more."
     )
     floating_member: Literal["sun", "ring", "carrier", "none"] = option(
-        "sun", "The member that gives way in the transverse plane."
+        "The member that gives way in the transverse plane.", "sun"
     )
-    support_stiffness: Stiffness = option("0 N/um", "Radial, of the floating member; 0: it floats.")
+    support_stiffness: Stiffness = option("Radial, of the floating member; 0: it floats.", "0 N/um")
     pin_stiffness: _PinStiffness | None = option(
-        None,
         "Radial, of one planet pin in the carrier, in series with the planet bearing. Default: "
-        "rigid.",
+        "rigid."
     )
 
     def idle_keys(self) -> tuple[str, ...]:
         """Keys that are given other than by default and do not matter to the method."""
-        elastic = ("position_errors", "floating_member", "support_stiffness", "pin_stiffness")
-        needed = {
-            "equal": (),
-            "mesh-load-factor": ("mesh_load_factor",),
-            "closed-form": elastic,
-            "direct": elastic,
-        }[self.method]
-        idle = [key for key in (*elastic, "mesh_load_factor") if key not in needed]
-        if self.method in ("closed-form", "direct") and self.floating_member == "none":
-            idle.append("support_stiffness")
-        if not self.model_fields_set:
-            return ()
-        fields = type(self).model_fields
-        defaults = type(self)()
-        return tuple(
-            key for key in fields if key in idle and getattr(self, key) != getattr(defaults, key)
-        )
+        elastic = {"position_errors", "floating_member", "support_stiffness", "pin_stiffness"}
+        idle = set() if self.method == "mesh-load-factor" else {"mesh_load_factor"}
+        if self.method not in ("closed-form", "direct"):
+            idle |= elastic
+        elif self.floating_member == "none":
+            idle.add("support_stiffness")
+        usual = type(self)()
+        known = [key for key in type(self).model_fields if key in idle]
+        return tuple(key for key in known if getattr(self, key) != getattr(usual, key))
 
 
 FrictionName = Literal[
@@ -270,21 +258,21 @@ class FrictionTable(PointsTable):
 class ContactSolver(OilBehaviour):
     """How the contacts of a mesh are solved for friction = ehl-direct."""
 
-    preset: PresetName = option(DEFAULT, PRESET)
-    heating: HeatingModel = option("isothermal", HEATING)
+    preset: PresetName = option(PRESET, DEFAULT)
+    heating: HeatingModel = option(HEATING, "isothermal")
     solid_conductivity: Conductivity | None = option(
-        None, "With heating. Default: that of the material of each gear."
+        "With heating. Default: that of the material of each gear."
     )
     solid_heat_capacity: HeatCapacity | None = option(
-        None, "With heating. Default: that of the material of each gear."
+        "With heating. Default: that of the material of each gear."
     )
     asperity_film: SmallLength = option(
-        film_text(USUAL), "Film below which flanks touch (estimate)."
+        "Film below which flanks touch (estimate).", film_text(USUAL)
     )
-    correlation_length: SmallLength = option("20 um", "Of the roughness of both flanks (estimate).")
-    seed: int = option(1, "Of the generated profiles.", ge=0)
-    error: Number = option(0.05, "Mean error wanted at contacts that take no part.", gt=0, le=1)
-    most_contacts: int = option(48, "Solved for one mesh at most.", ge=12, le=5000)
+    correlation_length: SmallLength = option("Of the roughness of both flanks (estimate).", "20 um")
+    seed: int = option("Of the generated profiles.", 1, ge=0)
+    error: Number = option("Mean error wanted at contacts that take no part.", 0.05, gt=0, le=1)
+    most_contacts: int = option("Solved for one mesh at most.", 48, ge=12, le=5000)
 
     @model_validator(mode="before")
     @classmethod
@@ -328,26 +316,25 @@ class GearPairModels(Table):
     }
 
     friction: FrictionName = option(
-        "auto",
         "auto: mixed-ehl for the fluid it was made for, fitted-or-schlenk for an oil with fitted "
         "models, else schlenk; ehl-direct: the contacts of the mesh solved.",
+        "auto",
     )
-    constant_friction: Number = option(0.04, "For friction = constant.", ge=0, le=1)
+    constant_friction: Number = option("For friction = constant.", 0.04, ge=0, le=1)
     boundary_friction: Number | None = option(
-        None,
         "Of dry contact (estimate; an oil's own is measured). Default: 0.10 for matsumoto and "
         "doleschel, 0.12 for ehl-direct.",
         ge=0,
         le=1,
     )
     fluid_friction: Number = option(
-        0.02, "Of separated contact, for matsumoto and doleschel (estimate, as above).", ge=0, le=1
+        "Of separated contact, for matsumoto and doleschel (estimate, as above).", 0.02, ge=0, le=1
     )
     application_factor: LoadFactor = option(
-        1.0, "K_A, in the load of the formula niemann-winter only."
+        "K_A, in the load of the formula niemann-winter only.", 1.0
     )
     mesh_load_factor: LoadFactor = option(
-        1.0, "K_gamma, in the same place; what planets carry is up to load_sharing."
+        "K_gamma, in the same place; what planets carry is up to load_sharing.", 1.0
     )
     rolling: Literal[
         "auto",
@@ -357,64 +344,62 @@ class GearPairModels(Table):
         "fitted",
         "fitted-or-goksem-hargreaves",
     ] = option(
-        "auto",
         "auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves for an oil "
         "with fitted models, else goksem-hargreaves.",
+        "auto",
     )
     oil_model: str | None = option(
-        None,
         "For fitted and auto: a file of 'epicyclic oil characterise', from the folder of the "
-        "case. Default: the models built in for the oil.",
+        "case. Default: the models built in for the oil."
     )
     fitted_form: Literal["structured", "regression"] = option(
-        "structured", "For fitted: which form of the file."
+        "For fitted: which form of the file.", "structured"
     )
     load_distribution: Literal["uniform", "minimum-energy", "compliance"] = option(
-        "compliance", "Along the contact lines: even, after a stiffness, or from elastic teeth."
+        "Along the contact lines: even, after a stiffness, or from elastic teeth.", "compliance"
     )
     mesh_loads: Literal["with-losses", "without-losses"] = option(
-        "with-losses",
         "What the teeth carry: the torques in balance with all losses; or those of the set "
         "without its own losses, at the given torque, as in the source.",
+        "with-losses",
     )
     load_dependent: Literal["computed", "as-tested"] = option(
-        "computed",
         "Which loss counts as load-dependent: each by its kind; or, as on a test rig, what torque "
         "adds to the total.",
+        "computed",
     )
     mesh: Literal["local", "loss-factor"] = option(
-        "local", "local: along the contact lines; loss-factor: mean friction times Ohlendorf's."
+        "local: along the contact lines; loss-factor: mean friction times Ohlendorf's.", "local"
     )
     pocketing: Literal[
         "auto", "incompressible", "isentropic", "mean-density", "central-differences", "talbot-2012"
     ] = option(
-        "auto",
         "Fluid in the pockets: incompressible: mixture of constant density above the pressure of "
         "a void; isentropic, mean-density: compressible mixture; auto: incompressible, isentropic "
         "with less oil than 0.005; central-differences: mean-density with the convective term of "
         "the source, for low speed; talbot-2012: for comparison with that study.",
+        "auto",
     )
     pocket_void_pressure: _VoidPressure = option(
-        "0.01 bar", "Absolute pressure of a void in the pockets, for pocketing = incompressible."
+        "Absolute pressure of a void in the pockets, for pocketing = incompressible.", "0.01 bar"
     )
     pocketing_table: str | None = option(
-        None,
         "Read the flow through the pockets from this file of 'epicyclic pockets-table', from the "
-        "folder of the case.",
+        "folder of the case."
     )
     pocket_end_length: Number = option(
-        1.0, "Of the control volumes at the ends of the face, in normal modules.", ge=0.1, le=10
+        "Of the control volumes at the ends of the face, in normal modules.", 1.0, ge=0.1, le=10
     )
     drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
     temperatures: TemperatureModel = option(
-        "inlet",
         "inlet: everything at the oil inlet temperature; flank: gears warmed by their own meshes; "
         "network: heat flows between all parts, the oil and the surroundings.",
+        "inlet",
     )
     oil_beyond_range: Literal["held", "extrapolated"] = option(
-        "held",
         "Viscosity and pressure-viscosity outside the range of the mixed-EHL regressions: held at "
         "its limit, or the formula continued.",
+        "held",
     )
 
 
@@ -422,13 +407,13 @@ class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
     bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = option(
-        "auto",
         "auto: of caged rollers mixed-ehl for the fluid it was made for and fitted-or-palmgren "
         "for an oil with fitted models, else palmgren.",
+        "auto",
     )
     bearing_viscous: Literal["harris"] = "harris"
     planet_tilt: Literal["left-out", "coupled"] = option(
-        "left-out", "coupled: the planet tilts in its bearing and misaligns its meshes."
+        "coupled: the planet tilts in its bearing and misaligns its meshes.", "left-out"
     )
 
 
@@ -437,12 +422,12 @@ class Numerics(Table):
 
     mesh_positions: int = Field(default=20, ge=4, le=1000)
     contact_segments: int = Field(default=20, ge=2, le=1000)
-    bearing_slices: int = option(20, "On each roller.", ge=3, le=500)
-    pocket_slices: int = option(24, "Of the pockets, across the face; at least.", ge=3, le=200)
-    pocket_steps: int = option(32, "Time steps of the pocket flow in one pitch.", ge=8, le=1000)
+    bearing_slices: int = option("On each roller.", 20, ge=3, le=500)
+    pocket_slices: int = option("Of the pockets, across the face; at least.", 24, ge=3, le=200)
+    pocket_steps: int = option("Time steps of the pocket flow in one pitch.", 32, ge=8, le=1000)
     pocket_interpolation: Number = option(
-        0.002,
         "Largest error of pocketing losses that sweeps interpolate; 0 solves each.",
+        0.002,
         ge=0,
         le=0.1,
     )
@@ -451,8 +436,8 @@ class Numerics(Table):
 class LossOption(Table):
     """What becomes of one loss term."""
 
-    include: bool = option(True, "false leaves the term out.")
-    factor: Number = option(1.0, "Multiplies the term.", ge=0, le=100)
+    include: bool = option("false leaves the term out.", True)
+    factor: Number = option("Multiplies the term.", 1.0, ge=0, le=100)
 
 
 _AS_COMPUTED = LossOption()

@@ -47,10 +47,10 @@ class PlanetaryOperation(Table):
     EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
 
     input: Member = Field(description="The member to which torque and speed belong.")
-    fixed: Member | None = option(None, "The member held still; the third one is the output.")
-    second_input: Member | None = option(None, "Instead of fixed: a second member of given speed.")
+    fixed: Member | None = option("The member held still; the third one is the output.")
+    second_input: Member | None = option("Instead of fixed: a second member of given speed.")
     second_speed: RotationalSpeed | None = option(
-        None, "Speed of the second member; same sign = same sense of rotation."
+        "Speed of the second member; same sign = same sense of rotation."
     )
     torque: Torque = Field(
         description="On the input member; negative = coasting, power flows back through it."
@@ -79,15 +79,15 @@ class Lubricant(Table):
         'short { iso_vg = 220, kind = "mineral" }.'
     )
     pressure_viscosity_factor: Number = option(
-        1.0, "Multiplies the pressure-viscosity coefficient of the oil.", ge=0.1, le=10
+        "Multiplies the pressure-viscosity coefficient of the oil.", 1.0, ge=0.1, le=10
     )
 
 
 class Surroundings(Table):
     """What surrounds the gears."""
 
-    oil_air_ratio: Number = option(0.05, "Oil share by volume at ambient pressure.", ge=0, le=1)
-    pressure: Pressure = option("1.01325 bar", "Ambient pressure.")
+    oil_air_ratio: Number = option("Oil share by volume at ambient pressure.", 0.05, ge=0, le=1)
+    pressure: Pressure = option("Ambient pressure.", "1.01325 bar")
 
 
 # Tables of a case file on heat: how gears are wetted, where heat leaves, what stores it.
@@ -97,94 +97,94 @@ class HousingTable(Table):
     """The housing as ISO/TR 14179 sees it."""
 
     method: Literal["iso-14179-2", "iso-14179-1"] = option(
-        "iso-14179-2",
         "iso-14179-2: convection and radiation from shape and air; iso-14179-1: coefficient times "
         "area.",
+        "iso-14179-2",
     )
     area: Area = Field(description="Outside, without fins.")
-    inner_area: Area | None = option(None, "Wetted by oil. Default: area.")
-    height: Length | None = option(None, "Default: that of a cube of the same area.")
-    length: Length | None = option(None, "Along the air. Default: height.")
-    air_speed: Speed = option("0 m/s", "Of the air past it; 0: free convection.")
-    emissivity: Number = option(0.9, "0.9 painted, 0.15 to 0.25 bare aluminium.", ge=0, le=1)
+    inner_area: Area | None = option("Wetted by oil. Default: area.")
+    height: Length | None = option("Default: that of a cube of the same area.")
+    length: Length | None = option("Along the air. Default: height.")
+    air_speed: Speed = option("Of the air past it; 0: free convection.", "0 m/s")
+    emissivity: Number = option("0.9 painted, 0.15 to 0.25 bare aluminium.", 0.9, ge=0, le=1)
     fin_factor: Number = option(
-        1.0, "Multiplies the convection: area and effect of fins.", ge=1, le=20
+        "Multiplies the convection: area and effect of fins.", 1.0, ge=1, le=20
     )
-    inner_coefficient: HeatTransfer = option("200 W/(m^2*K)", "From the oil to the wall (splash).")
+    inner_coefficient: HeatTransfer = option("From the oil to the wall (splash).", "200 W/(m^2*K)")
     coefficient: HeatTransfer = option(
-        "15 W/(m^2*K)",
         "k of iso-14179-1, oil to air: 10-14 in small rooms, 17-20 in large ones, 19-24 outdoors.",
+        "15 W/(m^2*K)",
     )
-    foundation: Conductance = option("0 W/K", "To what it stands on, at ambient temperature.")
-    mass: Mass | None = option(None, "For warming up.")
+    foundation: Conductance = option("To what it stands on, at ambient temperature.", "0 W/K")
+    mass: Mass | None = option("For warming up.")
     heat_capacity_ratio: Number = option(
-        1.0, "Of its material over that of steel, by mass: aluminium 1.95.", gt=0, le=10
+        "Of its material over that of steel, by mass: aluminium 1.95.", 1.0, gt=0, le=10
     )
 
 
 class ConductanceTable(Table):
     """One way of the heat, as 'epicyclic heat' names it."""
 
-    value: Conductance | None = option(None, "Instead of the computed one.")
-    scale: Number = option(1.0, "Multiplies it.", ge=0, le=1000)
+    value: Conductance | None = option("Instead of the computed one.")
+    scale: Number = option("Multiplies it.", 1.0, ge=0, le=1000)
 
 
 class CapacityTable(Table):
     """What one part stores, for warming up; parts as 'epicyclic warm-up' names them."""
 
-    value: BodyCapacity | None = option(None, "Instead of the computed one.")
-    scale: Number = option(1.0, "Multiplies it.", gt=0, le=1000)
+    value: BodyCapacity | None = option("Instead of the computed one.")
+    scale: Number = option("Multiplies it.", 1.0, gt=0, le=1000)
 
 
 class ThermalTable(Table):
     """How heat arises and leaves, for models.temperatures other than inlet."""
 
     lubrication: Literal["spray", "dip", "spray-and-dip", "submerged"] = option(
-        "spray", "How oil gets to the gears."
+        "How oil gets to the gears.", "spray"
     )
     bulk: Literal["iso-6336-20", "iso-6336-22"] = option(
-        "iso-6336-20",
         "For flank: iso-6336-20: from the flash temperature of each gear's meshes; iso-6336-22: "
         "from their loss, both gears alike.",
+        "iso-6336-20",
     )
     oil_flow: VolumeFlow | None = option(
-        None, "Of all oil that leaves for a tank or cooler and comes back."
+        "Of all oil that leaves for a tank or cooler and comes back."
     )
     oil_outlet_temperature: Temperature | None = option(
-        None, "Instead of oil_flow, where it was measured: the flow follows."
+        "Instead of oil_flow, where it was measured: the flow follows."
     )
     jet_effectiveness: Number = option(
-        0.5,
         "How far oil thrown on a gear reaches the temperature of the gear (estimate: 0.25 to 1).",
+        0.5,
         ge=0,
         le=1,
     )
     jet_shares: dict[str, Number] = option(
-        {},
         "Share of oil_flow that meets a gear, pin or bearing; what is left meets the others. "
         "Default: as much as its heat demands.",
+        {},
     )
     bath_share: Number = option(
-        0.3, "Share of the surfaces of a gear that dips into oil (estimate), with dip.", gt=0, le=1
+        "Share of the surfaces of a gear that dips into oil (estimate), with dip.", 0.3, gt=0, le=1
     )
-    ambient_temperature: Temperature = option("20 degC", "Of the air around the housing.")
-    cooler_power: Power = option("0 W", "That a cooler takes from the oil.")
-    cooler_conductance: Conductance = option("0 W/K", "Of a cooler in the sump, to its coolant.")
-    coolant_temperature: Temperature = option("40 degC", "Of that coolant.")
+    ambient_temperature: Temperature = option("Of the air around the housing.", "20 degC")
+    cooler_power: Power = option("That a cooler takes from the oil.", "0 W")
+    cooler_conductance: Conductance = option("Of a cooler in the sump, to its coolant.", "0 W/K")
+    coolant_temperature: Temperature = option("Of that coolant.", "40 degC")
     press_fit: HeatTransfer = option(
-        "2000 W/(m^2*K)", "Contact conductance of press fits and splines (1000 to 5000)."
+        "Contact conductance of press fits and splines (1000 to 5000).", "2000 W/(m^2*K)"
     )
     shaft_conductance: Conductance = option(
-        "1 W/K", "Along a shaft, from each gear or bearing on it: trains (estimate)."
+        "Along a shaft, from each gear or bearing on it: trains (estimate).", "1 W/K"
     )
     conductances: dict[str, ConductanceTable] = option(
-        {}, "Changes to single ways of the heat, by their names."
+        "Changes to single ways of the heat, by their names.", {}
     )
     capacities: dict[str, CapacityTable] = option(
-        {}, "Changes to the heat capacities of single parts, by their names."
+        "Changes to the heat capacities of single parts, by their names.", {}
     )
-    oil_volume: Volume | None = option(None, "For warming up.")
-    housing: HousingTable | None = option(None, "Default: no heat leaves through it.")
+    oil_volume: Volume | None = option("For warming up.")
+    housing: HousingTable | None = option("Default: no heat leaves through it.")
 
     def __hash__(self) -> int:  # the tables of names cannot be hashed
         return hash((self.lubrication, self.oil_flow, self.ambient_temperature, self.housing))
@@ -276,40 +276,36 @@ class LubricationTable(Table):
         description="drained: mist only; flow: oil fed through shafts or carrier; dip: some of the "
         "gears reach into the sump."
     )
-    oil_flow: VolumeFlow | None = option(
-        None, "That jet, spray or flow brings to the gears of one set."
-    )
+    oil_flow: VolumeFlow | None = option("That jet, spray or flow brings to the gears of one set.")
     jet_speed: Speed = option(
-        "0 m/s", "Of the oil of jets, along the teeth; 0: not known, or across."
+        "Of the oil of jets, along the teeth; 0: not known, or across.", "0 m/s"
     )
     nozzle_side: Literal["in-mesh", "out-of-mesh", "radial"] = option(
-        "in-mesh", "Jets with the teeth as they mesh, against them as they part, or radial."
+        "Jets with the teeth as they mesh, against them as they part, or radial.", "in-mesh"
     )
     oil_level: _Level | None = option(
-        None,
-        "With dip: oil at rest above the axis of the set, or both axes of a pair; negative: below.",
+        "With dip: oil at rest above the axis of the set, or both axes of a pair; negative: below."
     )
     immersion: dict[str, Length] = option(
-        {},
         "With dip, instead of oil_level: depth of the lowest point of each gear, or of the "
         "carrier, below the oil at rest.",
+        {},
     )
-    oil_volume: _Sump | None = option(None, "With dip: in the sump. Default: thermal.oil_volume.")
-    churning: Literal["changenet-velex", "iso-14179-1"] = option("changenet-velex", "With dip.")
+    oil_volume: _Sump | None = option("With dip: in the sump. Default: thermal.oil_volume.")
+    churning: Literal["changenet-velex", "iso-14179-1"] = option("With dip.", "changenet-velex")
     oil_share: Number | None = option(
-        None,
         "Share of oil by volume around the gears, where it is known. Default: an estimate by "
         "method.",
         ge=0,
         le=1,
     )
-    oil_share_factor: Number = option(1.0, "Multiplies that estimate, at most to 1.", gt=0, le=100)
+    oil_share_factor: Number = option("Multiplies that estimate, at most to 1.", 1.0, gt=0, le=100)
 
     def __hash__(self) -> int:  # a table of names cannot be hashed
         return hash((self.method, self.oil_flow, self.oil_level, self.oil_share_factor))
 
 
-LUBRICATION: Any = option(None, "With it surroundings.oil_air_ratio has no effect.")
+LUBRICATION: Any = option("With it surroundings.oil_air_ratio has no effect.")
 """The field of a case."""
 
 _EVERY = {"method", "oil_share", "oil_share_factor"}

@@ -34,21 +34,17 @@ class DistributionTable(Table):
         ("normal", "uniform", "tolerance", "lognormal_factor", "exact"),
     )
 
-    normal: Stated | None = option(
-        None, 'Standard uncertainty about the value, "0.05 um" or "12 %".'
-    )
-    uniform: tuple[Stated, Stated] | None = option(
-        None, "Limits between which all values are alike."
-    )
+    normal: Stated | None = option('Standard uncertainty about the value, "0.05 um" or "12 %".')
+    uniform: tuple[Stated, Stated] | None = option("Limits between which all values are alike.")
     tolerance: tuple[Stated, Stated] | None = option(
-        None, "Limits as deviations from the value, between which all are alike."
+        "Limits as deviations from the value, between which all are alike."
     )
     lognormal_factor: Number | None = option(
-        None, "Two thirds of all values lie between the value over and times this factor.", gt=1
+        "Two thirds of all values lie between the value over and times this factor.", gt=1
     )
-    exact: bool | None = option(None, "true: known, against the default.")
+    exact: bool | None = option("true: known, against the default.")
     correlated: dict[str, Number] = option(
-        {}, "Coefficients of correlation with other keys of this table, -1 to 1."
+        "Coefficients of correlation with other keys of this table, -1 to 1.", {}
     )
 
     def __hash__(self) -> int:  # a table of names cannot be hashed
@@ -56,7 +52,7 @@ class DistributionTable(Table):
 
 
 UNCERTAINTY: Any = option(
-    {}, "How well values are known, by their keys, and models, by model_form.KIND."
+    "How well values are known, by their keys, and models, by model_form.KIND.", {}
 )
 """The field of a case."""
 
