@@ -231,7 +231,9 @@ def with_positive_teeth(table: Any) -> Any:
     ISO 21771 gives rings negative numbers of teeth, DIN 3960 negative diameters too. The sign of
     their profile shift is that of this program; see the page on geometry.
     """
-    if not _is_negative(table) or table.get("internal") is False:
+    teeth = table.get("teeth") if isinstance(table, dict) else None
+    is_negative = isinstance(teeth, int) and teeth <= -LEAST_TEETH
+    if not is_negative or table.get("internal") is False:
         return table
     positive = dict(table) | {"teeth": -table["teeth"]}
     for key in ("tip_diameter", "root_diameter", "thickness_diameter", "dimension_over_pins"):
@@ -244,11 +246,6 @@ def internal_if_negative(table: Any) -> Any:
     """The same of a gear that need not be a ring, which negative teeth make it."""
     positive = with_positive_teeth(table)
     return positive if positive is table else positive | {"internal": True}
-
-
-def _is_negative(table: Any) -> bool:
-    teeth = table.get("teeth") if isinstance(table, dict) else None
-    return isinstance(teeth, int) and teeth <= -LEAST_TEETH
 
 
 _RimThickness = Annotated[

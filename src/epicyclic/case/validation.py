@@ -197,7 +197,7 @@ def validate(
     """
     case, details = _try(kind, raw | dict(sound))
     problems = list(control_problems(raw))
-    while unknown := _unknown_keys(kind, details):
+    while unknown := [locate(kind, it["loc"]) for it in details if it["type"] == "extra_forbidden"]:
         # repeated, as a table that was misspelt itself may have unknown keys of its own
         tables = tables_of(kind).items()
         problems += [unknown_key(place, value_at(raw, place.path), tables) for place in unknown]
@@ -242,12 +242,6 @@ def tables_of(kind: type[Table]) -> dict[str, type[Table]]:
         for name, table in tables.items()
         if table is not None and issubclass(table, Table)
     }
-
-
-def _unknown_keys(kind: type[Table], details: list[ErrorDetails]) -> list[Place]:
-    return [
-        locate(kind, detail["loc"]) for detail in details if detail["type"] == "extra_forbidden"
-    ]
 
 
 def _mend_names(raw: dict[str, Any], unknown: list[Place]) -> dict[str, Any]:
