@@ -30,7 +30,7 @@ import numpy as np
 import pandas as pd
 
 import epicyclic as ep
-from epicyclic.case.template import train_text
+from epicyclic.case.template import case_text
 from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
 from epicyclic.study.sweeps.runner import Runner
 
@@ -156,7 +156,7 @@ def gearbox_map_seconds() -> float:
     """A map of the gearbox from the command, all cores, file included."""
     with tempfile.TemporaryDirectory() as folder:
         case = Path(folder) / "gearbox.toml"
-        case.write_text(train_text(gearbox(), [], {}), encoding="utf-8")
+        case.write_text(case_text(gearbox(), [], {}), encoding="utf-8")
         output = str(Path(folder) / "map.nc")
         return process_seconds("-m", "epicyclic", "map", str(case), *GEARBOX_MAP, "-o", output)
 
@@ -215,7 +215,10 @@ def duty_seconds() -> tuple[float, float]:
 
 def clear_caches() -> None:
     from epicyclic.build import gear_sets
-    from epicyclic.case import flanks, gearing
+    from epicyclic.case import gearing
+    pass
+    from epicyclic.case import gear_tables as flanks
+    from epicyclic.case import gearing
     from epicyclic.contact import elastic_teeth
     from epicyclic.gears import flanks as contact_lines
     from epicyclic.losses import contact as load_distribution

@@ -526,7 +526,7 @@ def test_a_fit_of_an_e_axle_ends_in_time(tmp_path, count, keys, seconds):
 
 
 def test_case_files_of_trains_keep_what_is_known_of_values():
-    from epicyclic.case.template import train_text
+    from epicyclic.case.template import case_text
 
     case = ep.load_case("train-eaxle").updated(
         {
@@ -541,4 +541,4 @@ def test_case_files_of_trains_keep_what_is_known_of_values():
             },
         }
     )
-    assert build_case(tomllib.loads(train_text(case.given(), [], {})), {}, "") == case
+    assert build_case(tomllib.loads(case_text(case.given(), [], {})), {}, "") == case

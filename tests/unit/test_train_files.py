@@ -12,7 +12,7 @@ import epicyclic as ep
 import listed_trains
 from epicyclic.case.case import build_case, case_schema
 from epicyclic.case.fields import find_field, quantity_of
-from epicyclic.case.template import train_text
+from epicyclic.case.template import case_text
 from trains import published, wolfrom
 
 SAME = 1e-12
@@ -38,14 +38,14 @@ def test_inputs_are_the_same_train_again(train):
 
 
 def test_commented_files_hold_every_gear(train):
-    again = build_case(tomllib.loads(train_text(train.given(), [], {})), {}, "")
+    again = build_case(tomllib.loads(case_text(train.given(), [], {})), {}, "")
     assert again == train
 
 
 @pytest.mark.parametrize("name", listed_trains.__all__)
 def test_commented_files_hold_every_listed_gear(name):
     tables = getattr(listed_trains, name)()
-    again = build_case(tomllib.loads(train_text(tables, [], {})), {}, "")
+    again = build_case(tomllib.loads(case_text(tables, [], {})), {}, "")
     assert again == ep.load_case(tables)
 
 

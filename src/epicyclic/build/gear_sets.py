@@ -16,12 +16,12 @@ from epicyclic.build.models import (
     oil_share,
     solid_of,
 )
-from epicyclic.case import flanks
+from epicyclic.case import gear_tables as flanks
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing, outside_radius, outward_of, rim_thickness
 from epicyclic.case.tables.elements import PlanetBearing as BearingTable
-from epicyclic.case.tables.lubrication import LubricationTable
 from epicyclic.case.tables.models import Numerics
+from epicyclic.case.tables.operation import LubricationTable
 from epicyclic.contact.elastic_teeth import GearBody, Rim
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.gears.cutting import cutting_tool, fitted_tool

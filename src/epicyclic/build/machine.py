@@ -15,7 +15,7 @@ from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.tables.operation import PlanetaryOperation
 from epicyclic.case.train import TrainCase
-from epicyclic.case.train_bearings import needs_force
+from epicyclic.case.train_rules import needs_force
 from epicyclic.case.train_shape import mesh_rows
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.losses.pocket_tables import FlowTables

@@ -12,7 +12,6 @@ from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
 from epicyclic.case.gearing import Gearing
 from epicyclic.case.tables.base import Material
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
-from epicyclic.case.tables.lubrication import OWN_SHARE_KEY, SHARE_KEY, WETTING, LubricationTable
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -21,8 +20,15 @@ from epicyclic.case.tables.models import (
     Numerics,
     PlanetaryModels,
 )
-from epicyclic.case.tables.operation import Lubricant, Surroundings
-from epicyclic.case.tables.thermal import ThermalTable
+from epicyclic.case.tables.operation import (
+    OWN_SHARE_KEY,
+    SHARE_KEY,
+    WETTING,
+    Lubricant,
+    LubricationTable,
+    Surroundings,
+    ThermalTable,
+)
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ComputedSet, ListedSet
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model

@@ -9,8 +9,7 @@ from functools import partial
 
 from epicyclic.build.models import fluids_of, oil_share, set_cases, with_lubrication
 from epicyclic.case.case import Case
-from epicyclic.case.tables.lubrication import LubricationTable
-from epicyclic.case.tables.thermal import HousingTable, ThermalTable
+from epicyclic.case.tables.operation import HousingTable, LubricationTable, ThermalTable
 from epicyclic.contact.temperatures import LUBRICATION_FACTORS
 from epicyclic.losses.ranges import Flags, ValidityFlag
 from epicyclic.machine.convection import Fluid, air, mixture, oil_conductivity, oil_heat_capacity

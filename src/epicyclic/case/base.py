@@ -32,11 +32,9 @@ from epicyclic.errors import InputError, Problem
 
 if TYPE_CHECKING:
     from epicyclic.case.gearing import Gearing
-    from epicyclic.case.tables.lubrication import LubricationTable
-    from epicyclic.case.tables.operation import Surroundings
+    from epicyclic.case.tables.operation import LubricationTable, Surroundings
 
-FILE_KEYS = ("oil_model", "pocketing_table", "file")
-"""Keys that name files, wherever they stand."""
+FILE_KEYS = ("oil_model", "pocketing_table", "file")  # Keys that name files, wherever they stand.
 _DECIDED = (
     ("surroundings", "oil_air_ratio"),
     ("thermal", "lubrication"),
@@ -192,7 +190,9 @@ def with_sizes(
         return validation, told
     gearing = gearing_of(sections)
     if gearing is None:
-        if _leaves_out(gears, sections):
+        # something follows from gears of which some are not valid
+        tables = [table for table in sections.values() if isinstance(table, GearTable)]
+        if gears.center_distance is None or not all(table.states_thickness for table in tables):
             del sections["gears"]
             return Validation(None, sections, validation.problems), told
         return validation, told
@@ -207,12 +207,6 @@ def with_sizes(
     if case is not None and changed:
         case = case.model_copy(update=changed)
     return Validation(case, sections | changed, validation.problems), told + found
-
-
-def _leaves_out(gears: Gears, sections: Mapping[str, Table]) -> bool:
-    """Something follows from gears of which some are not valid."""
-    tables = [table for table in sections.values() if isinstance(table, GearTable)]
-    return gears.center_distance is None or not all(table.states_thickness for table in tables)
 
 
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:

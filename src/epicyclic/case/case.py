@@ -18,7 +18,6 @@ from epicyclic.case.gearing import Gearing
 from epicyclic.case.messages import did_you_mean, misspelt, one_line, written
 from epicyclic.case.read import plain, read_file
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
-from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -30,12 +29,14 @@ from epicyclic.case.tables.models import (
     PlanetaryModels,
 )
 from epicyclic.case.tables.operation import (
+    LUBRICATION,
     GearPairOperation,
     Lubricant,
+    LubricationTable,
     PlanetaryOperation,
     Surroundings,
+    ThermalTable,
 )
-from epicyclic.case.tables.thermal import ThermalTable
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable
 from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import StateTable

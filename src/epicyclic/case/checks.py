@@ -13,19 +13,11 @@ from typing import TYPE_CHECKING
 
 from epicyclic.case.expand import gearing_of
 from epicyclic.case.gear_rules import gears_by_name
-from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing
 from epicyclic.case.messages import millimetres
 from epicyclic.case.set_rules import set_problems
 from epicyclic.case.tables.base import Table
 from epicyclic.case.tables.elements import PlanetBearing
-from epicyclic.case.tables.lubrication import (
-    LubricationTable,
-    check_immersion,
-    check_lubrication,
-    check_sump,
-    check_wetting,
-)
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -38,12 +30,19 @@ from epicyclic.case.tables.models import (
 from epicyclic.case.tables.operation import (
     GearPairOperation,
     Lubricant,
+    LubricationTable,
     PlanetaryOperation,
     Surroundings,
+    ThermalTable,
+    check_immersion,
+    check_lubrication,
+    check_outlet,
+    check_sump,
+    check_thermal,
+    check_ways_out,
+    check_wetting,
 )
-from epicyclic.case.tables.thermal import ThermalTable, check_outlet, check_thermal, check_ways_out
 from epicyclic.case.train_tables import ListedSet
-from epicyclic.contact.fitted_models import OilModel
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.ranges import FITTED_QUANTITIES
@@ -81,34 +80,23 @@ def cross_check(
     gearing = gearing_of(sections)
     if gearing is not None and gearing.computed:
         problems += set_problems(gearing)
-        problems += _check_planets(gearing, sections)
+        bearing, sharing = sections.get("planet_bearing"), sections.get("load_sharing")
+        if isinstance(bearing, PlanetBearing) and gearing.planets:
+            problems += check_bores(gearing, {"planet_bearing": (bearing, gearing.planets)})
+        if isinstance(sharing, LoadSharing) and gearing.count is not None:
+            problems += _check_load_sharing(sharing, gearing)
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))
     return problems
 
 
-def _check_planets(gearing: Gearing, sections: Mapping[str, Table]) -> list[Problem]:
-    """Problems of planets with their bearing, and with the way in which they share the load."""
-    bearing, sharing = sections.get("planet_bearing"), sections.get("load_sharing")
-    problems = []
-    if isinstance(bearing, PlanetBearing) and gearing.planets:
-        problems += check_bores(gearing, {"planet_bearing": (bearing, gearing.planets)})
-    if isinstance(sharing, LoadSharing) and gearing.count is not None:
-        problems += _check_load_sharing(sharing, gearing)
-    return problems
-
-
 def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> list[Problem]:
     if not isinstance(operation, PlanetaryOperation):
         return []
+    allowed = f'must be another member than operation.input, "{operation.input}".'
     return [
-        Problem(
-            f"operation.{key}",
-            operation.input,
-            f'must be another member than operation.input, "{operation.input}".',
-            "Name one of the other two.",
-        )
+        Problem(f"operation.{key}", operation.input, allowed, "Name one of the other two.")
         for key in ("fixed", "second_input")
         if getattr(operation, key) == operation.input
     ]
@@ -120,15 +108,10 @@ def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> list[P
     room = math.pi / math.asin(min(1.0, bearing.roller_diameter / pitch_diameter))
     if bearing.rollers_per_row <= room:
         return []
-    return [
-        Problem(
-            f"{key}.rollers_per_row",
-            str(bearing.rollers_per_row),
-            f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit around "
-            f"the pin of {millimetres(bearing.pin_diameter)}.",
-            "Take fewer or thinner rollers.",
-        )
-    ]
+    allowed = f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit "
+    allowed += f"around the pin of {millimetres(bearing.pin_diameter)}."
+    remedy = "Take fewer or thinner rollers."
+    return [Problem(f"{key}.rollers_per_row", str(bearing.rollers_per_row), allowed, remedy)]
 
 
 def check_bores(
@@ -145,15 +128,11 @@ def check_bores(
             roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
             if not roots or bore < 2 * min(roots):
                 continue
-            problems.append(
-                Problem(
-                    f"{key}.pin_diameter",
-                    millimetres(bearing.pin_diameter),
-                    f"the planet's bore of {millimetres(bore)} reaches its root circle of "
-                    f"{millimetres(2 * min(roots))}.",
-                    "Take a thinner pin or thinner rollers.",
-                )
-            )
+            shown = millimetres(bearing.pin_diameter)
+            allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
+            allowed += f"{millimetres(2 * min(roots))}."
+            remedy = "Take a thinner pin or thinner rollers."
+            problems.append(Problem(f"{key}.pin_diameter", shown, allowed, remedy))
     return problems
 
 
@@ -181,48 +160,30 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     """The model of the bearing loss must be for bearings of this kind."""
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
-    return [
-        Problem(
-            "models.bearing",
-            '"mixed-ehl"',
-            "is for caged bearings: the rollers of a full-complement bearing rub on each other, "
-            "which it leaves out.",
-            'Write bearing = "palmgren".',
-        )
-    ]
+    allowed = "is for caged bearings: the rollers of a full-complement bearing rub on each other, "
+    allowed += "which it leaves out."
+    return [Problem("models.bearing", '"mixed-ehl"', allowed, 'Write bearing = "palmgren".')]
 
 
 def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
     problems, count = [], gearing.count or 1
     if sharing.mesh_load_factor > count:
-        problems.append(
-            Problem(
-                "load_sharing.mesh_load_factor",
-                f"{sharing.mesh_load_factor:g}",
-                f"must be at most planet.count, {count}: then one planet has all the load.",
-                "Take a smaller factor.",
-            )
-        )
+        shown = f"{sharing.mesh_load_factor:g}"
+        allowed = f"must be at most planet.count, {count}: then one planet has all the load."
+        remedy = "Take a smaller factor."
+        problems.append(Problem("load_sharing.mesh_load_factor", shown, allowed, remedy))
     if len(sharing.position_errors or ()) not in (0, count):
-        problems.append(
-            Problem(
-                "load_sharing.position_errors",
-                f"{len(sharing.position_errors or ())} values",
-                f"must have one value for each of the {count} planets.",
-                "Give as many values as there are planets.",
-            )
-        )
+        shown = f"{len(sharing.position_errors or ())} values"
+        allowed = f"must have one value for each of the {count} planets."
+        remedy = "Give as many values as there are planets."
+        problems.append(Problem("load_sharing.position_errors", shown, allowed, remedy))
     if sharing.method == "closed-form":
         problems += _check_closed_form(sharing, gearing)
     if sharing.method == "direct" and count == 1 and sharing.floating_member != "none":
-        problems.append(
-            Problem(
-                "load_sharing.floating_member",
-                f'"{sharing.floating_member}"',
-                "must be supported: one planet cannot hold it in place.",
-                'Write floating_member = "none".',
-            )
-        )
+        shown = f'"{sharing.floating_member}"'
+        allowed = "must be supported: one planet cannot hold it in place."
+        remedy = 'Write floating_member = "none".'
+        problems.append(Problem("load_sharing.floating_member", shown, allowed, remedy))
     return problems
 
 
@@ -260,47 +221,28 @@ def _check_friction_table(table: FrictionTable) -> list[Problem]:
     axes = table.axes()
     known = ", ".join(FrictionTable.AXES)
     if not 1 <= len(axes) <= 2:
-        return [
-            Problem(
-                "friction_table",
-                f"{len(axes)} axes",
-                f"must have one or two of the axes {known}.",
-                "Give the values of the axes to which the coefficients belong.",
-            )
-        ]
+        allowed = f"must have one or two of the axes {known}."
+        remedy = "Give the values of the axes to which the coefficients belong."
+        return [Problem("friction_table", f"{len(axes)} axes", allowed, remedy)]
     problems = rising_problems(axes, "friction_table.")
     wanted = " x ".join(f"{len(points)}" for points in axes.values())
     if table.shape() != tuple(len(points) for points in axes.values()):
-        problems.append(
-            Problem(
-                "friction_table.friction",
-                f"{len(table.friction)} entries",
-                f"must have {wanted} values, for the points of {' and '.join(axes)}.",
-                "Give one value, or one row, for each value of the first axis.",
-            )
-        )
+        shown = f"{len(table.friction)} entries"
+        allowed = f"must have {wanted} values, for the points of {' and '.join(axes)}."
+        remedy = "Give one value, or one row, for each value of the first axis."
+        problems.append(Problem("friction_table.friction", shown, allowed, remedy))
     return problems
 
 
 def _check_friction_model(models: GearPairModels, given: Collection[str]) -> list[Problem]:
     if models.friction != "table" or "friction_table" in given:
         return []
-    return [
-        Problem(
-            "models.friction",
-            '"table"',
-            "needs a table of coefficients.",
-            "Add [friction_table], or choose another model.",
-        )
-    ]
+    remedy = "Add [friction_table], or choose another model."
+    return [Problem("models.friction", '"table"', "needs a table of coefficients.", remedy)]
 
 
 def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
-    chosen = (models.friction, models.rolling, getattr(models, "bearing", ""))
-    if models.oil_model is None and not any(name.startswith("fitted") for name in chosen):
-        return []
-
     asked = {
         key: quantity
         for key, quantity in FITTED_QUANTITIES.items()
@@ -332,6 +274,7 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
 
 
 def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> OilModel | None:
+    # cases without fitted models need no kernel
     from epicyclic.contact.fitted_models import builtin_model, read_oil_model
 
     if models.oil_model is not None:
@@ -344,7 +287,7 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
 def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:
     """That the file is one; whether it is for these pockets shows when they are known."""
     if models.pocketing_table is not None:
-        from epicyclic.losses.pocket_tables import read_stored
+        from epicyclic.losses.pocket_tables import read_stored  # needs kernels
 
         try:
             read_stored(folder / models.pocketing_table)
@@ -357,14 +300,9 @@ def _check_void(models: GearPairModels, surroundings: Surroundings) -> list[Prob
     """A void has less pressure than the surroundings."""
     if models.pocket_void_pressure < surroundings.pressure:
         return []
-    return [
-        Problem(
-            "models.pocket_void_pressure",
-            BAR.text(models.pocket_void_pressure),
-            f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}.",
-            "Take 0.01 bar.",
-        )
-    ]
+    shown = BAR.text(models.pocket_void_pressure)
+    allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
+    return [Problem("models.pocket_void_pressure", shown, allowed, "Take 0.01 bar.")]
 
 
 def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:
@@ -384,20 +322,6 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
     ]
 
 
-def _check_outlet(
-    thermal: ThermalTable, operation: PlanetaryOperation | GearPairOperation
-) -> list[Problem]:
-    return check_outlet(thermal, operation.oil_inlet_temperature)
-
-
-def _check_planetary_immersion(table: LubricationTable, sun: GearTable) -> list[Problem]:
-    return check_immersion(table, ("sun", "ring", "carrier"))
-
-
-def _check_pair_immersion(table: LubricationTable, pinion: GearTable) -> list[Problem]:
-    return check_immersion(table, ("pinion", "gear"))
-
-
 _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_rollers, ("planet_bearing",)),
@@ -406,10 +330,10 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
     (_check_resolution, ("models", "numerics")),
     (_check_void, ("models", "surroundings")),
     (check_thermal, ("thermal",)),
-    (_check_outlet, ("thermal", "operation")),
+    (lambda it, run: check_outlet(it, run.oil_inlet_temperature), ("thermal", "operation")),
     (check_lubrication, ("lubrication",)),
     (check_sump, ("lubrication", "thermal")),
     (check_wetting, ("lubrication", "thermal")),
-    (_check_planetary_immersion, ("lubrication", "sun")),
-    (_check_pair_immersion, ("lubrication", "pinion")),
+    (lambda it, _: check_immersion(it, ("sun", "ring", "carrier")), ("lubrication", "sun")),
+    (lambda it, _: check_immersion(it, ("pinion", "gear")), ("lubrication", "pinion")),
 )

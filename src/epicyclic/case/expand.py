@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from epicyclic.case.gear_tables import SetMesh
@@ -14,8 +15,7 @@ from epicyclic.case.train_tables import ListedMesh
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER
 
-Parts = Mapping[str, Any]
-"""The tables of a set by their keys, as ``dict(table)`` gives them."""
+Parts = Mapping[str, Any]  # The tables of a set by their keys, as ``dict(table)`` gives them.
 
 
 def expand(
@@ -58,17 +58,16 @@ def _planetary(parts: Parts) -> Gearing:
     )
     names = ("sun", "planet", "ring")
     bodies = {name: name for name in names}
+    gearing = Gearing(bodies, ("planet",), meshes)
     if "gears" not in parts:
-        return Gearing(bodies, ("planet",), meshes)
+        return gearing
     levers = {
         member: {"sun_mesh": lever, "ring_mesh": -lever * planet / sun}
         for member, factor in (("sun", sun), ("ring", ring), (CARRIER, -(sun + ring)))
         for lever in (sun / factor,)
     }
-    return Gearing(
-        bodies,
-        ("planet",),
-        meshes,
+    return replace(
+        gearing,
         tables={name: parts[name] for name in names},
         shared=parts["gears"],
         count=parts["planet"].count,
@@ -86,12 +85,11 @@ def _pair(parts: Parts) -> Gearing:
     mesh = _pairing(parts, "mesh", ("pinion", "gear"), (one, two), internal, efficiency)
     names = ("pinion", "gear")
     bodies = {name: name for name in names}
+    gearing = Gearing(bodies, (), (mesh,))
     if "gears" not in parts:
-        return Gearing(bodies, (), (mesh,))
-    return Gearing(
-        bodies,
-        (),
-        (mesh,),
+        return gearing
+    return replace(
+        gearing,
         tables={name: parts[name] for name in names},
         shared=parts["gears"],
         hand=_hand(parts),
@@ -174,19 +172,8 @@ def _listed(parts: Parts, joined: set[str]) -> tuple[Gearing, list[Problem]]:
     if "gears" not in parts:
         return gearing, problems
     central = [gear for gear, body in bodies.items() if body not in planets]
-    return (
-        Gearing(
-            bodies,
-            gearing.planets,
-            gearing.meshes,
-            tables=gears,
-            shared=parts["gears"],
-            listed=True,
-            count=parts["planets"],
-            drags={f"{gear}_drag": (gear,) for gear in central},
-        ),
-        problems,
-    )
+    drags = {f"{gear}_drag": (gear,) for gear in central}
+    return replace(gearing, tables=gears, shared=parts["gears"], drags=drags), problems
 
 
 def _listed_pairing(parts: Parts, one: str, two: str) -> GearPairing:

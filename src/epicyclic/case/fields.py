@@ -19,8 +19,6 @@ from epicyclic.case.messages import did_you_mean, dotted, key_parts
 from epicyclic.errors import Problem
 from epicyclic.units import Quantity, describe_range
 
-# What the schema says about one key: its unit, its choices, its range, its text form.
-
 
 @dataclass(frozen=True, slots=True)
 class Named:
@@ -39,42 +37,44 @@ class Named:
         return {"anyOf": forms}
 
 
+def _leaves(annotation: Any, metadata: Sequence[Any] = ()) -> Iterator[tuple[Any, Sequence[Any]]]:
+    """The types within optional, union, array and annotated ones, each with its metadata."""
+    origin, arguments = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin is typing.Annotated:
+        yield from _leaves(arguments[0], (*metadata, *arguments[1:]))
+    elif origin in (types.UnionType, typing.Union, tuple):
+        for argument in arguments:
+            yield from _leaves(argument, metadata)
+    elif origin is dict:
+        yield from _leaves(arguments[1], metadata)
+    else:
+        yield annotation, metadata
+
+
 def quantity_of(annotation: Any, metadata: Sequence[Any] = ()) -> Quantity | None:
     """The `Quantity` of an annotation, through optional and tuple types; None for plain types."""
-    for item in metadata:
-        if isinstance(item, Quantity):
-            return item
-    if typing.get_origin(annotation) is typing.Annotated:
-        inner, *items = typing.get_args(annotation)
-        return quantity_of(inner, items)
-    for argument in _arguments(annotation):
-        found = quantity_of(argument)
-        if found is not None:
-            return found
-    return None
+    items = (item for _, items in _leaves(annotation, metadata) for item in items)
+    return next((item for item in items if isinstance(item, Quantity)), None)
 
 
 def choices_of(annotation: Any) -> tuple[str, ...]:
     """The values a choice key may take; empty for other keys."""
-    if typing.get_origin(annotation) is typing.Literal:
-        return tuple(str(value) for value in typing.get_args(annotation))
-    return tuple(name for argument in _arguments(annotation) for name in choices_of(argument))
+    literals = (it for it, _ in _leaves(annotation) if typing.get_origin(it) is typing.Literal)
+    return tuple(str(value) for literal in literals for value in typing.get_args(literal))
 
 
-def bounds_of(annotation: Any, metadata: Sequence[Any] = ()) -> tuple[Ge | Gt | None, Le | None]:
-    """The lower and the upper bound of a number without dimension."""
-    if typing.get_origin(annotation) is typing.Annotated:
-        inner, *items = typing.get_args(annotation)
-        return bounds_of(inner, (*metadata, *items))
-    members = [member for member in _members(annotation) if member is not type(None)]
-    if len(members) == 1 and members[0] is not annotation:  # a key that need not be given
-        return bounds_of(members[0], metadata)
+def bounds_of(
+    annotation: Any, metadata: Sequence[Any] = ()
+) -> tuple[float | None, float | None, bool]:
+    """Bounds of a number without dimension, and whether the lower one itself is left out."""
+    kinds = [items for kind, items in _leaves(annotation, metadata) if kind is not type(None)]
     found: list[Any] = []
-    for item in metadata:
+    for item in kinds[0] if len(kinds) == 1 else ():
         found += item.metadata if isinstance(item, FieldInfo) else [item]
     low = next((item for item in found if isinstance(item, Ge | Gt)), None)
-    high = next((item for item in found if isinstance(item, Le)), None)
-    return low, high
+    high: Any = next((item.le for item in found if isinstance(item, Le)), None)
+    lowest: Any = low.gt if isinstance(low, Gt) else low and low.ge
+    return lowest, high, isinstance(low, Gt)
 
 
 def table_of(annotation: Any) -> type[BaseModel] | None:
@@ -84,13 +84,7 @@ def table_of(annotation: Any) -> type[BaseModel] | None:
 
 def tables_in(annotation: Any) -> Iterator[type[BaseModel]]:
     """The table classes of an annotation, through optional, union and array types."""
-    if _is_table(annotation):
-        yield annotation
-    elif typing.get_origin(annotation) is typing.Annotated:
-        yield from tables_in(typing.get_args(annotation)[0])
-    else:
-        for argument in _arguments(annotation):
-            yield from tables_in(argument)
+    return (kind for kind, _ in _leaves(annotation) if _is_table(kind))
 
 
 def dict_value(annotation: Any) -> Any:
@@ -145,17 +139,10 @@ def describe(annotation: Any, metadata: Sequence[Any] = ()) -> str:
         quoted = [f'"{choice}"' for choice in choices]
         return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
     if member in (int, float):
+        low, high, is_open = bounds_of(annotation, metadata)
         noun = "a whole number" if member is int else "a number"
-        return _describe_number(noun, bounds_of(annotation, metadata))
+        return describe_range(noun, low, high, open_low=is_open)
     return {bool: "true or false", str: "text"}.get(member, "another kind of value")
-
-
-def _describe_number(noun: str, bounds: tuple[Ge | Gt | None, Le | None]) -> str:
-    low, high = bounds
-    open_low = isinstance(low, Gt)
-    lowest: Any = low.gt if isinstance(low, Gt) else low and low.ge
-    highest: Any = high and high.le
-    return describe_range(noun, lowest, highest, open_low=open_low)
 
 
 def find_field(table: type[BaseModel], key: str) -> tuple[Any, tuple[Any, ...]] | None:
@@ -219,13 +206,6 @@ def locate(table: type[BaseModel], location: Sequence[str | int]) -> Place:
     return Place(tuple(path), annotation, metadata, owner)
 
 
-def _arguments(annotation: Any) -> Iterator[Any]:
-    if typing.get_origin(annotation) in (types.UnionType, typing.Union, tuple):
-        yield from typing.get_args(annotation)
-    elif typing.get_origin(annotation) is dict:
-        yield typing.get_args(annotation)[1]
-
-
 def _members(annotation: Any) -> Iterator[Any]:
     """The members of a union, or `annotation` itself."""
     if typing.get_origin(annotation) in (types.UnionType, typing.Union):
@@ -235,14 +215,11 @@ def _members(annotation: Any) -> Iterator[Any]:
 
 
 def _without_metadata(annotation: Any) -> Any:
-    if typing.get_origin(annotation) is typing.Annotated:
-        return _without_metadata(typing.get_args(annotation)[0])
-    return annotation
+    return typing.get_args(annotation)[0] if _is_annotated(annotation) else annotation
 
 
-def _metadata(annotation: Any) -> tuple[Any, ...]:
-    is_annotated = typing.get_origin(annotation) is typing.Annotated
-    return typing.get_args(annotation)[1:] if is_annotated else ()
+def _is_annotated(annotation: Any) -> bool:
+    return typing.get_origin(annotation) is typing.Annotated
 
 
 def _is_table(annotation: Any) -> bool:
@@ -261,8 +238,8 @@ def entry_of(annotation: Any, number: int = 0) -> Any:
 def _branch(annotation: Any, name: str | int) -> Any:
     """The member of a union that goes by `name` in an error's location; None if none does."""
     for member in _members(annotation):
-        tags = [item.tag for item in _metadata(member) if isinstance(item, Tag)]
-        if name in tags:
+        items = typing.get_args(member)[1:] if _is_annotated(member) else ()
+        if any(isinstance(item, Tag) and item.tag == name for item in items):
             return _without_metadata(member)
     tables = list(tables_in(annotation))
     if len(tables) > 1:
@@ -277,12 +254,11 @@ def to_inputs(table: BaseModel) -> dict[str, Any]:
 
     Keys that were not given appear with their defaults; keys without a value are left out.
     """
-    inputs: dict[str, Any] = {}
-    for name, quantity in _quantities(type(table)).items():
-        value = getattr(table, name)
-        if value is not None:
-            inputs[name] = _to_input(value, quantity)
-    return inputs
+    return {
+        name: _to_input(value, quantity)
+        for name, quantity in _quantities(type(table)).items()
+        if (value := getattr(table, name)) is not None
+    }
 
 
 @cache
@@ -307,7 +283,6 @@ def _to_input(value: Any, quantity: Quantity | None) -> Any:
 
 
 # Keys of one case: those of its schema, with the names that the user chose in it.
-
 
 _UNCERTAINTY = "uncertainty."
 _GEARS, _MEMBERS = "gears", "members"
@@ -381,7 +356,6 @@ def _keys(table: BaseModel, prefix: str) -> Iterator[str]:
 
 # Keys of one case that hold a continuous number: their values and bounds.
 
-
 OFF_OPEN_BOUND = 1e-6
 """Distance kept from a bound that is no value itself, over that of the start value. [1]"""
 
@@ -419,13 +393,20 @@ def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Par
         return Problem(key, "", "holds no continuous number.", "Fit a key that does.")
     if key in varied:
         return Problem(key, "", "is given by a column of the table.", "Fit another key.")
-    start = _start(case, key, quantity)
-    if start is None:
+    value = value_of(case, key)
+    if value is None:
         return no_start(key, "has no value in the case")
-    low, high, is_open = _bounds(quantity, field)
+    if quantity is None:
+        start, unit = float(value), ""
+        lowest, highest, is_open = bounds_of(*field)
+    else:
+        start, unit = quantity.to_display(value), quantity.display
+        lowest, highest, is_open = quantity.low, quantity.high, quantity.open_low
+    low = -math.inf if lowest is None else float(lowest)
+    high = math.inf if highest is None else float(highest)
     if is_open:
         low += OFF_OPEN_BOUND * (start - low)
-    return Parameter(key, "" if quantity is None else quantity.display, start, low, high)
+    return Parameter(key, unit, start, low, high)
 
 
 def is_continuous(field: tuple[Any, tuple[Any, ...]], quantity: Quantity | None) -> bool:
@@ -433,40 +414,7 @@ def is_continuous(field: tuple[Any, tuple[Any, ...]], quantity: Quantity | None)
     annotation = field[0]
     if is_array(annotation) or is_whole_number(annotation) or table_of(annotation) is not None:
         return False
-    return quantity is not None or float in _plain_types(annotation)
-
-
-def _plain_types(annotation: Any) -> set[Any]:
-    """The types of an annotation without its metadata."""
-    inner = getattr(annotation, "__origin__", annotation)  # Annotated[float, ...] has float
-    parts = getattr(annotation, "__args__", ()) if inner is not float else ()
-    return {inner}.union(*map(_plain_types, parts))
-
-
-def _bounds(
-    quantity: Quantity | None, field: tuple[Any, tuple[Any, ...]]
-) -> tuple[float, float, bool]:
-    """Bounds of the schema, in the display unit, and whether the lower one itself is left out."""
-    if quantity is not None:
-        low, high, is_open = quantity.low, quantity.high, quantity.open_low
-    else:
-        lower, upper = bounds_of(*field)
-        is_open = isinstance(lower, Gt)
-        limit: Any = lower.gt if isinstance(lower, Gt) else lower and lower.ge
-        top: Any = upper and upper.le
-        low, high = limit, top
-    return (
-        -math.inf if low is None else float(low),
-        math.inf if high is None else float(high),
-        is_open,
-    )
-
-
-def _start(case: BaseModel, key: str, quantity: Quantity | None) -> float | None:
-    value = value_of(case, key)
-    if value is None:
-        return None
-    return float(value) if quantity is None else quantity.to_display(value)
+    return quantity is not None or any(kind is float for kind, _ in _leaves(annotation))
 
 
 def no_start(key: str, what: str) -> Problem:

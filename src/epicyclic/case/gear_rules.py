@@ -10,11 +10,20 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from epicyclic.case.flanks import roll_length_at, working_flank
-from epicyclic.case.gear_tables import GearTable, MicroGeometryTable, TopographyTable
+from epicyclic.case.gear_tables import (
+    DIGITS,
+    GearTable,
+    MicroGeometryTable,
+    TopographyTable,
+    check_fit,
+    check_measure,
+    fitting,
+    roll_length_at,
+    thickness_key,
+    working_flank,
+)
 from epicyclic.case.gearing import Gearing, rim_thickness
 from epicyclic.case.messages import micrometres, millimetres
-from epicyclic.case.thickness import DIGITS, check_fit, check_measure, fitting, thickness_key
 from epicyclic.errors import Problem, rising_problems
 from epicyclic.gears.cutting import longest_involute
 from epicyclic.gears.flanks import active_profile
@@ -27,11 +36,9 @@ from epicyclic.gears.mesh import (
     thinning,
 )
 
-THINNEST_RIM = 0.25
-"""A thinner rim is foil, and its teeth find no balance. [normal modules]"""
+THINNEST_RIM = 0.25  # A thinner rim is foil, and its teeth find no balance. [normal modules]
 
-LARGEST_RIM_RATIO = 1000.0
-"""Root radius over thickness of a rim, for the same reason. [1]"""
+LARGEST_RIM_RATIO = 1000.0  # Root radius over thickness of a rim, for the same reason. [1]
 
 
 def gears_by_name(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
@@ -71,44 +78,30 @@ def _check_rim(gear: Gear, owner: str, table: GearTable) -> list[Problem]:
     if thickness is None:
         return []
     if not gear.internal:
-        return [
-            Problem(
-                key,
-                millimetres(thickness),
-                "belongs to a ring gear, and this gear is external.",
-                f"Leave it out, or write {owner}.internal = true.",
-            )
-        ]
+        allowed = "belongs to a ring gear, and this gear is external."
+        remedy = f"Leave it out, or write {owner}.internal = true."
+        return [Problem(key, millimetres(thickness), allowed, remedy)]
     least = max(THINNEST_RIM * gear.rack.normal_module, gear.root_radius / LARGEST_RIM_RATIO)
     if thickness >= least:
         return []
-    return [
-        Problem(
-            key,
-            millimetres(thickness),
-            f"must be at least {millimetres(least)}: a quarter of the normal module, and a "
-            "thousandth of the root radius.",
-            "Correct it, or leave it out for a rim that does not bend.",
-        )
-    ]
+    allowed = f"must be at least {millimetres(least)}: a quarter of the normal module, and a "
+    allowed += "thousandth of the root radius."
+    remedy = "Correct it, or leave it out for a rim that does not bend."
+    return [Problem(key, millimetres(thickness), allowed, remedy)]
 
 
 def _no_involute_for_thickness(gearing: Gearing, name: str) -> Problem:
     rack, table, key = gearing.rack(name), gearing.tables[name], gearing.key(name)
     base = table.teeth * rack.transverse_module * math.cos(rack.transverse_pressure_angle)
     if table.dimension_over_pins is not None:
-        return Problem(
-            f"{key}.dimension_over_pins",
-            millimetres(table.dimension_over_pins),
-            f"puts the middle of the balls inside the base circle of {millimetres(base)}.",
-            "Check it, measuring_pin_diameter, tooth number and module.",
-        )
-    return Problem(
-        f"{key}.thickness_diameter",
-        millimetres(table.thickness_diameter or 0.0),
-        f"lies inside the base circle of {millimetres(base)}, where there is no involute.",
-        "Give the tooth thickness at a larger diameter.",
-    )
+        shown = millimetres(table.dimension_over_pins)
+        allowed = f"puts the middle of the balls inside the base circle of {millimetres(base)}."
+        remedy = "Check it, measuring_pin_diameter, tooth number and module."
+        return Problem(f"{key}.dimension_over_pins", shown, allowed, remedy)
+    shown = millimetres(table.thickness_diameter or 0.0)
+    allowed = f"lies inside the base circle of {millimetres(base)}, where there is no involute."
+    remedy = "Give the tooth thickness at a larger diameter."
+    return Problem(f"{key}.thickness_diameter", shown, allowed, remedy)
 
 
 def _check_tooth(gear: Gear, key: str, table: GearTable) -> Problem | None:
@@ -117,59 +110,35 @@ def _check_tooth(gear: Gear, key: str, table: GearTable) -> Problem | None:
     tip_shown = _diameter(gear.tip_radius, table.tip_diameter)
     root_shown = _diameter(gear.root_radius, table.root_diameter)
     if gear.root_radius <= 0:
-        return Problem(
-            root,
-            root_shown,
-            "must exceed zero.",
-            f"Reduce gears.dedendum_coefficient, or give {root}.",
-        )
+        remedy = f"Reduce gears.dedendum_coefficient, or give {root}."
+        return Problem(root, root_shown, "must exceed zero.", remedy)
     height = gear.tip_radius - gear.root_radius
     if (-height if gear.internal else height) <= 0:
         larger, smaller = (root, tip) if gear.internal else (tip, root)
-        return Problem(
-            f"{tip}, {root}",
-            f"{tip_shown}, {root_shown}",
-            f"leave no tooth: {larger} must exceed {smaller} on "
-            f"{'a ring' if gear.internal else 'an external gear'}.",
-            "Correct one of the two.",
-        )
+        allowed = f"leave no tooth: {larger} must exceed {smaller} on "
+        allowed += f"{'a ring' if gear.internal else 'an external gear'}."
+        remedy = "Correct one of the two."
+        return Problem(f"{tip}, {root}", f"{tip_shown}, {root_shown}", allowed, remedy)
     thickness = thickness_key(key, table)
     if gear.tip_radius <= gear.base_radius:
-        return Problem(
-            tip,
-            tip_shown,
-            f"lies inside the base circle of {millimetres(2 * gear.base_radius)}, so that the "
-            "tooth has no involute at its tip.",
-            f"Increase it beyond {millimetres(2 * gear.base_radius)}, or take more teeth.",
-        )
+        allowed = f"lies inside the base circle of {millimetres(2 * gear.base_radius)}, so that "
+        allowed += "the tooth has no involute at its tip."
+        remedy = f"Increase it beyond {millimetres(2 * gear.base_radius)}, or take more teeth."
+        return Problem(tip, tip_shown, allowed, remedy)
     if gear.thickness_at(gear.tip_radius) <= 0:
-        return Problem(
-            tip,
-            tip_shown,
-            "the teeth are pointed before they reach the tip circle.",
-            f"Shorten the teeth, or make them thicker with {thickness}.",
-        )
+        allowed = "the teeth are pointed before they reach the tip circle."
+        remedy = f"Shorten the teeth, or make them thicker with {thickness}."
+        return Problem(tip, tip_shown, allowed, remedy)
     if gear.tip_form_radius <= gear.base_radius or gear.tip_half_angle <= 0:
-        return _too_large_chamfer(gear, key)
+        allowed = "leaves no tip land or no involute: the tooth is "
+        allowed += f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, "
+        allowed += "and each of its two chamfers takes about its height of that."
+        return Problem(f"{key}.tip_chamfer", millimetres(gear.tip_chamfer), allowed, "Reduce it.")
     if gear.half_angle_at(max(gear.root_radius, gear.base_radius)) >= math.pi / gear.teeth:
-        return Problem(
-            root,
-            root_shown,
-            "there is no space left between the teeth at the root.",
-            f"Make the teeth less deep, or thinner with {thickness}.",
-        )
+        allowed = "there is no space left between the teeth at the root."
+        remedy = f"Make the teeth less deep, or thinner with {thickness}."
+        return Problem(root, root_shown, allowed, remedy)
     return None
-
-
-def _too_large_chamfer(gear: Gear, key: str) -> Problem:
-    return Problem(
-        f"{key}.tip_chamfer",
-        millimetres(gear.tip_chamfer),
-        "leaves no tip land or no involute: the tooth is "
-        f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, and each of "
-        "its two chamfers takes about its height of that.",
-        "Reduce it.",
-    )
 
 
 def _diameter(radius: float, given: float | None) -> str:
@@ -184,25 +153,16 @@ def check_mesh(
     """Problems of a mesh of two sound gears."""
     one, two = mesh.gear1, mesh.gear2
     if mesh.internal and two.teeth <= one.teeth:
-        return [
-            Problem(
-                f"{gearing.key(two.name)}.teeth",
-                str(two.teeth),
-                f"must exceed the {one.teeth} teeth of the {one.name}, which turns inside it.",
-                "Check both tooth numbers.",
-            )
-        ]
+        allowed = f"must exceed the {one.teeth} teeth of the {one.name}, which turns inside it."
+        remedy = "Check both tooth numbers."
+        return [Problem(f"{gearing.key(two.name)}.teeth", str(two.teeth), allowed, remedy)]
     bases = two.base_radius + mesh.side * one.base_radius
     if bases >= mesh.center_distance:
-        return [
-            Problem(
-                distance_key,
-                millimetres(mesh.center_distance),
-                f"must exceed {millimetres(bases)}, the {'difference' if mesh.internal else 'sum'} "
-                f"of the base radii of {one.name} and {two.name}.",
-                f"{_reference_distance(mesh)} Check tooth numbers and module too.",
-            )
-        ]
+        allowed = f"must exceed {millimetres(bases)}, the "
+        allowed += f"{'difference' if mesh.internal else 'sum'} of the base radii of {one.name} "
+        allowed += f"and {two.name}."
+        remedy = f"{_reference_distance(mesh)} Check tooth numbers and module too."
+        return [Problem(distance_key, millimetres(mesh.center_distance), allowed, remedy)]
     problems = _check_backlash(gearing, mesh, distance_key)
     ends: list[Problem] = []
     for tip, root, clearance in ((two, one, mesh.tip_clearance2), (one, two, mesh.tip_clearance1)):
@@ -240,13 +200,11 @@ def _negative_clearance(gearing: Gearing, mesh: Mesh, tip: Gear, root: Gear) -> 
     else:
         stricter = max if tip.internal else min
         limit = stricter(limit, _tip_radius_for(mesh, tip, end))
-    return Problem(
-        f"{gearing.key(tip.name)}.tip_diameter",
-        _diameter(tip.tip_radius, gearing.tables[tip.name].tip_diameter),
-        f"the tip of the {tip.name} reaches {millimetres(-clearance)} into the root of the "
-        f"{root.name} (negative tip clearance).",
-        f"{_tip_limit(gearing, tip, limit)}or cut the {root.name} deeper.",
-    )
+    key, shown = _tips(gearing, tip)
+    allowed = f"the tip of the {tip.name} reaches {millimetres(-clearance)} into the root of the "
+    allowed += f"{root.name} (negative tip clearance)."
+    remedy = f"{_tip_limit(gearing, tip, limit)}or cut the {root.name} deeper."
+    return Problem(key, shown, allowed, remedy)
 
 
 def _tip_limit(gearing: Gearing, gear: Gear, limit: float) -> str:
@@ -270,21 +228,18 @@ def _check_contact_ratio(gearing: Gearing, mesh: Mesh, distance_key: str) -> lis
     else:
         return []
     chamfers = ", reduce tip_chamfer" if one.tip_chamfer > 0 or two.tip_chamfer > 0 else ""
-    return [
-        Problem(
-            f"{gearing.key(one.name)}.tip_diameter, {gearing.key(two.name)}.tip_diameter",
-            _tip_diameters(gearing, mesh),
-            f"{fault}: motion is not passed on.",
-            f"Lengthen the teeth{chamfers} or correct {distance_key}. {_reference_distance(mesh)}",
-        )
-    ]
+    key, shown = _tips(gearing, one, two)
+    allowed = f"{fault}: motion is not passed on."
+    remedy = f"Lengthen the teeth{chamfers} or correct {distance_key}. {_reference_distance(mesh)}"
+    return [Problem(key, shown, allowed, remedy)]
 
 
-def _tip_diameters(gearing: Gearing, mesh: Mesh) -> str:
-    gears = (mesh.gear1, mesh.gear2)
-    return ", ".join(
-        _diameter(gear.tip_radius, gearing.tables[gear.name].tip_diameter) for gear in gears
-    )
+def _tips(gearing: Gearing, *gears: Gear) -> tuple[str, str]:
+    """Keys and values of the tip diameters of gears."""
+    keys = [f"{gearing.key(gear.name)}.tip_diameter" for gear in gears]
+    given = [gearing.tables[gear.name].tip_diameter for gear in gears]
+    shown = [_diameter(gear.tip_radius, it) for gear, it in zip(gears, given, strict=True)]
+    return ", ".join(keys), ", ".join(shown)
 
 
 def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) -> list[Problem]:
@@ -314,14 +269,10 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
         )
         if gearing.tables[gear.name].tool_tip_radius is not None:
             change = f"reduce {gearing.key(gear.name)}.tool_tip_radius"
-    return [
-        Problem(
-            f"{gearing.key(mate.name)}.tip_diameter",
-            _diameter(mate.tip_radius, gearing.tables[mate.name].tip_diameter),
-            f"the tip of the {mate.name} {fault}.",
-            f"{_tip_limit(gearing, mate, _tip_radius_for(mesh, mate, end))}or {change}.",
-        )
-    ]
+    key, shown = _tips(gearing, mate)
+    allowed = f"the tip of the {mate.name} {fault}."
+    remedy = f"{_tip_limit(gearing, mate, _tip_radius_for(mesh, mate, end))}or {change}."
+    return [Problem(key, shown, allowed, remedy)]
 
 
 def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
@@ -340,13 +291,11 @@ def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
 def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
     table, key = gearing.tables[gear.name], gearing.key(gear.name)
     tip, root = (f"{key}.{which}_diameter" for which in ("tip", "root"))
-    return Problem(
-        f"{tip}, {root}",
-        f"{_diameter(gear.tip_radius, table.tip_diameter)}, "
-        f"{_diameter(gear.root_radius, table.root_diameter)}",
-        f"no tool cuts such a tooth: {reason}.",
-        f"Change the tip or root diameter, or {thickness_key(key, table)}.",
-    )
+    shown = f"{_diameter(gear.tip_radius, table.tip_diameter)}, "
+    shown += f"{_diameter(gear.root_radius, table.root_diameter)}"
+    allowed = f"no tool cuts such a tooth: {reason}."
+    remedy = f"Change the tip or root diameter, or {thickness_key(key, table)}."
+    return Problem(f"{tip}, {root}", shown, allowed, remedy)
 
 
 def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> list[Problem]:
@@ -354,24 +303,18 @@ def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> list[Problem]:
     one, two = mesh.gear1, mesh.gear2
     if not mesh.internal or mesh.tip_clearance2 < -ROUNDING or mesh.tip_passage >= 0:
         return []
-    return [
-        Problem(
-            f"{gearing.key(one.name)}.tip_diameter, {gearing.key(two.name)}.tip_diameter",
-            _tip_diameters(gearing, mesh),
-            f"the tips of {one.name} and {two.name} collide beside the mesh, by "
-            f"{-math.degrees(mesh.tip_passage):.3g} deg of the {two.name} (tip interference).",
-            f"Shorten the teeth or choose more teeth for the {two.name}.",
-        )
-    ]
+    key, shown = _tips(gearing, one, two)
+    allowed = f"the tips of {one.name} and {two.name} collide beside the mesh, by "
+    allowed += f"{-math.degrees(mesh.tip_passage):.3g} deg of the {two.name} (tip interference)."
+    remedy = f"Shorten the teeth or choose more teeth for the {two.name}."
+    return [Problem(key, shown, allowed, remedy)]
 
 
 # --- backlash ---
 
-ROUNDING = 1e-9
-"""Clearances count as negative beyond this: drawings may state exactly zero. [m]"""
+ROUNDING = 1e-9  # Clearances count as negative beyond this: drawings may state exactly zero. [m]
 
-GROSS = 5.0
-"""Backlash over the recommended one from which a result says so; an estimate. [1]"""
+GROSS = 5.0  # Backlash over the recommended one from which a result says so; an estimate. [1]
 
 TOO_THIN = "its teeth are too thin for their centre distance"
 """By which a warning of that is known."""
@@ -385,17 +328,12 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
     keys = [thickness_key(gearing.key(gear.name), gearing.tables[gear.name]) for gear in gears]
     fits = " or ".join(_fitting(gearing, mesh, gear) for gear in gears)
     usual = micrometres(_recommended(mesh))
-    return [
-        Problem(
-            ", ".join(keys),
-            "",
-            f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
-            f"centre distance of {millimetres(mesh.center_distance)} (negative backlash).",
-            f"Without backlash {fits} fits{_distance(mesh, distance_key)}; "
-            f"{_recommended_shift(mesh):.4f} less of one x leaves {usual}, recommended by "
-            f"ISO/TR 10064-2.{_other_sign(gearing, mesh)}",
-        )
-    ]
+    allowed = f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
+    allowed += f"centre distance of {millimetres(mesh.center_distance)} (negative backlash)."
+    remedy = f"Without backlash {fits} fits{_distance(mesh, distance_key)}; "
+    remedy += f"{_recommended_shift(mesh):.4f} less of one x leaves {usual}, recommended by ISO/TR "
+    remedy += f"10064-2.{_other_sign(gearing, mesh)}"
+    return [Problem(", ".join(keys), "", allowed, remedy)]
 
 
 def backlash_notes(gearing: Gearing, mesh: Mesh) -> Iterator[str]:
@@ -459,10 +397,8 @@ def _other_sign(gearing: Gearing, mesh: Mesh) -> str:
     over = _over(mesh) - 2 * shift
     if not -GROSS * _recommended_shift(mesh) <= over <= 10.0**-DIGITS:
         return ""
-    return (
-        f" With the other sign, {-shift:g}, x of the {ring.name} fits: in ISO 21771 positive x "
-        "thickens the teeth."
-    )
+    hint = f" With the other sign, {-shift:g}, x of the {ring.name} fits: in ISO 21771 "
+    return f"{hint}positive x thickens the teeth."
 
 
 # --- flanks ---
@@ -554,12 +490,8 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
             return roll_length
         allowed = f"within {millimetres(flank.active_length)} of roll"
         shown = millimetres(roll_length)
-    return Problem(
-        f"{key}_{given[0]}",
-        shown,
-        f"the relief must start in {inside}, {allowed}.",
-        "Correct where it starts.",
-    )
+    reason = f"the relief must start in {inside}, {allowed}."
+    return Problem(f"{key}_{given[0]}", shown, reason, "Correct where it starts.")
 
 
 def _without_amount(flank: _Flank) -> list[Problem]:
@@ -586,16 +518,10 @@ def _diameter_at(gear: Gear, roll_length: float) -> float:
 def _check_overlap(flank: _Flank, tip: float, root: float) -> list[Problem]:
     if tip + root <= flank.active_length:
         return []
-    return [
-        Problem(
-            f"{flank.key}.tip_relief",
-            "",
-            f"tip relief over {millimetres(tip)} and root relief over {millimetres(root)} of roll "
-            f"overlap: the active profile of the {flank.mesh.name} has "
-            f"{millimetres(flank.active_length)}.",
-            "Shorten one of the two.",
-        )
-    ]
+    allowed = f"tip relief over {millimetres(tip)} and root relief over {millimetres(root)} of "
+    allowed += f"roll overlap: the active profile of the {flank.mesh.name} has "
+    allowed += f"{millimetres(flank.active_length)}."
+    return [Problem(f"{flank.key}.tip_relief", "", allowed, "Shorten one of the two.")]
 
 
 def _check_end_relief(flank: _Flank) -> list[Problem]:
@@ -607,14 +533,9 @@ def _check_end_relief(flank: _Flank) -> list[Problem]:
         return [Problem(key, "", "is missing; it belongs to end_relief.", "Add end_relief_length.")]
     if 2 * length <= width:
         return []
-    return [
-        Problem(
-            key,
-            millimetres(length),
-            f"both end reliefs must fit into the face width of {millimetres(width)}.",
-            f"Reduce it to {millimetres(width / 2)} or less.",
-        )
-    ]
+    allowed = f"both end reliefs must fit into the face width of {millimetres(width)}."
+    remedy = f"Reduce it to {millimetres(width / 2)} or less."
+    return [Problem(key, millimetres(length), allowed, remedy)]
 
 
 def _check_topography(flank: _Flank, table: TopographyTable) -> list[Problem]:
@@ -623,25 +544,16 @@ def _check_topography(flank: _Flank, table: TopographyTable) -> list[Problem]:
     problems = rising_problems(axes, f"{key}.")
     wanted = (len(table.diameter), len(table.face_position))
     if len(table.deviation) != wanted[0] or any(len(row) != wanted[1] for row in table.deviation):
-        problems.append(
-            Problem(
-                f"{key}.deviation",
-                f"{len(table.deviation)} rows",
-                f"must be {wanted[0]} rows of {wanted[1]} values, for the points of diameter and "
-                "face_position.",
-                "Give one row for each diameter, with one value for each face position.",
-            )
-        )
+        shown = f"{len(table.deviation)} rows"
+        allowed = f"must be {wanted[0]} rows of {wanted[1]} values, for the points of diameter and "
+        allowed += "face_position."
+        remedy = "Give one row for each diameter, with one value for each face position."
+        problems.append(Problem(f"{key}.deviation", shown, allowed, remedy))
     base = 2 * flank.gear.base_radius
     if table.diameter and table.diameter[0] < base:
-        problems.append(
-            Problem(
-                f"{key}.diameter",
-                millimetres(table.diameter[0]),
-                f"lies inside the base circle of {millimetres(base)}, where there is no involute.",
-                "Leave out these rows.",
-            )
-        )
+        allowed = f"lies inside the base circle of {millimetres(base)}, where there is no involute."
+        remedy = "Leave out these rows."
+        problems.append(Problem(f"{key}.diameter", millimetres(table.diameter[0]), allowed, remedy))
     return problems or _check_place(flank, table)
 
 
@@ -661,11 +573,5 @@ def _check_place(flank: _Flank, table: TopographyTable) -> list[Problem]:
             "Give the deviations where the flank works.",
         )
         for name, points, where, (low, high) in places
-        if not _shares_half((points[0], points[-1]), (low, high))
+        if min(points[-1], high) - max(points[0], low) < max(points[-1] - points[0], high - low) / 2
     ]
-
-
-def _shares_half(one: tuple[float, float], two: tuple[float, float]) -> bool:
-    """Two ranges have at least half of the longer one in common."""
-    common = min(one[1], two[1]) - max(one[0], two[0])
-    return common >= max(one[1] - one[0], two[1] - two[0]) / 2

@@ -1,12 +1,40 @@
-"""Tables of a case file on gears, their flanks and their meshes."""
+"""Tables of a case file on gears, their flanks and meshes, and what these state of teeth."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+from functools import lru_cache
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength, Table, ThicknessFit
+from epicyclic.case.messages import millimetres
+from epicyclic.case.tables.base import (
+    NamedMaterial,
+    Roughness,
+    ShortLength,
+    Table,
+    ThicknessFit,
+    option,
+)
+from epicyclic.errors import Problem
+from epicyclic.gears import measures
+from epicyclic.gears.flanks import (
+    FlankDeviations,
+    MicroGeometry,
+    Relief,
+    Topography,
+    active_profile,
+)
+from epicyclic.gears.gear import (
+    BasicRack,
+    Gear,
+    half_angle_from_profile_shift,
+    half_angle_from_thickness,
+)
+from epicyclic.gears.measures import LARGEST_FIT, FlankTolerances, fit_allowances, flank_tolerances
+from epicyclic.gears.mesh import Mesh
 from epicyclic.units import (
     Angle,
     Deviation,
@@ -16,7 +44,6 @@ from epicyclic.units import (
     Number,
     Quantity,
     SmallLength,
-    as_stated,
 )
 
 PressureAngle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
@@ -28,33 +55,20 @@ class SharedGears(Table):
 
     AT_MOST_ONE = (("basic_rack", "addendum_coefficient"), ("basic_rack", "dedendum_coefficient"))
 
-    normal_module: Length | None = Field(default=None, description="m_n.")
-    transverse_module: Length | None = Field(default=None, description="m_t = m_n/cos(beta).")
-    normal_pressure_angle: PressureAngle | None = Field(
-        default=None, description="alpha_n at the reference circle."
+    normal_module: Length | None = option("m_n.")
+    transverse_module: Length | None = option("m_t = m_n/cos(beta).")
+    normal_pressure_angle: PressureAngle | None = option("alpha_n at the reference circle.")
+    transverse_pressure_angle: PressureAngle | None = option("alpha_t at the reference circle.")
+    helix_angle: HelixAngle | None = option("beta at the reference circle, magnitude.")
+    center_distance: Length | None = option("Of every mesh.")
+    addendum_coefficient: Number = option(
+        "h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.", 1.0, gt=0, le=3
     )
-    transverse_pressure_angle: PressureAngle | None = Field(
-        default=None, description="alpha_t at the reference circle."
+    dedendum_coefficient: Number = option(
+        "h_fP/m_n, for gears without root_diameter. ISO 53, profile A.", 1.25, gt=0, le=4
     )
-    helix_angle: HelixAngle | None = Field(
-        default=None, description="beta at the reference circle, magnitude."
-    )
-    center_distance: Length | None = Field(default=None, description="Of every mesh.")
-    addendum_coefficient: Number = Field(
-        default=1.0,
-        gt=0,
-        le=3,
-        description="h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.",
-    )
-    dedendum_coefficient: Number = Field(
-        default=1.25,
-        gt=0,
-        le=4,
-        description="h_fP/m_n, for gears without root_diameter. ISO 53, profile A.",
-    )
-    basic_rack: RackName | None = Field(
-        default=None,
-        description="A profile of ISO 53 instead of both coefficients, also for the tool's tip.",
+    basic_rack: RackName | None = option(
+        "A profile of ISO 53 instead of both coefficients, also for the tool's tip."
     )
 
 
@@ -68,11 +82,9 @@ class Gears(SharedGears):
 
     transverse_pressure_angle: (
         Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=40.0)] | None
-    ) = Field(default=None, description="alpha_t at the reference circle.")
+    ) = option("alpha_t at the reference circle.")
     helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
-    center_distance: Length | None = Field(
-        default=None, description="Of every mesh. Default: from the profile shifts, x."
-    )
+    center_distance: Length | None = option("Of every mesh. Default: from the profile shifts, x.")
 
     @property
     def distance(self) -> float:
@@ -99,43 +111,32 @@ class TopographyTable(Table):
 class MicroGeometryTable(Table):
     """Modifications and deviations of the working flanks, positive where material is missing."""
 
-    tip_relief: SmallLength = Field(default=as_stated("0 um"), description="At the tip.")
-    tip_relief_roll_length: Length | None = Field(
-        default=None, description="Roll length from the tip to the start of the relief."
+    tip_relief: SmallLength = option("At the tip.", "0 um")
+    tip_relief_roll_length: Length | None = option(
+        "Roll length from the tip to the start of the relief."
     )
-    tip_relief_diameter: Length | None = Field(
-        default=None, description="Instead of it: the diameter where the relief starts."
+    tip_relief_diameter: Length | None = option(
+        "Instead of it: the diameter where the relief starts."
     )
     tip_relief_shape: ReliefShape = "linear"
-    root_relief: SmallLength = Field(
-        default=as_stated("0 um"), description="At the start of the active profile."
+    root_relief: SmallLength = option("At the start of the active profile.", "0 um")
+    root_relief_roll_length: Length | None = option(
+        "Roll length from the start of the active profile."
     )
-    root_relief_roll_length: Length | None = Field(
-        default=None, description="Roll length from the start of the active profile."
-    )
-    root_relief_diameter: Length | None = Field(
-        default=None, description="Instead of it: the diameter where the relief starts."
+    root_relief_diameter: Length | None = option(
+        "Instead of it: the diameter where the relief starts."
     )
     root_relief_shape: ReliefShape = "linear"
-    profile_crown: Deviation = Field(
-        default=as_stated("0 um"), description="Parabola over the active profile."
+    profile_crown: Deviation = option("Parabola over the active profile.", "0 um")
+    profile_slope: Deviation = option("Positive: material is missing at the tip.", "0 um")
+    lead_crown: Deviation = option("Parabola over the face width of the gear.", "0 um")
+    lead_slope: Deviation = option(
+        "Positive: material is missing at the end where contact ends.", "0 um"
     )
-    profile_slope: Deviation = Field(
-        default=as_stated("0 um"), description="Positive: material is missing at the tip."
-    )
-    lead_crown: Deviation = Field(
-        default=as_stated("0 um"), description="Parabola over the face width of the gear."
-    )
-    lead_slope: Deviation = Field(
-        default=as_stated("0 um"),
-        description="Positive: material is missing at the end where contact ends.",
-    )
-    end_relief: SmallLength = Field(default=as_stated("0 um"), description="At both ends.")
-    end_relief_length: Length | None = Field(default=None, description="From each end.")
+    end_relief: SmallLength = option("At both ends.", "0 um")
+    end_relief_length: Length | None = option("From each end.")
     end_relief_shape: ReliefShape = "linear"
-    topography: TopographyTable | None = Field(
-        default=None, description="Deviations over the flank, added to the others."
-    )
+    topography: TopographyTable | None = option("Deviations over the flank, added to the others.")
 
 
 LEAST_TEETH, MOST_TEETH = 5, 2000
@@ -172,66 +173,49 @@ class GearTable(Table):
 
     teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
     face_width: Length
-    tip_diameter: Length | None = Field(
-        default=None, description="Inner diameter of a ring. Default: from addendum_coefficient."
+    tip_diameter: Length | None = option(
+        "Inner diameter of a ring. Default: from addendum_coefficient."
     )
-    root_diameter: Length | None = Field(
-        default=None, description="Default: from dedendum_coefficient."
+    root_diameter: Length | None = option("Default: from dedendum_coefficient.")
+    tip_chamfer: ShortLength = option(
+        "Radial height of the 45 degree chamfers of the tip corners.", "0 mm"
     )
-    tip_chamfer: ShortLength = Field(
-        default=as_stated("0 mm"),
-        description="Radial height of the 45 degree chamfers of the tip corners.",
-    )
-    tooth_thickness: Length | None = Field(
-        default=None, description="Transverse arc thickness at thickness_diameter."
-    )
+    tooth_thickness: Length | None = option("Transverse arc thickness at thickness_diameter.")
     thickness_diameter: Length | None = None
-    span_measurement: Length | None = Field(
-        default=None, description="W_k, base tangent length over teeth_in_span teeth."
-    )
-    teeth_in_span: int | None = Field(default=None, ge=1, le=2000, description="k.")
-    dimension_over_pins: Length | None = Field(
-        default=None, description="M_d over two balls, or between them in a ring."
-    )
-    measuring_pin_diameter: Length | None = Field(
-        default=None, description="D_M of the balls; of a spur gear pins are the same."
+    span_measurement: Length | None = option("W_k, base tangent length over teeth_in_span teeth.")
+    teeth_in_span: int | None = option("k.", ge=1, le=2000)
+    dimension_over_pins: Length | None = option("M_d over two balls, or between them in a ring.")
+    measuring_pin_diameter: Length | None = option(
+        "D_M of the balls; of a spur gear pins are the same."
     )
     tooth_thickness_allowance: (
         Annotated[tuple[Deviation, ...], Field(min_length=2, max_length=2)] | None
-    ) = Field(
-        default=None,
-        description="Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth "
-        "are thinner by their mean.",
+    ) = option(
+        "Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth are thinner "
+        "by their mean."
     )
-    tooth_thickness_fit: ThicknessFit | None = Field(
-        default=None,
-        description='Series of both by DIN 3967 instead, "27cd": tolerance 21 to 30, allowance a '
-        "to h.",
+    tooth_thickness_fit: ThicknessFit | None = option(
+        'Series of both by DIN 3967 instead, "27cd": tolerance 21 to 30, allowance a to h.'
     )
-    profile_shift_coefficient: Number | None = Field(
-        default=None,
+    profile_shift_coefficient: Number | None = option(
+        "x; positive thickens the teeth, on a ring too. Default: what the mate and the centre "
+        "distance leave.",
         ge=-3,
         le=5,
-        description="x; positive thickens the teeth, on a ring too. Default: what the mate and "
-        "the centre distance leave.",
     )
     roughness: Roughness = Field(
         description='rms roughness Rq of the flanks, also as "Ra 0.4 um" or "Rz 3 um", or a finish.'
     )
-    material: NamedMaterial = Field(default=as_stated("steel"), description="A name or a table.")
-    accuracy_class: int | None = Field(
-        default=None,
-        ge=1,
-        le=11,
-        description="Flank tolerance class of ISO 1328-1:2013: its slopes are uncertain by it.",
+    material: NamedMaterial = option("A name or a table.", "steel")
+    accuracy_class: int | None = option(
+        "Flank tolerance class of ISO 1328-1:2013: its slopes are uncertain by it.", ge=1, le=11
     )
-    tool_tip_radius: ShortLength | None = Field(
-        default=None,
-        description="Rounding of the cutting tool's tip, which leaves the root fillet. Default: "
-        "0.38 m_n (rack) or 0.2 m_n (shaper), or less where the mate needs the involute.",
+    tool_tip_radius: ShortLength | None = option(
+        "Rounding of the cutting tool's tip, which leaves the root fillet. Default: 0.38 m_n "
+        "(rack) or 0.2 m_n (shaper), or less where the mate needs the involute."
     )
-    micro_geometry: MicroGeometryTable | None = Field(
-        default=None, description="Modifications and deviations of the flanks."
+    micro_geometry: MicroGeometryTable | None = option(
+        "Modifications and deviations of the flanks."
     )
 
     @property
@@ -247,7 +231,9 @@ def with_positive_teeth(table: Any) -> Any:
     ISO 21771 gives rings negative numbers of teeth, DIN 3960 negative diameters too. The sign of
     their profile shift is that of this program; see the page on geometry.
     """
-    if not _is_negative(table) or table.get("internal") is False:
+    teeth = table.get("teeth") if isinstance(table, dict) else None
+    is_negative = isinstance(teeth, int) and teeth <= -LEAST_TEETH
+    if not is_negative or table.get("internal") is False:
         return table
     positive = dict(table) | {"teeth": -table["teeth"]}
     for key in ("tip_diameter", "root_diameter", "thickness_diameter", "dimension_over_pins"):
@@ -260,11 +246,6 @@ def internal_if_negative(table: Any) -> Any:
     """The same of a gear that need not be a ring, which negative teeth make it."""
     positive = with_positive_teeth(table)
     return positive if positive is table else positive | {"internal": True}
-
-
-def _is_negative(table: Any) -> bool:
-    teeth = table.get("teeth") if isinstance(table, dict) else None
-    return isinstance(teeth, int) and teeth <= -LEAST_TEETH
 
 
 _RimThickness = Annotated[
@@ -283,7 +264,7 @@ class PairGear(GearTable):
     _sign = model_validator(mode="before")(internal_if_negative)
 
     teeth: int = RING_TEETH
-    internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
+    internal: bool = option("true: a ring gear around the pinion.", False)
     rim_thickness: _RimThickness = None
 
 
@@ -297,20 +278,16 @@ class Planet(GearTable):
     }
 
     count: int = Field(ge=1, le=24, description="Number of planets.")
-    angles: tuple[Angle, ...] | None = Field(
-        default=None,
-        description="Position of each planet on the carrier. Default: the admissible positions "
-        "nearest to equal spacing.",
+    angles: tuple[Angle, ...] | None = option(
+        "Position of each planet on the carrier. Default: the admissible positions nearest to "
+        "equal spacing."
     )
-    mass: Mass | None = Field(
-        default=None,
-        description="Of one planet with its rollers: its centrifugal force loads the planet "
-        "bearing. Default: from the sizes of gear and rollers and the density of their materials.",
+    mass: Mass | None = option(
+        "Of one planet with its rollers: its centrifugal force loads the planet bearing. Default: "
+        "from the sizes of gear and rollers and the density of their materials."
     )
-    micro_geometry_ring_side: MicroGeometryTable | None = Field(
-        default=None,
-        description="Of the flanks that work against the ring. Default: micro_geometry holds on "
-        "both sides.",
+    micro_geometry_ring_side: MicroGeometryTable | None = option(
+        "Of the flanks that work against the ring. Default: micro_geometry holds on both sides."
     )
 
 
@@ -329,18 +306,231 @@ class MeshTable(Table):
 
     STAND_INS: ClassVar[dict[str, object]] = {"misalignment": None}
 
-    misalignment: Deviation = Field(
-        default=as_stated("0 um"),
-        description="F_beta_x over the common face width, in the plane of action; positive: the "
-        "flanks open towards the end where contact ends.",
+    misalignment: Deviation = option(
+        "F_beta_x over the common face width, in the plane of action; positive: the flanks open "
+        "towards the end where contact ends.",
+        "0 um",
     )
 
 
 class SetMesh(MeshTable):
     """A mesh whose gears or centre distance may be found from it."""
 
-    normal_backlash: ShortLength | None = Field(
-        default=None,
-        description="j_bn, for what is left out: a profile shift or the centre distance. Default: "
-        "none, as the profile shifts of ISO 21771.",
+    normal_backlash: ShortLength | None = option(
+        "j_bn, for what is left out: a profile shift or the centre distance. Default: none, as "
+        "the profile shifts of ISO 21771."
+    )
+
+
+# How thick the teeth of a gear are, in each of the ways in which a case can state it.
+
+DIGITS = 4  # Decimals of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm.
+
+
+def half_angle(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
+    """Half angle at the reference circle of the teeth that a table states.
+
+    Raises `ValueError` if the thickness is stated inside the base circle.
+    """
+    teeth = table.teeth
+    half = _stated(table, rack, internal=internal)
+    excess = 2 * allowance_shift(table, rack) * rack.normal_module
+    return half + excess * math.tan(rack.transverse_pressure_angle) / (
+        teeth * rack.transverse_module
+    )
+
+
+def _stated(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
+    teeth = table.teeth
+    if table.profile_shift_coefficient is not None:
+        return half_angle_from_profile_shift(rack, teeth, table.profile_shift_coefficient)
+    if table.span_measurement is not None:
+        assert table.teeth_in_span is not None
+        return measures.half_angle_from_span(
+            rack, teeth, internal, table.span_measurement, table.teeth_in_span
+        )
+    if table.dimension_over_pins is not None:
+        assert table.measuring_pin_diameter is not None
+        return measures.half_angle_from_pins(
+            rack, teeth, internal, table.dimension_over_pins, table.measuring_pin_diameter
+        )
+    assert table.tooth_thickness is not None
+    assert table.thickness_diameter is not None
+    return half_angle_from_thickness(
+        rack, teeth, internal, table.tooth_thickness, table.thickness_diameter / 2
+    )
+
+
+def allowances(table: GearTable, rack: BasicRack) -> tuple[float, float] | None:
+    """Upper and lower allowance of the tooth thickness, A_sne and A_sni. [m]"""
+    if table.tooth_thickness_fit is not None:
+        diameter = min(table.teeth * rack.transverse_module, LARGEST_FIT)
+        return fit_allowances(table.tooth_thickness_fit, diameter)
+    if table.tooth_thickness_allowance is None:
+        return None
+    upper, lower = table.tooth_thickness_allowance
+    return upper, lower
+
+
+def allowance_shift(table: GearTable, rack: BasicRack) -> float:
+    """Profile shift of the mean tooth-thickness allowance. DIN 3960. Theory (G52). [1]"""
+    stated = allowances(table, rack)
+    return (
+        0.0
+        if stated is None
+        else sum(stated) / (4 * rack.normal_module * math.tan(rack.normal_pressure_angle))
+    )
+
+
+def thickness_key(key: str, table: GearTable) -> str:
+    """The key that states how thick the teeth are, of the gear whose table stands at `key`."""
+    keys = ("span_measurement", "dimension_over_pins", "tooth_thickness")
+    stated = (key for key in keys if getattr(table, key) is not None)
+    return f"{key}.{next(stated, 'profile_shift_coefficient')}"
+
+
+def fitting(gear: Gear, key: str, table: GearTable, over: float) -> str:
+    """What a table states of teeth that are thinner by the profile shift `over`, rounded down."""
+    rack, key = gear.rack, thickness_key(key, table)
+    arc = 2 * over * rack.normal_module * math.tan(rack.transverse_pressure_angle)
+    if table.span_measurement is not None:
+        normal = math.sin(rack.normal_pressure_angle)
+        change = 2 * over * rack.normal_module * normal * (-1 if gear.internal else 1)
+        return _length(key, table.span_measurement - change, up=gear.internal)
+    if table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
+        half = gear.thickness_half_angle - arc / (2 * gear.reference_radius)
+        thin = replace(gear, thickness_half_angle=half)
+        change = measures.dimension_over_pins(thin, table.measuring_pin_diameter)
+        change -= measures.dimension_over_pins(gear, table.measuring_pin_diameter)
+        return _length(key, table.dimension_over_pins + change, up=gear.internal)
+    if table.tooth_thickness is not None and table.thickness_diameter is not None:
+        thinner = arc * table.thickness_diameter / (2 * gear.reference_radius)
+        return _length(key, table.tooth_thickness - thinner, up=False)
+    step = 10.0**-DIGITS
+    nominal = gear.profile_shift_coefficient - allowance_shift(table, rack)
+    return f"{key} = {math.floor((nominal - over) / step) * step:.{DIGITS}f}"
+
+
+def _length(key: str, value: float, *, up: bool) -> str:
+    """A key with its length, rounded to a micrometre towards thinner teeth."""
+    step = math.ceil if up else math.floor
+    return f'{key} = "{step(value * 1e6) / 1e3:.3f} mm"'
+
+
+def tolerances_of(gear: Gear, table: GearTable) -> FlankTolerances | None:
+    """Tolerances of the flanks of a gear by its class."""
+    if table.accuracy_class is None:
+        return None
+    return flank_tolerances(
+        table.accuracy_class, gear.rack.normal_module, 2 * gear.reference_radius, gear.face_width
+    )
+
+
+def check_fit(gear: Gear, key: str, table: GearTable) -> Problem | None:
+    """DIN 3967 has no allowances for larger gears."""
+    if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
+        return None
+    allowed = f"is for reference diameters up to {millimetres(LARGEST_FIT)}, and this one has "
+    allowed += f"{millimetres(2 * gear.reference_radius)}."
+    remedy = "Give tooth_thickness_allowance."
+    return Problem(f"{key}.tooth_thickness_fit", f'"{table.tooth_thickness_fit}"', allowed, remedy)
+
+
+def check_measure(gear: Gear, key: str, table: GearTable) -> Problem | None:
+    """A span or balls must touch the flanks."""
+    if table.span_measurement is not None:
+        if gear.internal and gear.rack.helix_angle > 0:
+            place = f"{key}.span_measurement"
+            reason = "cannot be measured on a helical ring."
+            advice = "Give dimension_over_pins with measuring_pin_diameter."
+            return Problem(place, millimetres(table.span_measurement), reason, advice)
+        radius = measures.span_contact_radius(gear, table.span_measurement)
+        remedy = f"Over {measures.usual_span_teeth(gear)} teeth it would touch in the middle."
+        what = "span_measurement"
+    elif table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
+        radius = measures.pin_contact_radius(gear, table.measuring_pin_diameter)
+        usual = millimetres(measures.usual_pin(gear.rack))
+        remedy = f"A usual measuring_pin_diameter is {usual}."
+        what = "dimension_over_pins"
+    else:
+        return None
+    low, high = sorted((gear.root_radius, gear.tip_radius))
+    if low < radius < high:
+        return None
+    value = getattr(table, what)
+    shown = millimetres(value)
+    allowed = f"touches at diameter {millimetres(2 * radius)}, beyond the flanks, which reach from "
+    allowed += f"{millimetres(2 * low)} to {millimetres(2 * high)}."
+    return Problem(f"{key}.{what}", shown, allowed, f"Check it, tooth number and module. {remedy}")
+
+
+# From the tables of a case to the deviations of its flanks.
+
+Tables = tuple[GearTable, GearTable]
+
+
+def micro_geometries(table: GearTable) -> tuple[MicroGeometryTable, ...]:
+    """The tables of micro-geometry that a gear has."""
+    ring_side = table.micro_geometry_ring_side if isinstance(table, Planet) else None
+    return tuple(one for one in (table.micro_geometry, ring_side) if one is not None)
+
+
+@lru_cache(maxsize=256)
+def flank_deviations(mesh: Mesh, tables: Tables, misalignment: float) -> FlankDeviations:
+    """The deviations of both working flanks of a mesh."""
+    one, two = (_of_member(mesh, member, tables[member - 1]) for member in (1, 2))
+    return FlankDeviations(one, two, misalignment)
+
+
+def working_flank(member: int, table: GearTable) -> MicroGeometryTable | None:
+    """The table of the flank of a member of a mesh that works in it.
+
+    A planet's other flank works against the ring, where the planet is member 1.
+    """
+    if member == 1 and isinstance(table, Planet) and table.micro_geometry_ring_side is not None:
+        return table.micro_geometry_ring_side
+    return table.micro_geometry
+
+
+def _of_member(mesh: Mesh, member: int, table: GearTable) -> MicroGeometry:
+    flank = working_flank(member, table)
+    if flank is None:
+        return MicroGeometry()
+    gear = (mesh.gear1, mesh.gear2)[member - 1]
+    root, tip = active_profile(mesh, member)
+    return MicroGeometry(
+        tip_relief=_profile_relief(gear, tip, flank, "tip_relief"),
+        root_relief=_profile_relief(gear, root, flank, "root_relief"),
+        end_relief=None
+        if flank.end_relief == 0 or flank.end_relief_length is None
+        else Relief(flank.end_relief, flank.end_relief_length, flank.end_relief_shape),
+        profile_crown=flank.profile_crown,
+        profile_slope=flank.profile_slope,
+        lead_crown=flank.lead_crown,
+        lead_slope=flank.lead_slope,
+        topography=None if flank.topography is None else _topography(gear, flank.topography),
+    )
+
+
+def _profile_relief(gear: Gear, end: float, flank: MicroGeometryTable, key: str) -> Relief | None:
+    amount: float = getattr(flank, key)
+    roll_length: float | None = getattr(flank, f"{key}_roll_length")
+    diameter: float | None = getattr(flank, f"{key}_diameter")
+    if diameter is not None:
+        roll_length = abs(roll_length_at(gear, diameter / 2) - end)
+    if amount == 0 or roll_length is None:
+        return None
+    return Relief(amount, roll_length, getattr(flank, f"{key}_shape"))
+
+
+def roll_length_at(gear: Gear, radius: float) -> float:
+    """Transverse radius of curvature of the involute at `radius`; 0 inside the base circle. [m]"""
+    return math.sqrt(max(0.0, radius**2 - gear.base_radius**2))
+
+
+def _topography(gear: Gear, table: TopographyTable) -> Topography:
+    return Topography(
+        tuple(roll_length_at(gear, diameter / 2) for diameter in table.diameter),
+        table.face_position,
+        table.deviation,
     )

@@ -11,8 +11,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
-from epicyclic.case.gear_tables import GearTable, PairGear, Ring, SetMesh, SharedGears
-from epicyclic.case.thickness import allowance_shift, half_angle
+from epicyclic.case.gear_tables import (
+    GearTable,
+    PairGear,
+    Ring,
+    SetMesh,
+    SharedGears,
+    allowance_shift,
+    half_angle,
+)
 from epicyclic.gears.gear import CARRIER, BasicRack, Gear
 from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle
 
@@ -183,15 +190,20 @@ class Gearing:
         """
         assert self.shared is not None
         stated = {it.key: it.own_distance or self.shared.center_distance for it in self.meshes}
-        radii: dict[str, float] = {}
-        for mesh in self.meshes:
-            distance, planet = stated[mesh.key], self.planet_of(mesh)
-            if planet is not None and distance is not None:
-                radii.setdefault(planet, distance)
+        radii = self.pin_radii(stated)
         return {
             mesh.key: stated[mesh.key] or radii.get(self.planet_of(mesh) or "")
             for mesh in self.meshes
         }
+
+    def pin_radii(self, distances: Mapping[str, float | None]) -> dict[str, float]:
+        """Distance of the pins of planets from the axis, by their meshes with central gears. [m]"""
+        radii: dict[str, float] = {}
+        for mesh in self.meshes:
+            distance, planet = distances[mesh.key], self.planet_of(mesh)
+            if planet is not None and distance is not None:
+                radii.setdefault(planet, distance)
+        return radii
 
     def central_gear(self, mesh: GearPairing) -> str | None:
         """The gear of a mesh with a planet that turns about the axis of the set, if it has one."""
@@ -299,11 +311,7 @@ class Gearing:
         Raises `ValueError` if two pins cannot stand at the distance of their planets.
         """
         distances = self.distances
-        radii: dict[str, float] = {}
-        for mesh in self.meshes:
-            planet, distance = self.planet_of(mesh), distances[mesh.key]
-            if planet is not None and distance is not None:
-                radii.setdefault(planet, distance)
+        radii = self.pin_radii(distances)
         between: dict[tuple[str, str], float] = {}
         for mesh in self.meshes:
             one, two = (self.bodies[gear] for gear in mesh.pair)

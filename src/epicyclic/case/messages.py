@@ -12,14 +12,9 @@ from rapidfuzz.distance import OSA
 
 from epicyclic.errors import InputError, Problem, printable
 
-# Keys and values in messages, as a case file has them.
+_LONGEST_SHOWN = 60  # Text that users wrote is cut to this many characters in messages.
 
-
-_LONGEST_SHOWN = 60
-"""Text that users wrote is cut to this many characters in messages."""
-
-_DEEPEST = 20
-"""Dots of a key; tables of a case are nested a few levels deep."""
+_DEEPEST = 20  # Dots of a key; tables of a case are nested a few levels deep.
 
 
 def dotted(path: Sequence[str | int]) -> str:
@@ -117,15 +112,11 @@ def micrometres(value: float) -> str:
 
 # Suggestions for misspelt names.
 
+_LIKENESS = 60.0  # Smallest likeness, in percent, at which a name is worth suggesting.
 
-_LIKENESS = 60.0
-"""Smallest likeness, in percent, at which a name is worth suggesting."""
+_MOST_SLIPS = 2  # Letters left out, added, changed or swapped in a name that is still clear.
 
-_MOST_SLIPS = 2
-"""Letters left out, added, changed or swapped in a name that is still clear."""
-
-_LONGEST = 60
-"""No name is longer, and longer text is not compared. [characters]"""
+_LONGEST = 60  # No name is longer, and longer text is not compared. [characters]
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

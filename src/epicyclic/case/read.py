@@ -21,19 +21,12 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, refuse
 from epicyclic.units import format_number, from_pint, unit_text
 
-# The tables of a case as plain values, such as TOML can hold.
+_DEEPEST = 20  # Tables of a case are nested a few levels deep; deeper ones are something else.
 
+_CONTROLS = ("Cc", "Cs")  # Unicode categories of control characters and of halves of characters.
+_LAYOUT = "\t\r\n"  # What texts of several lines may have.
 
-_DEEPEST = 20
-"""Tables of a case are nested a few levels deep; deeper ones are something else."""
-
-_CONTROLS = ("Cc", "Cs")
-"""Unicode categories of control characters and of halves of characters."""
-_LAYOUT = "\t\r\n"
-"""What texts of several lines may have."""
-
-_MOST_VALUES = 20_000
-"""A case has a hundred values, a large friction table some thousand."""
+_MOST_VALUES = 20_000  # A case has a hundred values, a large friction table some thousand.
 
 
 def plain(value: Any) -> Any:
@@ -141,15 +134,12 @@ def without(tables: dict[str, Any], path: Sequence[str]) -> dict[str, Any]:
 
 # From a case file to plain tables, with every line that is not TOML reported.
 
-
 _LARGEST_FILE = 1_000_000
 """A case file is a page of text; anything larger than this is something else. [bytes]"""
 
-_LONGEST_PATH = 500
-"""Paths in messages are cut to this many characters."""
+_LONGEST_PATH = 500  # Paths in messages are cut to this many characters.
 
-_MOST_BAD_LINES = 50
-"""A file with more lines that are not TOML is something else."""
+_MOST_BAD_LINES = 50  # A file with more lines that are not TOML is something else.
 
 _DEEPEST_KEY = 50
 """Dots of one key; the TOML reader would need memory as the square of their number."""
@@ -160,8 +150,9 @@ _PLACE = re.compile(r" \(at line (?P<line>\d+), column \d+\)")
 _KEY_LINE = re.compile(r"(?P<key>[\w.\"'-]+)\s*=(?P<value>[^#\[{]*)(#.*)?")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 
-_MARK = "\ue000"
-"""Encloses the number of the line before a mended value; a character of no script."""
+_GIVES_AGAIN = "Cannot overwrite"  # How the reason of a key that is given twice begins.
+
+_MARK = "\ue000"  # Encloses the number of the line before a mended value; a character of no script.
 
 
 class _BadLine(NamedTuple):
@@ -229,14 +220,10 @@ def _mended(line: _BadLine) -> str | None:
     match = _KEY_LINE.fullmatch(line.text)
     if match is None:
         return None
-    if _gives_again(line):
+    if line.reason.startswith(_GIVES_AGAIN):
         return ""
     value = f"{_MARK}{line.number}{_MARK}{_value(match)}"
     return f"{match['key']} = {json.dumps(value)}"
-
-
-def _gives_again(line: _BadLine) -> bool:
-    return line.reason.startswith("Cannot overwrite")
 
 
 def _value(match: re.Match[str]) -> str:
@@ -270,16 +257,12 @@ def _problem(line: _BadLine, key: str) -> Problem:
         given = f"line {line.number}: {one_line(line.text)}"
     else:
         given = one_line(match["value"].strip())
-    if _gives_again(line):
+    if line.reason.startswith(_GIVES_AGAIN):
         return Problem(key, given, "gives a key that is given before.", "Keep one of the two.")
     if line.reason.startswith("Cannot declare"):
-        return Problem(
-            key,
-            given,
-            f"declares a table twice (line {line.number}).",
-            "Put all its keys under one header; a dotted key, such as micro_geometry.tip_relief "
-            "under [sun], declares its table too.",
-        )
+        advice = "Put all its keys under one header; a dotted key, such as "
+        advice += "micro_geometry.tip_relief under [sun], declares its table too."
+        return Problem(key, given, f"declares a table twice (line {line.number}).", advice)
     remedy = "Mend this line." if match is None else _remedy(match["key"], _value(match))
     return Problem(key, given, f"is not TOML (line {line.number}): {line.reason}.", remedy)
 
@@ -295,9 +278,6 @@ def _remedy(key: str, value: str) -> str:
         return f"Write {format_number(float(value), 12)}."
     except ValueError:
         return f'Put the value in quotes: {key} = "{one_line(value)}".'
-
-
-# Values typed on a command line.
 
 
 def parse_value(text: str) -> Any:
@@ -326,23 +306,16 @@ def case_html(name: str, given: Mapping[str, Any]) -> str:
     """The keys of a case that were given, table by table; parameters as for `case_line`."""
     alone = {key: value for key, value in given.items() if not isinstance(value, Mapping)}
     tables = {"": alone} | {key: it for key, it in given.items() if isinstance(it, Mapping)}
+    cell = '<td style="text-align: left">'
     rows = "".join(
-        _row(key if number == 0 else "", name, value)
+        f"<tr>{cell}<strong>{escape(key if number == 0 else '')}</strong></td>"
+        f"{cell}{escape(name)}</td>"
+        f"{cell}{escape(unit_text(value) if isinstance(value, str) else str(value))}</td></tr>"
         for key, table in tables.items()
         for number, (name, value) in enumerate(flattened(table))
     )
     title = escape(str(given.get("title") or name))
     return f"<table><caption><strong>{title}</strong></caption><tbody>{rows}</tbody></table>"
-
-
-def _row(table: str, key: str, value: object) -> str:
-    text = unit_text(value) if isinstance(value, str) else str(value)
-    cells = (f"<strong>{escape(table)}</strong>", escape(key), escape(text))
-    return f"<tr>{''.join(map(_cell, cells))}</tr>"
-
-
-def _cell(content: str) -> str:
-    return f'<td style="text-align: left">{content}</td>'
 
 
 def owner_without_keys(tables: Mapping[str, Any], key: str) -> Problem | None:

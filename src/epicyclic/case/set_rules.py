@@ -15,13 +15,12 @@ from epicyclic.case.gearing import RACK_KEYS, Gearing, GearPairing, Pin
 from epicyclic.case.messages import did_you_mean, millimetres
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import Problem
-from epicyclic.gears.gear import CARRIER, HOUSING, Gear, involute
-from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places
+from epicyclic.gears.gear import CARRIER, HOUSING, Gear
+from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places, profile_shift_sum
 
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
-SAME_PLACE = 1e-7
-"""Pin radii and overlaps that differ by less are equal: rounding of drawings. [m]"""
+SAME_PLACE = 1e-7  # Pin radii and overlaps that differ by less are equal: rounding of drawings. [m]
 MOST_PLANETS = 24
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""
@@ -44,12 +43,15 @@ def set_problems(gearing: Gearing) -> list[Problem]:
 
 def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
     """Problems of the tables that a listed set has beside its gears."""
-    return [
-        *_name_problems(gearing),
-        *_loss_problems(table, gearing),
-        *_planet_problems(table, gearing),
-        *_sharing_problems(table),
+    known = gearing.terms
+    losses = [
+        Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
+        for name in table.losses
+        if name not in known
+        for remedy in [did_you_mean(name, known) or f"Known are: {', '.join(known)}."]
     ]
+    planets = _planet_problems(table, gearing)
+    return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
 
 
 def _name_problems(gearing: Gearing) -> Iterator[Problem]:
@@ -62,21 +64,6 @@ def _name_problems(gearing: Gearing) -> Iterator[Problem]:
         if "." in name:
             allowed = "is not a valid name for a gear: a dot stands between set and gear."
             yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
-    keys = [mesh.key for mesh in gearing.meshes]
-    for one, two in combinations(gearing.meshes, 2):
-        if one.key == two.key:
-            pairs = [f'["{mesh.first}", "{mesh.second}"]' for mesh in (one, two)]
-            allowed = f"have the same name, {one.key}."
-            key = f"meshes[{keys.index(one.key)}], meshes[{gearing.meshes.index(two)}]"
-            yield Problem(key, ", ".join(pairs), allowed, "Rename one of the gears.")
-
-
-def _loss_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
-    known = gearing.terms
-    for name in table.losses:
-        if name not in known:
-            remedy = did_you_mean(name, known) or f"Known are: {', '.join(known)}."
-            yield Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
 
 
 def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
@@ -100,13 +87,10 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
             remedy = remedy or f"Known are: {', '.join(gearing.planets) or 'none'}."
             key = f"planet_bearings.{name}"
             yield Problem(key, "", "is no body of a planet of this set.", remedy)
+    placed = {gearing.planet_of(mesh) for mesh in gearing.meshes}
     for body in gearing.planets:
-        if not any(
-            gearing.central_gear(mesh) is not None
-            and body in (gearing.bodies[mesh.first], gearing.bodies[mesh.second])
-            for mesh in gearing.meshes
-        ):
-            gear = next(gear for gear, own in gearing.bodies.items() if own == body)
+        if body not in placed:
+            gear = gearing.gears_of(body)[0]
             allowed = "meshes with planets only, so that nothing determines where its pin stands."
             remedy = "Let it mesh with a central gear too."
             yield Problem(f"gears.{gear}", "", allowed, remedy)
@@ -124,12 +108,9 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
         remedy = 'Write method = "equal" or "mesh-load-factor".'
         yield Problem("load_sharing.method", f'"{sharing.method}"', allowed, remedy)
     if sharing.mesh_load_factor > planets:
-        yield Problem(
-            "load_sharing.mesh_load_factor",
-            f"{sharing.mesh_load_factor:g}",
-            f"must be at most planets, {planets}: then one planet has all the load.",
-            "Take a smaller factor.",
-        )
+        shown = f"{sharing.mesh_load_factor:g}"
+        reason = f"must be at most planets, {planets}: then one planet has all the load."
+        yield Problem("load_sharing.mesh_load_factor", shown, reason, "Take a smaller factor.")
 
 
 # --- gears ----------------------------------------------------------------------------------------
@@ -172,13 +153,12 @@ def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         ]
         gears = stated or [mesh.first, mesh.second]
         words = "the same hand" if mesh.internal else "opposite hands"
-        yield Problem(
-            ", ".join(f"gears.{gear}.hand" for gear in gears),
-            ", ".join(f'"{getattr(gearing.tables[it], "hand", None)}"' for it in stated),
-            f"{mesh.first} and {mesh.second} must have {words} of helix to mesh"
-            + ("." if len(stated) == 2 else ", and the other hands given forbid it."),
-            "Correct or leave out hand.",
+        shown = ", ".join(f'"{getattr(gearing.tables[it], "hand", None)}"' for it in stated)
+        allowed = f"{mesh.first} and {mesh.second} must have {words} of helix to mesh" + (
+            "." if len(stated) == 2 else ", and the other hands given forbid it."
         )
+        remedy = "Correct or leave out hand."
+        yield Problem(", ".join(f"gears.{gear}.hand" for gear in gears), shown, allowed, remedy)
 
 
 # --- meshes ---------------------------------------------------------------------------------------
@@ -206,9 +186,7 @@ def _pin_radius_problems(
     own = [
         (mesh, distance)
         for mesh in gearing.meshes
-        if gearing.central_gear(mesh) is not None
-        and body in (gearing.bodies[mesh.first], gearing.bodies[mesh.second])
-        and (distance := distances[mesh.key]) is not None
+        if gearing.planet_of(mesh) == body and (distance := distances[mesh.key]) is not None
     ]
     if not own or max(a for _, a in own) - min(a for _, a in own) <= SAME_PLACE:
         return
@@ -217,12 +195,9 @@ def _pin_radius_problems(
     first, wanted = own[0]
     others = [mesh for mesh, a in own if abs(a - wanted) > SAME_PLACE]
     fits = " ".join(_shifts_for(gearing, mesh, wanted) for mesh in others)
-    yield Problem(
-        ", ".join(keys),
-        "",
-        f"the pin of {body} would stand at different radii: {shown}.",
-        f"Give all the same; that of {'-'.join(first.pair)} would do: {fits}",
-    )
+    allowed = f"the pin of {body} would stand at different radii: {shown}."
+    remedy = f"Give all the same; that of {'-'.join(first.pair)} would do: {fits}"
+    yield Problem(", ".join(keys), "", allowed, remedy)
 
 
 def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
@@ -236,10 +211,7 @@ def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
     name = "-".join(mesh.pair)
     if not 0 < bases < distance:
         return f"{name} cannot work there."
-    rack = one.rack
-    difference = involute(math.acos(bases / distance)) - involute(rack.transverse_pressure_angle)
-    teeth = one.teeth + side * two.teeth
-    total = teeth * difference / (2 * math.tan(rack.normal_pressure_angle))
+    total = profile_shift_sum(one.rack, one.teeth + side * two.teeth, distance)
     return (
         f"{name} then has no backlash with profile shift coefficients of {total:.4f} in sum "
         f"(now {one.profile_shift_coefficient + two.profile_shift_coefficient:.4f})."
@@ -250,15 +222,7 @@ def _triangle_problems(
     gearing: Gearing, distances: Mapping[str, float | None]
 ) -> Iterator[Problem]:
     """Two planets that mesh must stand at their centre distance from each other."""
-    radii: dict[str, float] = {}
-    for mesh in gearing.meshes:
-        if gearing.central_gear(mesh) is not None:
-            planet = next(
-                body
-                for body in (gearing.bodies[mesh.first], gearing.bodies[mesh.second])
-                if body in gearing.planets
-            )
-            radii.setdefault(planet, distances[mesh.key] or 0.0)
+    radii = gearing.pin_radii(distances)
     pairs = [(mesh, pair) for mesh in gearing.meshes if (pair := gearing.planet_pair(mesh))]
     wide = False
     for mesh, (one, two) in pairs:
@@ -268,13 +232,10 @@ def _triangle_problems(
         low, high = abs(radii[one] - radii[two]), radii[one] + radii[two]
         if not low <= distance <= high:
             wide = True
-            yield Problem(
-                gearing.distance_key(mesh),
-                millimetres(distance),
-                f"cannot be: the pins of {one} and {two} stand at {millimetres(radii[one])} and "
-                f"{millimetres(radii[two])} from the axis.",
-                f"It must be from {millimetres(low)} to {millimetres(high)}.",
-            )
+            allowed = f"cannot be: the pins of {one} and {two} stand at {millimetres(radii[one])} "
+            allowed += f"and {millimetres(radii[two])} from the axis."
+            remedy = f"It must be from {millimetres(low)} to {millimetres(high)}."
+            yield Problem(gearing.distance_key(mesh), millimetres(distance), allowed, remedy)
     if wide:
         return
     pins = gearing.pins
@@ -283,13 +244,10 @@ def _triangle_problems(
             continue
         apart, distance = math.dist(pins[one].place, pins[two].place), distances[mesh.key] or 0.0
         if abs(apart - distance) > SAME_PLACE:
-            yield Problem(
-                gearing.distance_key(mesh),
-                millimetres(distance),
-                f"does not close the ring of planets: {one} and {two} stand "
-                f"{millimetres(apart)} apart by their other meshes.",
-                f"Give {millimetres(apart)}.",
-            )
+            allowed = f"does not close the ring of planets: {one} and {two} stand "
+            allowed += f"{millimetres(apart)} apart by their other meshes."
+            remedy = f"Give {millimetres(apart)}."
+            yield Problem(gearing.distance_key(mesh), millimetres(distance), allowed, remedy)
 
 
 def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
@@ -301,12 +259,10 @@ def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         different = _rack_difference(mesh)
         if different:
             one, two = drawn.pair
-            yield Problem(
-                f"meshes[{gearing.meshes.index(drawn)}]",
-                f'["{one}", "{two}"]',
-                f"cannot mesh: {different}.",
-                "Give both the same normal module, pressure angle and helix angle.",
-            )
+            shown = f'["{one}", "{two}"]'
+            allowed = f"cannot mesh: {different}."
+            remedy = "Give both the same normal module, pressure angle and helix angle."
+            yield Problem(f"meshes[{gearing.meshes.index(drawn)}]", shown, allowed, remedy)
             continue
         yield from check_mesh(gearing, mesh, gearing.distance_key(drawn))
 
@@ -361,24 +317,19 @@ def _angle_problems(gearing: Gearing) -> Iterator[Problem]:
     if angles is None:
         return
     if len(angles) != count:
-        yield Problem(
-            "planet.angles",
-            f"{len(angles)} angles",
-            f"must be one angle for each of the {count} planets (planet.count).",
-            f"Give {count} angles, or none for the nearest admissible positions.",
-        )
+        allowed = f"must be one angle for each of the {count} planets (planet.count)."
+        remedy = f"Give {count} angles, or none for the nearest admissible positions."
+        yield Problem("planet.angles", f"{len(angles)} angles", allowed, remedy)
     sun, ring = gearing.tables["sun"].teeth, gearing.tables["ring"].teeth
     for number, angle in enumerate(angles):
         relative = angle - angles[0]
         admissible = nearest_admissible_angle(relative, sun, ring)
         if abs(relative - admissible) > ANGLE_TOLERANCE:
-            yield Problem(
-                f"planet.angles[{number}]",
-                f"{math.degrees(angle):.6g} deg",
-                "a planet cannot be assembled there: positions differ by multiples of "
-                f"360/({sun} + {ring}) deg.",
-                f"The nearest is {math.degrees(angles[0] + admissible):.6f} deg.",
-            )
+            shown = f"{math.degrees(angle):.6g} deg"
+            allowed = "a planet cannot be assembled there: positions differ by multiples of "
+            allowed += f"360/({sun} + {ring}) deg."
+            remedy = f"The nearest is {math.degrees(angles[0] + admissible):.6f} deg."
+            yield Problem(f"planet.angles[{number}]", shown, allowed, remedy)
 
 
 def _place_problems(gearing: Gearing) -> Iterator[Problem]:
@@ -388,13 +339,10 @@ def _place_problems(gearing: Gearing) -> Iterator[Problem]:
         return
     number = arrangement.number
     fitting = [str(n) for n in range(1, MOST_PLANETS + 1) if number % n == 0]
-    yield Problem(
-        gearing.count_key,
-        str(count),
-        f"cannot be assembled: by the numbers of teeth, a planet fits only at multiples of "
-        f"360/{number} deg from another one.",
-        f"Take {' or '.join(fitting)}, or other numbers of teeth.",
-    )
+    allowed = "cannot be assembled: by the numbers of teeth, a planet fits only at multiples of "
+    allowed += f"360/{number} deg from another one."
+    remedy = f"Take {' or '.join(fitting)}, or other numbers of teeth."
+    yield Problem(gearing.count_key, str(count), allowed, remedy)
 
 
 def _axial_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
@@ -436,12 +384,9 @@ def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
             if gearing.listed
             else ("neighbouring planets overlap by")
         )
-        yield Problem(
-            gearing.count_key if gearing.stated_angles is None else "planet.angles",
-            str(gearing.count),
-            f"{which} {millimetres(-gap)}.",
-            _fewer(gearing, sound, pins, close, apart),
-        )
+        key = gearing.count_key if gearing.stated_angles is None else "planet.angles"
+        allowed = f"{which} {millimetres(-gap)}."
+        yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, pins, close, apart))
 
 
 def _gap(

@@ -16,14 +16,13 @@ from typing import Any
 import numpy as np
 
 from epicyclic.case.gear_rules import gears_by_name
-from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.gear_tables import GearTable, allowance_shift, thickness_key
 from epicyclic.case.gearing import Gearing, GearPairing, is_internal
 from epicyclic.case.messages import micrometres, millimetres
 from epicyclic.case.read import value_at
 from epicyclic.case.set_rules import rack_problems
 from epicyclic.case.tables.base import roughness_told, short_oil_told
-from epicyclic.case.thickness import allowance_shift, thickness_key
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.gear import BasicRack, Gear
 from epicyclic.gears.mesh import (
     closed_center_distance,
@@ -42,16 +41,13 @@ BASIC_RACKS = {
 """h_fP and the rounding rho_fP of the tool's tip, in normal modules; ISO 53:1998 (second hand)."""
 FINEST_SHIFT = 0.5e-3
 """Half a unit of the last digit of a profile shift counts at most as this: 0.3 means 0.300. [1]"""
-FINEST_LENGTH = 0.5e-6
-"""The same of lengths: 39 mm means 39.000 mm. [m]"""
+FINEST_LENGTH = 0.5e-6  # The same of lengths: 39 mm means 39.000 mm. [m]
 AGREES = 0.5e-6
 """A stated backlash that differs less from that of the teeth is that of the teeth. [m]"""
 ROUNDING = 0.5e-9
-"""Teeth that are too thick by less than this pass as they are; see `backlash.ROUNDING`. [m]"""
-_ALIKE = 1e-9
-"""Modules and angles that differ by less are equal, relatively."""
-LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0
-"""What a case may state."""
+"""Teeth that are too thick by less than this pass as they are; see `gear_rules.ROUNDING`. [m]"""
+_ALIKE = 1e-9  # Modules and angles that differ by less are equal, relatively.
+LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0  # What a case may state.
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,7 +266,10 @@ class _Solver:
             raise _no_distance(without)
         free = [name for name in self.thinned if name not in self.shifts]
         if free:
-            raise self._no_shift(free)
+            allowed = "is missing, and so is that of every mate."
+            remedy = "Add one of them, or tooth_thickness with thickness_diameter: the others "
+            remedy += "follow from the centre distance."
+            raise one_problem(", ".join(map(self._shift_key, free)), "", allowed, remedy)
         for mesh in doubly:
             self._adjust(mesh)
 
@@ -291,44 +290,30 @@ class _Solver:
         try:
             return closed_center_distance(mesh.rack, mesh.teeth, total, mesh.backlash or 0.0)
         except ValueError as error:
-            raise _refused(
-                ", ".join(map(self._shift_key, mesh.gears)),
-                "",
-                f"leave no centre distance: {error}.",
-                f"Correct the profile shifts, or give {'.'.join(mesh.place)}.",
-            ) from None
+            key = ", ".join(map(self._shift_key, mesh.gears))
+            allowed = f"leave no centre distance: {error}."
+            remedy = f"Correct the profile shifts, or give {'.'.join(mesh.place)}."
+            raise one_problem(key, "", allowed, remedy) from None
 
     # --- profile shifts ---
 
     def _find_shift(self) -> bool:
         """Profile shift of the first gear without one, the thinner of what its mates leave."""
         for name in self.thinned:
-            known = [] if name in self.shifts else list(self._known_mates(name))
+            known = [
+                (self._sum(mesh) - self.shifts[mate], mesh)
+                for mesh in self.meshes
+                if name in mesh.gears
+                and name not in self.shifts
+                and mesh.group in self.distances
+                and (mate := mesh.gears[1 - mesh.gears.index(name)]) in self.shifts
+            ]
             if known:
-                shift, mesh = min(
-                    ((self._sum(mesh) - self.shifts[mate], mesh) for mesh, mate in known),
-                    key=lambda item: item[0],
-                )
+                shift, mesh = min(known, key=lambda item: item[0])
                 self._set(name, shift, mesh)
                 self._tell(self._shift_key(name), f"{shift:z.4f}", mesh)
                 return True
         return False
-
-    def _known_mates(self, name: str) -> Iterator[tuple[_Sized, str]]:
-        for mesh in self.meshes:
-            if name in mesh.gears and mesh.group in self.distances:
-                mate = mesh.gears[1 - mesh.gears.index(name)]
-                if mate in self.shifts:
-                    yield mesh, mate
-
-    def _no_shift(self, free: list[str]) -> InputError:
-        return _refused(
-            ", ".join(self._shift_key(name) for name in free),
-            "",
-            "is missing, and so is that of every mate.",
-            "Add one of them, or tooth_thickness with thickness_diameter: the others "
-            "follow from the centre distance.",
-        )
 
     def _sum(self, mesh: _Sized) -> float:
         """Nominal x1 + x2 of a mesh; 0 if its gears cannot mesh, which is told with the meshes."""
@@ -348,14 +333,11 @@ class _Solver:
 
     def _set(self, name: str, shift: float, mesh: _Sized) -> None:
         if not LEAST_SHIFT <= shift <= LARGEST_SHIFT:
-            raise _refused(
-                self._shift_key(name),
-                "",
-                f"would have to be {shift:.3g} at the centre distance of "
-                f"{millimetres(self.distances[mesh.group])}, and must be >= {LEAST_SHIFT:g} and <= "
-                f"{LARGEST_SHIFT:g}.",
-                f"Correct {'.'.join(mesh.place)}, the tooth numbers or the module.",
-            )
+            allowed = f"would have to be {shift:.3g} at the centre distance of "
+            allowed += f"{millimetres(self.distances[mesh.group])}, and must be >= {LEAST_SHIFT:g} "
+            allowed += f"and <= {LARGEST_SHIFT:g}."
+            remedy = f"Correct {'.'.join(mesh.place)}, the tooth numbers or the module."
+            raise one_problem(self._shift_key(name), "", allowed, remedy)
         self.shifts[name] = shift
         keys = {key: None for choice in GearTable.THICKNESS for key in choice.split("+")}
         self.tables[name] = self.tables[name].model_copy(
@@ -383,13 +365,10 @@ class _Solver:
             over += sum(self.thinned[name] for name in mesh.gears)
         backlash = over * -2 * mesh.rack.normal_module * math.sin(mesh.rack.normal_pressure_angle)
         if mesh.backlash is not None and abs(backlash) > AGREES:
-            raise _refused(
-                mesh.backlash_key,
-                millimetres(mesh.backlash),
-                f"contradicts the teeth and the centre distance, which leave "
-                f"{micrometres(backlash + mesh.backlash)}.",
-                "Leave out normal_backlash, a profile shift or the centre distance.",
-            )
+            allowed = "contradicts the teeth and the centre distance, which leave "
+            allowed += f"{micrometres(backlash + mesh.backlash)}."
+            remedy = "Leave out normal_backlash, a profile shift or the centre distance."
+            raise one_problem(mesh.backlash_key, millimetres(mesh.backlash), allowed, remedy)
         if mesh.backlash is not None or backlash > -ROUNDING or over > self._printed(mesh):
             return
         name = mesh.gives_way
@@ -434,13 +413,7 @@ def _no_distance(meshes: Sequence[_Sized]) -> InputError:
     place = ".".join(meshes[0].place)
     pairs = " or ".join(" and ".join(mesh.gears) for mesh in meshes)
     table, _, key = place.rpartition(".")
-    return _refused(
-        place,
-        "",
-        f"is missing, and no mesh tells it: that takes the tooth thickness of both gears, {pairs}.",
-        f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.',
-    )
-
-
-def _refused(key: str, value: str, allowed: str, remedy: str) -> InputError:
-    return InputError([Problem(key, value, allowed, remedy)])
+    allowed = "is missing, and no mesh tells it: that takes the tooth thickness of both gears, "
+    allowed += f"{pairs}."
+    remedy = f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.'
+    return one_problem(place, "", allowed, remedy)

@@ -21,9 +21,6 @@ from epicyclic.case.tables.elements import ELEMENT_CHECKS
 from epicyclic.case.train import TrainCase, form_of_set
 from epicyclic.case.train_tables import ListedSet, PlanetarySet
 
-# Commented case files, written from the schema and the values of a case.
-
-
 _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
     "planetary": ("talbot-2012", PlanetaryCase),
     "gear_pair": ("talbot-2012-pair", GearPairCase),
@@ -101,39 +98,52 @@ def case_text(
     about: Mapping[str, str] | None = None,
 ) -> str:
     """A case file: keys of `tables` with values, the others commented out."""
-    kind = tables["kind"]
-    _, schema = _EXAMPLES[kind]
-    lines = [*(f"# {line}" for line in head), f'kind = "{kind}"']
-    lines.append(f"title = {toml_value(tables.get('title', ''))}")
-    writer = TableWriter(about or {})
-    left_out = []
-    for key, field in schema.model_fields.items():
-        table = table_of(field.annotation)
-        if table is None:
-            continue
-        if about is not None and key not in tables and not writer.tells_of(key):
-            left_out.append(f"[{key}]")
-        else:
-            lines += writer.table_lines(key, table, tables.get(key, {}), field)
+    if tables["kind"] == "train":
+        return _train_text(tables, head, about or {})
+    _, schema = _EXAMPLES[tables["kind"]]
+    writer = _Writer(tables, about or {})
+    keys = [key for key, field in schema.model_fields.items() if _is_table(field)]
+    shown = [key for key in keys if about is None or writer.is_known(key)]
+    lines = writer.head(head)
+    lines += [line for key in shown for line in writer.table(key, schema.model_fields[key])]
+    left_out = [f"[{key}]" for key in keys if key not in shown]
     if left_out:
         lines += ["", "# Defaults hold for these tables; 'epicyclic init' writes all their keys:"]
         lines.append(f"# {', '.join(left_out)}")
     return "\n".join(lines) + "\n"
 
 
-class TableWriter:
-    """Writes the lines of tables; `about` has comments of single keys."""
+class _Writer:
+    """Writes the lines of `tables`; `about` has comments of single keys."""
 
-    def __init__(self, about: Mapping[str, str]) -> None:
+    def __init__(self, tables: Mapping[str, Any], about: Mapping[str, str]) -> None:
+        self.tables = tables
         self.about = about
+
+    def head(self, comments: list[str]) -> list[str]:
+        """The first lines: comments, kind and title."""
+        title = toml_value(self.tables.get("title", ""))
+        kind = toml_value(self.tables["kind"])
+        return [*(f"# {line}" for line in comments), f"kind = {kind}", f"title = {title}"]
+
+    def is_known(self, key: str) -> bool:
+        """True if a table is given, or there is a comment of it or a key of it."""
+        return key in self.tables or self.tells_of(key)
 
     def tells_of(self, key: str) -> bool:
         """True if there is a comment of `key` or of one below it."""
         return any(name == key or name.startswith(f"{key}.") for name in self.about)
 
-    def table_lines(
-        self, key: str, table: type[BaseModel], values: Mapping[str, Any], field: FieldInfo
-    ) -> list[str]:
+    def table(self, key: str, field: FieldInfo) -> list[str]:
+        """A table of the case that is not of the user's names."""
+        return self.table_lines(key, field, self.tables.get(key, {}))
+
+    def table_lines(self, key: str, field: FieldInfo, values: Any) -> list[str]:
+        """The lines of the table at `key`."""
+        table = table_of(field.annotation)
+        assert table is not None
+        if not isinstance(values, Mapping):
+            return ["", f"# [{key}] = {toml_value(values)}"]
         doc = (table.__doc__ or "").strip().splitlines()[0]
         mark = "" if values or field.is_required() else "# "
         lines = ["", f"{mark}[{key}]".ljust(COMMENT_COLUMN) + f"# {self.about.get(key, doc)}"]
@@ -229,9 +239,6 @@ def toml_value(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-# Commented case files of trains, as far as the tables are known.
-
-
 _LISTS = {
     "shafts": "what turns together, always; members not named turn alone",
     "positions": "of gears along their shafts, for the forces on bearings",
@@ -248,52 +255,26 @@ _DEFAULTS = (
 )
 
 
-def train_text(tables: Mapping[str, Any], head: list[str], about: Mapping[str, str]) -> str:
-    """The file of a train; parameters as of `epicyclic.case.template.case_text`.
-
-    Keys of bearings and the like that are neither given nor told are left out.
-    """
+def _train_text(tables: Mapping[str, Any], head: list[str], about: Mapping[str, str]) -> str:
+    """The file of a train; keys of bearings and the like that nothing is said of are left out."""
     writer = _TrainWriter(tables, about)
-    lines = [*(f"# {line}" for line in head), 'kind = "train"']
-    lines.append(f"title = {toml_value(tables.get('title', ''))}")
-    lines += writer.table("operation")
-    lines += writer.entries("shafts")
-    lines += writer.states()
-    lines += writer.entries("positions")
-    lines += writer.table("lubricant")
-    lines += [line for key in _DEFAULTS if writer.is_known(key) for line in writer.table(key)]
+    fields = TrainCase.model_fields
+    lines = [*writer.head(head), *writer.table("operation", fields["operation"])]
+    lines += [*writer.entries("shafts"), *writer.states(), *writer.entries("positions")]
+    known = [key for key in _DEFAULTS if writer.is_known(key)]
+    lines += [line for key in ("lubricant", *known) for line in writer.table(key, fields[key])]
     lines += [line for name in tables.get("sets", {}) for line in writer.one_set(name)]
     lines += [line for kind in ELEMENT_CHECKS for line in writer.parts(kind)]
-    left_out = [f"[{key}]" for key in _DEFAULTS if not writer.is_known(key)]
-    lines += ["", f"# Defaults hold for the tables {', '.join(left_out)},", f"# {writer.left_out}"]
+    left_out = ", ".join(f"[{key}]" for key in _DEFAULTS if key not in known)
+    lines += ["", f"# Defaults hold for the tables {left_out},"]
+    lines.append(
+        "# and for those of the sets that are not here: mesh, models, numerics, losses, ..."
+    )
     return "\n".join(lines) + "\n"
 
 
-class _TrainWriter:
+class _TrainWriter(_Writer):
     """Writes the tables of a train."""
-
-    left_out = "and for those of the sets that are not here: mesh, models, numerics, losses, ..."
-
-    def __init__(self, tables: Mapping[str, Any], about: Mapping[str, str]) -> None:
-        self.tables = tables
-        self.about = about
-        self.writer = TableWriter(about)
-
-    def is_known(self, key: str) -> bool:
-        """True if a table is given, or there is a comment of it or a key of it."""
-        return key in self.tables or self.writer.tells_of(key)
-
-    def table(self, key: str) -> list[str]:
-        """A table of the train that is not of the user's names."""
-        field = TrainCase.model_fields[key]
-        return self._table(key, field, self.tables.get(key, {}))
-
-    def _table(self, key: str, field: FieldInfo, values: Any) -> list[str]:
-        table = table_of(field.annotation)
-        assert table is not None
-        if not isinstance(values, Mapping):
-            return ["", f"# [{key}] = {toml_value(values)}"]
-        return self.writer.table_lines(key, table, values, field)
 
     def entries(self, key: str) -> list[str]:
         """A table of the user's names, one line each."""
@@ -329,8 +310,8 @@ class _TrainWriter:
                 lines.append(self._line(f"{toml_key(key)} = {toml_value(value)}", f"{place}.{key}"))
         for key, field in fields.items():
             full = f"{place}.{key}"
-            if key in values or self.writer.tells_of(full):
-                lines += self._table(full, field, values.get(key, {}))
+            if key in values or self.tells_of(full):
+                lines += self.table_lines(full, field, values.get(key, {}))
                 if key == "gears" and of_gears is not None:
                     lines += self._listed_gears(full, of_gears, values["gears"])
         return lines
@@ -342,7 +323,7 @@ class _TrainWriter:
             line
             for name, gear in gears.items()
             if name not in SharedGears.model_fields
-            for line in self._table(f"{place}.{dotted([name])}", one, gear)
+            for line in self.table_lines(f"{place}.{dotted([name])}", one, gear)
         ]
 
     def parts(self, kind: str) -> Iterator[str]:
@@ -367,8 +348,7 @@ class _TrainWriter:
         return iter(dict.fromkeys(parts[start] for parts in known))
 
     def _line(self, text: str, key: str) -> str:
-        told = self.about.get(key)
-        return f"{text.ljust(COMMENT_COLUMN - 1)} # {told}" if told else text
+        return _line(text, self.about.get(key, ""))
 
 
 def _is_table(field: FieldInfo) -> bool:

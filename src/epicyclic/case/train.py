@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal, Self, cast
+from typing import Any, Literal, NamedTuple, Self, cast
 
 from pydantic import Field, PrivateAttr
 
@@ -21,7 +21,6 @@ from epicyclic.case.set_rules import listed_problems, rack_problems, set_problem
 from epicyclic.case.sizing import Found, complete, told_oil
 from epicyclic.case.tables.base import Table
 from epicyclic.case.tables.elements import ELEMENT_CHECKS, ElementTables, placing_problems
-from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -29,11 +28,15 @@ from epicyclic.case.tables.models import (
     Numerics,
     PlanetaryModels,
 )
-from epicyclic.case.tables.operation import Lubricant, Surroundings
-from epicyclic.case.tables.thermal import ThermalTable
+from epicyclic.case.tables.operation import (
+    LUBRICATION,
+    Lubricant,
+    LubricationTable,
+    Surroundings,
+    ThermalTable,
+)
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable
-from epicyclic.case.train_bearings import bearing_force_problems
-from epicyclic.case.train_checks import operation_problems
+from epicyclic.case.train_rules import bearing_force_problems, operation_problems
 from epicyclic.case.train_shape import TrainShape, shape_of_train
 from epicyclic.case.train_tables import (
     ComputedSet,
@@ -145,7 +148,7 @@ class TrainCase(_TrainHead):
         return hash((self.title, *self.sets, operation.state, operation.torque, operation.speed))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _read, (self.given(), self.source)
+        return TrainCase.from_tables, (self.given(), self.source)
 
     @classmethod
     def from_tables(
@@ -173,7 +176,9 @@ class TrainCase(_TrainHead):
             )
         ]
         if not named:
-            found.append(_no_sets(given))
+            shown, allowed = "" if given is None else written(given), "must hold at least one set."
+            remedy = "Add [sets.NAME] and its gears."
+            found.append(Problem("sets", shown, allowed, remedy))
         shared = {key: tables[key] for key in _SHARED if key in tables and key in whole.sections}
         sets: dict[str, SetTable] = {}
         shapes: dict[str, Gearing] = {}
@@ -213,15 +218,6 @@ class TrainCase(_TrainHead):
         return cls._made(cast(Self, train), tables, source, found)
 
 
-def _read(tables: dict[str, Any], source: str) -> TrainCase:
-    return TrainCase.from_tables(tables, source)
-
-
-def _no_sets(given: Any) -> Problem:
-    shown = "" if given is None else written(given)
-    return Problem("sets", shown, "must hold at least one set.", "Add [sets.NAME] and its gears.")
-
-
 def _below(prefix: str, problem: Problem) -> Problem:
     """A problem of a set or part as one of the train."""
     keys = ", ".join(f"{prefix}.{key}" if key else prefix for key in problem.key.split(", "))
@@ -253,36 +249,30 @@ def _texts(value: Any) -> Iterator[str]:
 # --- sets -----------------------------------------------------------------------------------------
 
 
-class _ReadSet:
+class _ReadSet(NamedTuple):
     """A set, or its problems."""
 
-    def __init__(
-        self, table: SetTable | None, problems: list[Problem], found: tuple[Found, ...] = ()
-    ) -> None:
-        self.table = table
-        self.problems = problems
-        self.found = found
+    table: SetTable | None
+    problems: list[Problem]
+    found: tuple[Found, ...] = ()
 
 
 def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
     if not isinstance(raw, dict):
         remedy = "Write [sets.NAME] and its keys below it."
         return _ReadSet(None, [Problem("", written(raw), "must be a table of keys.", remedy)])
-    return _read_set_cached(_Given(raw, dict(shared), folder))
+    key = (_frozen(raw), _frozen(dict(shared)))
+    return _read_set_cached(_Given(raw, dict(shared), folder, key))
 
 
+@dataclass(frozen=True)
 class _Given:
     """What a set is read from: equal if every value is the same and of the same type."""
 
-    def __init__(self, raw: dict[str, Any], shared: dict[str, Any], folder: Path) -> None:
-        self.raw, self.shared, self.folder = raw, shared, folder
-        self.key = (_frozen(raw), _frozen(shared), folder)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Given) and self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
+    raw: dict[str, Any] = field(compare=False)
+    shared: dict[str, Any] = field(compare=False)
+    folder: Path
+    key: Hashable  # Both tables, frozen.
 
 
 def _frozen(value: Any) -> Hashable:
@@ -298,7 +288,10 @@ def _frozen(value: Any) -> Hashable:
 def _read_set_cached(given: _Given) -> _ReadSet:
     form, raw = form_of_set(given.raw)
     if form is None:
-        return _ReadSet(None, [_formless(raw)])
+        names = ("sun", "ring", "planet", "pinion", "gear", "meshes", "gears")
+        near = [text for key in raw if (text := did_you_mean(key, names))]
+        remedy = "Give sun and ring, or pinion and gear, or gears and meshes."
+        return _ReadSet(None, [Problem("", "", "has no gears.", (*near, remedy)[0])])
     if not any(key in raw for key in _GIVEN):
         raw = {key: value for key, value in given.shared.items() if key in form.model_fields} | raw
     if "models" in raw and form is PairSet:
@@ -316,14 +309,9 @@ def _read_set_cached(given: _Given) -> _ReadSet:
             as_given(problem, raw) for problem in cross_check(checked, tables, given.folder)
         ]
     if all(key in raw for key in _GIVEN):
-        problems.append(
-            Problem(
-                "efficiency",
-                written(raw["efficiency"]),
-                "conflicts with mesh_efficiency.",
-                "Give one of them: of the set from sun to ring, or of each of its meshes.",
-            )
-        )
+        allowed = "conflicts with mesh_efficiency."
+        remedy = "Give one of them: of the set from sun to ring, or of each of its meshes."
+        problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
     return _ReadSet(None if problems else read.case, problems, told)
 
 
@@ -351,59 +339,39 @@ def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
     split = {key: value for key, value in raw.items() if key != "gears"} | {"members": members}
     if given:
         known = GivenListedSet.model_fields.keys() | {"members"}
-        own = ("teeth", "internal", "body", "planet")
+        idle = ListedGear.model_fields.keys() - {"teeth", "internal", "body", "planet"}
         split["members"] = {
-            name: {key: item for key, item in gear.items() if key in own or not _is_gear_key(key)}
-            if isinstance(gear, dict)
-            else gear
+            name: _without_keys(gear, idle) if isinstance(gear, dict) else gear
             for name, gear in members.items()
         }
         if isinstance(split.get("mesh"), dict):
+            computed = ListedMesh.model_fields.keys()
             split["mesh"] = {
-                name: {k: item for k, item in mesh.items() if k not in ListedMesh.model_fields}
-                if isinstance(mesh, dict)
-                else mesh
+                name: _without_keys(mesh, computed) if isinstance(mesh, dict) else mesh
                 for name, mesh in split["mesh"].items()
-                if not isinstance(mesh, dict) or mesh.keys() - ListedMesh.model_fields.keys()
+                if not isinstance(mesh, dict) or mesh.keys() - computed
             }
-        return {
-            key: value
-            for key, value in split.items()
-            if key in known or key not in ListedSet.model_fields
-        }
+        return _without_keys(split, ListedSet.model_fields.keys() - known)
     return split | {"gears": shared}
 
 
-def _is_gear_key(key: str) -> bool:
-    """True for keys of a gear whose losses are computed; of no effect with a given efficiency."""
-    return key in ListedGear.model_fields
+def _without_keys(table: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key not in keys}
 
 
 def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:
     """The tables of a set without those that do not matter with a given efficiency."""
     computed = PlanetarySet.model_fields.keys() | PairSet.model_fields.keys()
-    own = {"sun", "ring", "planet", "pinion", "gear", *_GIVEN}
-    kept = {key: value for key, value in raw.items() if key in own or key not in computed}
+    kept = _without_keys(raw, computed - {"sun", "ring", "planet", "pinion", "gear", *_GIVEN})
     form = GivenPair if "pinion" in raw or "gear" in raw else GivenPlanetarySet
     for name in ("sun", "ring", "planet", "pinion", "gear"):
         table = kept.get(name)
         if isinstance(table, dict) and name in form.model_fields:
             annotation = form.model_fields[name].annotation
             assert annotation is not None
-            known = annotation.model_fields
-            kept[name] = {
-                key: value
-                for key, value in table.items()
-                if key in known or key == "internal" or not _is_gear_key(key)
-            }
+            idle = ListedGear.model_fields.keys() - {*annotation.model_fields, "internal"}
+            kept[name] = _without_keys(table, idle)
     return kept
-
-
-def _formless(raw: Mapping[str, Any]) -> Problem:
-    remedy = "Give sun and ring, or pinion and gear, or gears and meshes."
-    names = ("sun", "ring", "planet", "pinion", "gear", "meshes", "gears")
-    near = [did_you_mean(key, names) for key in raw]
-    return Problem("", "", "has no gears.", next((text for text in near if text), remedy))
 
 
 def _with_gears(problem: Problem) -> Problem:
@@ -458,12 +426,7 @@ def _element_problems(train: TrainCase) -> list[Problem]:
         allowed = "the table [lubricant] is missing, which computed losses need."
         problems.append(Problem("lubricant", "", allowed, remedy))
     if train.operation.oil_inlet_temperature is None:
-        problems.append(
-            Problem(
-                "operation.oil_inlet_temperature",
-                "",
-                "is missing, and computed losses need it.",
-                'Add oil_inlet_temperature = "... degC" to [operation].',
-            )
-        )
+        reason = "is missing, and computed losses need it."
+        advice = 'Add oil_inlet_temperature = "... degC" to [operation].'
+        problems.append(Problem("operation.oil_inlet_temperature", "", reason, advice))
     return problems

@@ -20,9 +20,8 @@ from epicyclic.case.gear_tables import (
     internal_if_negative,
     with_positive_teeth,
 )
-from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.base import Table, option
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
-from epicyclic.case.tables.lubrication import LUBRICATION, LubricationTable
 from epicyclic.case.tables.models import (
     GearPairLosses,
     GearPairModels,
@@ -32,6 +31,7 @@ from epicyclic.case.tables.models import (
     PlanetaryLosses,
     PlanetaryModels,
 )
+from epicyclic.case.tables.operation import LUBRICATION, LubricationTable
 from epicyclic.units import (
     Angle,
     HelixAngle,
@@ -42,7 +42,6 @@ from epicyclic.units import (
     RotationalSpeed,
     Temperature,
     Torque,
-    as_stated,
 )
 
 Efficiency = Annotated[Number, Field(gt=0, le=1)]
@@ -66,10 +65,8 @@ class GivenRing(Teeth):
 class GivenPlanet(Table):
     """The planets of a set of given efficiency."""
 
-    teeth: int | None = Field(
-        default=None, ge=5, le=2000, description="Default: half the difference of ring and sun."
-    )
-    count: int = Field(default=3, ge=1, le=24, description="Number of planets.")
+    teeth: int | None = option("Default: half the difference of ring and sun.", ge=5, le=2000)
+    count: int = option("Number of planets.", 3, ge=1, le=24)
 
 
 class GivenGear(Teeth):
@@ -79,18 +76,15 @@ class GivenGear(Teeth):
 
     teeth: int = RING_TEETH
 
-    internal: bool = Field(default=False, description="true: a ring gear around the pinion.")
+    internal: bool = option("true: a ring gear around the pinion.", False)
 
 
 class GivenListedGear(GivenGear):
     """A gear of a listed set of given efficiency."""
 
-    body: str | None = Field(
-        default=None, description="Gears with the same body turn together. Default: its own."
-    )
-    planet: bool | None = Field(
-        default=None,
-        description="true: it stands on the carrier. Default: as the meshes and shafts suggest.",
+    body: str | None = option("Gears with the same body turn together. Default: its own.")
+    planet: bool | None = option(
+        "true: it stands on the carrier. Default: as the meshes and shafts suggest."
     )
 
 
@@ -107,8 +101,8 @@ class PlanetarySet(Table):
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
-    hand: Literal["right", "left"] = Field(
-        default="right", description="Of the helix of the sun, for the forces on shaft bearings."
+    hand: Literal["right", "left"] = option(
+        "Of the helix of the sun, for the forces on shaft bearings.", "right"
     )
     lubrication: LubricationTable | None = LUBRICATION
     models: PlanetaryModels = PlanetaryModels()
@@ -124,11 +118,9 @@ class GivenPlanetarySet(Table):
     sun: Teeth
     ring: GivenRing
     planet: GivenPlanet = GivenPlanet()
-    efficiency: Efficiency | None = Field(
-        default=None, description="With the carrier at rest, sun to ring."
-    )
-    mesh_efficiency: Efficiency | None = Field(
-        default=None, description="Of each of the two meshes, with the carrier at rest."
+    efficiency: Efficiency | None = option("With the carrier at rest, sun to ring.")
+    mesh_efficiency: Efficiency | None = option(
+        "Of each of the two meshes, with the carrier at rest."
     )
 
 
@@ -139,14 +131,11 @@ class PairSet(Table):
     pinion: GearTable
     gear: PairGear
     mesh: SetMesh = SetMesh()
-    direction: Angle = Field(
-        default=as_stated("0 deg"),
-        description="From the axis of the pinion to that of the gear, for the forces on shaft "
-        "bearings.",
+    direction: Angle = option(
+        "From the axis of the pinion to that of the gear, for the forces on shaft bearings.",
+        "0 deg",
     )
-    hand: Literal["right", "left"] = Field(
-        default="right", description="Of the helix of the pinion, for the same."
-    )
+    hand: Literal["right", "left"] = option("Of the helix of the pinion, for the same.", "right")
     lubrication: LubricationTable | None = LUBRICATION
     models: GearPairModels = GearPairModels()
     numerics: Numerics = Numerics()
@@ -164,51 +153,40 @@ class GivenPair(Table):
 class ListedGear(PairGear):
     """A gear of a listed set whose losses are computed."""
 
-    body: str | None = Field(
-        default=None, description="Gears with the same body turn together. Default: its own."
+    body: str | None = option("Gears with the same body turn together. Default: its own.")
+    planet: bool | None = option(
+        "true: it stands on the carrier. Default: as the meshes and shafts suggest."
     )
-    planet: bool | None = Field(
-        default=None,
-        description="true: it stands on the carrier. Default: as the meshes and shafts suggest.",
+    normal_module: Length | None = option("Default: of [gears].")
+    transverse_module: Length | None = option("Default: of [gears].")
+    normal_pressure_angle: PressureAngle | None = option("Default: of [gears].")
+    transverse_pressure_angle: PressureAngle | None = option("Default: of [gears].")
+    helix_angle: HelixAngle | None = option("Default: of [gears].")
+    hand: Literal["right", "left"] | None = option(
+        "Of the helix. Default: the first gear right, the others as their mates demand, gears of "
+        "one body alike."
     )
-    normal_module: Length | None = Field(default=None, description="Default: of [gears].")
-    transverse_module: Length | None = Field(default=None, description="Default: of [gears].")
-    normal_pressure_angle: PressureAngle | None = Field(
-        default=None, description="Default: of [gears]."
+    mass: Mass | None = option(
+        "Of one planet with its rollers, at one of the gears of its body: its centrifugal force "
+        "loads the planet bearing. Default: from its sizes."
     )
-    transverse_pressure_angle: PressureAngle | None = Field(
-        default=None, description="Default: of [gears]."
-    )
-    helix_angle: HelixAngle | None = Field(default=None, description="Default: of [gears].")
-    hand: Literal["right", "left"] | None = Field(
-        default=None,
-        description="Of the helix. Default: the first gear right, the others as their mates "
-        "demand, gears of one body alike.",
-    )
-    mass: Mass | None = Field(
-        default=None,
-        description="Of one planet with its rollers, at one of the gears of its body: its "
-        "centrifugal force loads the planet bearing. Default: from its sizes.",
-    )
-    axial_position: Position | None = Field(
-        default=None,
-        description="Of the middle of its face from the middle of the planet bearing. Default: "
-        "gears of one body side by side, in the order of meshes.",
+    axial_position: Position | None = option(
+        "Of the middle of its face from the middle of the planet bearing. Default: gears of one "
+        "body side by side, in the order of meshes."
     )
 
 
 class ListedMesh(SetMesh):
     """What belongs to one mesh of a listed set, ``[sets.NAME.mesh.GEAR-GEAR]``."""
 
-    center_distance: Length | None = Field(
-        default=None,
-        description="Default: of [gears], that of another mesh of the same planet with a "
-        "central gear, or from the profile shifts, x.",
+    center_distance: Length | None = option(
+        "Default: of [gears], that of another mesh of the same planet with a central gear, or "
+        "from the profile shifts, x."
     )
-    direction: Angle = Field(
-        default=as_stated("0 deg"),
-        description="Of fixed axes, from that of the first gear of the pair to that of the second, "
-        "for the forces on shaft bearings.",
+    direction: Angle = option(
+        "Of fixed axes, from that of the first gear of the pair to that of the second, for the "
+        "forces on shaft bearings.",
+        "0 deg",
     )
 
 
@@ -224,9 +202,7 @@ MeshPair = tuple[str, str]
 class _Listed(Table):
     """A set whose gears and meshes are listed."""
 
-    planets: int | None = Field(
-        default=None, ge=1, le=24, description="Number of planets of each kind; none: fixed axes."
-    )
+    planets: int | None = option("Number of planets of each kind; none: fixed axes.", ge=1, le=24)
     meshes: tuple[MeshPair, ...] = Field(min_length=1, description="Pairs of gears.")
 
     @classmethod
@@ -254,12 +230,10 @@ class ListedSet(_Listed):
     gears: SharedGears = SharedGears()
     members: dict[str, ListedGear]
     mesh: dict[str, ListedMesh] = Field(default={})
-    planet_bearing: PlanetBearing | None = Field(
-        default=None, description="Of every planet that planet_bearings does not name."
+    planet_bearing: PlanetBearing | None = option(
+        "Of every planet that planet_bearings does not name."
     )
-    planet_bearings: dict[str, PlanetBearing] = Field(
-        default={}, description="By the body of the planet."
-    )
+    planet_bearings: dict[str, PlanetBearing] = option("By the body of the planet.", {})
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     lubrication: LubricationTable | None = LUBRICATION
@@ -283,10 +257,8 @@ SetTable = PlanetarySet | PairSet | ListedSet | GivenPlanetarySet | GivenPair | 
 class StateTable(Table):
     """What brakes and clutches make of a train."""
 
-    fixed: tuple[str, ...] = Field(default=(), description="Shafts that brakes hold.")
-    joined: tuple[tuple[str, ...], ...] = Field(
-        default=(), description="Groups of shafts that clutches join."
-    )
+    fixed: tuple[str, ...] = option("Shafts that brakes hold.", ())
+    joined: tuple[tuple[str, ...], ...] = option("Groups of shafts that clutches join.", ())
 
 
 def _state_name(value: object) -> object:
@@ -306,19 +278,19 @@ class TrainOperation(Table):
         "oil_inlet_temperature": None,
     }
 
-    state: StateName | None = Field(default=None, description="One of [states].")
+    state: StateName | None = option("One of [states].")
     input: str = Field(description="The shaft to which torque and speed belong.")
     output: str = Field(description="The shaft whose torque balances.")
     torque: Torque = Field(
         description="On the input shaft; negative = coasting, power flows back through it."
     )
     speed: RotationalSpeed = Field(description="Of the input shaft.")
-    oil_inlet_temperature: Temperature | None = Field(
-        default=None, description="Oil temperature at all contacts; needed for computed losses."
+    oil_inlet_temperature: Temperature | None = option(
+        "Oil temperature at all contacts; needed for computed losses."
     )
-    speeds: dict[str, RotationalSpeed] = Field(
-        default={}, description="Of further driven shafts, if the train has more freedom."
+    speeds: dict[str, RotationalSpeed] = option(
+        "Of further driven shafts, if the train has more freedom.", {}
     )
-    torques: dict[str, Torque] = Field(
-        default={}, description="From outside on further shafts, such as a power take-off."
+    torques: dict[str, Torque] = option(
+        "From outside on further shafts, such as a power take-off.", {}
     )

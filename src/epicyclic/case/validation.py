@@ -10,7 +10,6 @@ from functools import cache, partial
 from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
-from annotated_types import Gt
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
@@ -31,9 +30,6 @@ from epicyclic.case.read import changed_at, control_problems, value_at
 from epicyclic.case.tables.base import Table
 from epicyclic.errors import Problem
 from epicyclic.units import format_number, range_remedy
-
-# Errors of the schema, told in the user's terms: what is allowed and what to change.
-
 
 _PLAIN_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(%?)\s*")
 
@@ -138,11 +134,8 @@ def _wrong_tag(place: Place, detail: ErrorDetails) -> Problem:
 def _remedy(place: Place, kind: str, value: Any) -> str:
     """What to change about a `value` that is not what `place` may hold."""
     if kind in _OUT_OF_RANGE:
-        low, high = bounds_of(place.annotation, place.metadata)
-        open_low = isinstance(low, Gt)
-        lowest: Any = low.gt if isinstance(low, Gt) else low and low.ge
-        highest: Any = high and high.le
-        return range_remedy(value, lowest, highest, open_low=open_low)
+        low, high, is_open = bounds_of(place.annotation, place.metadata)
+        return range_remedy(value, low, high, open_low=is_open)
     if kind == "literal_error":
         choices = choices_of(place.annotation)
         only = f'write "{choices[0]}"' if len(choices) == 1 else "choose one of them"
@@ -180,7 +173,6 @@ def _number_remedy(value: Any) -> str:
 
 # The tables of a case against the schema: what is sound, and every problem of the rest.
 
-
 AnyCase = TypeVar("AnyCase", bound=Table)
 
 
@@ -205,7 +197,7 @@ def validate(
     """
     case, details = _try(kind, raw | dict(sound))
     problems = list(control_problems(raw))
-    while unknown := _unknown_keys(kind, details):
+    while unknown := [locate(kind, it["loc"]) for it in details if it["type"] == "extra_forbidden"]:
         # repeated, as a table that was misspelt itself may have unknown keys of its own
         tables = tables_of(kind).items()
         problems += [unknown_key(place, value_at(raw, place.path), tables) for place in unknown]
@@ -232,13 +224,13 @@ def _try(kind: type[AnyCase], raw: dict[str, Any]) -> tuple[AnyCase | None, list
         return kind.model_validate(raw, strict=True), []
     except ValidationError as error:
         details = error.errors(include_url=False)
-    return None, [detail for detail in details if not _is_echo(detail)]
-
-
-def _is_echo(detail: ErrorDetails) -> bool:
-    """True if an array only counts as too short because some of its entries are wrong."""
-    needed = detail.get("ctx", {}).get("min_length", 0)
-    return detail["type"] == "too_short" and len(detail["input"]) >= needed
+    # an array only counts as too short because some of its entries are wrong
+    return None, [
+        detail
+        for detail in details
+        if detail["type"] != "too_short"
+        or len(detail["input"]) < detail.get("ctx", {}).get("min_length", 0)
+    ]
 
 
 @cache
@@ -250,12 +242,6 @@ def tables_of(kind: type[Table]) -> dict[str, type[Table]]:
         for name, table in tables.items()
         if table is not None and issubclass(table, Table)
     }
-
-
-def _unknown_keys(kind: type[Table], details: list[ErrorDetails]) -> list[Place]:
-    return [
-        locate(kind, detail["loc"]) for detail in details if detail["type"] == "extra_forbidden"
-    ]
 
 
 def _mend_names(raw: dict[str, Any], unknown: list[Place]) -> dict[str, Any]:
@@ -320,14 +306,8 @@ def _check_group(
         return []
     if not started:
         missing = alternatives[0][0]
-        return [
-            Problem(
-                f"{name}.{missing}",
-                "",
-                f"is missing; needed is {choice}.",
-                f"Add {choice} to [{name}].",
-            )
-        ]
+        allowed = f"is missing; needed is {choice}."
+        return [Problem(f"{name}.{missing}", "", allowed, f"Add {choice} to [{name}].")]
     if len(started) == 1:
         return [
             Problem(
@@ -342,14 +322,9 @@ def _check_group(
         ]
     both = [key for keys in started for key in keys if key in given]
     extra = next(key for key in started[1] if key in given)
-    return [
-        Problem(
-            f"{name}.{extra}",
-            written(given[extra]),
-            f"conflicts with {' and '.join(key for key in both if key != extra)}.",
-            f"Give exactly one: {choice}.",
-        )
-    ]
+    allowed = f"conflicts with {' and '.join(key for key in both if key != extra)}."
+    remedy = f"Give exactly one: {choice}."
+    return [Problem(f"{name}.{extra}", written(given[extra]), allowed, remedy)]
 
 
 def _sound_sections(

@@ -195,8 +195,7 @@ def _check_output(output: Path | None, keys: list[str]) -> None:
 
 def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
-    from epicyclic.case.template import case_text, train_text
-    from epicyclic.case.train import TrainCase
+    from epicyclic.case.template import case_text
     from epicyclic.show.studies import fitted_comment
     from epicyclic.study.measured.comparison import CALIBRATED
 
@@ -215,5 +214,4 @@ def _calibrated_text(comparison: MeasuredComparison) -> str:
         table, _, name = item.key.rpartition(".")
         if "." in table:  # a table within a table may stand on one line
             about[table] = f"{name}: {comment}"
-    write = train_text if isinstance(calibrated, TrainCase) else case_text
-    return write(calibrated.given(), heading, about)
+    return case_text(calibrated.given(), heading, about)

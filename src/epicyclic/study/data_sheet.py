@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 
 from epicyclic.case.case import Case
-from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.gear_tables import GearTable, allowance_shift, allowances, tolerances_of
 from epicyclic.case.gearing import Gearing
-from epicyclic.case.thickness import allowance_shift, allowances, tolerances_of
 from epicyclic.gears import measures
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.measures import FlankTolerances

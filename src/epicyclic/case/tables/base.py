@@ -39,10 +39,15 @@ from epicyclic.units import (
     as_stated,
 )
 
+
+def option(description: str, default: Any = None, **limits: Any) -> Any:
+    """The field of a key with a default, which is stated as a file has it, with its unit."""
+    return Field(default=default, description=description, **limits)
+
+
 # An oil by its ISO viscosity grade or by two viscosities.
 #
 # What such a table leaves out is typical of its kind, and its source says so.
-
 
 GOLD: dict[str, tuple[float, float, str]] = {
     "mineral": (9.904, 0.1390, "mineral oil"),
@@ -68,10 +73,10 @@ class ShortOil(BaseModel):
     model_config = ConfigDict(extra="allow")
 
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
-    iso_vg: int | None = Field(default=None, description="Grade of ISO 3448.")
-    viscosity_40: KinematicViscosity | None = Field(default=None, description="At 40 degC.")
-    viscosity_100: KinematicViscosity | None = Field(default=None, description="At 100 degC.")
-    density_15: OilDensity | None = Field(default=None, description="At 15 degC.")
+    iso_vg: int | None = option("Grade of ISO 3448.")
+    viscosity_40: KinematicViscosity | None = option("At 40 degC.")
+    viscosity_100: KinematicViscosity | None = option("At 100 degC.")
+    density_15: OilDensity | None = option("At 15 degC.")
 
 
 _SHORT_KEYS = ("iso_vg", "viscosity_40", "viscosity_100", "density_15")
@@ -168,13 +173,6 @@ def short_oil_told(table: object) -> tuple[str, str] | None:
             "measured on this oil"
         )
     return f"an oil of the kind {table['kind']}", f"{'; '.join(told) or 'all stated'}."
-
-
-# What the tables of a case file are made of: their base class, named presets, shared values.
-#
-# Each table is one class, in the modules `*_tables` beside this one; field descriptions become the
-# JSON Schema and the commented template. Values are SI after validation. Checks across keys and
-# tables live in `epicyclic.case.checks`.
 
 
 class Table(BaseModel):
@@ -325,7 +323,6 @@ def roughness_told(text: object) -> tuple[float, str] | None:
 
 
 Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]
-
 
 ShortLength = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5)]
 

@@ -17,10 +17,11 @@ from epicyclic.case.tables.base import (
     Roughness,
     ShortLength,
     Table,
+    option,
 )
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.gears.gear import HOUSING
-from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature, as_stated
+from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature
 
 if TYPE_CHECKING:
     from epicyclic.losses.loss_table import LossTable
@@ -51,30 +52,22 @@ class PlanetBearing(Table):
     diametral_clearance: SmallLength
     roller_roughness: Roughness
     race_roughness: Roughness
-    viscous_factor: Number | None = Field(
-        default=None,
+    viscous_factor: Number | None = option(
+        "f0 of the viscous loss, of the whole bearing: caged cylindrical 2.2-4 a row, needle up "
+        "to 12. Default: 3 a row.",
         ge=0,
         le=100,
-        description="f0 of the viscous loss, of the whole bearing: caged cylindrical 2.2-4 a row, "
-        "needle up to 12. Default: 3 a row.",
     )
     cage: Literal["caged", "full-complement"] = "caged"
-    palmgren_coefficient: Number | None = Field(
-        default=None,
-        gt=0,
-        le=0.05,
-        description="f1 of the method palmgren. Default: 0.0003 caged, 0.00055 full complement.",
+    palmgren_coefficient: Number | None = option(
+        "f1 of the method palmgren. Default: 0.0003 caged, 0.00055 full complement.", gt=0, le=0.05
     )
-    crown_drop: SmallLength = Field(
-        default=as_stated("3 um"), description="Drop of the profile at the roller's end (estimate)."
+    crown_drop: SmallLength = option("Drop of the profile at the roller's end (estimate).", "3 um")
+    crown_length_fraction: Number = option(
+        "Crowned part of the length, at each end.", 0.2, ge=0, le=0.5
     )
-    crown_length_fraction: Number = Field(
-        default=0.2, ge=0, le=0.5, description="Crowned part of the length, at each end."
-    )
-    row_gap: ShortLength = Field(
-        default=as_stated("0 mm"), description="Axial gap between the rollers of neighbouring rows."
-    )
-    material: NamedMaterial = Field(default=as_stated("steel"), description="Of rollers and races.")
+    row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
+    material: NamedMaterial = option("Of rollers and races.", "steel")
 
 
 class Carrier(Table):
@@ -90,8 +83,8 @@ class ThrustBearing(Table):
     mean_diameter: Length
     between: Literal[
         "sun-carrier", "sun-ring", "ring-carrier", "sun-housing", "carrier-housing"
-    ] = Field(default="carrier-housing", description="The two parts whose speeds differ.")
-    viscous_factor: Number = Field(default=3.5, ge=0, le=100, description="f0 (Harris).")
+    ] = option("The two parts whose speeds differ.", "carrier-housing")
+    viscous_factor: Number = option("f0 (Harris).", 3.5, ge=0, le=100)
     count: int = Field(default=1, ge=1, le=10)
 
 
@@ -109,7 +102,6 @@ ReferenceSpeed = Annotated[
 ]
 DragTorque = Annotated[float, Quantity("a drag torque", "N*m", "N*m", low=0.0, high=1e9)]
 LostPower = Annotated[float, Quantity("a power loss", "W", "W", low=0.0, high=1e9)]
-
 
 Torques = Annotated[
     Annotated[tuple[DragTorque, ...], Tag("values")]
@@ -131,26 +123,18 @@ class LossTableTable(PointsTable):
 
     AXES: ClassVar = ("speed", "temperature", "radial_force")
 
-    speed: tuple[SpeedDifference, ...] | None = Field(
-        default=None, description="Magnitudes of the speed difference, rising."
+    speed: tuple[SpeedDifference, ...] | None = option(
+        "Magnitudes of the speed difference, rising."
     )
-    temperature: tuple[Temperature, ...] | None = Field(
-        default=None, description="Of the oil, rising."
+    temperature: tuple[Temperature, ...] | None = option("Of the oil, rising.")
+    radial_force: tuple[Force, ...] | None = option("On a bearing, rising.")
+    torque: Torques | None = option(
+        "Friction torque: one value, or one row, for each value of the first axis."
     )
-    radial_force: tuple[Force, ...] | None = Field(
-        default=None, description="On a bearing, rising."
-    )
-    torque: Torques | None = Field(
-        default=None,
-        description="Friction torque: one value, or one row, for each value of the first axis.",
-    )
-    power: Powers | None = Field(
-        default=None, description="Power lost instead of the torque; needs the axis speed."
-    )
-    file: str | None = Field(
-        default=None,
+    power: Powers | None = option("Power lost instead of the torque; needs the axis speed.")
+    file: str | None = option(
+        "CSV file beside the case, its columns with units: speed [rpm],torque [N*m].",
         max_length=1000,
-        description="CSV file beside the case, its columns with units: speed [rpm],torque [N*m].",
     )
 
     @property
@@ -173,7 +157,7 @@ class BearingSealTable(Table):
     counterface_diameter: Length = Field(description="d_s, on which the lips run.")
     factor: Number = Field(ge=0, le=10, description="K_S1, for mm and N mm.")
     exponent: Number = Field(ge=0, le=4, description="beta.")
-    constant: DragTorque = Field(default=as_stated("0 N*m"), description="K_S2.")
+    constant: DragTorque = option("K_S2.", "0 N*m")
 
 
 class ShaftBearingTable(Table):
@@ -193,128 +177,99 @@ class ShaftBearingTable(Table):
     }
 
     shaft: str = Field(description="The shaft in its bore.")
-    against: str = Field(default="housing", description="The body that holds its outer ring.")
+    against: str = option("The body that holds its outer ring.", "housing")
     type: Literal["deep-groove", "cylindrical", "tapered", "needle"]
     bore: Length
     outside_diameter: Length
-    width: Length | None = Field(
-        default=None, description="Needed for the drag of rollers in an oil bath."
+    width: Length | None = option("Needed for the drag of rollers in an oil bath.")
+    cage: Literal["caged", "full-complement"] = option(
+        "full-complement: cylindrical and needle rollers only.", "caged"
     )
-    cage: Literal["caged", "full-complement"] = Field(
-        default="caged", description="full-complement: cylindrical and needle rollers only."
+    model: Literal["palmgren", "harris", "skf-2018", "table"] = option(
+        "skf-2018: needs series; harris: of ball bearings, static_load_rating.", "palmgren"
     )
-    model: Literal["palmgren", "harris", "skf-2018", "table"] = Field(
-        default="palmgren",
-        description="skf-2018: needs series; harris: of ball bearings, static_load_rating.",
+    series: str | None = option("For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ...", max_length=20)
+    dynamic_load_rating: LoadRating | None = option(
+        "C, for the minimum load of tapered and needle rollers."
     )
-    series: str | None = Field(
-        default=None, max_length=20, description="For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ..."
+    static_load_rating: LoadRating | None = option(
+        "C0, for ball bearings with harris and skf-2018."
     )
-    dynamic_load_rating: LoadRating | None = Field(
-        default=None, description="C, for the minimum load of tapered and needle rollers."
+    contact_angle: ContactAngle | None = option(
+        "Of a tapered roller bearing, instead of axial_factor."
     )
-    static_load_rating: LoadRating | None = Field(
-        default=None, description="C0, for ball bearings with harris and skf-2018."
+    axial_factor: Number | None = option(
+        "Y of a tapered roller bearing, 0.4 cot of the angle.", gt=0, le=10
     )
-    contact_angle: ContactAngle | None = Field(
-        default=None, description="Of a tapered roller bearing, instead of axial_factor."
+    position: Position | None = option("Along the shaft; for its reactions from the gear forces.")
+    locating: bool = option("True if it takes axial force.", False)
+    axial_sense: Literal["both", "positive", "negative"] = option(
+        "In which sense of the shaft's axis a locating bearing holds the shaft.", "both"
     )
-    axial_factor: Number | None = Field(
-        default=None,
-        gt=0,
-        le=10,
-        description="Y of a tapered roller bearing, 0.4 cot of the angle.",
+    radial_force: Force | None = option("Instead of the reaction to the gear forces.")
+    axial_force: Force | None = option(
+        "Beside radial_force. Default: none if radial_force is given."
     )
-    position: Position | None = Field(
-        default=None, description="Along the shaft; for its reactions from the gear forces."
-    )
-    locating: bool = Field(default=False, description="True if it takes axial force.")
-    axial_sense: Literal["both", "positive", "negative"] = Field(
-        default="both",
-        description="In which sense of the shaft's axis a locating bearing holds the shaft.",
-    )
-    radial_force: Force | None = Field(
-        default=None, description="Instead of the reaction to the gear forces."
-    )
-    axial_force: Force | None = Field(
-        default=None, description="Beside radial_force. Default: none if radial_force is given."
-    )
-    viscous_factor: Number | None = Field(
-        default=None,
+    viscous_factor: Number | None = option(
+        "f0 of palmgren and harris. Default: deep-groove 2, cylindrical 3 or 7.5 (full "
+        "complement), tapered 6, needle 12.",
         ge=0,
         le=100,
-        description="f0 of palmgren and harris. Default: deep-groove 2, cylindrical 3 or 7.5 "
-        "(full complement), tapered 6, needle 12.",
     )
-    palmgren_coefficient: Number | None = Field(
-        default=None,
+    palmgren_coefficient: Number | None = option(
+        "f1 of palmgren. Default: 0.0003, full complement 0.00055, tapered 0.0004, needle 0.0005 "
+        "(estimate).",
         gt=0,
         le=0.05,
-        description="f1 of palmgren. Default: 0.0003, full complement 0.00055, tapered 0.0004, "
-        "needle 0.0005 (estimate).",
     )
-    flange_coefficient: Number | None = Field(
-        default=None,
+    flange_coefficient: Number | None = option(
+        "f_f of cylindrical rollers under axial force. Default: 0.002 caged, 0.003 full "
+        "complement.",
         ge=0,
         le=0.05,
-        description="f_f of cylindrical rollers under axial force. Default: 0.002 caged, "
-        "0.003 full complement.",
     )
-    lubrication: Literal["jet", "oil-bath", "grease", "oil-air"] = Field(
-        default="jet", description="For skf-2018: how soon the contacts starve."
+    lubrication: Literal["jet", "oil-bath", "grease", "oil-air"] = option(
+        "For skf-2018: how soon the contacts starve.", "jet"
     )
-    oil_level: ShortLength = Field(
-        default=as_stated("0 mm"),
-        description="Above the lowest point of the outer raceway, for skf-2018; 0: no bath.",
+    oil_level: ShortLength = option(
+        "Above the lowest point of the outer raceway, for skf-2018; 0: no bath.", "0 mm"
     )
-    drag_variable: Number | None = Field(
-        default=None,
+    drag_variable: Number | None = option(
+        "V_M of skf-2018 at this oil level. Default: 0.0012 times the immersed share (estimate).",
         ge=0,
         le=0.01,
-        description="V_M of skf-2018 at this oil level. Default: 0.0012 times the immersed share "
-        "(estimate).",
     )
-    sliding_friction: Number | None = Field(
-        default=None,
+    sliding_friction: Number | None = option(
+        "mu_EHL of skf-2018. Default: 0.02 cylindrical, 0.002 tapered; balls by the oil: 0.05 "
+        "mineral, 0.10 ATF, 0.04 others.",
         ge=0,
         le=0.5,
-        description="mu_EHL of skf-2018. Default: 0.02 cylindrical, 0.002 tapered; balls by the "
-        "oil: 0.05 mineral, 0.10 ATF, 0.04 others.",
     )
-    seal: BearingSealTable | None = Field(
-        default=None, description="Contact seals of the bearing, for skf-2018."
+    seal: BearingSealTable | None = option("Contact seals of the bearing, for skf-2018.")
+    minimum_load_factor: Number | None = option(
+        "k_r of the product table. Default: 0.025 deep-groove, 0.15 cylindrical.", gt=0, le=10
     )
-    minimum_load_factor: Number | None = Field(
-        default=None,
-        gt=0,
-        le=10,
-        description="k_r of the product table. Default: 0.025 deep-groove, 0.15 cylindrical.",
-    )
-    reference_speed: ReferenceSpeed | None = Field(
-        default=None, description="Of cylindrical rollers, for the minimum load."
-    )
-    table: LossTableTable | None = Field(default=None, description="For model = table.")
+    reference_speed: ReferenceSpeed | None = option("Of cylindrical rollers, for the minimum load.")
+    table: LossTableTable | None = option("For model = table.")
 
 
 class SealTable(Table):
     """A radial lip seal on a shaft."""
 
     shaft: str = Field(description="The shaft under the lip.")
-    against: str = Field(default="housing", description="The body that holds the seal.")
+    against: str = option("The body that holds the seal.", "housing")
     diameter: Length = Field(description="Of the shaft under the lip.")
     model: Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke", "table"] = (
-        Field(
-            default="iso-14179-2",
-            description="The formulas differ by a factor of 2 and more; the figures show all.",
+        option(
+            "The formulas differ by a factor of 2 and more; the figures show all.", "iso-14179-2"
         )
     )
-    table: LossTableTable | None = Field(default=None, description="For model = table.")
+    table: LossTableTable | None = option("For model = table.")
 
 
 # What contradicts itself, or is missing, in one of these tables; keys are relative to the table.
 
-_DRAG_AXES = ("speed", "temperature")
-"""Axes of the tables of parts that carry no load."""
+_DRAG_AXES = ("speed", "temperature")  # Axes of the tables of parts that carry no load.
 
 
 def bearing_problems(table: ShaftBearingTable) -> list[Problem]:

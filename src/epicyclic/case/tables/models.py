@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, Tag, model_validator
 
 from epicyclic.case.read import value_at
-from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table
+from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table, option
 from epicyclic.errors import Problem
 from epicyclic.oil.oil import Conductivity, HeatCapacity
 from epicyclic.oil.rheology import (
@@ -33,11 +33,9 @@ from epicyclic.units import (
     SmallLength,
     Speed,
     Stiffness,
-    as_stated,
 )
 
 # Keys that choose how an oil behaves in a line contact.
-
 
 LoadPressure = Annotated[
     float, Quantity("a pressure", "Pa", "GPa", low=0.0, high=100.0, open_low=True)
@@ -73,8 +71,7 @@ def behaviour_of(preset: object) -> dict[str, object]:
 
 
 HeatingModel = Literal["isothermal", "inlet-and-film"]
-HEATING = "With or without thinner inlet film, flash and film temperature."
-"""What the key says."""
+HEATING = "With or without thinner inlet film, flash and film temperature."  # What the key says.
 NEEDED = {"limiting-stress": ("shear_stress",), "carreau": ("shear_stress", "shear_exponent")}
 """Keys without which a law cannot be used."""
 OF_TWO_SLOPES = ("second_slope", "slope_ratio", "transition_pressure")
@@ -86,38 +83,37 @@ KEYS = {"stress": "shear_stress", "slope": "shear_stress_slope", "exponent": "sh
 class OilBehaviour(Table):
     """Viscosity under pressure and under shear."""
 
-    pressure_law: Literal["roelands", "barus", "two-slope"] = Field(
-        default=PRESSURE_NAMES[USUAL.pressure_law], description="Viscosity under pressure."
+    pressure_law: Literal["roelands", "barus", "two-slope"] = option(
+        "Viscosity under pressure.", PRESSURE_NAMES[USUAL.pressure_law]
     )
-    slope_ratio: Number = Field(
-        default=SLOPE_RATIO, gt=0.0, le=1.0,
-        description="For two-slope: slope at high over that at ambient pressure (estimate).",
-    )  # fmt: skip
-    second_slope: PressureViscosity | None = Field(
-        default=None, description="For two-slope: slope at high pressure, instead of slope_ratio."
+    slope_ratio: Number = option(
+        "For two-slope: slope at high over that at ambient pressure (estimate).",
+        SLOPE_RATIO,
+        gt=0.0,
+        le=1.0,
     )
-    transition_pressure: LoadPressure = Field(
-        default=as_stated(f"{TRANSITION * 1e-9:g} GPa"),
-        description="For two-slope: where the slopes meet (estimate).",
+    second_slope: PressureViscosity | None = option(
+        "For two-slope: slope at high pressure, instead of slope_ratio."
     )
-    eyring_stress: Stress = Field(
-        default=as_stated(stress_text(USUAL)),
-        description="Of the default law: stress beyond which the oil thins (estimate; mineral "
-        "oils 2 to 10 MPa).",
+    transition_pressure: LoadPressure = option(
+        "For two-slope: where the slopes meet (estimate).", f"{TRANSITION * 1e-9:g} GPa"
     )
-    shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = Field(
-        default="ree-eyring", description="Viscosity under shear."
+    eyring_stress: Stress = option(
+        "Of the default law: stress beyond which the oil thins (estimate; mineral oils 2 to 10 "
+        "MPa).",
+        stress_text(USUAL),
     )
-    shear_stress: Stress | None = Field(
-        default=None, description="For limiting-stress and carreau: the stress of the law."
+    shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = option(
+        "Viscosity under shear.", "ree-eyring"
     )
-    shear_stress_slope: Number = Field(
-        default=0.0, ge=0.0, le=1.0,
-        description="Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
-    )  # fmt: skip
-    shear_exponent: Number | None = Field(
-        default=None, gt=0.0, le=1.0, description="For carreau: n."
+    shear_stress: Stress | None = option("For limiting-stress and carreau: the stress of the law.")
+    shear_stress_slope: Number = option(
+        "Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
+        0.0,
+        ge=0.0,
+        le=1.0,
     )
+    shear_exponent: Number | None = option("For carreau: n.", gt=0.0, le=1.0)
 
 
 def law_problems(section: str, table: OilBehaviour) -> list[Problem]:
@@ -147,9 +143,12 @@ _USUAL_OIL = OilBehaviour()
 def oil_laws(table: OilBehaviour) -> OilLaws:
     """The laws that a table without problems chooses."""
     return OilLaws(
-        PRESSURE_LAWS[table.pressure_law], _shear_law(table), table.second_slope,
-        table.slope_ratio, table.transition_pressure,
-    )  # fmt: skip
+        PRESSURE_LAWS[table.pressure_law],
+        _shear_law(table),
+        table.second_slope,
+        table.slope_ratio,
+        table.transition_pressure,
+    )
 
 
 def _shear_law(table: OilBehaviour) -> ShearLaw:
@@ -157,9 +156,6 @@ def _shear_law(table: OilBehaviour) -> ShearLaw:
     if law is ReeEyring:
         return ReeEyring(table.eyring_stress, table.shear_stress_slope)
     return law(*(getattr(table, KEYS[field.name]) for field in fields(law)))
-
-
-# Tables of a case file on how it is computed: models, their settings, resolution, losses.
 
 
 _VoidPressure = Annotated[float, Quantity("a pressure", "Pa", "bar", low=0.0, high=1.0)]
@@ -171,53 +167,41 @@ _PinStiffness = Annotated[
 class LoadSharing(Table):
     """How the planets share the load."""
 
-    method: Literal["equal", "mesh-load-factor", "closed-form", "direct"] = Field(
-        default="equal",
-        description="mesh-load-factor: one planet takes more; closed-form, direct: from "
-        "position_errors and stiffness.",
+    method: Literal["equal", "mesh-load-factor", "closed-form", "direct"] = option(
+        "mesh-load-factor: one planet takes more; closed-form, direct: from position_errors and "
+        "stiffness.",
+        "equal",
     )
-    mesh_load_factor: Number = Field(
-        default=1.0,
+    mesh_load_factor: Number = option(
+        "K_gamma: load of the most loaded planet over the mean, at most planet.count.",
+        1.0,
         ge=1,
         le=24,
-        description="K_gamma: load of the most loaded planet over the mean, at most planet.count.",
     )
-    position_errors: tuple[Deviation, ...] | None = Field(
-        default=None,
-        description="Of each planet pin, against the sense in which a positive torque of the sun "
-        "pushes it: a positive error loads its planet more.",
+    position_errors: tuple[Deviation, ...] | None = option(
+        "Of each planet pin, against the sense in which a positive torque of the sun pushes it: a "
+        "positive error loads its planet more."
     )
-    floating_member: Literal["sun", "ring", "carrier", "none"] = Field(
-        default="sun", description="The member that gives way in the transverse plane."
+    floating_member: Literal["sun", "ring", "carrier", "none"] = option(
+        "The member that gives way in the transverse plane.", "sun"
     )
-    support_stiffness: Stiffness = Field(
-        default=as_stated("0 N/um"), description="Radial, of the floating member; 0: it floats."
-    )
-    pin_stiffness: _PinStiffness | None = Field(
-        default=None,
-        description="Radial, of one planet pin in the carrier, in series with the planet bearing. "
-        "Default: rigid.",
+    support_stiffness: Stiffness = option("Radial, of the floating member; 0: it floats.", "0 N/um")
+    pin_stiffness: _PinStiffness | None = option(
+        "Radial, of one planet pin in the carrier, in series with the planet bearing. Default: "
+        "rigid."
     )
 
     def idle_keys(self) -> tuple[str, ...]:
         """Keys that are given other than by default and do not matter to the method."""
-        elastic = ("position_errors", "floating_member", "support_stiffness", "pin_stiffness")
-        needed = {
-            "equal": (),
-            "mesh-load-factor": ("mesh_load_factor",),
-            "closed-form": elastic,
-            "direct": elastic,
-        }[self.method]
-        idle = [key for key in (*elastic, "mesh_load_factor") if key not in needed]
-        if self.method in ("closed-form", "direct") and self.floating_member == "none":
-            idle.append("support_stiffness")
-        if not self.model_fields_set:
-            return ()
-        fields = type(self).model_fields
-        defaults = type(self)()
-        return tuple(
-            key for key in fields if key in idle and getattr(self, key) != getattr(defaults, key)
-        )
+        elastic = {"position_errors", "floating_member", "support_stiffness", "pin_stiffness"}
+        idle = set() if self.method == "mesh-load-factor" else {"mesh_load_factor"}
+        if self.method not in ("closed-form", "direct"):
+            idle |= elastic
+        elif self.floating_member == "none":
+            idle.add("support_stiffness")
+        usual = type(self)()
+        known = [key for key in type(self).model_fields if key in idle]
+        return tuple(key for key in known if getattr(self, key) != getattr(usual, key))
 
 
 FrictionName = Literal[
@@ -237,10 +221,8 @@ FrictionName = Literal[
     "ehl-direct",
 ]
 
-
 Coefficient = Annotated[Number, Field(ge=0, le=1)]
 LoadFactor = Annotated[Number, Field(ge=1, le=10)]
-
 
 Coefficients = Annotated[
     Annotated[tuple[Coefficient, ...], Tag("values")]
@@ -276,27 +258,21 @@ class FrictionTable(PointsTable):
 class ContactSolver(OilBehaviour):
     """How the contacts of a mesh are solved for friction = ehl-direct."""
 
-    preset: PresetName = Field(default=DEFAULT, description=PRESET)
-    heating: HeatingModel = Field(default="isothermal", description=HEATING)
-    solid_conductivity: Conductivity | None = Field(
-        default=None, description="With heating. Default: that of the material of each gear."
+    preset: PresetName = option(PRESET, DEFAULT)
+    heating: HeatingModel = option(HEATING, "isothermal")
+    solid_conductivity: Conductivity | None = option(
+        "With heating. Default: that of the material of each gear."
     )
-    solid_heat_capacity: HeatCapacity | None = Field(
-        default=None, description="With heating. Default: that of the material of each gear."
+    solid_heat_capacity: HeatCapacity | None = option(
+        "With heating. Default: that of the material of each gear."
     )
-    asperity_film: SmallLength = Field(
-        default=as_stated(film_text(USUAL)), description="Film below which flanks touch (estimate)."
+    asperity_film: SmallLength = option(
+        "Film below which flanks touch (estimate).", film_text(USUAL)
     )
-    correlation_length: SmallLength = Field(
-        default=as_stated("20 um"), description="Of the roughness of both flanks (estimate)."
-    )
-    seed: int = Field(default=1, ge=0, description="Of the generated profiles.")
-    error: Number = Field(
-        default=0.05, gt=0, le=1, description="Mean error wanted at contacts that take no part."
-    )
-    most_contacts: int = Field(
-        default=48, ge=12, le=5000, description="Solved for one mesh at most."
-    )
+    correlation_length: SmallLength = option("Of the roughness of both flanks (estimate).", "20 um")
+    seed: int = option("Of the generated profiles.", 1, ge=0)
+    error: Number = option("Mean error wanted at contacts that take no part.", 0.05, gt=0, le=1)
+    most_contacts: int = option("Solved for one mesh at most.", 48, ge=12, le=5000)
 
     @model_validator(mode="before")
     @classmethod
@@ -339,33 +315,26 @@ class GearPairModels(Table):
         "planet_tilt": None,
     }
 
-    friction: FrictionName = Field(
-        default="auto",
-        description="auto: mixed-ehl for the fluid it was made for, fitted-or-schlenk for an oil "
-        "with fitted models, else schlenk; ehl-direct: the contacts of the mesh solved.",
+    friction: FrictionName = option(
+        "auto: mixed-ehl for the fluid it was made for, fitted-or-schlenk for an oil with fitted "
+        "models, else schlenk; ehl-direct: the contacts of the mesh solved.",
+        "auto",
     )
-    constant_friction: Number = Field(
-        default=0.04, ge=0, le=1, description="For friction = constant."
-    )
-    boundary_friction: Number | None = Field(
-        default=None,
+    constant_friction: Number = option("For friction = constant.", 0.04, ge=0, le=1)
+    boundary_friction: Number | None = option(
+        "Of dry contact (estimate; an oil's own is measured). Default: 0.10 for matsumoto and "
+        "doleschel, 0.12 for ehl-direct.",
         ge=0,
         le=1,
-        description="Of dry contact (estimate; an oil's own is measured). Default: 0.10 for "
-        "matsumoto and doleschel, 0.12 for ehl-direct.",
     )
-    fluid_friction: Number = Field(
-        default=0.02,
-        ge=0,
-        le=1,
-        description="Of separated contact, for matsumoto and doleschel (estimate, as above).",
+    fluid_friction: Number = option(
+        "Of separated contact, for matsumoto and doleschel (estimate, as above).", 0.02, ge=0, le=1
     )
-    application_factor: LoadFactor = Field(
-        default=1.0, description="K_A, in the load of the formula niemann-winter only."
+    application_factor: LoadFactor = option(
+        "K_A, in the load of the formula niemann-winter only.", 1.0
     )
-    mesh_load_factor: LoadFactor = Field(
-        default=1.0,
-        description="K_gamma, in the same place; what planets carry is up to load_sharing.",
+    mesh_load_factor: LoadFactor = option(
+        "K_gamma, in the same place; what planets carry is up to load_sharing.", 1.0
     )
     rolling: Literal[
         "auto",
@@ -374,87 +343,77 @@ class GearPairModels(Table):
         "goksem-hargreaves",
         "fitted",
         "fitted-or-goksem-hargreaves",
-    ] = Field(
-        default="auto",
-        description="auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves "
-        "for an oil with fitted models, else goksem-hargreaves.",
+    ] = option(
+        "auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves for an oil "
+        "with fitted models, else goksem-hargreaves.",
+        "auto",
     )
-    oil_model: str | None = Field(
-        default=None,
-        description="For fitted and auto: a file of 'epicyclic oil characterise', from the folder "
-        "of the case. Default: the models built in for the oil.",
+    oil_model: str | None = option(
+        "For fitted and auto: a file of 'epicyclic oil characterise', from the folder of the "
+        "case. Default: the models built in for the oil."
     )
-    fitted_form: Literal["structured", "regression"] = Field(
-        default="structured", description="For fitted: which form of the file."
+    fitted_form: Literal["structured", "regression"] = option(
+        "For fitted: which form of the file.", "structured"
     )
-    load_distribution: Literal["uniform", "minimum-energy", "compliance"] = Field(
-        default="compliance",
-        description="Along the contact lines: even, after a stiffness, or from elastic teeth.",
+    load_distribution: Literal["uniform", "minimum-energy", "compliance"] = option(
+        "Along the contact lines: even, after a stiffness, or from elastic teeth.", "compliance"
     )
-    mesh_loads: Literal["with-losses", "without-losses"] = Field(
-        default="with-losses",
-        description="What the teeth carry: the torques in balance with all losses; or those of the "
-        "set without its own losses, at the given torque, as in the source.",
+    mesh_loads: Literal["with-losses", "without-losses"] = option(
+        "What the teeth carry: the torques in balance with all losses; or those of the set "
+        "without its own losses, at the given torque, as in the source.",
+        "with-losses",
     )
-    load_dependent: Literal["computed", "as-tested"] = Field(
-        default="computed",
-        description="Which loss counts as load-dependent: each by its kind; or, as on a test rig, "
-        "what torque adds to the total.",
+    load_dependent: Literal["computed", "as-tested"] = option(
+        "Which loss counts as load-dependent: each by its kind; or, as on a test rig, what torque "
+        "adds to the total.",
+        "computed",
     )
-    mesh: Literal["local", "loss-factor"] = Field(
-        default="local",
-        description="local: along the contact lines; loss-factor: mean friction times Ohlendorf's.",
+    mesh: Literal["local", "loss-factor"] = option(
+        "local: along the contact lines; loss-factor: mean friction times Ohlendorf's.", "local"
     )
     pocketing: Literal[
         "auto", "incompressible", "isentropic", "mean-density", "central-differences", "talbot-2012"
-    ] = Field(
-        default="auto",
-        description="Fluid in the pockets: incompressible: mixture of constant density above the "
-        "pressure of a void; isentropic, mean-density: compressible mixture; auto: incompressible, "
-        "isentropic with less oil than 0.005; central-differences: mean-density with the "
-        "convective term of the source, for low speed; talbot-2012: for comparison with that "
-        "study.",
+    ] = option(
+        "Fluid in the pockets: incompressible: mixture of constant density above the pressure of "
+        "a void; isentropic, mean-density: compressible mixture; auto: incompressible, isentropic "
+        "with less oil than 0.005; central-differences: mean-density with the convective term of "
+        "the source, for low speed; talbot-2012: for comparison with that study.",
+        "auto",
     )
-    pocket_void_pressure: _VoidPressure = Field(
-        default=as_stated("0.01 bar"),
-        description="Absolute pressure of a void in the pockets, for pocketing = incompressible.",
+    pocket_void_pressure: _VoidPressure = option(
+        "Absolute pressure of a void in the pockets, for pocketing = incompressible.", "0.01 bar"
     )
-    pocketing_table: str | None = Field(
-        default=None,
-        description="Read the flow through the pockets from this file of 'epicyclic "
-        "pockets-table', from the folder of the case.",
+    pocketing_table: str | None = option(
+        "Read the flow through the pockets from this file of 'epicyclic pockets-table', from the "
+        "folder of the case."
     )
-    pocket_end_length: Number = Field(
-        default=1.0,
-        ge=0.1,
-        le=10,
-        description="Of the control volumes at the ends of the face, in normal modules.",
+    pocket_end_length: Number = option(
+        "Of the control volumes at the ends of the face, in normal modules.", 1.0, ge=0.1, le=10
     )
     drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
-    temperatures: TemperatureModel = Field(
-        default="inlet",
-        description="inlet: everything at the oil inlet temperature; flank: gears warmed by their "
-        "own meshes; network: heat flows between all parts, the oil and the surroundings.",
+    temperatures: TemperatureModel = option(
+        "inlet: everything at the oil inlet temperature; flank: gears warmed by their own meshes; "
+        "network: heat flows between all parts, the oil and the surroundings.",
+        "inlet",
     )
-    oil_beyond_range: Literal["held", "extrapolated"] = Field(
-        default="held",
-        description="Viscosity and pressure-viscosity outside the range of the mixed-EHL "
-        "regressions: held at its limit, or the formula continued.",
+    oil_beyond_range: Literal["held", "extrapolated"] = option(
+        "Viscosity and pressure-viscosity outside the range of the mixed-EHL regressions: held at "
+        "its limit, or the formula continued.",
+        "held",
     )
 
 
 class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
-    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = Field(
-        default="auto",
-        description="auto: of caged rollers mixed-ehl for the fluid it was made for and "
-        "fitted-or-palmgren for an oil with fitted models, else palmgren.",
+    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = option(
+        "auto: of caged rollers mixed-ehl for the fluid it was made for and fitted-or-palmgren "
+        "for an oil with fitted models, else palmgren.",
+        "auto",
     )
     bearing_viscous: Literal["harris"] = "harris"
-    planet_tilt: Literal["left-out", "coupled"] = Field(
-        default="left-out",
-        description="coupled: the planet tilts in its bearing and misaligns its meshes.",
+    planet_tilt: Literal["left-out", "coupled"] = option(
+        "coupled: the planet tilts in its bearing and misaligns its meshes.", "left-out"
     )
 
 
@@ -463,26 +422,22 @@ class Numerics(Table):
 
     mesh_positions: int = Field(default=20, ge=4, le=1000)
     contact_segments: int = Field(default=20, ge=2, le=1000)
-    bearing_slices: int = Field(default=20, ge=3, le=500, description="On each roller.")
-    pocket_slices: int = Field(
-        default=24, ge=3, le=200, description="Of the pockets, across the face; at least."
-    )
-    pocket_steps: int = Field(
-        default=32, ge=8, le=1000, description="Time steps of the pocket flow in one pitch."
-    )
-    pocket_interpolation: Number = Field(
-        default=0.002,
+    bearing_slices: int = option("On each roller.", 20, ge=3, le=500)
+    pocket_slices: int = option("Of the pockets, across the face; at least.", 24, ge=3, le=200)
+    pocket_steps: int = option("Time steps of the pocket flow in one pitch.", 32, ge=8, le=1000)
+    pocket_interpolation: Number = option(
+        "Largest error of pocketing losses that sweeps interpolate; 0 solves each.",
+        0.002,
         ge=0,
         le=0.1,
-        description="Largest error of pocketing losses that sweeps interpolate; 0 solves each.",
     )
 
 
 class LossOption(Table):
     """What becomes of one loss term."""
 
-    include: bool = Field(default=True, description="false leaves the term out.")
-    factor: Number = Field(default=1.0, ge=0, le=100, description="Multiplies the term.")
+    include: bool = option("false leaves the term out.", True)
+    factor: Number = option("Multiplies the term.", 1.0, ge=0, le=100)
 
 
 _AS_COMPUTED = LossOption()

@@ -1,16 +1,37 @@
-"""Tables of a case file on how it runs: operating point, oil, surroundings."""
+"""Tables of a case file on how it runs: operating point, oil, heat; and their checks."""
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from collections.abc import Collection, Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.tables.base import NamedOil, Table
-from epicyclic.units import Number, Pressure, RotationalSpeed, Temperature, Torque, as_stated
+from epicyclic.case.messages import did_you_mean
+from epicyclic.case.tables.base import Condition, NamedOil, Table, broken_conditions, option
+from epicyclic.errors import Problem
+from epicyclic.units import (
+    CELSIUS,
+    LITRE,
+    Area,
+    BodyCapacity,
+    Conductance,
+    HeatTransfer,
+    Length,
+    Mass,
+    Number,
+    Power,
+    Pressure,
+    Quantity,
+    RotationalSpeed,
+    Speed,
+    Temperature,
+    Torque,
+    Volume,
+    VolumeFlow,
+)
 
 Member = Literal["sun", "ring", "carrier"]
-
 
 _ANY_OPERATION: dict[str, object] = {
     "torque": "0 N*m",
@@ -26,14 +47,10 @@ class PlanetaryOperation(Table):
     EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
 
     input: Member = Field(description="The member to which torque and speed belong.")
-    fixed: Member | None = Field(
-        default=None, description="The member held still; the third one is the output."
-    )
-    second_input: Member | None = Field(
-        default=None, description="Instead of fixed: a second member of given speed."
-    )
-    second_speed: RotationalSpeed | None = Field(
-        default=None, description="Speed of the second member; same sign = same sense of rotation."
+    fixed: Member | None = option("The member held still; the third one is the output.")
+    second_input: Member | None = option("Instead of fixed: a second member of given speed.")
+    second_speed: RotationalSpeed | None = option(
+        "Speed of the second member; same sign = same sense of rotation."
     )
     torque: Torque = Field(
         description="On the input member; negative = coasting, power flows back through it."
@@ -61,18 +78,337 @@ class Lubricant(Table):
         description="A name of the oil library (epicyclic oils), a table of properties, or in "
         'short { iso_vg = 220, kind = "mineral" }.'
     )
-    pressure_viscosity_factor: Number = Field(
-        default=1.0,
-        ge=0.1,
-        le=10,
-        description="Multiplies the pressure-viscosity coefficient of the oil.",
+    pressure_viscosity_factor: Number = option(
+        "Multiplies the pressure-viscosity coefficient of the oil.", 1.0, ge=0.1, le=10
     )
 
 
 class Surroundings(Table):
     """What surrounds the gears."""
 
-    oil_air_ratio: Number = Field(
-        default=0.05, ge=0, le=1, description="Oil share by volume at ambient pressure."
+    oil_air_ratio: Number = option("Oil share by volume at ambient pressure.", 0.05, ge=0, le=1)
+    pressure: Pressure = option("Ambient pressure.", "1.01325 bar")
+
+
+# Tables of a case file on heat: how gears are wetted, where heat leaves, what stores it.
+
+
+class HousingTable(Table):
+    """The housing as ISO/TR 14179 sees it."""
+
+    method: Literal["iso-14179-2", "iso-14179-1"] = option(
+        "iso-14179-2: convection and radiation from shape and air; iso-14179-1: coefficient times "
+        "area.",
+        "iso-14179-2",
     )
-    pressure: Pressure = Field(default=as_stated("1.01325 bar"), description="Ambient pressure.")
+    area: Area = Field(description="Outside, without fins.")
+    inner_area: Area | None = option("Wetted by oil. Default: area.")
+    height: Length | None = option("Default: that of a cube of the same area.")
+    length: Length | None = option("Along the air. Default: height.")
+    air_speed: Speed = option("Of the air past it; 0: free convection.", "0 m/s")
+    emissivity: Number = option("0.9 painted, 0.15 to 0.25 bare aluminium.", 0.9, ge=0, le=1)
+    fin_factor: Number = option(
+        "Multiplies the convection: area and effect of fins.", 1.0, ge=1, le=20
+    )
+    inner_coefficient: HeatTransfer = option("From the oil to the wall (splash).", "200 W/(m^2*K)")
+    coefficient: HeatTransfer = option(
+        "k of iso-14179-1, oil to air: 10-14 in small rooms, 17-20 in large ones, 19-24 outdoors.",
+        "15 W/(m^2*K)",
+    )
+    foundation: Conductance = option("To what it stands on, at ambient temperature.", "0 W/K")
+    mass: Mass | None = option("For warming up.")
+    heat_capacity_ratio: Number = option(
+        "Of its material over that of steel, by mass: aluminium 1.95.", 1.0, gt=0, le=10
+    )
+
+
+class ConductanceTable(Table):
+    """One way of the heat, as 'epicyclic heat' names it."""
+
+    value: Conductance | None = option("Instead of the computed one.")
+    scale: Number = option("Multiplies it.", 1.0, ge=0, le=1000)
+
+
+class CapacityTable(Table):
+    """What one part stores, for warming up; parts as 'epicyclic warm-up' names them."""
+
+    value: BodyCapacity | None = option("Instead of the computed one.")
+    scale: Number = option("Multiplies it.", 1.0, gt=0, le=1000)
+
+
+class ThermalTable(Table):
+    """How heat arises and leaves, for models.temperatures other than inlet."""
+
+    lubrication: Literal["spray", "dip", "spray-and-dip", "submerged"] = option(
+        "How oil gets to the gears.", "spray"
+    )
+    bulk: Literal["iso-6336-20", "iso-6336-22"] = option(
+        "For flank: iso-6336-20: from the flash temperature of each gear's meshes; iso-6336-22: "
+        "from their loss, both gears alike.",
+        "iso-6336-20",
+    )
+    oil_flow: VolumeFlow | None = option(
+        "Of all oil that leaves for a tank or cooler and comes back."
+    )
+    oil_outlet_temperature: Temperature | None = option(
+        "Instead of oil_flow, where it was measured: the flow follows."
+    )
+    jet_effectiveness: Number = option(
+        "How far oil thrown on a gear reaches the temperature of the gear (estimate: 0.25 to 1).",
+        0.5,
+        ge=0,
+        le=1,
+    )
+    jet_shares: dict[str, Number] = option(
+        "Share of oil_flow that meets a gear, pin or bearing; what is left meets the others. "
+        "Default: as much as its heat demands.",
+        {},
+    )
+    bath_share: Number = option(
+        "Share of the surfaces of a gear that dips into oil (estimate), with dip.", 0.3, gt=0, le=1
+    )
+    ambient_temperature: Temperature = option("Of the air around the housing.", "20 degC")
+    cooler_power: Power = option("That a cooler takes from the oil.", "0 W")
+    cooler_conductance: Conductance = option("Of a cooler in the sump, to its coolant.", "0 W/K")
+    coolant_temperature: Temperature = option("Of that coolant.", "40 degC")
+    press_fit: HeatTransfer = option(
+        "Contact conductance of press fits and splines (1000 to 5000).", "2000 W/(m^2*K)"
+    )
+    shaft_conductance: Conductance = option(
+        "Along a shaft, from each gear or bearing on it: trains (estimate).", "1 W/K"
+    )
+    conductances: dict[str, ConductanceTable] = option(
+        "Changes to single ways of the heat, by their names.", {}
+    )
+    capacities: dict[str, CapacityTable] = option(
+        "Changes to the heat capacities of single parts, by their names.", {}
+    )
+    oil_volume: Volume | None = option("For warming up.")
+    housing: HousingTable | None = option("Default: no heat leaves through it.")
+
+    def __hash__(self) -> int:  # the tables of names cannot be hashed
+        return hash((self.lubrication, self.oil_flow, self.ambient_temperature, self.housing))
+
+
+ROUNDING = 1e-9  # Rounding of shares that add up to 1. [1]
+
+
+def check_thermal(thermal: ThermalTable) -> list[Problem]:
+    """What [thermal] states twice, or more of than there is."""
+    problems = []
+    if thermal.oil_flow is not None and thermal.oil_outlet_temperature is not None:
+        key = "thermal.oil_flow, thermal.oil_outlet_temperature"
+        allowed = "determine each other, by the heat that the oil takes along."
+        problems.append(Problem(key, "", allowed, "Give one of them."))
+    for name, share in thermal.jet_shares.items():
+        if not 0 <= share <= 1:
+            allowed = "must be a number >= 0 and <= 1."
+            remedy = "Give the part of the oil flow that meets it."
+            problems.append(Problem(f"thermal.jet_shares.{name}", f"{share:g}", allowed, remedy))
+    whole = sum(thermal.jet_shares.values())
+    if not problems and whole > 1 + ROUNDING:
+        allowed = f"add up to {whole:g}, more than all of the oil."
+        remedy = f"Divide each by {whole:g}, or leave some out."
+        problems.append(Problem("thermal.jet_shares", "", allowed, remedy))
+    return problems
+
+
+def check_outlet(thermal: ThermalTable, inlet: float | None) -> list[Problem]:
+    """The oil must leave warmer than it comes."""
+    outlet = thermal.oil_outlet_temperature
+    if outlet is None or inlet is None or outlet > inlet:
+        return []
+    allowed = f"must be above operation.oil_inlet_temperature, {CELSIUS.text(inlet)}: the oil "
+    allowed += "takes the heat of the losses along."
+    remedy = "Correct one of them, or give thermal.oil_flow."
+    return [Problem("thermal.oil_outlet_temperature", CELSIUS.text(outlet), allowed, remedy)]
+
+
+def check_ways_out(
+    thermal: ThermalTable,
+    temperatures: str,
+    flow: float | None,  # Oil that [lubrication] brings to the gears. [m^3/s]
+) -> list[Problem]:
+    """A network needs a way for the heat to leave."""
+    ways = (
+        flow if thermal.oil_flow is None else thermal.oil_flow,
+        thermal.oil_outlet_temperature,
+        thermal.housing,
+        thermal.cooler_conductance,
+    )
+    if temperatures != "network" or any(ways):
+        return []
+    allowed = 'leaves no way out for the heat, which models.temperatures = "network" follows.'
+    remedy = "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] with its "
+    remedy += "area, or thermal.cooler_conductance."
+    return [Problem("thermal", "", allowed, remedy)]
+
+
+Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged"]
+SHARE_KEY = "surroundings.oil_air_ratio"
+OWN_SHARE_KEY = "lubrication.oil_share"
+FACTOR_KEY = "lubrication.oil_share_factor"
+"""The keys that say how uncertain the share of oil is: given, or as the method has it."""
+WETTING: Mapping[Method, tuple[str, ...]] = {
+    "jet": ("spray", "spray-and-dip"),
+    "spray": ("spray", "spray-and-dip"),
+    "flow": ("spray", "spray-and-dip"),
+    "drained": ("spray",),
+    "dip": ("dip", "spray-and-dip"),
+    "submerged": ("submerged",),
+}
+"""What thermal.lubrication is with each method if it is not given, and what else it may be."""
+_Sump = Annotated[float, Quantity("a volume", "m^3", "l", low=0.0, high=1e6, open_low=True)]
+_Level = Annotated[float, Quantity("a height", "m", "mm", low=-1e5, high=1e5)]
+
+
+class LubricationTable(Table):
+    """How oil gets to the gears: gives the share of oil around them, and their churning."""
+
+    STAND_INS: ClassVar[dict[str, object]] = {
+        "jet_speed": None,
+        "nozzle_side": None,
+        "churning": None,
+        "oil_share_factor": None,
+    }
+
+    method: Method = Field(
+        description="drained: mist only; flow: oil fed through shafts or carrier; dip: some of the "
+        "gears reach into the sump."
+    )
+    oil_flow: VolumeFlow | None = option("That jet, spray or flow brings to the gears of one set.")
+    jet_speed: Speed = option(
+        "Of the oil of jets, along the teeth; 0: not known, or across.", "0 m/s"
+    )
+    nozzle_side: Literal["in-mesh", "out-of-mesh", "radial"] = option(
+        "Jets with the teeth as they mesh, against them as they part, or radial.", "in-mesh"
+    )
+    oil_level: _Level | None = option(
+        "With dip: oil at rest above the axis of the set, or both axes of a pair; negative: below."
+    )
+    immersion: dict[str, Length] = option(
+        "With dip, instead of oil_level: depth of the lowest point of each gear, or of the "
+        "carrier, below the oil at rest.",
+        {},
+    )
+    oil_volume: _Sump | None = option("With dip: in the sump. Default: thermal.oil_volume.")
+    churning: Literal["changenet-velex", "iso-14179-1"] = option("With dip.", "changenet-velex")
+    oil_share: Number | None = option(
+        "Share of oil by volume around the gears, where it is known. Default: an estimate by "
+        "method.",
+        ge=0,
+        le=1,
+    )
+    oil_share_factor: Number = option("Multiplies that estimate, at most to 1.", 1.0, gt=0, le=100)
+
+    def __hash__(self) -> int:  # a table of names cannot be hashed
+        return hash((self.method, self.oil_flow, self.oil_level, self.oil_share_factor))
+
+
+LUBRICATION: Any = option("With it surroundings.oil_air_ratio has no effect.")
+"""The field of a case."""
+
+_EVERY = {"method", "oil_share", "oil_share_factor"}
+_KEYS: Mapping[Method, Collection[str]] = {
+    "jet": ("oil_flow", "jet_speed", "nozzle_side"),
+    "spray": ("oil_flow",),
+    "flow": ("oil_flow",),
+    "drained": (),
+    "dip": ("oil_level", "immersion", "oil_volume", "churning"),
+    "submerged": (),
+}
+"""Keys that have an effect with each method."""
+
+_JETS = ("jet_speed", "nozzle_side")
+_CONDITIONS = (
+    Condition(
+        "lubrication.oil_flow",
+        lambda table: table.method == "flow" and table.oil_flow is None,
+        'is missing, and method = "flow" needs it.',
+        'Give it, as "2 l/min".',
+    ),
+    Condition(
+        "lubrication.oil_level",
+        lambda table: table.method == "dip" and table.oil_level is None and not table.immersion,
+        'is missing, and method = "dip" needs it, or immersion.',
+        'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.',
+    ),
+    Condition(
+        "lubrication.oil_share, lubrication.oil_share_factor",
+        lambda table: table.oil_share is not None and "oil_share_factor" in _stated(table),
+        "exclude each other: the factor is of what follows from the method.",
+        "Give one of them.",
+    ),
+    Condition(
+        "lubrication.oil_level, lubrication.immersion",
+        lambda table: table.oil_level is not None and bool(table.immersion),
+        "state the same thing twice.",
+        "Give one of them.",
+    ),
+)
+
+
+def check_lubrication(table: LubricationTable) -> list[Problem]:
+    """Keys that another method needs, and those that its own one lacks."""
+    method, given = table.method, _stated(table)
+    problems = []
+    for key in sorted(given - _EVERY - set(_KEYS[method])):
+        users = [f'"{name}"' for name, keys in _KEYS.items() if key in keys]
+        allowed = f'has no effect with method = "{method}", but with {" or ".join(users)}.'
+        problems.append(Problem(f"lubrication.{key}", "", allowed, "Remove it, or change method."))
+    reason = "has no effect without oil_flow, the flow of the jets."
+    remedy = 'Give that, as oil_flow = "2 l/min", or remove this key.'
+    problems += [
+        Problem(f"lubrication.{key}", "", reason, remedy)
+        for key in sorted(given.intersection(_JETS))
+        if method == "jet" and table.oil_flow is None
+    ]
+    problems += broken_conditions(_CONDITIONS, table)
+    return problems
+
+
+def _stated(table: LubricationTable) -> set[str]:
+    """Keys that were given other values than their defaults."""
+    usual = LubricationTable(method=table.method)
+    return {key for key in table.model_fields_set if getattr(table, key) != getattr(usual, key)}
+
+
+def check_sump(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:
+    """Dipping needs the volume of the oil, once."""
+    own, other = table.oil_volume, thermal.oil_volume or None
+    if table.method != "dip":
+        return []
+    if own is None and other is None:
+        allowed = 'is missing, and method = "dip" needs it.'
+        return [Problem("lubrication.oil_volume", "", allowed, 'Give it, as "1.5 l".')]
+    if own is None or other is None or own == other:
+        return []
+    key = "lubrication.oil_volume, thermal.oil_volume"
+    reason = "are one volume, and differ."
+    return [Problem(key, f"{LITRE.text(own)}, {LITRE.text(other)}", reason, "Give one of them.")]
+
+
+def check_wetting(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:
+    """The temperatures must see the oil as the losses do."""
+    wetting = WETTING[table.method]
+    if "lubrication" not in thermal.model_fields_set or thermal.lubrication in wetting:
+        return []
+    fitting = " or ".join(f'"{name}"' for name in wetting)
+    allowed = f'contradicts lubrication.method = "{table.method}", with which it is {fitting}.'
+    remedy = "Remove it: it follows from the method."
+    return [Problem("thermal.lubrication", f'"{thermal.lubrication}"', allowed, remedy)]
+
+
+def check_immersion(table: LubricationTable, parts: Collection[str]) -> list[Problem]:
+    """Depths of parts that can churn."""
+    known = ", ".join(parts)
+    return [
+        Problem(
+            f"lubrication.immersion.{name}",
+            "",
+            f"is no part whose churning is computed: {known}.",
+            did_you_mean(name, parts) or "Name one of these; planets are left out.",
+        )
+        for name in table.immersion
+        if name not in parts
+    ]

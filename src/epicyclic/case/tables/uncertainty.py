@@ -8,15 +8,14 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
 from epicyclic.case.fields import Parameter, field_at, parameter_of, quantity_of, value_of
 from epicyclic.case.messages import did_you_mean, dotted, path_of, refused, written
 from epicyclic.case.read import owner_without_keys, value_at
-from epicyclic.case.tables.base import Table
-from epicyclic.case.tables.lubrication import FACTOR_KEY, SHARE_KEY
+from epicyclic.case.tables.base import Table, option
+from epicyclic.case.tables.operation import FACTOR_KEY, SHARE_KEY
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, Number, Quantity, format_number
 
@@ -35,41 +34,30 @@ class DistributionTable(Table):
         ("normal", "uniform", "tolerance", "lognormal_factor", "exact"),
     )
 
-    normal: Stated | None = Field(
-        default=None, description='Standard uncertainty about the value, "0.05 um" or "12 %".'
+    normal: Stated | None = option('Standard uncertainty about the value, "0.05 um" or "12 %".')
+    uniform: tuple[Stated, Stated] | None = option("Limits between which all values are alike.")
+    tolerance: tuple[Stated, Stated] | None = option(
+        "Limits as deviations from the value, between which all are alike."
     )
-    uniform: tuple[Stated, Stated] | None = Field(
-        default=None, description="Limits between which all values are alike."
+    lognormal_factor: Number | None = option(
+        "Two thirds of all values lie between the value over and times this factor.", gt=1
     )
-    tolerance: tuple[Stated, Stated] | None = Field(
-        default=None,
-        description="Limits as deviations from the value, between which all are alike.",
-    )
-    lognormal_factor: Number | None = Field(
-        default=None,
-        gt=1,
-        description="Two thirds of all values lie between the value over and times this factor.",
-    )
-    exact: bool | None = Field(default=None, description="true: known, against the default.")
-    correlated: dict[str, Number] = Field(
-        default={},
-        description="Coefficients of correlation with other keys of this table, -1 to 1.",
+    exact: bool | None = option("true: known, against the default.")
+    correlated: dict[str, Number] = option(
+        "Coefficients of correlation with other keys of this table, -1 to 1.", {}
     )
 
     def __hash__(self) -> int:  # a table of names cannot be hashed
         return hash((self.normal, self.uniform, self.tolerance, self.lognormal_factor))
 
 
-UNCERTAINTY: Any = Field(
-    default={},
-    description="How well values are known, by their keys, and models, by model_form.KIND.",
+UNCERTAINTY: Any = option(
+    "How well values are known, by their keys, and models, by model_form.KIND.", {}
 )
 """The field of a case."""
 
-
 MODEL_FORM = "model_form."
 """What keys of [uncertainty] begin with that are no keys of the case, but kinds of losses."""
-
 
 Kind = Literal["normal", "uniform", "lognormal"]
 

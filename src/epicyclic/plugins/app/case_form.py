@@ -31,7 +31,7 @@ from epicyclic.case.fields import (
 )
 from epicyclic.case.messages import dotted, key_parts, written
 from epicyclic.case.read import parse_value, read_file, value_at
-from epicyclic.case.template import case_text, toml_key, toml_value, train_text
+from epicyclic.case.template import case_text, toml_key, toml_value
 from epicyclic.case.train import form_of_set
 from epicyclic.case.train_tables import PlanetarySet
 from epicyclic.errors import InputError, Problem, raise_any
@@ -433,8 +433,7 @@ class Desk:
 
     def text(self) -> str:
         """The case file of the case as it is now."""
-        write = train_text if self.tables["kind"] == "train" else case_text
-        return write(self.current, [_HEAD], {})
+        return case_text(self.current, [_HEAD], {})
 
 
 def owner_of(key: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
 from epicyclic.case.messages import one_line
-from epicyclic.case.template import case_text, train_text
+from epicyclic.case.template import case_text
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
@@ -104,8 +104,7 @@ class RexsImport:
             "Keys behind a # have the default that is shown or told, or are NEEDED.",
             *self.notes,
         ]
-        write = train_text if self.kind == "train" else case_text
-        return write(tables, [one_line(line, 400) for line in head], about)
+        return case_text(tables, [one_line(line, 400) for line in head], about)
 
     def remarks(self, changes: Mapping[str, Any], case: Case) -> list[str]:
         """What the file lacks for `case`, which was made with `changes`, and where it differs."""

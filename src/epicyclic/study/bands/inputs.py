@@ -10,9 +10,9 @@ from typing import Any
 from epicyclic import library
 from epicyclic.case.base import CaseTable
 from epicyclic.case.fields import Parameter, known_keys, parameter_of, value_of
-from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.gear_tables import GearTable, tolerances_of
 from epicyclic.case.messages import dotted, key_parts
-from epicyclic.case.tables.lubrication import FACTOR_KEY
+from epicyclic.case.tables.operation import FACTOR_KEY
 from epicyclic.case.tables.uncertainty import (
     MODEL_FORM,
     DistributionTable,
@@ -22,7 +22,6 @@ from epicyclic.case.tables.uncertainty import (
     model_forms,
     stated_values,
 )
-from epicyclic.case.thickness import tolerances_of
 from epicyclic.errors import Problem
 from epicyclic.units import MICROMETRE
 

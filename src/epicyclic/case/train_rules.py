@@ -1,7 +1,6 @@
-"""Can this train run as stated: shafts, states, freedom, and the assembly of listed sets?
+"""Can a train run as stated: shafts, states, freedom, oil around its sets, forces on bearings?
 
-Every function returns the problems it finds; none stops at the first.
-"""
+Every function returns the problems it finds; none stops at the first."""
 
 from __future__ import annotations
 
@@ -11,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epicyclic.case.checks import check_oil_model
-from epicyclic.case.messages import did_you_mean, written
-from epicyclic.case.tables.thermal import check_outlet
-from epicyclic.case.train_lubrication import lubrication_problems
+from epicyclic.case.messages import did_you_mean, millimetres, written
+from epicyclic.case.tables.elements import ShaftBearingTable
+from epicyclic.case.tables.operation import check_immersion, check_outlet, check_sump, check_wetting
 from epicyclic.case.train_shape import TrainShape
 from epicyclic.case.train_tables import StateTable
 from epicyclic.errors import Problem
@@ -22,6 +21,111 @@ from epicyclic.gears.gear import HOUSING
 if TYPE_CHECKING:
     from epicyclic.case.train import TrainCase
     from epicyclic.machine.machine import Machine
+
+
+def lubrication_problems(train: TrainCase) -> list[Problem]:
+    """What cannot be about the lubrication of the sets; a shared table is checked by itself."""
+    problems: list[Problem] = []
+    if train.lubrication is not None and train.lubrication.immersion:
+        allowed = "is stated of each set, whose gears it names."
+        remedy = "Write [sets.NAME.lubrication], or give oil_level."
+        problems.append(Problem("lubrication.immersion", "", allowed, remedy))
+    for name, table in train.computed_sets:
+        own = table.lubrication
+        if own is None or own == train.lubrication:
+            continue
+        if train.lubrication is None:
+            # the oil around everything that is in no set follows from the train's own table
+            allowed = "needs [lubrication] of the train, which it then replaces for this set."
+            remedy = "Add it, for all other parts."
+            problems.append(Problem(f"sets.{name}.lubrication", "", allowed, remedy))
+        found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
+        if train.shape.sets[name].listed:
+            found += check_immersion(own, train.shape.sets[name].members)
+        problems += [replace(problem, key=_key(name, problem.key)) for problem in found]
+    return problems
+
+
+def _key(name: str, keys: str) -> str:
+    """Keys of a set as those of the train."""
+    return ", ".join(
+        f"sets.{name}.{key}" if key.startswith("lubrication") else key for key in keys.split(", ")
+    )
+
+
+GIVE_FORCE = "Or give radial_force (and axial_force) of the bearings of this shaft."
+
+
+def needs_force(table: ShaftBearingTable) -> bool:
+    """True if the force on a bearing is to be found from those of the gears."""
+    by_load = table.table is None or table.table.radial_force is not None
+    return table.radial_force is None and (table.model != "table" or by_load)
+
+
+def bearing_force_problems(train: TrainCase, complete: bool) -> Iterator[Problem]:
+    """What is missing for the forces on shaft bearings, shaft by shaft.
+
+    Nothing is said of the gears on shafts whose members are not `complete`.
+    """
+    bearings: dict[str, dict[str, ShaftBearingTable]] = {}
+    for kind, name, table in train.elements:
+        if kind == "bearings" and isinstance(table, ShaftBearingTable) and needs_force(table):
+            shaft = train.shape.names.get(table.shaft)
+            if shaft is not None:
+                bearings.setdefault(shaft, {})[name] = table
+    for shaft, own in bearings.items():
+        yield from _of_bearings(shaft, own)
+        if complete:
+            yield from _of_gears(train, shaft, own)
+
+
+def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
+    """Two bearings at two known places carry a shaft."""
+    for name, table in own.items():
+        if table.position is None:
+            allowed = f"is missing: the force on the bearing follows from its place along {shaft}."
+            remedy = f'Add position = "... mm". {GIVE_FORCE}'
+            yield Problem(f"bearings.{name}.position", "", allowed, remedy)
+    names = ", ".join(own)
+    if len(own) > 2:
+        allowed = f"are {len(own)} bearings on {shaft}; statics gives the forces of two."
+        yield Problem("bearings", names, allowed, "Give radial_force of all but two.")
+    places = [table.position for table in own.values() if table.position is not None]
+    if len(own) == 2 and len(places) == 2 and places[0] == places[1]:
+        key = f"bearings.{next(iter(own))}.position"
+        allowed = f"is that of the other bearing of {shaft} too."
+        yield Problem(key, millimetres(places[0]), allowed, "Give both their own positions.")
+
+
+def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
+    """The forces of gears, and where they act."""
+    names = ", ".join(own)
+    if len(own) == 1 and any(True for _ in _gears(train, shaft)):
+        allowed = f"is the only bearing of {shaft}, whose gears would tilt it."
+        yield Problem(f"bearings.{names}", "", allowed, f"Add a second bearing. {GIVE_FORCE}")
+    for gear in _gears(train, shaft):
+        if train.position_of(gear) is None:
+            allowed = f"is missing: the forces on the bearings {names} follow from it."
+            remedy = f'Add "{gear}" = "... mm" to [positions]. {GIVE_FORCE}'
+            yield Problem(f'positions."{gear}"', "", allowed, remedy)
+    for name, gearing in train.shape.sets.items():
+        if gearing.computed:
+            continue
+        if shaft in train.shape.bodies_of(name).values():
+            allowed = f"is missing: the forces of {name}, whose efficiency is given, are not known."
+            remedy = f"Give it for {names}."
+            yield Problem(f"bearings.{next(iter(own))}.radial_force", "", allowed, remedy)
+
+
+def _gears(train: TrainCase, shaft: str) -> Iterator[str]:
+    """The gears on a shaft that push it aside: without planets all around them."""
+    for name, gearing in train.shape.sets.items():
+        if not gearing.computed or (gearing.planets and (gearing.count or 1) > 1):
+            continue
+        bodies = train.shape.bodies_of(name)
+        for gear, body in gearing.bodies.items():
+            if body not in gearing.planets and bodies[body] == shaft and shaft != HOUSING:
+                yield f"{name}.{gear}"
 
 
 def operation_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
@@ -67,14 +171,10 @@ def _temperature_problems(train: TrainCase) -> list[Problem]:
         if table.models.temperatures not in ("inlet", train.models.temperatures)
     ]
     if train.models.temperatures != "inlet" and not train.computed:
-        found.append(
-            Problem(
-                "models.temperatures",
-                written(train.models.temperatures),
-                "needs losses that are computed; all sets have given efficiencies.",
-                'Take "inlet", or give sets their gears in place of efficiencies.',
-            )
-        )
+        shown = written(train.models.temperatures)
+        allowed = "needs losses that are computed; all sets have given efficiencies."
+        remedy = 'Take "inlet", or give sets their gears in place of efficiencies.'
+        found.append(Problem("models.temperatures", shown, allowed, remedy))
     return found
 
 
@@ -172,12 +272,8 @@ def _ends_problems(train: TrainCase, shape: TrainShape, complete: bool) -> Itera
             allowed = "stands still, as the housing does."
             if shaft != HOUSING:
                 allowed = f"is held by a brake in {_state_words(train)}."
-            yield Problem(
-                f"operation.{key}",
-                written(getattr(operation, key)),
-                allowed,
-                "Name a shaft that turns, or release it.",
-            )
+            advice = "Name a shaft that turns, or release it."
+            yield Problem(f"operation.{key}", written(getattr(operation, key)), allowed, advice)
     if complete:
         yield from _given_problems(train, shape, ends)
 
@@ -229,15 +325,11 @@ def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> li
     problems = []
     if found.blocked:
         means = _means(train.state, held, train.operation.speeds)
-        problems.append(
-            Problem(
-                key,
-                shown,
-                f"blocks the train: the input shaft {driven} cannot turn"
-                + (f" with {means}." if means else "."),
-                "Release one of these." if means else "Check the shafts: they join too much.",
-            )
+        reason = f"blocks the train: the input shaft {driven} cannot turn" + (
+            f" with {means}." if means else "."
         )
+        remedy = "Release one of these." if means else "Check the shafts: they join too much."
+        problems.append(Problem(key, shown, reason, remedy))
     if not complete:
         return problems
     if found.loose:
