@@ -215,8 +215,6 @@ def duty_seconds() -> tuple[float, float]:
 
 def clear_caches() -> None:
     from epicyclic.build import gear_sets
-    from epicyclic.case import gearing
-    pass
     from epicyclic.case import gear_tables as flanks
     from epicyclic.case import gearing
     from epicyclic.contact import elastic_teeth
