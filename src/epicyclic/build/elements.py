@@ -38,8 +38,7 @@ from epicyclic.machine.shaft_parts import Seal, ShaftBearing, TableLoss
 from epicyclic.oil.oil import Oil
 from epicyclic.oil.properties import oil_state
 
-_FORTY_CELSIUS = 313.15
-"""40 degC in kelvin."""
+_FORTY_CELSIUS = 313.15  # 40 degC in kelvin.
 
 
 def _bearing(

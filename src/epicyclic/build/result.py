@@ -90,17 +90,14 @@ def solved_supplies(
 # Notes: what a user must know about a result besides its numbers.
 
 
-NOT_INCLUDED = "Not included"
-"""Begins the note that names loss terms which are missing."""
+NOT_INCLUDED = "Not included"  # Begins the note that names loss terms which are missing.
 GEAR_PRESSURE = 2.4e9
 """1.6 times the endurance limit of 1.5 GPa of case-hardened steel: life factor for static load of
 ISO 6336-2, limit of ISO 6336-5, grade MQ (general knowledge). [Pa]"""
 BEARING_PRESSURE = 4.0e9
 """Pressure of a roller on its race at the static load rating of ISO 76 (general knowledge). [Pa]"""
-IDLE_PART = 0.3
-"""Part of the most loaded roller without load from which a result says so. [1]"""
-LEAST_CONTACT = 0.75
-"""Share of the contact lines that carries below which a result says so. [1]"""
+IDLE_PART = 0.3  # Part of the most loaded roller without load from which a result says so. [1]
+LEAST_CONTACT = 0.75  # Share of the contact lines that carries below which a result says so. [1]
 
 
 def case_notes(

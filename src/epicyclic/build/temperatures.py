@@ -31,10 +31,8 @@ from epicyclic.oil.oil import Oil
 from epicyclic.oil.properties import mixture_state, oil_state
 from epicyclic.result.result import in_words
 
-GRAVITY_TEMPERATURE = 288.75
-"""15.6 degC, at which the specific gravity of petroleum is stated. [K]"""
-WATER = 999.0
-"""Density of water there. [kg/m^3]"""
+GRAVITY_TEMPERATURE = 288.75  # 15.6 degC, at which the specific gravity of petroleum is stated. [K]
+WATER = 999.0  # Density of water there. [kg/m^3]
 IN_BATH = ("dip", "submerged")
 
 

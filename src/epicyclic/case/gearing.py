@@ -306,9 +306,8 @@ class Gearing:
         The central gears of a planet give the radius of its pin; two planets that mesh with each
         other the angle between their pins: the second of a listed pair stands ahead of the first in
         the sense of positive speeds. A planet without a central gear has no place that this would
-        determine, and is left out.
-
-        Raises `ValueError` if two pins cannot stand at the distance of their planets.
+        determine, and is left out. Raises `ValueError` if two pins cannot stand at the distance of
+        their planets.
         """
         distances = self.distances
         radii = self.pin_radii(distances)

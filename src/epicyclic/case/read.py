@@ -167,10 +167,8 @@ def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
     """The tables of a TOML file, and the problems of its lines.
 
     A value that only lacks its quotes is read as if it had them, so that the rest of the file can
-    be checked too.
-
-    Raises `InputError` if it is not a file, not text, or not TOML that can be read around its
-    mistakes.
+    be checked too. Raises `InputError` if it is not a file, not text, or not TOML that can be read
+    around its mistakes.
     """
     try:
         tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE))

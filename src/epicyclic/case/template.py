@@ -77,9 +77,8 @@ def case_template(kind: str) -> str:
 def text_like(name: str) -> str:
     """A commented case file with the values of a case, a built-in one or a file.
 
-    That of a train is its own file.
-
-    Raises `InputError` if there is no such case, or it is not sound.
+    That of a train is its own file. Raises `InputError` if there is no such case, or it is not
+    sound.
     """
     case = read_case(name)
     if isinstance(case, TrainCase):

@@ -67,12 +67,10 @@ def _blas() -> ThreadpoolController:
 
 FloatArray = NDArray[np.float64]
 
-SHEAR_FACTOR = 5 / 6
-"""k of Mindlin's plate for a rectangular section. [1]"""
+SHEAR_FACTOR = 5 / 6  # k of Mindlin's plate for a rectangular section. [1]
 ROOT_TANGENT = math.radians(30.0)
 """The root section is where the fillet is inclined so to the tooth's middle line. ISO 6336-3."""
-HEIGHT_TERMS = 6
-"""Polynomials over the height of the tooth."""
+HEIGHT_TERMS = 6  # Polynomials over the height of the tooth.
 QUADRATURE_MARGIN = 18
 """Gauss points over the height beyond the number of polynomials: the thickness is no polynomial."""
 ROTATION_CONSTANT = 16.67 / math.pi

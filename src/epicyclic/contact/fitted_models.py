@@ -40,8 +40,7 @@ from epicyclic.oil.oil import Oil
 FloatArray = NDArray[np.float64]
 Columns = Callable[[LineContacts], Sequence[FloatArray | float]]
 
-SMALLEST_SLIP = 1e-4
-"""Slide-to-roll ratio put into the logarithms. [1]"""
+SMALLEST_SLIP = 1e-4  # Slide-to-roll ratio put into the logarithms. [1]
 SMALLEST_SINGULAR = 1e-10
 """Singular value over the largest one below which columns count as dependent. [1]"""
 
@@ -246,27 +245,22 @@ NEEDLE_REGRESSION = Regression(
 # a polished one keeps the ridges of the other from meeting any, and a rough surface that moves
 # slower than the oil touches more than one that moves faster.
 
-EYRING_STRESS = 5e6
-"""Unit of the stress of the fit. [Pa]"""
+EYRING_STRESS = 5e6  # Unit of the stress of the fit. [Pa]
 SLOPE_RATIO, TRANSITION = 0.41, 0.38e9
 """The two slopes of the closed form are those of the default of the solver: slope at high over that
 at low pressure [1], and where they meet [Pa]."""
 LIGHT_LOAD = 0.6
 """M of Moes at which the pressure is half that of Hertz, found for smooth contacts. [1]"""
-HALF_WIDTH = 0.2e-3
-"""Unit of the half-width. [m]"""
-TOUCHING = 40e-9
-"""Unit of the film at which surfaces touch: that of the default of the solver. [m]"""
-CORRELATION_LENGTH = 20e-6
-"""Length over which roughness is alike, that of the simulations. [m]"""
+HALF_WIDTH = 0.2e-3  # Unit of the half-width. [m]
+TOUCHING = 40e-9  # Unit of the film at which surfaces touch: that of the default of the solver. [m]
+CORRELATION_LENGTH = 20e-6  # Length over which roughness is alike, that of the simulations. [m]
 SAME_MOTION = 0.1
 """Slide-to-roll ratio at which half of the effect of which surface is faster is there. [1]"""
 
 FIT_TOLERANCE = 1e-5
 """Relative gain of a step in the sum of squares at which a fit ends: what the data do not tell
 apart, such as size and exponent of a roughness that adds next to nothing, need not be found. [1]"""
-TINY = 1e-12
-"""Roughness of a smooth surface, which has a logarithm. [m]"""
+TINY = 1e-12  # Roughness of a smooth surface, which has a logarithm. [m]
 SMALLEST_FITTED_SLIP = 0.01
 """Added to the slide-to-roll ratio where it is raised to a power or has a logarithm. [1]"""
 
@@ -464,14 +458,11 @@ MOST_SIMULATIONS = 512
 LENGTH = 2.0
 """Standard deviations of a coordinate over which what a form lacks is alike. Chosen on the contacts
 of `atf-dexron-ulv`, as is `NOISE`. [1]"""
-NOISE = (0.08 / 0.2) ** 2
-"""Variance of what no neighbour knows over that of what a form lacks. [1]"""
-SMOOTH = 10e-9
-"""Roughness that counts as none, which has no logarithm. [m]"""
+NOISE = (0.08 / 0.2) ** 2  # Variance of what no neighbour knows over that of what a form lacks. [1]
+SMOOTH = 10e-9  # Roughness that counts as none, which has no logarithm. [m]
 LARGEST_EXCESS = 3.0
 """A form is not corrected by more than a factor of 20, the logarithm of which this is. [1]"""
-DIGITS = 5
-"""Significant digits in a file."""
+DIGITS = 5  # Significant digits in a file.
 
 
 class NearbySimulations(BaseModel):
@@ -605,8 +596,7 @@ REGIMES: dict[str, tuple[float, float]] = {
     "film ratio above 3": (3.0, np.inf),
 }
 """Ranges of the film ratio for which errors are stated. [1]"""
-LARGEST_FILE = 5_000_000
-"""A file of coefficients is much smaller. [bytes]"""
+LARGEST_FILE = 5_000_000  # A file of coefficients is much smaller. [bytes]
 
 
 _OF_THE_FILM = {"rolling_speed": False, "roughness1": True, "roughness2": True}

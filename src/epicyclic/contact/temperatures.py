@@ -115,10 +115,8 @@ LUBRICATION_FACTORS: Mapping[str, float] = MappingProxyType(
 )
 """X_S of ISO/TS 6336-20 to -22, second hand; submerged with sufficient cooling. [1]"""
 
-MM = 1e3
-"""Millimetres in a metre."""
-MICROMETRE = 1e6
-"""Micrometres in a metre."""
+MM = 1e3  # Millimetres in a metre.
+MICROMETRE = 1e6  # Micrometres in a metre.
 
 
 def iso_mean_friction(

@@ -228,8 +228,7 @@ def _steps(first: float, last: float, points: int) -> Floats:
 
 # The tool that cuts a gear: as stated, or one that leaves the involute that the mate needs.
 
-TOOL_HALVINGS = 30
-"""Halvings of the rounding of a tool until it is known: to a billionth."""
+TOOL_HALVINGS = 30  # Halvings of the rounding of a tool until it is known: to a billionth.
 
 
 @lru_cache(maxsize=64)

@@ -249,14 +249,11 @@ def active_profile(mesh: Mesh, member: int) -> tuple[float, float]:
 
 # Parameters of rough profiles, and how they are converted into each other.
 
-RA_OVER_RQ = math.sqrt(2 / math.pi)
-"""Ra/Rq of a Gaussian profile. [1]"""
+RA_OVER_RQ = math.sqrt(2 / math.pi)  # Ra/Rq of a Gaussian profile. [1]
 
-RZ_OVER_RA = 6.0
-"""Rz/Ra, DIN 3991 approximation, as the FVA-Workbench uses it. [1]"""
+RZ_OVER_RA = 6.0  # Rz/Ra, DIN 3991 approximation, as the FVA-Workbench uses it. [1]
 
-RZ_BAND = (4.0, 7.0)
-"""Rz/Ra of real surfaces, a rule of thumb of the trade. [1]"""
+RZ_BAND = (4.0, 7.0)  # Rz/Ra of real surfaces, a rule of thumb of the trade. [1]
 
 
 def rq_of(

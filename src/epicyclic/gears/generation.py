@@ -101,17 +101,14 @@ def zero_between(function: Callable[[float], float], low: float, high: float) ->
 
 Floats = NDArray[np.float64]
 
-RACK_ROUNDING = 0.38
-"""rho_fP / m_n of the default rack. ISO 53, profile A. [1]"""
+RACK_ROUNDING = 0.38  # rho_fP / m_n of the default rack. ISO 53, profile A. [1]
 
 SHAPER_ROUNDING = 0.2
 """Tip rounding of the default shaper cutter over m_n: a usual value, not a standardised one. [1]"""
 
-SHAPER_TEETH_SHARE = 1 / 3
-"""Teeth of the default shaper cutter over those of the ring. [1]"""
+SHAPER_TEETH_SHARE = 1 / 3  # Teeth of the default shaper cutter over those of the ring. [1]
 
-SHAPER_TEETH_LEAST = 10
-"""Fewest teeth of the default shaper cutter. [1]"""
+SHAPER_TEETH_LEAST = 10  # Fewest teeth of the default shaper cutter. [1]
 
 SHAPER_TEETH_SHARE_MOST = 2 / 3
 """Most teeth of the default shaper cutter over those of the ring. [1]"""

@@ -17,8 +17,7 @@ from epicyclic.gears.gear import BasicRack, Gear, inverse_involute, involute
 
 PIN = 1.7
 """Usual diameter of a measuring ball or pin over the normal module, near 1.68 to 1.73. [1]"""
-PIN_STEP = 0.05e-3
-"""To which it is rounded. [m]"""
+PIN_STEP = 0.05e-3  # To which it is rounded. [m]
 
 
 def _pitch_and_base(rack: BasicRack, teeth: int) -> tuple[float, float]:
@@ -151,8 +150,7 @@ def pin_contact_radius(gear: Gear, pin: float) -> float:
 _MM, _UM = 1e-3, 1e-6
 _DIAMETERS = (10, 50, 125, 280, 560, 1000, 1600, 2500, 4000, 6300, 10000)
 """Largest reference diameter of each row of both tables. [mm]"""
-LARGEST_FIT = _DIAMETERS[-1] * _MM
-"""[m]"""
+LARGEST_FIT = _DIAMETERS[-1] * _MM  # [m]
 _SERIES = ("a", "ab", "b", "bc", "c", "cd", "d", "e", "f", "g", "h")
 _UPPER = (
     (100, 85, 70, 58, 48, 40, 33, 22, 10, 5, 0),

@@ -24,8 +24,7 @@ LOW_SPEED_LIMIT = 2000.0
 """nu n in mm^2/s times rpm below which the friction moment is constant (Palmgren)."""
 TRANSITION_REYNOLDS = 5e5
 """omega r^2/nu at which the flow on the faces turns turbulent, Talbot (2012), Eq. 5.5. [1]"""
-RPM = math.pi / 30
-"""1 rpm in rad/s."""
+RPM = math.pi / 30  # 1 rpm in rad/s.
 
 SPEED_PARAMETER = Range(
     "speed_parameter", "speed times pitch diameter, rpm mm", None, 1e6, NUMBER, OF_THIS_PACKAGE
@@ -147,14 +146,11 @@ def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float
 
 ChurningModel = Literal["changenet-velex", "iso-14179-1"]
 
-GRAVITY = 9.80665
-"""[m/s^2]"""
+GRAVITY = 9.80665  # [m/s^2]
 SLOW, FAST = 750.0, 1250.0
 """Acceleration parameter up to which, and from which, flow is of one regime. [m/s^2]"""
-ARRANGEMENT = 0.2
-"""A_g of ISO/TR 14179-1. [1]"""
-LEAST_HELIX = math.radians(10.0)
-"""Smallest helix angle with which ISO/TR 14179-1 computes. [rad]"""
+ARRANGEMENT = 0.2  # A_g of ISO/TR 14179-1. [1]
+LEAST_HELIX = math.radians(10.0)  # Smallest helix angle with which ISO/TR 14179-1 computes. [rad]
 LEAST_MODULE = 0.7
 """Transverse module at which its roughness factor is held, before it reaches zero. [mm]"""
 

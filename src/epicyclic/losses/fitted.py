@@ -51,12 +51,10 @@ FloatArray = NDArray[np.float64]
 
 POINTS, PRESSURES = 48, 32
 """Points on each side of the pitch point, and of the pressure: losses are off by some 1e-5."""
-RACE_PRESSURES = 64
-"""Points of the pressure at the race of a bearing."""
+RACE_PRESSURES = 64  # Points of the pressure at the race of a bearing.
 LEAST_SLIP = 0.01
 """Slip at which points stop to crowd: fits change with the slip over its logarithm above. [1]"""
-NO_SLIP = 1e-300
-"""Sliding speed at the pitch point, of which only the sign counts. [m/s]"""
+NO_SLIP = 1e-300  # Sliding speed at the pitch point, of which only the sign counts. [m/s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,8 +259,7 @@ def domain_ranges(model: OilModel, quantity: str) -> tuple[Range, ...]:
 
 Fit = TypeVar("Fit", FittedFriction, FittedRolling)
 
-REACH = 1.5
-"""Factor beyond a limit of the simulations at which a fit has no weight left. [1]"""
+REACH = 1.5  # Factor beyond a limit of the simulations at which a fit has no weight left. [1]
 MODULUS_SLACK = 1.1
 """Factor by which the equivalent modulus may differ from the simulated one: that of steels does
 not, that of other materials does. [1]"""

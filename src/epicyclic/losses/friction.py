@@ -282,8 +282,7 @@ def _niemann_winter_ranges(settings: FrictionSettings) -> tuple[Range, ...]:
 
 SMALLEST_SLIDING = 0.01
 """Sliding over rolling speed at which the formula of Benedict and Kelley is held. [1]"""
-MICROINCH = 25.4e-9
-"""[m]"""
+MICROINCH = 25.4e-9  # [m]
 
 
 def _log_argument(contact: MeshContact) -> FloatArray:
@@ -389,8 +388,7 @@ XU_COEFFICIENTS = (
     -8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305,
 )  # fmt: skip
 """b1 to b9 of `xu_2007`."""
-SMALLEST_SLIDE_TO_ROLL = 1e-9
-"""Slide-to-roll ratio that is put into the powers, at least. [1]"""
+SMALLEST_SLIDE_TO_ROLL = 1e-9  # Slide-to-roll ratio that is put into the powers, at least. [1]
 
 
 def xu_2007(contact: MeshContact, settings: FrictionSettings) -> FloatArray:

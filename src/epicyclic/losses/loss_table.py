@@ -35,8 +35,7 @@ QUANTITIES: Mapping[str, tuple[str, Quantity]] = {
 """Label and display unit of what a table may hold."""
 
 _COLUMNS = {**AXES, **QUANTITIES}
-_LARGEST_FILE = 1_000_000
-"""[bytes]"""
+_LARGEST_FILE = 1_000_000  # [bytes]
 _MOST_ROWS = 10_000
 _LONGEST_SHOWN = 60
 _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")

@@ -79,8 +79,7 @@ def flash_temperatures(
 #
 # Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
 
-CLOSED_LIMIT = 1.0
-"""Tip contact ratio up to which Ohlendorf's closed form holds. [1]"""
+CLOSED_LIMIT = 1.0  # Tip contact ratio up to which Ohlendorf's closed form holds. [1]
 
 
 @dataclass(frozen=True, slots=True)

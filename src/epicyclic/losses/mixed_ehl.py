@@ -127,8 +127,7 @@ def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:
 # therefore taken where both flanks are as rough as the rougher one, and from there the solver of
 # this package tells what the smoother flank changes, by its fit to contacts of the same oil.
 
-SIMULATED = "atf-talbot-2012"
-"""The oil of the regressions, whose contacts were simulated."""
+SIMULATED = "atf-talbot-2012"  # The oil of the regressions, whose contacts were simulated.
 
 
 def equally_rough(contact: LineContacts) -> LineContacts:

@@ -51,15 +51,12 @@ FloatArray = NDArray[np.float64]
 
 FITTED_OR_PALMGREN = "fitted-or-palmgren"
 """Name of the fitted loss with that of Palmgren beyond the simulations."""
-TOLERANCE = 1e-9
-"""Residual force over the largest load at which the balance counts as met. [1]"""
+TOLERANCE = 1e-9  # Residual force over the largest load at which the balance counts as met. [1]
 MAX_ITERATIONS = 100
-STIFFNESS_STEP = 0.01
-"""Relative step of the force in `radial_stiffness`. [1]"""
+STIFFNESS_STEP = 0.01  # Relative step of the force in `radial_stiffness`. [1]
 LEAST_FORCE = 1e-9
 """Force there, at least: what smaller ones press is rounding beside the clearance. [N]"""
-FIRST_APPROACH = 1e-5
-"""Displacement beyond the clearance at which the iteration starts. [m]"""
+FIRST_APPROACH = 1e-5  # Displacement beyond the clearance at which the iteration starts. [m]
 
 BEARING_RELIABILITY = {
     "mixed-ehl": "calibrated on three printed losses of one bearing; a fourth, with smoother "

@@ -25,8 +25,7 @@ from epicyclic.oil.properties import MixtureState
 
 Floats = NDArray[np.float64]
 
-POCKETS_PER_PITCH = 2
-"""A tooth of either gear."""
+POCKETS_PER_PITCH = 2  # A tooth of either gear.
 PERIODS_MOST = 60
 PERIOD_TOLERANCE = 1e-4
 """The flow repeats if the power of two periods differs less than this, and the fields by less than

@@ -33,8 +33,7 @@ ANGLES = 769
 MARGIN = 0.25
 """How far tables reach beyond the life of a pocket, because a cell lives while any part of it does:
 more than a slice and a time step turn. [pitches]"""
-OUTLINE_POINTS = 49
-"""Points on each section of an outline."""
+OUTLINE_POINTS = 49  # Points on each section of an outline.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -192,10 +191,8 @@ def _crossing(tip1: float, tip2: float, center_distance: float, internal: bool) 
 
 # Geometry of the cells into which the pockets of a mesh are cut, over one mesh period.
 
-SLICES_PER_PITCH = 10
-"""Fewest slices for each pitch that the helix turns over the face."""
-LARGEST_END = 0.25
-"""Largest share of the face that either end slice takes. [1]"""
+SLICES_PER_PITCH = 10  # Fewest slices for each pitch that the helix turns over the face.
+LARGEST_END = 0.25  # Largest share of the face that either end slice takes. [1]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -196,10 +196,8 @@ def from_scaled(
 
 WIDEST = math.log(2.0)
 """Largest distance of the first nodes, where the numbers asked for lie closer: an octave."""
-SAME = 1e-9
-"""Numbers that differ less, relatively, are one. [1]"""
-KEPT_MOST = 10_000
-"""Flows remembered for the next tables."""
+SAME = 1e-9  # Numbers that differ less, relatively, are one. [1]
+KEPT_MOST = 10_000  # Flows remembered for the next tables.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -374,8 +372,7 @@ CURVATURE = 20.0
 """Second derivative of the scaled power over ln(number), over that power, at most: 15 in second
 differences over 1 and 4 % of the number, in meshes of the built-in cases, of asymmetric ones and of
 an e-axle. [1]"""
-CURVATURE_WITH_VOIDS = 80.0
-"""The same where pockets hold voids, 60 there. [1]"""
+CURVATURE_WITH_VOIDS = 80.0  # The same where pockets hold voids, 60 there. [1]
 ERROR = 1e-5
 """Largest error of an interpolated power, relative: flows themselves are found to 1e-3. [1]"""
 RESTLESS = 5e-3
@@ -436,12 +433,10 @@ class KnownFlows:
 
 # Tables of flows through pockets in a file, with the pockets that they were made for.
 
-ATTRIBUTE = "flows"
-"""Attribute of the NetCDF file that holds the tables as JSON."""
+ATTRIBUTE = "flows"  # Attribute of the NetCDF file that holds the tables as JSON.
 _KEY = "models.pocketing_table"
 _REMEDY = "Make it with 'epicyclic pockets-table', or leave the key out."
-_SAME = 1e-9
-"""Numbers that differ less, relatively, are the same: machines round differently. [1]"""
+_SAME = 1e-9  # Numbers that differ less, relatively, are the same: machines round differently. [1]
 
 NEGLIGIBLE = 1e-3
 """Share of the largest power of a table; what is below zero by less is numerical error. [1]"""

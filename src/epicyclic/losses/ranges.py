@@ -22,8 +22,7 @@ Real = TypeVar("Real", float, FloatArray)
 SMALLEST_SHOWN_SHARE = 0.01
 SMALLEST_APART = 0.01
 """Part of the total loss below which a range left shares a sentence with others. [1]"""
-OUT_OF_RANGE = "Out of range"
-"""Begins what `describe_flags` says of a flag."""
+OUT_OF_RANGE = "Out of range"  # Begins what `describe_flags` says of a flag.
 OF_THIS_PACKAGE = "limit of this package; none is in print"
 """Source of a range that no publication states."""
 

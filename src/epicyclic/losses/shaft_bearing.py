@@ -331,13 +331,11 @@ def load_flags(
 
 STARVATION: Mapping[str, float] = {"jet": 3e-8, "oil-bath": 3e-8, "grease": 6e-8, "oil-air": 6e-8}
 """K_rs by lubrication: oil jet, low oil bath, grease, oil and air (SKF 2018). [1]"""
-LARGEST_DRAG_VARIABLE = 0.0012
-"""V_M of a ball bearing that is fully submerged (SKF 2018). [1]"""
+LARGEST_DRAG_VARIABLE = 0.0012  # V_M of a ball bearing that is fully submerged (SKF 2018). [1]
 SUBMERGED = 1.2
 """Oil level over pitch diameter at which a bearing is fully submerged (SKF 2018). [1]"""
 BOUNDARY_FRICTION = 0.12
-STARTING_FRICTION = 0.15
-"""mu_bl in motion and at the start (SKF 2018). [1]"""
+STARTING_FRICTION = 0.15  # mu_bl in motion and at the start (SKF 2018). [1]
 
 SKF_SOURCE = "SKF, Rolling bearings, catalogue (2018)"
 _AXIAL_RATIO = replace(
@@ -438,8 +436,7 @@ class SkfModel:
         )
 
 
-BearingModel = PalmgrenModel | SkfModel | TableModel
-"""How the friction of a bearing is computed."""
+BearingModel = PalmgrenModel | SkfModel | TableModel  # How the friction of a bearing is computed.
 
 
 @cache

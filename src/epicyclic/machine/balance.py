@@ -38,8 +38,7 @@ def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
 
 SINGULAR = 1e-10
 """Singular values below this share of the largest count as zero: rows are scaled to length 1."""
-TOGETHER = 1e-12
-"""Speeds that differ by less, relative to the fastest body, are one speed. [1]"""
+TOGETHER = 1e-12  # Speeds that differ by less, relative to the fastest body, are one speed. [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,12 +153,10 @@ def _null_space(matrix: FloatArray) -> FloatArray:
 
 UNBALANCED = 1e-9
 """Torque left over, relative to the largest one, beyond which there is no balance. [1]"""
-SINGULAR_BALANCE = 1e-13
-"""Singular values below this share of the largest count as zero."""
+SINGULAR_BALANCE = 1e-13  # Singular values below this share of the largest count as zero.
 LARGEST_FACTOR = 1e6
 """Torques over the given ones beyond which the rank of the system is looked at. [1]"""
-ROUNDING = 1e-14
-"""Torque, relative to the largest one, that is left over from rounding. [1]"""
+ROUNDING = 1e-14  # Torque, relative to the largest one, that is left over from rounding. [1]
 NO_POWER = 1e-12
 """Rolling power, relative to the largest one, below which its direction has no meaning. [1]"""
 

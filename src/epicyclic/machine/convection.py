@@ -13,10 +13,8 @@ from epicyclic.oil.properties import AIR_GAS_CONSTANT, MixtureState, air_viscosi
 # How oil, air and their mixture conduct and store heat.
 
 
-AIR_HEAT_CAPACITY = 1004.7
-"""3.5 R of dry air, ISO 2533. [J/(kg K)]"""
-KELVIN = 273.15
-"""0 degC in kelvin."""
+AIR_HEAT_CAPACITY = 1004.7  # 3.5 R of dry air, ISO 2533. [J/(kg K)]
+KELVIN = 273.15  # 0 degC in kelvin.
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,8 +127,7 @@ def mixture(oil: Fluid, air: Fluid, state: MixtureState) -> Fluid:
 
 FloatArray = NDArray[np.float64]
 
-TRANSITION_REYNOLDS = 2.4e5
-"""omega r^2/nu at which the flow on a disc turns turbulent. [1]"""
+TRANSITION_REYNOLDS = 2.4e5  # omega r^2/nu at which the flow on a disc turns turbulent. [1]
 
 
 def disc_coefficient(
@@ -237,10 +234,8 @@ def roller_conductance(
 
 SPLASHED_WALL = 200.0
 """Coefficient between the oil and the wall that it splashes, ISO/TR 14179-2. [W/(m^2 K)]"""
-STANDARD_PRESSURE = 101325.0
-"""Standard pressure of the atmosphere. [Pa]"""
-GRAVITY = 9.80665
-"""Standard acceleration of free fall. [m/s^2]"""
+STANDARD_PRESSURE = 101325.0  # Standard pressure of the atmosphere. [Pa]
+GRAVITY = 9.80665  # Standard acceleration of free fall. [m/s^2]
 
 
 def free_convection(

@@ -186,8 +186,7 @@ class FluidFigures:
 
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"
-OIL = "oil"
-"""The thermal node of the oil around the gears."""
+OIL = "oil"  # The thermal node of the oil around the gears.
 
 
 def joined_key(element: str, name: str) -> str:

@@ -40,8 +40,7 @@ from epicyclic.units import NEWTON, format_number
 WORTH_A_NOTE = 0.1
 """Centrifugal force of an estimated mass over the load on a bearing, from which a note says so: it
 stands square to the force of the teeth, and changes the load by 0.5 %. [1]"""
-ROUNDING = 1e-12
-"""Torques as small as this, relatively, are the rounding of a difference. [1]"""
+ROUNDING = 1e-12  # Torques as small as this, relatively, are the rounding of a difference. [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,8 +143,7 @@ class Drags(NamedTuple):
     flags: tuple[ValidityFlag, ...]
 
 
-Flows = Mapping[str, MeshFlow]
-"""Flow through the pockets of each mesh, by its key."""
+Flows = Mapping[str, MeshFlow]  # Flow through the pockets of each mesh, by its key.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -287,16 +287,12 @@ COOLANT = "coolant"
 FUNCK = "ISO/TR 14179-2 (Funck 1985), second hand"
 LEAST_INSIDE = 10.0
 """Conductance from oil to wall over that from oil to air, at least, by ISO/TR 14179-1. [1]"""
-SAME = 1e-13
-"""Relative error of the temperature of the housing. [1]"""
-WALLS = (1.0, 1e7)
-"""Between which the housing may be while temperatures settle. [K]"""
-AT_REST = 1.0
-"""Conductance that makes a part without heat as warm as the oil. [W/K]"""
+SAME = 1e-13  # Relative error of the temperature of the housing. [1]
+WALLS = (1.0, 1e7)  # Between which the housing may be while temperatures settle. [K]
+AT_REST = 1.0  # Conductance that makes a part without heat as warm as the oil. [W/K]
 LEAST_SHARE = 0.01
 """Oil for a part without heat over that for one with all the heat: an estimate. [1]"""
-SMALLEST_HEAT = 1e-6
-"""With which a gearbox without any heat shares its oil evenly. [W]"""
+SMALLEST_HEAT = 1e-6  # With which a gearbox without any heat shares its oil evenly. [W]
 
 
 @dataclass(frozen=True, slots=True)

@@ -119,10 +119,8 @@ class Network:
 # Losses and conductances are curves over temperature. Each is read at the temperature of nodes of
 # its own: the loss of a mesh at the mean of its two gears, drag at that of the oil.
 
-TOLERANCE = 1e-6
-"""Largest error of the temperatures in each step of the integration. [K]"""
-LEAST_RELATIVE = 1e-12
-"""No tolerance beside that. [1]"""
+TOLERANCE = 1e-6  # Largest error of the temperatures in each step of the integration. [K]
+LEAST_RELATIVE = 1e-12  # No tolerance beside that. [1]
 
 
 @dataclass(frozen=True, slots=True)

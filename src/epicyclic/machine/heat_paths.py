@@ -18,12 +18,10 @@ from epicyclic.machine.shaft_parts import ShaftBearing
 # Paths of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other.
 
 
-INLET = "oil_inlet"
-"""The oil before it meets anything."""
+INLET = "oil_inlet"  # The oil before it meets anything.
 WIDTH_OF_HEIGHT = 1.2
 """Width of a bearing over the height of its section, if it is not given: an estimate. [1]"""
-SEAT_LENGTH = 1.0
-"""Length of a pin in both of its seats over its diameter: an estimate. [1]"""
+SEAT_LENGTH = 1.0  # Length of a pin in both of its seats over its diameter: an estimate. [1]
 FACES = "faces as discs that turn in the mixture"
 BATH = "faces and flanks in an oil bath"
 JET = "oil that a jet throws on it"

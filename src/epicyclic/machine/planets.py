@@ -58,8 +58,7 @@ from epicyclic.units import (
 # The share of the load that each planet of a set carries.
 
 
-SHARE_DIGITS = 12
-"""Decimals of a share, so that planets that carry alike are solved once. [1]"""
+SHARE_DIGITS = 12  # Decimals of a share, so that planets that carry alike are solved once. [1]
 SHARING_METHODS = {
     "equal": ("equal loads", ""),
     "mesh-load-factor": ("one planet overloaded by a given factor", "ISO 6336-1"),
@@ -172,10 +171,8 @@ way by less than a thousandth of what the planet moves in its play. [1]"""
 SMALL_TILT = 1e-6
 """A tilt as small as this counts as that size in `TILT_TOLERANCE`: 0.02 um across 20 mm. [rad]"""
 NEWTON_MOST = 40
-FLATTER = 0.5
-"""Slope of the energy at the end of a step over that at its start, at most. [1]"""
-SLOPE = 1e-4
-"""Step of differences, over the size of the tilt. [1]"""
+FLATTER = 0.5  # Slope of the energy at the end of a step over that at its start, at most. [1]
+SLOPE = 1e-4  # Step of differences, over the size of the tilt. [1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,12 +44,9 @@ STUDY_RANGES = (
 )
 """Ranges of the parametric study: modules of Figure 4.13, face widths and helix angles of Figure
 4.9, and 10000 rpm on a pitch circle of 50 mm."""
-LARGEST_MACH = 0.5
-"""Fastest flow over the speed of sound above which waves matter. [1]"""
-_EDGE = 1e-3
-"""By how much a value may leave a range that is printed with three or four digits. [1]"""
-_AT_VOID = 1e-3
-"""Pressures nearer than this to that of a void are it. [1]"""
+LARGEST_MACH = 0.5  # Fastest flow over the speed of sound above which waves matter. [1]
+_EDGE = 1e-3  # By how much a value may leave a range that is printed with three or four digits. [1]
+_AT_VOID = 1e-3  # Pressures nearer than this to that of a void are it. [1]
 
 FlowRequest = tuple[FlowFamily, float, MixtureState, float]
 """A flow: its family, then as for `FlowFamily.flow`."""

@@ -93,8 +93,7 @@ SEAL_SOURCES: Mapping[SealFormula, str] = {
 TORQUE_PER_DIAMETER: Mapping[str, float] = {"iso-14179-1-viton": 3.736, "iso-14179-1-buna-n": 2.429}
 """Friction torque over shaft diameter, ISO/TR 14179-1. [N]"""
 
-_KELVIN = 273.15
-"""0 degC in kelvin."""
+_KELVIN = 273.15  # 0 degC in kelvin.
 _LIMIT = "usual limit of the material, DIN 3760, general knowledge"
 _RANGES: Mapping[SealFormula, tuple[Range, ...]] = {
     "iso-14179-1-viton": (

@@ -31,16 +31,12 @@ from epicyclic.machine.machine import Machine, Operation, forces_of
 # again.
 
 
-CAUTION = 2.0
-"""How much larger the error of predicted losses is taken to be than its estimate. [1]"""
-STEEPEST = 3.0
-"""Power above which no loss rises with its load. [1]"""
+CAUTION = 2.0  # How much larger the error of predicted losses is taken to be than its estimate. [1]
+STEEPEST = 3.0  # Power above which no loss rises with its load. [1]
 BENT = 0.25
 """Change of the power with which a loss rises, over the relative change of its load. [1]"""
-NEAR = 3e-5
-"""Change of a load over which the figures of an answer serve. [1]"""
-ROUNDING = 1e-14
-"""Change, relative to the largest load, that is rounding. [1]"""
+NEAR = 3e-5  # Change of a load over which the figures of an answer serve. [1]
+ROUNDING = 1e-14  # Change, relative to the largest load, that is rounding. [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,8 +164,7 @@ PREDICTED = 0.1
 are small beside powers, so that the error leaves less of the change than a pass does. [1]"""
 LOSS_AGREEMENT = 1e-7
 """Error of predicted losses, at most, however little losses move the loads. [1]"""
-NO_POWER = 1e-12
-"""Power, relative to the largest one, that is rounding. [1]"""
+NO_POWER = 1e-12  # Power, relative to the largest one, that is rounding. [1]
 PLAIN_PASSES, SECANTS = 15, 40
 """Passes in which loads follow the losses, and after them passes of a method of secants."""
 SMALL_STEPS = ((0.5, 20), (0.2, 85))
@@ -178,8 +173,7 @@ that rise steeply from no load may throw a small load to and fro. [1]"""
 MOST_TORQUE = 1e15
 """Torque at a mesh, far above what a case can state, from which losses and torques only drive each
 other up. [N m]"""
-MOST_BRANCHES = 8
-"""Directions of the rolling powers that are tried with the losses of elements."""
+MOST_BRANCHES = 8  # Directions of the rolling powers that are tried with the losses of elements.
 MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 

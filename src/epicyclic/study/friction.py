@@ -77,7 +77,6 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
     The model ``table`` takes part if the case has a friction table, ``fitted-or-schlenk`` if there
     are fitted models of the oil, ``fitted`` and ``ehl-direct`` if the case chooses them. With
     `brief` only those that `recommended` looks at, without the quick method, whose loss is NaN.
-
     Raises `InputError` if the case is a train of given efficiencies.
     """
     built = build_computed(case)

@@ -20,16 +20,12 @@ from epicyclic.study.solve import solve
 from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
 
 NETWORK = {"models.temperatures": "network"}
-TEMPERATURE = "oil temperature"
-"""What ranges of formulas call the temperature of a contact."""
+TEMPERATURE = "oil temperature"  # What ranges of formulas call the temperature of a contact.
 ROLES = {"friction": "sliding", "rolling": "rolling", "bearing": "mechanical"}
 """Models whose oil is held in their range, with the losses that they compute."""
-CLOSE = 1e-5
-"""Difference to the wanted temperature that counts as none. [K]"""
-STILL = 1e-3
-"""Change of a temperature below which more of a quantity has no effect. [K]"""
-EXPECTED = 8
-"""Settled states that a search mostly takes. [1]"""
+CLOSE = 1e-5  # Difference to the wanted temperature that counts as none. [K]
+STILL = 1e-3  # Change of a temperature below which more of a quantity has no effect. [K]
+EXPECTED = 8  # Settled states that a search mostly takes. [1]
 MOST_STEPS, STEP = 6, 4.0
 """In search of a temperature on the other side of the wanted one: how many, how far. [1]"""
 

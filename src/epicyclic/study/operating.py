@@ -35,8 +35,7 @@ OPERATING = {
 """By the name of the axis of a map and of the column of a table."""
 AXES = {name: part.key for name, part in OPERATING.items()}
 """Key of each; a train whose losses are all given has no temperature."""
-PLANE = ("speed", "torque")
-"""Axes of the tables and pictures of a map."""
+PLANE = ("speed", "torque")  # Axes of the tables and pictures of a map.
 STATE, STATE_KEY = "state", "operation.state"
 """Axis, column and key of the states of a train that has any."""
 _NAMES = {key: name for name, key in AXES.items()} | {STATE_KEY: STATE}

@@ -28,13 +28,10 @@ if TYPE_CHECKING:
 
 # Where the gears of a set stand, and how they must be turned for their teeth to mesh.
 
-Point = tuple[float, float]
-"""x and y of a centre. [m]"""
-Place = tuple[float, float, float]
-"""x and y of the centre [m], direction of the first tooth [rad]."""
+Point = tuple[float, float]  # x and y of a centre. [m]
+Place = tuple[float, float, float]  # x and y of the centre [m], direction of the first tooth [rad].
 UP = math.pi / 2
-HALF = 0.5
-"""Part of a pitch by which a tooth is away from the space beside it."""
+HALF = 0.5  # Part of a pitch by which a tooth is away from the space beside it.
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,8 +135,7 @@ def tooth_directions(
     return {name: [known[name, number] for number in range(len(centers[name]))] for name in centers}
 
 
-_Stand = tuple[str, int]
-"""A gear and the number of its place."""
+_Stand = tuple[str, int]  # A gear and the number of its place.
 
 
 def _through_meshes(
@@ -190,8 +186,7 @@ def _meshing(
 # Each gear is one dataset: the outline of one tooth about the axis of the gear, the tooth pointing
 # along y, and the places at which the gear stands, each with the direction of its first tooth.
 
-POINTS_PER_SECTION = 12
-"""Points of a drawn outline on each section of half a tooth."""
+POINTS_PER_SECTION = 12  # Points of a drawn outline on each section of half a tooth.
 
 
 def gear_shapes(case: Case) -> dict[str, xr.Dataset]:

@@ -49,8 +49,7 @@ def _kind_of(term: str) -> str:
 
 # The kinematics of every state of a train: which ratio it has, or why it has none.
 
-AT_REST = 1e-10
-"""Speed, relative to that of the input, of a shaft that stands still. [1]"""
+AT_REST = 1e-10  # Speed, relative to that of the input, of a shaft that stands still. [1]
 
 
 @dataclass(frozen=True, slots=True)

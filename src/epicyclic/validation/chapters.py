@@ -31,10 +31,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FloatArray = NDArray[np.float64]
-PLANETS = 3
-"""Planets of the set whose planet bearing chapter 3 studies."""
-FULL_BRANCH = 1000 / PLANETS
-"""Largest torque on a branch. [N m]"""
+PLANETS = 3  # Planets of the set whose planet bearing chapter 3 studies.
+FULL_BRANCH = 1000 / PLANETS  # Largest torque on a branch. [N m]
 ROLLER_FIGURES = {"3.3": "branch", "3.7": "roller", "3.9": "clearance", "3.12": "helix"}
 """Figures of roller loads, and what varies in them."""
 

@@ -151,8 +151,7 @@ def reproduce(
 # The command study: pocketing loss over its main parameters.
 
 
-STUDY = "study"
-"""With which files of unfinished studies begin in their folder."""
+STUDY = "study"  # With which files of unfinished studies begin in their folder.
 
 
 @click.command()

@@ -125,8 +125,7 @@ _TOPICS = {
 }  # fmt: skip
 """The functions that compute the figures, or the cases of other programs; whatever begins with
 ``pocket`` is about pockets."""
-FILES = ("published.toml", "programs.toml")
-"""What is published, and what other programs print."""
+FILES = ("published.toml", "programs.toml")  # What is published, and what other programs print.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -245,12 +244,9 @@ def _compare(figure: dict[str, Any]) -> Comparison:
 
 FloatArray = NDArray[np.float64]
 
-DRAWS = 1024
-"""Draws from the distributions, the same in all tests."""
-FINISH = "shaved"
-"""Finish of the planets where a figure does not say it."""
-MEASURED = "measured"
-"""What the names of measured figures end with."""
+DRAWS = 1024  # Draws from the distributions, the same in all tests.
+FINISH = "shaved"  # Finish of the planets where a figure does not say it.
+MEASURED = "measured"  # What the names of measured figures end with.
 
 
 @dataclass(frozen=True, slots=True)

@@ -185,8 +185,7 @@ def published_text(row: Published) -> str:
 
 # The report of the comparison with published figures: one page for all of them.
 
-MOST_ROWS = 8
-"""Most rows of one picture."""
+MOST_ROWS = 8  # Most rows of one picture.
 _HEAD = (
     "figure",
     "published",

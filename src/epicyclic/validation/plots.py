@@ -37,14 +37,12 @@ from epicyclic.validation.pocketing import PublishedStudy, published_study, stud
 # The figures of the chapters of Talbot (2012), drawn from what was computed for them.
 
 
-STARS = ("*", "P", "X")
-"""Markers of published numbers."""
+STARS = ("*", "P", "X")  # Markers of published numbers.
 SOURCE = "Talbot (2012)"
 MOST_COLUMNS = 3
 PANEL, ALONE = (4.3, 3.1), (6.4, 4.2)
 """Width and height of one of several panels, and of a single one. [inch]"""
-SAME = 0.5
-"""Values of panels that differ less are the same, in their unit."""
+SAME = 0.5  # Values of panels that differ less are the same, in their unit.
 
 
 def family_figure(family: Family) -> Figure:
@@ -193,8 +191,7 @@ def _described(coordinate: xr.DataArray) -> str:
 
 # The figures of the parametric study of pocketing losses.
 
-SAME_LINE = 1e-6
-"""Values that differ less than this are the same. [1]"""
+SAME_LINE = 1e-6  # Values that differ less than this are the same. [1]
 
 
 def study_figure(
@@ -342,12 +339,10 @@ def reproduce(figures: Sequence[str], runner: Runner = HERE) -> Iterator[Reprodu
 
 # Published figures beside computed ones: how far off each is, and how far off it may be.
 
-SHOWN = 0.40
-"""Differences beyond it are drawn at the edge, with their number. [1]"""
+SHOWN = 0.40  # Differences beyond it are drawn at the edge, with their number. [1]
 WIDTH, ROW, REST = 8.2, 0.32, 1.0
 """Width of a picture, height of a row, and of what is not rows. [inch]"""
-LETTERS = 62
-"""In one line of a label."""
+LETTERS = 62  # In one line of a label.
 _BAND = "0.85"
 _MARKS: dict[str, dict[str, Any]] = {
     "agrees": {"marker": "o", "mfc": COLOURS[0], "color": COLOURS[0]},

@@ -39,8 +39,7 @@ if TYPE_CHECKING:
 
 # Variants of a mesh as the pocketing study compares them. Talbot (2012), section 4.4.
 
-ROUNDING = 1e-9
-"""What is less negative is left over from rounding. [m] or [1]"""
+ROUNDING = 1e-9  # What is less negative is left over from rounding. [m] or [1]
 
 
 FEWEST_TEETH = 5
@@ -223,8 +222,7 @@ STUDIES = {
     "module": Study("Fig. 4.13", tuple(_FOUR), "speed", _FOUR | _SPEEDS),
 }
 
-LEVELS = ("speed", "helix-angle", "face-width")
-"""Parameters that have curves or panels."""
+LEVELS = ("speed", "helix-angle", "face-width")  # Parameters that have curves or panels.
 
 
 NUMBERS = {

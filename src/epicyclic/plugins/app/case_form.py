@@ -43,8 +43,7 @@ from epicyclic.units import Quantity, unit_text
 # The form of a case: every key of its schema, with unit, range, default and description.
 
 
-_SHORT = 3
-"""Tables of no more keys stand among those of the table that holds them."""
+_SHORT = 3  # Tables of no more keys stand among those of the table that holds them.
 _YES_NO = ("true", "false")
 _MEMBERS, _GEARS = "members", "gears"
 """Table of the gears of a listed set in the schema, and in a file."""
@@ -320,8 +319,7 @@ def number_in(text: str) -> float | None:
 # A case that is being edited: where it came from, what has been changed, what is wrong with it.
 
 
-ENDINGS = (".toml", ".rexs", ".rexsj", ".rexsz")
-"""Endings of files that hold a case."""
+ENDINGS = (".toml", ".rexs", ".rexsj", ".rexsz")  # Endings of files that hold a case.
 _HEAD = "A case file of epicyclic, saved by its app. Keys behind a # have defaults."
 
 
@@ -474,9 +472,8 @@ def opened(
 ) -> Desk:
     """The desk of a case: a file, or a built-in one.
 
-    A case with problems is opened, if it is known what kind it is and a form can show it.
-
-    Raises `InputError` if it cannot be read.
+    A case with problems is opened, if it is known what kind it is and a form can show it. Raises
+    `InputError` if it cannot be read.
     """
     if is_rexs(path):
         from epicyclic.plugins.rexs.importing import read_rexs
@@ -545,12 +542,10 @@ def built_in(name: str) -> Desk:
 # What each tab of a browser has of its own: a case, and processes that work for it.
 
 
-MOST_TABS = 8
-"""That are open at a time: each has up to three processes of some 300 MB."""
+MOST_TABS = 8  # That are open at a time: each has up to three processes of some 300 MB.
 MOST_KEPT = 50
 """Cases of tabs that are open or were, so that a tab that comes back finds its changes."""
-BEHIND = 5
-"""Niceness of what may take longer than key figures."""
+BEHIND = 5  # Niceness of what may take longer than key figures.
 
 
 @dataclass

@@ -14,8 +14,7 @@ from epicyclic.plugins.app.case_form import Desk, Entry, Group, number_in, owner
 # Asking for the name of what the user adds to a case, and for what it stands.
 
 
-Take = Callable[[str], Awaitable[str]]
-"""Takes what was typed; what is wrong with it, or nothing."""
+Take = Callable[[str], Awaitable[str]]  # Takes what was typed; what is wrong with it, or nothing.
 
 
 def ask_for_name(
@@ -87,12 +86,9 @@ def _buttons(dialog: ui.dialog, done: Callable[[], Awaitable[str]]) -> None:
 # The form on the page: groups that open, a field for each key, its problem beside it.
 
 
-_OPEN = "operation"
-"""The table that is open at first."""
-_STEPS, _DIGITS = 200, 6
-"""Steps of the slider of an input, and digits of its values."""
-_THROTTLE = 0.05
-"""Between two values of a slider that moves. [s]"""
+_OPEN = "operation"  # The table that is open at first.
+_STEPS, _DIGITS = 200, 6  # Steps of the slider of an input, and digits of its values.
+_THROTTLE = 0.05  # Between two values of a slider that moves. [s]
 Call = Callable[[], Awaitable[None]]
 
 

@@ -10,12 +10,10 @@ from urllib.parse import parse_qs
 
 LARGEST_BODY = 10_000_000
 """Largest request: a case file is a page of text, a REXS file may have some megabytes. [bytes]"""
-_MOST_DIGITS = 20
-"""Most digits of the length of a request; Python refuses to read thousands."""
+_MOST_DIGITS = 20  # Most digits of the length of a request; Python refuses to read thousands.
 _USUAL_PORT = 80
 _FORBIDDEN, _TOO_LARGE, _SEE_OTHER = 403, 413, 303
-_CLOSED = 1008
-"""Code of a websocket that is refused: against the policy."""
+_CLOSED = 1008  # Code of a websocket that is refused: against the policy.
 
 HEADERS = {
     "content-security-policy": "default-src 'self'; script-src 'self' 'unsafe-inline' "

@@ -22,17 +22,12 @@ from epicyclic.plugins.app.case_form import Desk, Shelves
 from epicyclic.plugins.app.guard import Guard
 from epicyclic.plugins.app.page import Page, add_assets
 
-LOOPBACK = ("127.0.0.1", "localhost", "::1")
-"""Addresses that only this machine can reach."""
-ANY = ("0.0.0.0", "::")
-"""Stand for every address of this machine."""
+LOOPBACK = ("127.0.0.1", "localhost", "::1")  # Addresses that only this machine can reach.
+ANY = ("0.0.0.0", "::")  # Stand for every address of this machine.
 _TOKEN_BYTES = 24
-RECONNECT = 10.0
-"""For so long a page may be out of reach before its work ends. [s]"""
-_OF_TAB = "tab"
-"""Key in the storage of a tab."""
-TERMINATED = 128 + signal.SIGTERM
-"""Exit code after a signal, as shells have it."""
+RECONNECT = 10.0  # For so long a page may be out of reach before its work ends. [s]
+_OF_TAB = "tab"  # Key in the storage of a tab.
+TERMINATED = 128 + signal.SIGTERM  # Exit code after a signal, as shells have it.
 
 
 def serve(

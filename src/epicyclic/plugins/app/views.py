@@ -25,12 +25,9 @@ from epicyclic.study.operating import OPERATING, OperatingValue
 
 
 FORMATS = ("png", "svg", "pdf")
-BEHIND = "behind"
-"""Class of what is of an earlier case than that of the form."""
-Do = Callable[..., Awaitable[Any]]
-"""Has a task done by the worker."""
-Part = str | Table | Listing
-"""What is shown at once: the lead of a chapter, and its tables."""
+BEHIND = "behind"  # Class of what is of an earlier case than that of the form.
+Do = Callable[..., Awaitable[Any]]  # Has a task done by the worker.
+Part = str | Table | Listing  # What is shown at once: the lead of a chapter, and its tables.
 
 
 def key_figures(figures: Sequence[KeyFigure]) -> None:
@@ -216,8 +213,7 @@ def _html(part: Part) -> str:
 # Gears that turn on the page while a slider moves: drawn once, turned by the browser.
 
 
-PERIODS, STEP = 4, 0.005
-"""Range and step of the slider. [mesh periods]"""
+PERIODS, STEP = 4, 0.005  # Range and step of the slider. [mesh periods]
 
 
 class TurningView:

@@ -240,14 +240,11 @@ class Doing:
 # What the worker does for the app: everything that takes longer than a click.
 
 
-STILL = ("gear-set", "teeth")
-"""Plots of what turns, where that is shown."""
-MESH = "/"
-"""Before the key of a mesh among what turns."""
+STILL = ("gear-set", "teeth")  # Plots of what turns, where that is shown.
+MESH = "/"  # Before the key of a mesh among what turns.
 FIRST, TURNS = "losses", "gears"
 """The chapter that every result has, and the one in which gears turn."""
-IN_PAGE = "svg-page"
-"""Format of a figure that becomes a part of the page."""
+IN_PAGE = "svg-page"  # Format of a figure that becomes a part of the page.
 MOST_KEPT = 6
 
 

@@ -236,8 +236,7 @@ BEARING_TABLE = Design(
 # A campaign: an oil, its designs, and one simulated contact for each point.
 
 
-SCHEMA = 2
-"""Version of the files of a campaign."""
+SCHEMA = 2  # Version of the files of a campaign.
 BRIEFLY = {"numerics.most_blocks": BRIEF, "numerics.friction_tolerance": 0.05}
 """How long a simulation takes: its error need not be smaller than the scatter of the best fit."""
 OIL_KEY = "lubricant.oil."
@@ -328,8 +327,7 @@ class Campaign(Plan):
         raise IndexError(index)
 
 
-MOST_CONTACTS = 1_000_000
-"""Most contacts of one design: years of simulation."""
+MOST_CONTACTS = 1_000_000  # Most contacts of one design: years of simulation.
 
 
 def make_campaign(
@@ -518,8 +516,7 @@ def _row(result: ContactResult) -> Row:
 # ``model.json``  the fitted models
 
 
-SIMULATIONS = "simulations"
-"""With which files of results begin."""
+SIMULATIONS = "simulations"  # With which files of results begin.
 
 
 @dataclass(frozen=True)
@@ -650,8 +647,7 @@ def column_of(name: str) -> str:
 
 _LARGEST_PLAN, _LARGEST_TABLE = 1_000_000, 200_000_000
 """Largest campaign.json, and largest table of results. [bytes]"""
-_RESULTS = ("friction", "rolling_loss")
-"""What the table holds with its error."""
+_RESULTS = ("friction", "rolling_loss")  # What the table holds with its error.
 
 
 def _read_json(path: Path) -> Any:

@@ -74,8 +74,7 @@ of rough contacts minimum film over composite roughness [1], composite roughness
 DRY_SPEED = 0.01
 """Rolling speed below which ridges across the motion trap oil that would leak past real ones, and
 a contact does not become dry. [m/s]"""
-FEWEST_KEPT = 0.95
-"""Share of Rq that a grid must resolve. [1]"""
+FEWEST_KEPT = 0.95  # Share of Rq that a grid must resolve. [1]
 VALIDATED_FILM_RATIO = 0.7
 """Film ratio below which friction of rough contacts is not validated. [1]"""
 
@@ -259,10 +258,8 @@ def line_contact(contacts: LineContacts, index: int, oil: ContactOil) -> LineCon
 
 FloatArray = NDArray[np.float64]
 
-FILM_EXPONENT = 0.694
-"""Exponent of the viscosity in the film of Pan and Hamrock (1989). [1]"""
-SMALLEST_CHANGE = 1e-3
-"""To which the temperature of a node is found. [K]"""
+FILM_EXPONENT = 0.694  # Exponent of the viscosity in the film of Pan and Hamrock (1989). [1]
+SMALLEST_CHANGE = 1e-3  # To which the temperature of a node is found. [K]
 
 
 @dataclass(frozen=True, slots=True)

@@ -373,8 +373,7 @@ HIGHEST_RISE = Range(
     "temperature_rise", "temperature rise", 0.0, 50.0, KELVIN, "thinning by heat, linear in it"
 )
 """Beyond it the estimate of heat thins the oil too much."""
-FEWEST_POINTS = 16
-"""Points of a profile in the width of the contact, below which it is hardly one."""
+FEWEST_POINTS = 16  # Points of a profile in the width of the contact, below which it is hardly one.
 
 
 def film_ratio(model: ContactModel, smooth: SmoothSolution) -> float:
@@ -470,8 +469,7 @@ def _profile_notes(
 
 FloatArray = NDArray[np.float64]
 
-FRAMES = 60
-"""Moments kept for an animation."""
+FRAMES = 60  # Moments kept for an animation.
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,25 +48,18 @@ from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Qu
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
-BATCH = 12
-"""Contacts solved before the error is looked at, and each time it is too large."""
-CHECKS = 8
-"""Contacts that only tell the error."""
+BATCH = 12  # Contacts solved before the error is looked at, and each time it is too large.
+CHECKS = 8  # Contacts that only tell the error.
 SMALLEST_SLIP = 0.05
 """Slide-to-roll ratio below which contacts are interpolated only: they cost no power, and their
 small friction is long not stationary. [1]"""
-SMOOTH_FILM_RATIO = 10.0
-"""Film ratio from which on a whole mesh is solved as smooth. [1]"""
-LARGEST_ERROR = 0.10
-"""Standard error of a friction over it above which a contact is left out. [1]"""
-LARGEST_LEFT_OUT = 0.25
-"""Share of contacts left out above which there is no result. [1]"""
+SMOOTH_FILM_RATIO = 10.0  # Film ratio from which on a whole mesh is solved as smooth. [1]
+LARGEST_ERROR = 0.10  # Standard error of a friction over it above which a contact is left out. [1]
+LARGEST_LEFT_OUT = 0.25  # Share of contacts left out above which there is no result. [1]
 ALIKE = 1e-9
 """Range of the logarithm of the line load, and of the path in metres, that is rounding."""
-PLACES = 9
-"""Decimals of a place, of which the whole mesh has -1 to 1, that are not rounding."""
-NEARLY = 0.1
-"""Change of the force of a mesh up to which its solved contacts are used again. [1]"""
+PLACES = 9  # Decimals of a place, of which the whole mesh has -1 to 1, that are not rounding.
+NEARLY = 0.1  # Change of the force of a mesh up to which its solved contacts are used again. [1]
 SMOOTHING = 1e-2
 """Smoothing of the interpolation: about the scatter of solved contacts, 2 %, squared over their
 variance."""
@@ -111,10 +104,7 @@ class _Solved:
 
 @dataclass(frozen=True, slots=True)
 class EhlDirect(RangeFlags):
-    """Line contacts of the mesh solved, and interpolated between them.
-
-    Theory (O10).
-    """
+    """Line contacts of the mesh solved, and interpolated between them. Theory (O10)."""
 
     name: ClassVar = "ehl-direct"
     title: ClassVar = "line contacts of the mesh, solved"
@@ -135,9 +125,8 @@ class EhlDirect(RangeFlags):
         """With contacts that are solved: those it has, where they are of nearly that load.
 
         Between passes that bring torques and losses together the load changes by a few per cent,
-        and the ratio to the closed form by far less than its error.
-
-        Raises `ConvergenceError` if too many contacts have no solution.
+        and the ratio to the closed form by far less than its error. Raises `ConvergenceError` if
+        too many contacts have no solution.
         """
         if self.solved and abs(contact.force - self.solved.force) <= NEARLY * self.solved.force:
             return self

@@ -49,10 +49,8 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-BEYOND = 3
-"""Mean distances of the values of a condition by which its domain goes beyond them. [1]"""
-FOLDS = 10
-"""Parts of the contacts, each of which is predicted from the others."""
+BEYOND = 3  # Mean distances of the values of a condition by which its domain goes beyond them. [1]
+FOLDS = 10  # Parts of the contacts, each of which is predicted from the others.
 DIGITS = 12
 """Significant digits of coefficients and errors in a file: what is beyond them is rounding."""
 
@@ -162,8 +160,7 @@ def _rounded(value: float) -> float:
 # From the table of a campaign to the models of an oil.
 
 
-LARGEST_ERROR = 0.10
-"""Standard error of a simulated mean over it above which it is not fitted. [1]"""
+LARGEST_ERROR = 0.10  # Standard error of a simulated mean over it above which it is not fitted. [1]
 LARGEST_UNSOLVED_SHARE = 0.01
 """Share of time steps without convergence above which a simulation is not fitted. [1]"""
 SCATTER = 0.05
@@ -251,16 +248,12 @@ def fit_campaigns(
     # Campaigns of one oil, of one version and with the same settings.
     folders: Sequence[CampaignFolder],
 ) -> OilModel:
-    """Fit friction and rolling loss to all simulations that are good enough.
-
-    Theory (O8).
+    """Fit friction and rolling loss to all simulations that are good enough. Theory (O8).
 
     A simulation counts if nearly all of its time steps converged, its grid resolved the roughness,
     and what is fitted is known to 10 %, whether or not it reached the error at which it is called
-    converged.
-
-    Raises `InputError` if there are too few of them, or campaigns differ in more than their
-    points.
+    converged. Raises `InputError` if there are too few of them, or campaigns differ in more than
+    their points.
     """
     _check_alike(folders)
     campaigns = [folder.campaign for folder in folders]

@@ -11,12 +11,9 @@ from typing import NamedTuple
 from epicyclic.kernels.compiling import kernel
 from epicyclic.kernels.eyring import two_slopes
 
-BARUS, ROELANDS, TWO_SLOPE = 0, 1, 2
-"""Codes of the viscosity-pressure laws."""
-NEWTONIAN, EYRING, LIMITING, CARREAU = 0, 1, 2, 3
-"""Codes of the laws of shear."""
-LARGE_SHEAR = 1e9
-"""Sigma beyond which cosh(tau/tau_0) is Sigma to the last digit. [1]"""
+BARUS, ROELANDS, TWO_SLOPE = 0, 1, 2  # Codes of the viscosity-pressure laws.
+NEWTONIAN, EYRING, LIMITING, CARREAU = 0, 1, 2, 3  # Codes of the laws of shear.
+LARGE_SHEAR = 1e9  # Sigma beyond which cosh(tau/tau_0) is Sigma to the last digit. [1]
 PLUG_SHEAR = 5.0
 """What Sigma saturates at in the easing of the flow of an oil at its limiting stress. [1]"""
 EVEN = 2e-3

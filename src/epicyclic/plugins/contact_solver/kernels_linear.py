@@ -17,12 +17,9 @@ from epicyclic.kernels.compiling import kernel
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-GROUP = 12
-"""Nodes summed into one unknown of the coarse level."""
-BAND = 4
-"""Nodes to either side whose deflection the banded matrix holds."""
-KRYLOV = 12
-"""Largest number of GMRES steps of one linear solution."""
+GROUP = 12  # Nodes summed into one unknown of the coarse level.
+BAND = 4  # Nodes to either side whose deflection the banded matrix holds.
+KRYLOV = 12  # Largest number of GMRES steps of one linear solution.
 LEAST_DIAGONAL = 0.1
 """Least diagonal by which a residual is divided, over the compliance of a node. [1]"""
 

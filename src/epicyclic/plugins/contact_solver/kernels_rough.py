@@ -61,8 +61,7 @@ class Column(IntEnum):
     CENTRAL_FILM = 9
 
 
-REFRESH = 1
-"""GMRES steps beyond which the preconditioner is made anew in the next Newton step."""
+REFRESH = 1  # GMRES steps beyond which the preconditioner is made anew in the next Newton step.
 LARGEST_STEP = 0.7
 """Largest change of a pressure in one Newton step, over the largest pressure or p_h. [1]"""
 HELD = (1.0, 2.0)

@@ -25,8 +25,7 @@ from epicyclic.plugins.contact_solver.kernels_fluid import (
 
 FloatArray = NDArray[np.float64]
 
-SMALLEST_FILM_SHARE = 0.2
-"""Share of its film that every node keeps in one Newton step. [1]"""
+SMALLEST_FILM_SHARE = 0.2  # Share of its film that every node keeps in one Newton step. [1]
 LARGEST_PRESSURE_SHARE = 0.5
 """Largest change of a pressure in one Newton step, over the largest pressure. [1]"""
 

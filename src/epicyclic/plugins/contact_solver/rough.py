@@ -35,10 +35,8 @@ FloatArray = NDArray[np.float64]
 GROWTH = 1.5
 """Largest growth of the number of fine blocks between looks at the error: an early look tells
 little of how many it takes. [1]"""
-SOME_MORE = 1.05
-"""Growth of both numbers where the error is hardly larger than wanted. [1]"""
-LAGS = 2
-"""Blocks that follow one another and are alike: a ridge stays for that long. [1]"""
+SOME_MORE = 1.05  # Growth of both numbers where the error is hardly larger than wanted. [1]
+LAGS = 2  # Blocks that follow one another and are alike: a ridge stays for that long. [1]
 RUN, FEWEST_RUNS = 8, 16
 """Blocks of a run, which shares little with the next, and runs from which a variance is found."""
 STUDENT = 0.6
@@ -46,8 +44,7 @@ STUDENT = 0.6
 within 2 % from two of them on. [1]"""
 ROUNDING = 1e-20
 """Variation over the sum of squares of a coarse series that is nothing but rounding. [1]"""
-MOST_AID = 32
-"""Blocks on the coarse grid for each on the fine one at most. [1]"""
+MOST_AID = 32  # Blocks on the coarse grid for each on the fine one at most. [1]
 
 
 class Estimate(NamedTuple):
@@ -174,16 +171,14 @@ def next_plan(
 # Transient contact of two moving rough surfaces: averages of friction, contact and film.
 
 
-NODES = 512
-"""Nodes by default: some 125 in a half-width."""
+NODES = 512  # Nodes by default: some 125 in a half-width.
 TOLERANCE = 1e-2
 """Largest change of a pressure in the last Newton step of a time step, over the largest pressure or
 p_h; what is left is its square, or the share of it that the linear system leaves. [1]"""
 LINEAR_TOLERANCE, COARSE_LINEAR_TOLERANCE = 0.1, 0.3
 """Residual of the linear system of a Newton step over its start. 0.3 raises the friction on the
 fine grid by up to 0.7 %; on the coarse one, an aid to the averages, that does not matter. [1]"""
-MAX_ITERATIONS = 40
-"""Newton steps of a time step, doubled in a second attempt."""
+MAX_ITERATIONS = 40  # Newton steps of a time step, doubled in a second attempt.
 STILL, GRID_GROWTH, SETTLING = 2.0, 1.0, 2.0
 """Times b/u_r in which the smooth contact settles on the grid, in which the roughness grows, and
 until averages begin. [1]"""
@@ -198,8 +193,7 @@ of the roughness; at most half of the nodes. [1]"""
 COST_EXPONENT = 1.3
 """The time of a step rises with this power of the number of nodes, measured from 96 nodes of a
 coarse grid to 768 of a fine one: 1.2 to 1.45. [1]"""
-BRIEF = 64
-"""Number of blocks where many contacts are solved and the error of each is weighed."""
+BRIEF = 64  # Number of blocks where many contacts are solved and the error of each is weighed.
 FINEST_FEATURE = 0.2
 """Largest way of a surface in a time step, over the correlation length of its roughness. [1]"""
 MOST_NODES_A_STEP = 4
@@ -208,8 +202,7 @@ STATIONARY = 0.02
 """Standard error of the mean friction over it at which a simulation ends by default. [1]"""
 LARGEST_UNSOLVED_SHARE = 0.01
 """Share of time steps without convergence above which a result is failed. [1]"""
-MOST_FRAMES = 60
-"""Moments kept at most, the last ones."""
+MOST_FRAMES = 60  # Moments kept at most, the last ones.
 
 
 @dataclass(frozen=True, slots=True)
@@ -451,10 +444,7 @@ def solve_rough(
     # Called with the numbers of blocks done and expected.
     progress: Callable[[int, int], None] | None = None,
 ) -> RoughSolution:
-    """Simulate until the mean friction is known well enough.
-
-    Theory (H21), (H25).
-    """
+    """Simulate until the mean friction is known well enough. Theory (H21), (H25)."""
     smooth = solve_smooth(contact, heating=heating)
     if smooth.status is not Status.CONVERGED:
         return _failed(smooth, f"the smooth contact: {smooth.message}")

@@ -175,10 +175,8 @@ FloatArray = NDArray[np.float64]
 
 GIGAPASCAL, MEGAPASCAL, _MICROMETRE, MILLIMETRE = 1e9, 1e6, 1e-6, 1e-3
 MICROSECOND = 1e-6
-SHOWN_WIDTHS = (-2.0, 1.5)
-"""Limits of the abscissa, over the half-width of Hertz. [1]"""
-SHOWN_FILMS = 5.0
-"""Height of the film axis, over the central film of the smooth contact. [1]"""
+SHOWN_WIDTHS = (-2.0, 1.5)  # Limits of the abscissa, over the half-width of Hertz. [1]
+SHOWN_FILMS = 5.0  # Height of the film axis, over the central film of the smooth contact. [1]
 SHOWN_STRESSES = 10.0
 """Height of the stress axis, over the highest of the smooth contact; touching ones leave it. [1]"""
 TWO, MORE = (6.4, 1.8), (4.8, 2.7)
@@ -330,14 +328,12 @@ LABELS = {
     "rolling_loss": "rolling loss of teeth, W/m",
     "bearing_rolling_loss": "rolling loss of rollers, W/m",
 }
-BAND = 0.25
-"""Half-width of the lines beside equality. [1]"""
+BAND = 0.25  # Half-width of the lines beside equality. [1]
 CAPTION = (
     f"Lines: fitted as simulated, and {percent(BAND, 0)} more or less. "
     "The fit has seen these contacts; its errors at others are larger, and stand in the table."
 )
-PANEL = (4.0, 3.4)
-"""Width and height of one of the Axes. [inch]"""
+PANEL = (4.0, 3.4)  # Width and height of one of the Axes. [inch]
 SLIPS = (0.05, 0.2, 0.8)
 POINTS = 80
 

@@ -37,8 +37,7 @@ INLET_WIDTH, EXIT_WIDTH = 0.5, 0.4
 INLET_PARABOLAS = 25.0
 """Distance of the inlet from the contact in parabola widths sqrt(2 h R), where h doubles; the load
 of a rigid contact is then 0.3 % short of that of an endless inlet. [1]"""
-SAMPLES = 400
-"""Samples of each zone from which the inverse of the node density is started."""
+SAMPLES = 400  # Samples of each zone from which the inverse of the node density is started.
 CORRECTIONS = 3
 """Newton corrections of the nodes; the samples leave an error of 1e-3, squared by each."""
 
@@ -117,20 +116,13 @@ def graded_nodes(count: int, grid: Grid) -> FloatArray:
 # Steady smooth contact: pressure, film, friction and rolling loss.
 
 
-NODES = 256
-"""Nodes by default: the central film is then within 0.7 % of its limit up to M = 200."""
-COARSE_NODES = 96
-"""Nodes of the first solution, from which the others start."""
-REFINEMENT = 3
-"""Largest ratio of the nodes of one solution to those it starts from."""
-TOLERANCE = 1e-6
-"""Largest relative change of pressure and film in the last Newton step. [1]"""
-MAX_ITERATIONS = 40
-"""Newton steps on one grid; twelve have always been enough."""
-EXIT_GUESS = 0.4
-"""Where the film is first taken to rupture: beyond x = b, over `gap_length`. [1]"""
-TRACE = 1e-9
-"""Pressure that marks a node as not ruptured in a starting guess, over p_h. [1]"""
+NODES = 256  # Nodes by default: the central film is then within 0.7 % of its limit up to M = 200.
+COARSE_NODES = 96  # Nodes of the first solution, from which the others start.
+REFINEMENT = 3  # Largest ratio of the nodes of one solution to those it starts from.
+TOLERANCE = 1e-6  # Largest relative change of pressure and film in the last Newton step. [1]
+MAX_ITERATIONS = 40  # Newton steps on one grid; twelve have always been enough.
+EXIT_GUESS = 0.4  # Where the film is first taken to rupture: beyond x = b, over `gap_length`. [1]
+TRACE = 1e-9  # Pressure that marks a node as not ruptured in a starting guess, over p_h. [1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,10 +189,7 @@ def solve_smooth(
     inlet: float | None = None,
     heating: Heating | None = None,  # Isothermal without.
 ) -> SmoothSolution:
-    """Steady smooth solution of a contact.
-
-    Theory (H14).
-    """
+    """Steady smooth solution of a contact. Theory (H14)."""
     easing = flow_easing(contact, heating)
     film = expected_film(contact, easing)
     fluid = contact.scaled_fluid(easing)

@@ -21,13 +21,11 @@ from epicyclic.files import check_archive, read_bytes, read_text, refuse
 
 FloatArray = NDArray[np.float64]
 
-POINTS_PER_CORRELATION = 8
-"""Points of a generated profile within one correlation length."""
+POINTS_PER_CORRELATION = 8  # Points of a generated profile within one correlation length.
 PERIOD = 4000.0
 """Length of a generated profile over its correlation length: that of 200 has a friction of its own,
 up to 10 % from that of other seeds. [1]"""
-FEWEST_SAMPLES = 4
-"""Fewest samples of a period that a grid resolves."""
+FEWEST_SAMPLES = 4  # Fewest samples of a period that a grid resolves.
 GAUSSIAN = math.sqrt(math.log(2) / math.pi)
 """alpha of the Gaussian filter: half of a wave as long as the cutoff passes. [1]"""
 
@@ -94,8 +92,7 @@ class Profile:
         return heights
 
 
-SMOOTH = Profile(np.zeros(4), 1.0)
-"""No roughness."""
+SMOOTH = Profile(np.zeros(4), 1.0)  # No roughness.
 
 
 def sinusoidal_profile(amplitude: float, wavelength: float) -> Profile:
@@ -207,15 +204,11 @@ def _with_moments(normal: FloatArray, skewness: float, kurtosis: float) -> Float
 
 
 X3P = ".x3p"
-LARGEST_FILE = 10_000_000
-"""Largest file of a measured profile. [bytes]"""
-MOST_POINTS = 200_000
-"""Most points of a measured profile; those in print have some ten thousand."""
+LARGEST_FILE = 10_000_000  # Largest file of a measured profile. [bytes]
+MOST_POINTS = 200_000  # Most points of a measured profile; those in print have some ten thousand.
 FEWEST_POINTS = 16
-EVEN = 0.01
-"""Largest deviation of a distance of points from the others. [1]"""
-FLAT = 1e-12
-"""Rq that no instrument measures: what is less is a straight line. [m]"""
+EVEN = 0.01  # Largest deviation of a distance of points from the others. [1]
+FLAT = 1e-12  # Rq that no instrument measures: what is less is a straight line. [m]
 MILLIMETRE, MICROMETRE = 1e-3, 1e-6
 
 

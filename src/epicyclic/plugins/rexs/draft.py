@@ -17,11 +17,9 @@ from epicyclic.units import format_number
 # A case in the making: what a file gives, with its origin, and what it lacks.
 
 
-DIGITS = 15
-"""Significant digits that a number has in REXS at most."""
+DIGITS = 15  # Significant digits that a number has in REXS at most.
 
-SAME = 1e-9
-"""Relative difference up to which numbers of a file are the same."""
+SAME = 1e-9  # Relative difference up to which numbers of a file are the same.
 
 
 class Amount(NamedTuple):

@@ -373,8 +373,7 @@ _TYPES = {
     "tapered": "radial_tapered_roller_bearing",
 }
 
-Place = tuple[float, float]
-"""Where an axis lies across its direction. [m]"""
+Place = tuple[float, float]  # Where an axis lies across its direction. [m]
 
 
 def train_parts(case: TrainCase) -> Iterator[Component | Relation]:

@@ -526,11 +526,9 @@ def planet_angles(draft: Draft, planetary: PlanetaryParts) -> None:
 # Does a REXS file agree with itself, and with the geometry that is computed here?
 
 
-AGREES = 1e-3
-"""Relative difference up to which figures of two programs agree."""
+AGREES = 1e-3  # Relative difference up to which figures of two programs agree.
 
-SHIFT_AGREES = 0.02
-"""Difference of profile shifts that allowances for backlash can make."""
+SHIFT_AGREES = 0.02  # Difference of profile shifts that allowances for backlash can make.
 
 
 def file_notes(chosen: PlanetaryParts | Pair) -> Iterator[str]:

@@ -22,8 +22,7 @@ from epicyclic.units import Quantity
 # Ids, units and versions of REXS, from the one file that has them.
 
 
-CUSTOM = "custom_epicyclic_"
-"""Start of the ids of attributes that the standard does not have."""
+CUSTOM = "custom_epicyclic_"  # Start of the ids of attributes that the standard does not have.
 
 
 @dataclass(frozen=True, slots=True)
@@ -292,8 +291,7 @@ class Model:
 # The parts of a REXS file as its form gives them, and the model they make.
 
 
-_SHOWN = 20
-"""Problems of one file that are told."""
+_SHOWN = 20  # Problems of one file that are told.
 
 _ID = re.compile(r"[0-9]{1,9}")
 

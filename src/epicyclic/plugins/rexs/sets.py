@@ -307,8 +307,7 @@ def fixed_by(model: Model, parts: Iterable[Component]) -> Component | None:
 # Several stages of a REXS file as one train: its sets, its shafts, its clutches and brakes.
 
 
-MOST_STAGES, MOST_BEARINGS = 40, 400
-"""A file with more than this is not a gear unit."""
+MOST_STAGES, MOST_BEARINGS = 40, 400  # A file with more than this is not a gear unit.
 
 _LONGEST_NAME = 32
 

@@ -44,8 +44,7 @@ _ABOUT_FORCE = "Needed for the force on the bearings; or give their radial_force
 _SHORTEST, _FARTHEST = 1e-6, 1e8
 """Bounds of the length of an axis vector and of the coordinates of parts. [mm]"""
 
-_SUPPORTS = 2
-"""Bearings of a shaft whose forces statics gives."""
+_SUPPORTS = 2  # Bearings of a shaft whose forces statics gives.
 
 
 def shaft_parts(draft: Draft, model: Model, train: Train) -> None:

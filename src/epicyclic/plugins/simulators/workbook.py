@@ -19,10 +19,8 @@ from epicyclic.study.operating import STATE
 if TYPE_CHECKING:
     import xarray as xr
 
-_MOST_ROWS = 1_048_574
-"""Rows of a sheet of Excel below the two of names and units."""
-_LONG_TEXT = ("warnings",)
-"""Variables that are too long for a cell to be read in."""
+_MOST_ROWS = 1_048_574  # Rows of a sheet of Excel below the two of names and units.
+_LONG_TEXT = ("warnings",)  # Variables that are too long for a cell to be read in.
 
 
 def workbook_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:

@@ -74,8 +74,7 @@ def known_of(data: xr.Dataset) -> Known:
 
 LEAST = 0.02
 """Share in the variance of the total from which a value is said to limit the trust. [1]"""
-CONCERNED = 0.05
-"""Part of the total loss from which a warning matters. [1]"""
+CONCERNED = 0.05  # Part of the total loss from which a warning matters. [1]
 
 
 @dataclass(frozen=True, slots=True)

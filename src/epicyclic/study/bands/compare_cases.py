@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FloatArray = NDArray[np.float64]
-OWN = "B: "
-"""Before the key of a value of the second case that the first does not share."""
+OWN = "B: "  # Before the key of a value of the second case that the first does not share.
 PAIRS = 256
 
 

@@ -147,8 +147,7 @@ SLOPES = {"profile_slope": "profile_slope", "lead_slope": "helix_slope"}
 _FLANKS = ("micro_geometry", "micro_geometry_ring_side")
 
 
-_TAKES_DEVIATIONS = "compliance"
-"""The load distribution to which slopes matter."""
+_TAKES_DEVIATIONS = "compliance"  # The load distribution to which slopes matter.
 
 
 def slope_limit(case: CaseTable, key: str) -> float | None:

@@ -27,8 +27,7 @@ FloatArray = NDArray[np.float64]
 
 SUMS = ("load_dependent", "load_independent", "total", "efficiency")
 """Results beside the single losses."""
-UNLOADED = "unloaded."
-"""Before the name of a loss without torque."""
+UNLOADED = "unloaded."  # Before the name of a loss without torque.
 INPUT_POWER = "input_power"
 
 

@@ -35,8 +35,7 @@ from epicyclic.study.sweeps.runner import Row, Rows, Runner
 FloatArray = NDArray[np.float64]
 Point = Mapping[str, Any]
 
-FEWEST, MOST = 16, 65536
-"""Points in a set."""
+FEWEST, MOST = 16, 65536  # Points in a set.
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,16 +50,14 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-SAMPLES = 32
-"""Points in each of the two sets."""
+SAMPLES = 32  # Points in each of the two sets.
 TORQUE_LOSS = "torque_loss"
 INDICES = {
     "first_order": "share of the variance of the total loss, alone",
     "total_order": "share of the variance of the total loss, with interactions",
 }
 EXPLAINED = "share of the variance of the total loss that curves through the samples explain"
-DRAWN = 256
-"""Points in each set that shares are found by, from curves."""
+DRAWN = 256  # Points in each set that shares are found by, from curves.
 UNITS = {"efficiency": "1", TORQUE_LOSS: NEWTON_METRE.display}
 
 
@@ -171,12 +169,9 @@ class MapStudy(Study):
 # for all. Every sample of the inputs is solved at each of them: the inputs are the same throughout
 # the cycle, so that they do not average out.
 
-CYCLE_SAMPLES = 64
-"""Points in each of the two sets."""
-POINTS = 16
-"""Points of the cycle that every sample solves."""
-CYCLE_DRAWN = 1024
-"""Points in each set that indices are found by, from curves."""
+CYCLE_SAMPLES = 64  # Points in each of the two sets.
+POINTS = 16  # Points of the cycle that every sample solves.
+CYCLE_DRAWN = 1024  # Points in each set that indices are found by, from curves.
 CYCLE_EXPLAINED = "share of the variance of the total that curves through the samples explain"
 
 

@@ -31,10 +31,8 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-DRAWN = 4096
-"""Points at which the parabolas of the inputs are put together."""
-KEPT = 1024
-"""How many of these a dataset keeps."""
+DRAWN = 4096  # Points at which the parabolas of the inputs are put together.
+KEPT = 1024  # How many of these a dataset keeps.
 SEED = 1
 
 

@@ -160,12 +160,9 @@ def _correlated(probabilities: FloatArray, values: Sequence[UncertainValue]) -> 
 
 # What samples of a result say about it: uncertainty, intervals, and what drives them.
 
-COVERAGE = 0.95
-"""Share of the values within an interval. [1]"""
-COVERAGE_FACTOR = 2.0
-"""k of the expanded uncertainty U = k u_c; JCGM 100:2008, 6.3.3. [1]"""
-RESAMPLES = 200
-"""Resamples for the confidence intervals of indices."""
+COVERAGE = 0.95  # Share of the values within an interval. [1]
+COVERAGE_FACTOR = 2.0  # k of the expanded uncertainty U = k u_c; JCGM 100:2008, 6.3.3. [1]
+RESAMPLES = 200  # Resamples for the confidence intervals of indices.
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,8 +246,7 @@ def index_values(a: FloatArray, b: FloatArray, mixed: FloatArray) -> tuple[Float
 
 # Losses as curves of what is uncertain, fitted to samples: indices at no further solution.
 
-ROUNDING = 1e-9
-"""Standard deviation over the largest value below which a loss does not vary. [1]"""
+ROUNDING = 1e-9  # Standard deviation over the largest value below which a loss does not vary. [1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,10 +35,8 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
-SAMPLES = 256
-"""Points in each of the two sets."""
-UNIT_OF_RESULT = "see unit"
-"""Unit of what is stated for all results, which have different ones."""
+SAMPLES = 256  # Points in each of the two sets.
+UNIT_OF_RESULT = "see unit"  # Unit of what is stated for all results, which have different ones.
 LABELS = {
     "mean": "mean",
     "standard_uncertainty": "combined standard uncertainty u_c",

@@ -48,8 +48,7 @@ if TYPE_CHECKING:
 # Kaplan, PODC 2007, 225). A cycle of no more points than the sample is summed exactly.
 
 Array = NDArray[np.float64]
-_SEED = 0
-"""The same cycle and map give the same sample."""
+_SEED = 0  # The same cycle and map give the same sample.
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 SUFFIXES = (".csv", ".parquet")
 _BLOCK_BYTES = 1 << 22
 _BATCH_ROWS, _PAGE_BYTES = 1 << 16, 1 << 20
-_LONGEST_HEAD = 1 << 18
-"""Bytes within which the header of a CSV file must end."""
+_LONGEST_HEAD = 1 << 18  # Bytes within which the header of a CSV file must end.
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,10 +196,8 @@ _QUANTITIES: dict[str, Quantity | None] = {
 _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _NUMBER = r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$"
 _SHOWN_HEADERS = 20
-_MOST_STATES = 1000
-"""A column of more different texts is another one by that name, and left alone."""
-SHARE_DURATION = 3600.0
-"""What a cycle of shares lasts. [s]"""
+_MOST_STATES = 1000  # A column of more different texts is another one by that name, and left alone.
+SHARE_DURATION = 3600.0  # What a cycle of shares lasts. [s]
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,14 +47,10 @@ Array = NDArray[np.float64]
 MODES = ("driving", "coasting", "idling")
 """The reference shaft drives, is driven, or passes no power: no torque or no speed."""
 
-_SPEEDS, _TORQUES, _TEMPERATURES = 9, 9, 4
-"""Values of the axes of a map that is made for a cycle."""
-_CROWDING = 1.5
-"""Exponent by which its speeds and torques crowd at zero, where losses bend most."""
-_CROWD = 6
-"""Further torques next to zero, on each side. [1]"""
-SAMPLES = 20
-"""Points that are solved to measure the error of the interpolation."""
+_SPEEDS, _TORQUES, _TEMPERATURES = 9, 9, 4  # Values of the axes of a map that is made for a cycle.
+_CROWDING = 1.5  # Exponent by which its speeds and torques crowd at zero, where losses bend most.
+_CROWD = 6  # Further torques next to zero, on each side. [1]
+SAMPLES = 20  # Points that are solved to measure the error of the interpolation.
 
 
 def duty_cycle(

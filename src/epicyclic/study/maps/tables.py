@@ -180,8 +180,7 @@ Array = NDArray[np.float64]
 
 _SUMS = ("load_dependent", "load_independent", "total", "input_power")
 """Variables in W of a map that are no component."""
-_ROUNDING = 1e-9
-"""Part of an axis by which a point may leave the map, from conversions of units."""
+_ROUNDING = 1e-9  # Part of an axis by which a point may leave the map, from conversions of units.
 
 
 @dataclass(frozen=True, slots=True)
@@ -285,9 +284,8 @@ def make_lookup(data: xr.Dataset) -> Lookup:
     """A loss map for interpolation.
 
     At rest, where no power is lost, the torque loss is split between the components as at the
-    slowest speed beside it.
-
-    Raises `InputError` if `data` is no map, has gaps, further axes, or two driven members.
+    slowest speed beside it. Raises `InputError` if `data` is no map, has gaps, further axes, or two
+    driven members.
     """
     check_map(data)
     _check_usable(data)

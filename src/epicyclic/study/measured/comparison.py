@@ -34,8 +34,7 @@ if TYPE_CHECKING:
 
 SHRUNK = 1 - 1e-6
 """Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
-DIGITS = 8
-"""Decimals of coefficients of correlation."""
+DIGITS = 8  # Decimals of coefficients of correlation.
 
 
 def calibrated_case(case: Case, fit: Fit) -> Case:
@@ -95,8 +94,7 @@ def _without(table: dict[str, Any], keys: Collection[str]) -> dict[str, Any]:
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-AS_GIVEN, CALIBRATED = "as given", "CALIBRATED"
-"""State of the case behind computed losses."""
+AS_GIVEN, CALIBRATED = "as given", "CALIBRATED"  # State of the case behind computed losses.
 ALL, USED, HELD_OUT = "all points", "fitted points", "held-out points"
 
 

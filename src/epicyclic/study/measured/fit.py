@@ -31,8 +31,7 @@ FloatArray = NDArray[np.float64]
 
 CURVED = 2.0
 """Growth of the sum of squares over that of a linear model beyond which a warning says so. [1]"""
-ALIKE = 0.95
-"""Magnitude of a correlation from which a warning names it. [1]"""
+ALIKE = 0.95  # Magnitude of a correlation from which a warning names it. [1]
 
 
 def fit_warnings(
@@ -133,19 +132,15 @@ def _is_inside(parameters: Sequence[Parameter], scaled: FloatArray) -> bool:
 # Covariances are those of the linearised model at the solution, from its derivatives there;
 # intervals of few parameters follow from profiles of the likelihood.
 
-Tell = Callable[[str], None]
-"""Is told how a fit gets on, a sentence at a time."""
+Tell = Callable[[str], None]  # Is told how a fit gets on, a sentence at a time.
 
 MOST_ROUNDS = 200
 """Trial solutions after which the fit is given up; a curved valley takes some fifty."""
-TOLERANCE = 1e-5
-"""Relative change of the parameters that ends the fit. [1]"""
-SQUARES_TOLERANCE = 1e-5
-"""Relative change of the sum of squares that ends the fit. [1]"""
+TOLERANCE = 1e-5  # Relative change of the parameters that ends the fit. [1]
+SQUARES_TOLERANCE = 1e-5  # Relative change of the sum of squares that ends the fit. [1]
 NO_INFLUENCE = 1e-9
 """Relative change of every loss, over that of a parameter, below which it has no influence. [1]"""
-NEAR_BOUND = 1e-4
-"""Distance from a bound, over the start value, that counts as at the bound. [1]"""
+NEAR_BOUND = 1e-4  # Distance from a bound, over the start value, that counts as at the bound. [1]
 
 
 def fit_parameters(
@@ -158,9 +153,8 @@ def fit_parameters(
 ) -> Fit:
     """Fit `parameters` to the measured losses of the points `used`. Theory (X4).
 
-    `reach` is how far each may be off before the fit, over its start value; see `reaches`.
-
-    Raises `InputError` if there are fewer points than parameters, or a parameter has no influence;
+    `reach` is how far each may be off before the fit, over its start value; see `reaches`. Raises
+    `InputError` if there are fewer points than parameters, or a parameter has no influence;
     `ConvergenceError` if the fit does not converge.
     """
     count, size = int(used.sum()), len(parameters)

@@ -134,14 +134,11 @@ class Linearised:
 # The sum of squares along that valley says how far a parameter may be off, also where the losses
 # are not linear in it or where it ended at a bound.
 
-PROFILED = 3
-"""Parameters up to which profiles are made."""
+PROFILED = 3  # Parameters up to which profiles are made.
 MOST_PLACES, MOST_ROUNDS = 12, 8
 """Places tried for one end, and fits of the other parameters at each."""
-CLOSE = 0.02
-"""Root of the growth of the sum of squares over that wanted, less 1, that is met. [1]"""
-GAIN = 1e-2
-"""Gain over the growth wanted below which the others are not fitted any further. [1]"""
+CLOSE = 0.02  # Root of the growth of the sum of squares over that wanted, less 1, that is met. [1]
+GAIN = 1e-2  # Gain over the growth wanted below which the others are not fitted any further. [1]
 CURVED = 0.05
 """Square of what a linear model leaves over the growth wanted, beyond which derivatives over the
 other parameters are found anew. [1]"""
@@ -413,10 +410,8 @@ class Fit:
 # of inputs that may be off that far without moving the losses by their uncertainty cannot be
 # fitted.
 
-NAMED = 0.2
-"""Component of a direction, over the largest, from which an input is named. [1]"""
-TINY = 1e-300
-"""In place of a scatter of nothing."""
+NAMED = 0.2  # Component of a direction, over the largest, from which an input is named. [1]
+TINY = 1e-300  # In place of a scatter of nothing.
 
 
 @dataclass(frozen=True, slots=True)

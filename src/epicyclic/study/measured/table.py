@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 # Tables as users keep them (CSV, Excel, Parquet) as rows of plain cells.
 
 _NOUN = "measurement"
-_LARGEST_FILE = 10_000_000
-"""Largest file, also of what a compressed file holds. [bytes]"""
+_LARGEST_FILE = 10_000_000  # Largest file, also of what a compressed file holds. [bytes]
 MOST_ROWS = 10_000
 """Every row is a computation; tables of more rows are recordings, to be averaged first."""
 _MOST_COLUMNS = 200
@@ -156,8 +155,7 @@ def _text(cell: object) -> str:
 
 FloatArray = NDArray[np.float64]
 
-LOAD_DEPENDENT = "load_dependent"
-"""Sum of the losses that depend on the load, as a component."""
+LOAD_DEPENDENT = "load_dependent"  # Sum of the losses that depend on the load, as a component.
 
 _OWN = (*AXES, "loss", "uncertainty", "component")
 _EXAMPLES = {name: part.unit for name, part in OPERATING.items()} | {"loss": WATT.display}

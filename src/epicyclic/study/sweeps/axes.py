@@ -48,12 +48,9 @@ if TYPE_CHECKING:
 
 # Axes of a sweep: keys and their values, alone or changing together.
 
-MOST_POINTS = 1_000_000
-"""Rows of more points do not fit into memory."""
-ROW = "row"
-"""Dimension of a table of points, which counts its rows from 1."""
-_LARGEST_WHOLE = 2**53
-"""Larger whole numbers are no exact coordinates."""
+MOST_POINTS = 1_000_000  # Rows of more points do not fit into memory.
+ROW = "row"  # Dimension of a table of points, which counts its rows from 1.
+_LARGEST_WHOLE = 2**53  # Larger whole numbers are no exact coordinates.
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,17 +243,15 @@ def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
 
 # Tables of points: a column for each key, a row for each point.
 
-_LARGEST_FILE = 10_000_000
-"""[bytes]"""
+_LARGEST_FILE = 10_000_000  # [bytes]
 _HEADER = re.compile(r"(?P<key>[^\[\]]+?)\s*(\[(?P<unit>[^\[\]]*)\])?")
 
 
 def columns_of(points: str | Path | pd.DataFrame) -> dict[str, list[Any]]:
     """Keys of a table of points with their values, as a case file has them.
 
-    Units stand in the header, ``gears.normal_module [mm]``, or with the values.
-
-    Raises `InputError` if the file cannot be read, a cell is empty, or a key has two columns.
+    Units stand in the header, ``gears.normal_module [mm]``, or with the values. Raises `InputError`
+    if the file cannot be read, a cell is empty, or a key has two columns.
     """
     if not isinstance(points, str | Path):
         return _point_columns({str(name): column.tolist() for name, column in points.items()})
@@ -334,14 +329,12 @@ def _value(cell: Any, unit: str) -> Any:
 # They are read as a syntax tree of which only these parts are allowed; nothing is executed.
 
 
-Value = Any
-"""A float, or a pint quantity."""
+Value = Any  # A float, or a pint quantity.
 Lookup = Callable[[str], Value]
 
 _LONGEST = 500
 _LARGEST_POWER = 20
-_CASE = "case"
-"""The function whose argument is a key and stands for its value in the case."""
+_CASE = "case"  # The function whose argument is a key and stands for its value in the case.
 
 FUNCTIONS: dict[str, Callable[..., Value]] = {
     "abs": abs,
@@ -501,8 +494,7 @@ def _evaluate(node: ast.expr, at_point: Lookup, in_case: Lookup) -> Value:
 # Keys of a sweep that follow from others by expressions.
 
 Links = Mapping[str, str]
-_WHOLE = 1e-9
-"""A result that is nearer to a whole number is that number."""
+_WHOLE = 1e-9  # A result that is nearer to a whole number is that number.
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,10 +50,8 @@ _LIKE_SPEED = (
     "surroundings.pressure",
 )
 """Keys that change the number of a flow, but not its family."""
-_FEWEST = 8
-"""Values of these keys for which a table is made: few flows are solved as soon."""
-_TORQUE = AXES["torque"]
-"""Only its sign matters to the pockets."""
+_FEWEST = 8  # Values of these keys for which a table is made: few flows are solved as soon.
+_TORQUE = AXES["torque"]  # Only its sign matters to the pockets.
 
 
 def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = None) -> FlowTables:
@@ -107,8 +105,7 @@ _RANGE = re.compile(
 )
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 
-_TRIED = 100
-"""Points at which links are tried before anything is computed."""
+_TRIED = 100  # Points at which links are tried before anything is computed.
 
 # Tables whose keys leave geometry alone: varied innermost, so that geometry is built once.
 _OPERATING_TABLES = (
@@ -350,9 +347,8 @@ def parse_vary(
 
     `name` is that of the options, `example` one of their keys that holds a speed.
 
-    A unit after the last value, or after the count, holds for all values without one.
-
-    Raises `InputError` if an option is not of that form.
+    A unit after the last value, or after the count, holds for all values without one. Raises
+    `InputError` if an option is not of that form.
     """
     problems = []
     vary: dict[str, list[Any]] = {}

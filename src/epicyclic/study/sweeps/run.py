@@ -31,10 +31,8 @@ if TYPE_CHECKING:
 # Rows of a sweep as an `xarray.Dataset`, and the files it is kept in.
 
 FORMATS = (".nc", ".csv", ".parquet")
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""What formulas of spreadsheets begin with."""
-_CASE_KEY = "case_key"
-"""Attribute of a coordinate: the key that it varies."""
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # What formulas of spreadsheets begin with.
+_CASE_KEY = "case_key"  # Attribute of a coordinate: the key that it varies.
 _INTERPOLATION_ERROR = "pocket_interpolation_error"
 
 

@@ -44,8 +44,7 @@ from epicyclic.files import look_seldom, make_folder
 # points.
 
 
-NOT_COMPUTED = "not computed"
-"""Status of the points of other shards."""
+NOT_COMPUTED = "not computed"  # Status of the points of other shards.
 
 _WITHOUT_NUMBERS = (Status.FAILED, Status.UNPHYSICAL)
 _LONGEST_LINE = 50_000_000
@@ -277,12 +276,10 @@ def _error(path: Path, allowed: str) -> InputError:
 Progress = Callable[..., None]
 Batch = list[tuple[int, Row]]
 
-BATCHES_PER_WORKER = 4
-"""Fewer would leave workers idle at the end."""
+BATCHES_PER_WORKER = 4  # Fewer would leave workers idle at the end.
 WORKER_START_SECONDS = 4.0
 """Work left, in seconds on one core, below which starting worker processes does not pay."""
-PARENT_SECONDS = 0.5
-"""Between two looks of a worker at whether its parent is alive."""
+PARENT_SECONDS = 0.5  # Between two looks of a worker at whether its parent is alive.
 _ABOUT_LOCKS = "ignore:resource_tracker:UserWarning"
 TRIAL_POINTS, TRIAL_SECONDS = 16, 2.0
 """Points computed, or time spent on them, before the work left is estimated."""
@@ -413,8 +410,7 @@ class Runner:
         return replace(self, journal=folder / f"{fingerprint(plan)}.partial")
 
 
-HERE = Runner()
-"""The points are computed here, or in workers if that pays, and not kept."""
+HERE = Runner()  # The points are computed here, or in workers if that pays, and not kept.
 
 
 def share_of(plan: Plan, shard: tuple[int, int] | None) -> list[int]:
