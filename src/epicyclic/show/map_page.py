@@ -38,8 +38,7 @@ from epicyclic.units import format_number, unit_text
 
 _WHITE = "White: no power is passed on, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
-_SMALL = "Out of range, each"
-"""Begins the warning that puts together what matters little."""
+_SMALL = "Out of range, each"  # Begins the warning that puts together what matters little.
 _QUANTITY = re.compile(r" -?\d.*")
 _NUMBER = re.compile(r"-?\d[\d.]*(e[+-]?\d+)?")
 GRIDS = {"efficiency": "Efficiency, %", "total": "Total loss, W"}
@@ -191,8 +190,7 @@ def versions_of(data: xr.Dataset) -> Listing:
 # The report of a sweep: its chapters.
 
 
-MOST_ROWS = 12
-"""Most rows of the table of points."""
+MOST_ROWS = 12  # Most rows of the table of points.
 _POINTS_LEAD = "The points with the least total loss, and the one with the largest."
 
 

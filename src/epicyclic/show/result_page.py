@@ -56,8 +56,7 @@ def result_section(record: ResultRecord, drawings: Drawings, name: str) -> Secti
 
 
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
-_MOST_BESIDE = 4
-"""Gears whose table has room beside a picture."""
+_MOST_BESIDE = 4  # Gears whose table has room beside a picture.
 _POCKET_LEAD = (
     "A pocket is named after the member whose tooth is in a space of the other. Lines from dark "
     "to light are slices across the face."

@@ -65,8 +65,7 @@ if TYPE_CHECKING:
 # Tables of a result, for pages and terminals: losses, power flow, figures of all parts.
 
 
-Unit = tuple[str, float]
-"""Its name in print and its size."""
+Unit = tuple[str, float]  # Its name in print and its size.
 _FLOW_NOTE = (
     "Speeds are positive in one common sense of rotation; torques act on the gear set from "
     "outside; positive power enters."

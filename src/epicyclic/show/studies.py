@@ -40,8 +40,7 @@ _EXTREMES = (
     "friction_power",
     "flash_temperature",
 )
-_SMALLEST = ("film_ratio",)
-"""Figures whose smallest value matters."""
+_SMALLEST = ("film_ratio",)  # Figures whose smallest value matters.
 
 
 def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
@@ -217,8 +216,7 @@ def _table(title: str, *columns: str) -> Table:
 # Measured losses beside computed ones, for a terminal.
 
 
-MOST_POINTS = 40
-"""Points that are shown; JSON and the table in Python have all."""
+MOST_POINTS = 40  # Points that are shown; JSON and the table in Python have all.
 
 
 def measured_tables(comparison: MeasuredComparison) -> RenderableType:

@@ -43,12 +43,10 @@ from epicyclic.study.operating import operating_line
 # Tables of a terminal that keep their numbers whole, however narrow it is.
 
 
-GAP = 3
-"""Between two columns, the spaces on both sides of a line that is not drawn."""
+GAP = 3  # Between two columns, the spaces on both sides of a line that is not drawn.
 LONGEST_WORD = 24
 """Longest word that stays whole; what is longer is an address, or a key with its table."""
-FIRST_SHARE = 0.5
-"""Largest share of the width for the names in the first column."""
+FIRST_SHARE = 0.5  # Largest share of the width for the names in the first column.
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,8 +139,7 @@ def _widths(needs: Sequence[_Need], room: int) -> list[int]:
 # Tables of results, libraries and comparisons for a terminal.
 
 
-PIPE_WIDTH = 100
-"""Width of tables that do not go to a terminal. [characters]"""
+PIPE_WIDTH = 100  # Width of tables that do not go to a terminal. [characters]
 
 
 def terminal() -> Console:

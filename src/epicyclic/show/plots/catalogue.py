@@ -69,8 +69,7 @@ Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
 SLIDE_WIDTHS = (6.4, 9.6, 12.8)
 """Widths of figures of one, two, three and more panels in a row: letters stay readable. [inch]"""
-FLATTEST = 0.75
-"""Height of a figure over that of a slide of its width, at least."""
+FLATTEST = 0.75  # Height of a figure over that of a slide of its width, at least.
 
 
 @dataclass(frozen=True, slots=True)

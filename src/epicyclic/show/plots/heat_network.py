@@ -31,29 +31,20 @@ if TYPE_CHECKING:
 
 FLOW, PAPER = "#5b7fa6", "#ffffff"
 HEAT_COLOURS = "YlOrRd"
-DARKEST = 0.62
-"""Darkest shade of the colour scale on which words stay readable. [1]"""
+DARKEST = 0.62  # Darkest shade of the colour scale on which words stay readable. [1]
 LEFT, RIGHT = 0.15, SLIDE[0] - 0.15
-SLOT, BROADEST = 1.45, 2.6
-"""Room for each way out of the oil; of a column at most."""
+SLOT, BROADEST = 1.45, 2.6  # Room for each way out of the oil; of a column at most.
 BAY, ONLY_BAY = 1.2, 2.4
 """Room for the way from the oil to the housing; where that is the only one."""
-SHAFTS, OUTSIDE = 6.1, 0.55
-"""Middles of the rows of shafts and of what is outside."""
+SHAFTS, OUTSIDE = 6.1, 0.55  # Middles of the rows of shafts and of what is outside.
 WITH_SHAFTS, WITHOUT = (4.5, 2.75, 1.65), (5.4, 3.3, 1.85)
 """Middles of the rows of parts, oil, and housing."""
-TALL, FLAT = 0.58, 0.22
-"""Half the heights of a part, and of a rail."""
-NARROW = 1.2
-"""Width of a column up to which its words are small."""
-WIDEST, THINNEST = 0.5, 0.015
-"""Widths of arrows."""
-SMALLEST = 0.5
-"""Heat that is not drawn. [W]"""
-SHAFT = "_shaft"
-"""Ends the names of shafts."""
-LETTER = 0.0082
-"""Mean width of a letter over its size. [inch/point]"""
+TALL, FLAT = 0.58, 0.22  # Half the heights of a part, and of a rail.
+NARROW = 1.2  # Width of a column up to which its words are small.
+WIDEST, THINNEST = 0.5, 0.015  # Widths of arrows.
+SMALLEST = 0.5  # Heat that is not drawn. [W]
+SHAFT = "_shaft"  # Ends the names of shafts.
+LETTER = 0.0082  # Mean width of a letter over its size. [inch/point]
 _ARROW = Arrow(reach=(0.07, 0.8), length=(0.13, 0.6), share=0.45)
 _fit = partial(fit, LETTER)
 
