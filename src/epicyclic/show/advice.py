@@ -13,13 +13,10 @@ from epicyclic.show.page import Listing
 from epicyclic.study.bands.advice import Known, limits_of, measurements_of
 from epicyclic.units import known_text, percent
 
-MOST = 3
-"""Inputs and models that are named after a band."""
+MOST = 3  # Inputs and models that are named after a band.
 LIMITS = "What limits the trust in it"
-FEW = 2
-"""Limits that a short list names."""
-WORTH = 0.98
-"""Part of the band above which a measurement is not worth while. [1]"""
+FEW = 2  # Limits that a short list names.
+WORTH = 0.98  # Part of the band above which a measurement is not worth while. [1]
 
 
 def band_texts(known: Known | None) -> list[str | Listing]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from rich.console import Group, RenderableType
+from rich.table import Column
 from rich.text import Text
 
 from epicyclic import library
@@ -168,17 +169,12 @@ def _oil(case: Case) -> str | None:
 def state_tables(case: TrainCase) -> RenderableType:
     """Shafts of a train with their members, and the ratio of every state."""
     states = train_states(case)
-    shafts = plain_table("Shafts")
-    shafts.add_column("", no_wrap=True)
-    shafts.add_column("turns together")
+    shafts = plain_table("Shafts", Column("", no_wrap=True), "turns together")
     for name, members in case.shape.shafts.items():
         shafts.add_row("housing, stands still" if name == HOUSING else name, ", ".join(members))
-    table = plain_table(
-        f"Ratio: speed of {case.operation.input} over that of {case.operation.output}"
-    )
-    for head in ("state", "ratio", "step", "held", "joined", ""):
-        numeric = head in ("ratio", "step")
-        table.add_column(head, justify="right" if numeric else "left", no_wrap=numeric)
+    title = f"Ratio: speed of {case.operation.input} over that of {case.operation.output}"
+    numbers = (Column(head, justify="right", no_wrap=True) for head in ("ratio", "step"))
+    table = plain_table(title, "state", *numbers, "held", "joined", "")
     before: StateKinematics | None = None
     for state in states:
         table.add_row(
@@ -205,10 +201,8 @@ def _step(before: StateKinematics | None, state: StateKinematics) -> str:
 
 def case_table() -> RenderableType:
     """Built-in cases and the words that name their variants."""
-    table = plain_table("Built-in cases")
-    table.add_column("name", no_wrap=True)
-    table.add_column("what it is")
-    table.add_column("variants: at most one word of each line, joined by -")
+    variants = "variants: at most one word of each line, joined by -"
+    table = plain_table("Built-in cases", Column("name", no_wrap=True), "what it is", variants)
     for name in library.case_files():
         groups = library.case_variants().get(name, [])
         words = "\n".join(f"{' '.join(group['words'])}  ({group['about']})" for group in groups)
@@ -219,17 +213,15 @@ def case_table() -> RenderableType:
 
 def oil_table() -> RenderableType:
     """The oil library."""
-    table = plain_table("Built-in oils")
-    table.add_column("name", no_wrap=True)
-    table.add_column("kind")
     viscosity = unit_text(SQUARE_MM_PER_SECOND.display)
-    for column in (
+    heads = (
         f"ν 40 °C\n{viscosity}",
         f"ν 100 °C\n{viscosity}",
         f"ρ 40 °C\n{unit_text(KILOGRAM_PER_CUBIC_METRE.display)}",
         f"α 40 °C\n{unit_text(PER_GIGAPASCAL.display)}",
-    ):
-        table.add_column(column, justify="right")
+    )
+    numbers = (Column(head, justify="right") for head in heads)
+    table = plain_table("Built-in oils", Column("name", no_wrap=True), "kind", *numbers)
     for name in sorted(library.oil_names(), key=_by_grade):
         oil = Oil.model_validate(library.oil_table(name))
         warm, hot = _state(oil, "40 degC"), _state(oil, "100 degC")
@@ -256,22 +248,15 @@ def _by_grade(name: str) -> list[tuple[bool, int, str]]:
 def oil_sheet(name: str) -> RenderableType:
     """Every value of one oil with its source."""
     oil = Oil.model_validate(library.oil_table(name))
-    table = plain_table(f"{name}: {oil.title}")
-    table.add_column("property")
-    table.add_column("value", justify="right", no_wrap=True)
-    table.add_column("source")
-    for point in oil.kinematic_viscosity:
-        table.add_row(
-            f"kinematic viscosity at {_text(CELSIUS, point.temperature, 4)}",
-            _text(SQUARE_MM_PER_SECOND, point.value),
-            point.source,
-        )
-    for density in oil.density:
-        table.add_row(
-            f"density at {_text(CELSIUS, density.temperature, 4)}",
-            _text(KILOGRAM_PER_CUBIC_METRE, density.value),
-            density.source,
-        )
+    value = Column("value", justify="right", no_wrap=True)
+    table = plain_table(f"{name}: {oil.title}", "property", value, "source")
+    for label, unit, points in (
+        ("kinematic viscosity", SQUARE_MM_PER_SECOND, oil.kinematic_viscosity),
+        ("density", KILOGRAM_PER_CUBIC_METRE, oil.density),
+    ):
+        for point in points:
+            at = f"{label} at {_text(CELSIUS, point.temperature, 4)}"
+            table.add_row(at, _text(unit, point.value), point.source)
     law = oil.pressure_viscosity
     calibrated = " (calibrated)" if law.calibrated else ""
     table.add_row(

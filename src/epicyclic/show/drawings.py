@@ -28,8 +28,7 @@ from epicyclic.show.plots.style import STYLE, styled_figure
 
 
 DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
-DIGITS = 7
-"""Significant digits of values in the page."""
+DIGITS = 7  # Significant digits of values in the page.
 COLOUR_STEPS = 16
 
 
@@ -144,15 +143,13 @@ def _escaped(text: str) -> str:
 # Figures of a page: still ones as SVG within the page, and their data to explore.
 
 
-PANEL = (4.3, 3.1)
-"""Width and height of a figure in a page. [inch]"""
+PANEL = (4.3, 3.1)  # Width and height of a figure in a page. [inch]
 _PROLOGUE = re.compile(r".*?(?=<svg)", re.DOTALL)
 _METADATA = re.compile(r"\s*<metadata>.*?</metadata>", re.DOTALL)
 _SIZE = re.compile(r'(<svg[^>]*?) width="[^"]*"', re.DOTALL)
 _HEIGHT = re.compile(r'(<svg[^>]*?) height="[^"]*"', re.DOTALL)
 _COORDINATES = re.compile(r'(?<=\sd=")[^"]*')
-_LONG_NUMBER = re.compile(r"(\.\d\d)\d+")
-"""What is more precise than a hundredth of a point."""
+_LONG_NUMBER = re.compile(r"(\.\d\d)\d+")  # What is more precise than a hundredth of a point.
 _OWN_ID = re.compile(r'(?<=\sid=")|(?<=url\(#)|(?<=href="#)')
 
 

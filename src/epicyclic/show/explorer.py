@@ -22,14 +22,11 @@ EXPLORER_LEAD = (
     "interpolated powers. Between names and whole numbers nothing is interpolated."
 )
 
-MOST_VALUES = 1_500_000
-"""That a page holds: 8 MB."""
-SHADES = 64
-"""Shades of the map."""
+MOST_VALUES = 1_500_000  # That a page holds: 8 MB.
+SHADES = 64  # Shades of the map.
 SUMS = ("load_dependent", "load_independent", "total", "torque_loss", "input_power", "efficiency")
 """Below the losses."""
-MAIN = ("total", "input_power", "efficiency")
-"""Without which there is nothing to explore."""
+MAIN = ("total", "input_power", "efficiency")  # Without which there is nothing to explore.
 
 
 def explorer_items(

@@ -33,8 +33,7 @@ RUN_AGAIN = (
     "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
 )
 MOST_TEETH = 5000
-LARGEST_VALUE = 1e12
-"""No number of a gear set is larger, in the units that users see."""
+LARGEST_VALUE = 1e12  # No number of a gear set is larger, in the units that users see.
 _ROUNDING = 1e-9
 _LIMITS = {
     "total": (0.0, LARGEST_VALUE),

@@ -21,7 +21,7 @@ from epicyclic.show.drawings import draw
 from epicyclic.show.files import is_sweep
 from epicyclic.show.inputs import input_tables
 from epicyclic.show.map_page import map_key_figures, map_sections, sweep_key_figures, sweep_sections
-from epicyclic.show.page import Drawings, Item, Section, gallery
+from epicyclic.show.page import Drawings, Item, KeyFigure, Section, gallery
 from epicyclic.show.plots.catalogue import Stored, available
 from epicyclic.show.plots.loss_map import map_line
 from epicyclic.show.plots.sweep import sweep_line, thinned
@@ -70,90 +70,72 @@ def report_html(
     tell = progress or (lambda done, total: None)
     if not isinstance(stored, ResultRecord) and is_sweep(stored):
         shown = thinned(stored)  # a page holds so many, a sweep any number
-        return page_html(**_sweep_content(stored, shown, _drawings(shown, tell, size)))
+        sections = sweep_sections(stored, shown, _drawings(shown, tell, size))
+        figures = sweep_key_figures(stored)
+        return page_html(**_content(stored, "Sweep", sweep_line(stored), figures, sections))
     drawings = _drawings(stored, tell, size)
     if isinstance(stored, ResultRecord):
         content = _result_content(stored, drawings)
     elif "torque_loss" in stored:
-        content = _map_content(stored, drawings)
+        figures, sections = map_key_figures(stored), map_sections(stored, drawings)
+        content = _content(stored, "Loss map", map_line(stored), figures, sections)
     else:
-        content = _uncertainty_content(stored, drawings)
+        cycle = str(stored.attrs.get("cycle", ""))
+        sections = _uncertainty_sections(stored, drawings)
+        content = _content(stored, "How well it is known", cycle, band_figures(stored), sections)
     return page_html(**content)
 
 
 def page_html(**content: Any) -> str:
     """A page of its title, kind, operation, source, key figures and sections."""
-    return _template().render(
-        **content,
-        style=_asset("report.css"),
-        script=_asset("report.js"),
-        explorer=_asset("explorer.js"),
-        library=_library(),
+    return (
+        _templates()
+        .get_template("report.html")
+        .render(
+            **content,
+            style=_asset("report.css"),
+            script=_asset("report.js"),
+            explorer=_asset("explorer.js"),
+            library=_library(),
+        )
     )
 
 
 def _result_content(record: ResultRecord, drawings: Drawings) -> dict[str, Any]:
     result = record.result
+    created = f"{datetime.fromisoformat(record.created):%Y-%m-%d %H:%M} UTC"
     return {
         "title": record.title,
         "kind": KINDS[result.kind],
         "operation": operating_line(result.inputs["operation"]),
-        "source": f"Computed {_time(record.created)} with epicyclic {result.versions['epicyclic']}",
+        "source": f"Computed {created} with epicyclic {result.versions['epicyclic']}",
         "key_figures": key_figures(result),
         "sections": result_sections(record, drawings),
     }
 
 
-def _map_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
+def _content(
+    data: xr.Dataset, what: str, line: str, figures: list[KeyFigure], sections: list[Section]
+) -> dict[str, Any]:
     kind = map_inputs(data)["kind"]
     return {
         "title": str(data.attrs["title"]) or kind.replace("_", " "),
-        "kind": f"Loss map: {KINDS[kind]}",
-        "operation": map_line(data),
+        "kind": f"{what}: {KINDS[kind]}",
+        "operation": line,
         "source": f"Computed with {data.attrs['source']}",
-        "key_figures": map_key_figures(data),
-        "sections": map_sections(data, drawings),
+        "key_figures": figures,
+        "sections": sections,
     }
 
 
-def _sweep_content(data: xr.Dataset, shown: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
-    kind = map_inputs(data)["kind"]
-    return {
-        "title": str(data.attrs["title"]) or kind.replace("_", " "),
-        "kind": f"Sweep: {KINDS[kind]}",
-        "operation": sweep_line(data),
-        "source": f"Computed with {data.attrs['source']}",
-        "key_figures": sweep_key_figures(data),
-        "sections": sweep_sections(data, shown, drawings),
-    }
-
-
-def _uncertainty_content(data: xr.Dataset, drawings: Drawings) -> dict[str, Any]:
-    kind = map_inputs(data)["kind"]
-    what = "Energy of a duty cycle" if "point_error" in data else "Result"
-    return {
-        "title": str(data.attrs["title"]) or kind.replace("_", " "),
-        "kind": f"How well it is known: {KINDS[kind]}",
-        "operation": str(data.attrs.get("cycle", "")),
-        "source": f"Computed with {data.attrs['source']}",
-        "key_figures": band_figures(data),
-        "sections": [
-            Section(
-                "uncertainty",
-                what,
-                (
-                    *gallery(drawings, "drivers", wide=True),
-                    *gallery(drawings, "band"),
-                    *uncertainty_items(data),
-                ),
-            ),
-            Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
-        ],
-    }
-
-
-def _time(created: str) -> str:
-    return f"{datetime.fromisoformat(created):%Y-%m-%d %H:%M} UTC"
+def _uncertainty_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
+    title = "Energy of a duty cycle" if "point_error" in data else "Result"
+    pictures = (*gallery(drawings, "drivers", wide=True), *gallery(drawings, "band"))
+    inputs = tuple(input_tables(map_inputs(data), map_inputs(data)))
+    return [
+        Section("uncertainty", title, (*pictures, *uncertainty_items(data))),
+        Section("inputs", "Inputs", inputs),
+    ]
 
 
 def _drawings(
@@ -171,10 +153,6 @@ def items_html(*items: Item) -> str:
     """Tables and lists as a page has them, without the page."""
     render = _templates().get_template("items.html").module.render  # type: ignore[attr-defined]
     return "".join(render(item) for item in items)
-
-
-def _template() -> jinja2.Template:
-    return _templates().get_template("report.html")
 
 
 @cache
@@ -206,12 +184,8 @@ def _library() -> Markup:
 # Reports as PDF: the page of `report_html`, set by WeasyPrint.
 
 
-def check_pdf() -> None:
-    """Raise `InputError` if WeasyPrint, which is optional, cannot be used."""
-    _weasyprint()
-
-
-def _weasyprint() -> ModuleType:
+def check_pdf() -> ModuleType:
+    """WeasyPrint, which is optional; raises `InputError` if it cannot be used."""
     try:
         return import_module("weasyprint")
     except (ImportError, OSError) as error:  # it needs Pango, a library of the system
@@ -231,8 +205,7 @@ def report_pdf(
 
     Raises `InputError` if WeasyPrint cannot be used.
     """
-    weasyprint = _weasyprint()
-
+    weasyprint = check_pdf()
     # it reports every property of style sheets for screens
     logging.getLogger("weasyprint").setLevel(logging.CRITICAL)
     fetcher = weasyprint.urls.URLFetcher(allowed_protocols=["data"])  # nothing from elsewhere

@@ -19,16 +19,11 @@ from epicyclic.units import format_number, unit_text
 MEMBERS = ("sun", "planet", "ring", "pinion", "gear")
 TITLES = {"gears": "All gears", "sun": "Gears", "pinion": "Gears"}
 NOT_SHOWN = ("kind", "title")
-DATUM = {"value", "temperature", "source"}
-"""Keys of a table that states one value."""
-MOST_VALUES = 12
-"""Most values of an array that are shown."""
-WORDS, VALUES = 18, 42
-"""Widths of the columns of keys and values, beside their meaning. [%]"""
-MOST_BESIDE = 3
-"""Columns of values that have room in this: more parts follow in a table below."""
-_SHARED = ("models", "numerics", "lubrication")
-"""Tables that the sets of a train take from it."""
+DATUM = {"value", "temperature", "source"}  # Keys of a table that states one value.
+MOST_VALUES = 12  # Most values of an array that are shown.
+WORDS, VALUES = 18, 42  # Widths of the columns of keys and values, beside their meaning. [%]
+MOST_BESIDE = 3  # Columns of values that have room in this: more parts follow in a table below.
+_SHARED = ("models", "numerics", "lubrication")  # Tables that the sets of a train take from it.
 _LISTED, _MEMBERS = "gears", "members"
 """Table of the gears of a listed set in a file, and in the schema."""
 _OF_LOSSES = ("lubrication", "surroundings", "models", "contact_solver", "numerics")

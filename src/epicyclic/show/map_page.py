@@ -38,25 +38,30 @@ from epicyclic.units import format_number, unit_text
 
 _WHITE = "White: no power is passed on, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
-_SMALL = "Out of range, each"
-"""Begins the warning that puts together what matters little."""
+_SMALL = "Out of range, each"  # Begins the warning that puts together what matters little.
 _QUANTITY = re.compile(r" -?\d.*")
 _NUMBER = re.compile(r"-?\d[\d.]*(e[+-]?\d+)?")
 GRIDS = {"efficiency": "Efficiency, %", "total": "Total loss, W"}
 """Variables of which there are tables of values."""
 
 
-def map_key_figures(data: xr.Dataset) -> list[KeyFigure]:
-    """What a reader looks for first."""
+def _counts(data: xr.Dataset) -> list[KeyFigure]:
+    """Points, and failed ones if there are any."""
     failed = int((data["status"] != Status.CONVERGED).sum())
     figures = [KeyFigure("points", number(data["total"].size, ""))]
-    if failed:
-        figures.append(KeyFigure("failed points", number(failed, "")))
+    return figures + [KeyFigure("failed points", number(failed, ""))] * bool(failed)
+
+
+def _best_efficiency(data: xr.Dataset) -> KeyFigure:
     best = float(data["efficiency"].max())
-    if np.isfinite(best):
-        figures.append(
-            KeyFigure("best efficiency", number(best, "", text=f"{100 * best:.2f}"), "%")
-        )
+    return KeyFigure("best efficiency", number(best, "", text=f"{100 * best:.2f}"), "%")
+
+
+def map_key_figures(data: xr.Dataset) -> list[KeyFigure]:
+    """What a reader looks for first."""
+    figures = _counts(data)
+    if np.isfinite(data["efficiency"]).any():
+        figures.append(_best_efficiency(data))
     for name, label in (("total", "largest loss"), ("torque_loss", "largest torque loss")):
         worst = float(data[name].max())
         if np.isfinite(worst):
@@ -67,6 +72,12 @@ def map_key_figures(data: xr.Dataset) -> list[KeyFigure]:
 
 def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
     """All chapters of a map."""
+    band: tuple[Item, ...] = ()
+    if "explained" in data:
+        band = (*gallery(drawings, "loss-band", "loss-band-lines"), *uncertainty_items(data))
+    grids = at_temperatures(data).items()
+    tables = tuple(_grid(point, name, place) for place, point in grids for name in GRIDS)
+    stated = tuple((Cell(name), Cell(text)) for name, text in statements(data).items() if text)
     sections = [
         Section("explorer", "Explorer", explorer_items(data), EXPLORER_LEAD),
         Section("efficiency", "Efficiency", gallery(drawings, "efficiency-map"), _WHITE),
@@ -76,12 +87,12 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
             "Over speed and torque",
             gallery(drawings, "loss-parts", "loss-over-speed", "loss-over-torque"),
         ),
-        Section("band", "How well it is known", _band(data, drawings), BAND_LEAD),
-        Section("tables", "Values", tuple(_tables(data)), _further(data)),
+        Section("band", "How well it is known", band, BAND_LEAD),
+        Section("tables", "Values", tables, _further(data)),
         Section("validity", "Validity", validity_items(data)),
         Section("gears", "Gears", gallery(drawings, "gear-set")),
         Section("methods", "Methods", _methods(data)),
-        Section("conventions", "Conventions", _conventions(data)),
+        Section("conventions", "Conventions", (Table(("", "statement"), stated),)),
         Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
         Section("versions", "Versions", (versions_of(data),)),
     ]
@@ -89,13 +100,6 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
 
 
 BAND_LEAD = "Inputs and models are off by the same at all points; 95 % of the samples lie within."
-
-
-def _band(data: xr.Dataset, drawings: Drawings) -> tuple[Item, ...]:
-    """The band over the map, if it was computed."""
-    if "explained" not in data:
-        return ()
-    return (*gallery(drawings, "loss-band", "loss-band-lines"), *uncertainty_items(data))
 
 
 def _further(data: xr.Dataset) -> str:
@@ -108,22 +112,13 @@ def _further(data: xr.Dataset) -> str:
     return " ".join(filter(None, (lead, more)))
 
 
-def _tables(data: xr.Dataset) -> list[Table]:
-    """Total loss and efficiency over speed and torque at each temperature."""
-    return [
-        _grid(point, name, number)
-        for number, point in at_temperatures(data).items()
-        for name in GRIDS
-    ]
-
-
 def _grid(point: xr.Dataset, name: str, temperature: int) -> Table:
     values = point[name].transpose("speed", "torque").to_numpy()
-    return grid_table(
-        point,
-        GRIDS[name],
-        lambda i, j: _value(name, values[i, j], f"{name}[{i},{j},{temperature}]"),
-    )
+
+    def cell(i: int, j: int) -> Cell:
+        return _value(name, values[i, j], f"{name}[{i},{j},{temperature}]")
+
+    return grid_table(point, GRIDS[name], cell)
 
 
 def _value(name: str, value: float, key: str) -> Cell:
@@ -178,11 +173,6 @@ def _methods(data: xr.Dataset) -> tuple[Table | Listing, ...]:
     return (Table(("what", "method", "source"), rows),)
 
 
-def _conventions(data: xr.Dataset) -> tuple[Table, ...]:
-    rows = tuple((Cell(name), Cell(text)) for name, text in statements(data).items() if text)
-    return (Table(("", "statement"), rows),)
-
-
 def versions_of(data: xr.Dataset) -> Listing:
     """The program, and the libraries that it computed with."""
     return versions_line(json.loads(data.attrs["versions"]))
@@ -191,28 +181,19 @@ def versions_of(data: xr.Dataset) -> Listing:
 # The report of a sweep: its chapters.
 
 
-MOST_ROWS = 12
-"""Most rows of the table of points."""
+MOST_ROWS = 12  # Most rows of the table of points.
 _POINTS_LEAD = "The points with the least total loss, and the one with the largest."
 
 
 def sweep_key_figures(data: xr.Dataset) -> list[KeyFigure]:
     """What a reader looks for first."""
-    failed = int((data["status"] != Status.CONVERGED).sum())
-    figures = [KeyFigure("points", number(data["total"].size, ""))]
-    if failed:
-        figures.append(KeyFigure("failed points", number(failed, "")))
-    for label, value in (
-        ("least loss", data["total"].min()),
-        ("largest loss", data["total"].max()),
-    ):
+    figures = _counts(data)
+    total = data["total"]
+    for label, value in (("least loss", total.min()), ("largest loss", total.max())):
         if np.isfinite(value):
             figures.append(KeyFigure(label, number(float(value), ""), "W"))
     if "efficiency" in shown_results(data):
-        best = float(data["efficiency"].max())
-        figures.append(
-            KeyFigure("best efficiency", number(best, "", text=f"{100 * best:.2f}"), "%")
-        )
+        figures.append(_best_efficiency(data))
     return figures
 
 

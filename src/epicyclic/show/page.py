@@ -13,13 +13,11 @@ from epicyclic.units import format_number, percent
 # Numbers and units as tables show them.
 
 
-MISSING = "-"
-"""Stands where there is no number."""
+MISSING = "-"  # Stands where there is no number.
 
 _ROUNDING_NOISE = 1e-9
 """What is smaller, in any unit that tables use, is left over from rounding and shown as 0."""
-_SMALLEST_ERROR = 1e-4
-"""Of what is computed, that has digits. [1]"""
+_SMALLEST_ERROR = 1e-4  # Of what is computed, that has digits. [1]
 
 
 def shown(value: float, digits: int = 4) -> str:
@@ -39,10 +37,8 @@ def error_text(share: float) -> str:
 # What a page of a report consists of.
 
 
-SHORT = 6
-"""Lines of a table that is not divided between pages."""
-LINE = 60
-"""Characters of a cell that stand in one line, about."""
+SHORT = 6  # Lines of a table that is not divided between pages.
+LINE = 60  # Characters of a cell that stand in one line, about.
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +173,7 @@ class Section:
         return any(isinstance(item, Explorer) for item in self.items)
 
 
-Drawings = Mapping[str, Sequence[Drawing]]
-"""The figures of every plot, by its name."""
+Drawings = Mapping[str, Sequence[Drawing]]  # The figures of every plot, by its name.
 
 
 def gallery(drawings: Drawings, *names: str, wide: bool = False) -> tuple[Gallery, ...]:

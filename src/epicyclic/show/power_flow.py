@@ -8,8 +8,7 @@ from dataclasses import dataclass, field, replace
 from epicyclic.gears.gear import HOUSING
 from epicyclic.result.result import Result
 
-NO_POWER = 1e-9
-"""Power and torque, relative to the largest one, that is none. [1]"""
+NO_POWER = 1e-9  # Power and torque, relative to the largest one, that is none. [1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 import xarray as xr
 
 from epicyclic.result.result import Result, Train, in_words
+from epicyclic.show import result_tables as tables
 from epicyclic.show.inputs import input_tables
 from epicyclic.show.page import (
     Cell,
@@ -22,24 +23,6 @@ from epicyclic.show.page import (
     number,
 )
 from epicyclic.show.record import ResultRecord, sets_of
-from epicyclic.show.result_tables import (
-    bearing_tables,
-    clutches_table,
-    heat_items,
-    losses_table,
-    members_table,
-    mesh_tables,
-    oil_table,
-    part_tables,
-    planets_table,
-    rolling_table,
-    shafts_table,
-    standing_items,
-    sums_table,
-    terms_table,
-    users_text,
-    ways_items,
-)
 from epicyclic.show.uncertainty_tables import uncertainty_items
 from epicyclic.units import format_number, percent, unit_text
 
@@ -56,8 +39,7 @@ def result_section(record: ResultRecord, drawings: Drawings, name: str) -> Secti
 
 
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
-_MOST_BESIDE = 4
-"""Gears whose table has room beside a picture."""
+_MOST_BESIDE = 4  # Gears whose table has room beside a picture.
 _POCKET_LEAD = (
     "A pocket is named after the member whose tooth is in a space of the other. Lines from dark "
     "to light are slices across the face."
@@ -107,8 +89,8 @@ def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
 
 def _losses(result: Result, drawings: Drawings) -> tuple[Item, ...]:
     return (
-        Row((losses_table(result), *gallery(drawings, "losses"))),
-        Row((members_table(result), *gallery(drawings, "loss-sum"))),
+        Row((tables.losses_table(result), *gallery(drawings, "losses"))),
+        Row((tables.members_table(result), *gallery(drawings, "loss-sum"))),
         *gallery(drawings, "power-flow", wide=True),
     )
 
@@ -117,11 +99,11 @@ def _train_losses(result: Result, train: Train, drawings: Drawings) -> tuple[Ite
     """Power flow, sums, shafts, rolling powers, every single loss."""
     return (
         *gallery(drawings, "power-flow", wide=True),
-        sums_table(result, train),
+        tables.sums_table(result, train),
         Row((*gallery(drawings, "losses"), *gallery(drawings, "loss-sum"))),
-        shafts_table(result),
-        Row((rolling_table(result, train), *clutches_table(train))),
-        *terms_table(result, train),
+        tables.shafts_table(result),
+        Row((tables.rolling_table(result, train), *tables.clutches_table(train))),
+        *tables.terms_table(result, train),
     )
 
 
@@ -173,8 +155,8 @@ def _heat(result: Result, drawings: Drawings) -> tuple[Item, ...]:
         return ()
     heat = result.heat
     picture = gallery(drawings, "heat-network", wide=True)
-    ways = ways_items(heat) if heat.ways else ()
-    return (*picture, Row(tuple(heat_items(heat))), *ways)
+    ways = tables.ways_items(heat) if heat.ways else ()
+    return (*picture, Row(tuple(tables.heat_items(heat))), *ways)
 
 
 def _gears(record: ResultRecord, drawings: Drawings) -> Iterator[Item]:
@@ -207,8 +189,8 @@ def _bearings(record: ResultRecord, drawings: Drawings) -> tuple[str, tuple[Item
     result = record.result
     parts: tuple[Item, ...] = (
         *gallery(drawings, "roller-loads", "roller-pressure"),
-        *bearing_tables(result),
-        *part_tables(result),
+        *tables.bearing_tables(result),
+        *tables.part_tables(result),
     )
     return "Bearings and seals" if result.kind == "train" else "Planet bearing", parts
 
@@ -221,7 +203,7 @@ def _methods(result: Result) -> tuple[Table | Listing, ...]:
         key = method, citations.get(name, "")
         users.setdefault(key, []).append(name)
     rows = tuple(
-        (Cell(users_text(names)), Cell(method), Cell(source))
+        (Cell(tables.users_text(names)), Cell(method), Cell(source))
         for (method, source), names in users.items()
     )
     models = tuple((Cell(_model_key(key)), Cell(value)) for key, value in result.models.items())
@@ -254,45 +236,15 @@ def _losses_chapter(record: ResultRecord, drawings: Drawings) -> Section:
     result = record.result
     train = result.train
     losses = _losses(result, drawings) if train is None else _train_losses(result, train, drawings)
-    return Section("losses", "Losses", (*standing_items(result), *losses))
-
-
-def _validity_chapter(record: ResultRecord, drawings: Drawings) -> Section:
-    result = record.result
-    return Section("validity", "Validity", _validity(result), _validity_lead(result))
-
-
-def _gears_chapter(record: ResultRecord, drawings: Drawings) -> Section:
-    items: tuple[Item, ...] = (
-        *_gears(record, drawings),
-        *gallery(drawings, "teeth"),
-        *planets_table(record.result),
-    )
-    return Section("gears", "Gears", items)
+    return Section("losses", "Losses", (*tables.standing_items(result), *losses))
 
 
 def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:
     items: tuple[Item, ...] = (
-        *mesh_tables(record.result),
+        *tables.mesh_tables(record.result),
         *gallery(drawings, "line-load", "pressure", "pair-load", "transmission-error", "stiffness"),
     )
     return Section("load", "Load on the teeth", items)
-
-
-def _friction_chapter(record: ResultRecord, drawings: Drawings) -> Section:
-    items = gallery(drawings, "friction", "sliding", "film", "friction-power")
-    return Section("friction", "Friction in the meshes", items)
-
-
-def _pockets_chapter(record: ResultRecord, drawings: Drawings) -> Section:
-    items = gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power")
-    return Section("pockets", "Pockets", items, _POCKET_LEAD)
-
-
-def _inputs_chapter(record: ResultRecord, drawings: Drawings) -> Section:
-    result = record.result
-    tables = tuple(input_tables(result.inputs, record.given, result.models))
-    return Section("inputs", "Inputs", tables, _INPUT_LEAD)
 
 
 _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
@@ -300,20 +252,44 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
     "uncertainty": lambda record, drawings: Section(
         "uncertainty", "How well this is known", _uncertainty(record, drawings), BAND_LEAD
     ),
-    "validity": _validity_chapter,
+    "validity": lambda record, drawings: Section(
+        "validity", "Validity", _validity(record.result), _validity_lead(record.result)
+    ),
     "temperatures": lambda record, drawings: Section(
         "temperatures", "Temperatures", _heat(record.result, drawings)
     ),
-    "gears": _gears_chapter,
+    "gears": lambda record, drawings: Section(
+        "gears",
+        "Gears",
+        (
+            *_gears(record, drawings),
+            *gallery(drawings, "teeth"),
+            *tables.planets_table(record.result),
+        ),
+    ),
     "load": _load_chapter,
-    "friction": _friction_chapter,
+    "friction": lambda record, drawings: Section(
+        "friction",
+        "Friction in the meshes",
+        gallery(drawings, "friction", "sliding", "film", "friction-power"),
+    ),
     "bearing": lambda record, drawings: Section("bearing", *_bearings(record, drawings)),
-    "pockets": _pockets_chapter,
-    "oil": lambda record, drawings: Section("oil", "Oil", tuple(oil_table(record.result))),
+    "pockets": lambda record, drawings: Section(
+        "pockets",
+        "Pockets",
+        gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power"),
+        _POCKET_LEAD,
+    ),
+    "oil": lambda record, drawings: Section("oil", "Oil", tuple(tables.oil_table(record.result))),
     "methods": lambda record, drawings: Section(
         "methods", "Methods and assumptions", _methods(record.result)
     ),
-    "inputs": _inputs_chapter,
+    "inputs": lambda record, drawings: Section(
+        "inputs",
+        "Inputs",
+        tuple(input_tables(record.result.inputs, record.given, record.result.models)),
+        _INPUT_LEAD,
+    ),
     "versions": lambda record, drawings: Section(
         "versions", "Versions", (versions_line(record.result.versions),)
     ),

@@ -14,15 +14,7 @@ from epicyclic.case.template import toml_value
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.element import Figure, figures
 from epicyclic.machine.gear_mesh import MeshFigures
-from epicyclic.result.result import (
-    HeatBalance,
-    HeatWay,
-    MemberState,
-    Result,
-    Train,
-    in_words,
-    set_of,
-)
+from epicyclic.result.result import HeatBalance, MemberState, Result, Train, in_words, set_of
 from epicyclic.show.page import (
     MISSING,
     Cell,
@@ -65,8 +57,7 @@ if TYPE_CHECKING:
 # Tables of a result, for pages and terminals: losses, power flow, figures of all parts.
 
 
-Unit = tuple[str, float]
-"""Its name in print and its size."""
+Unit = tuple[str, float]  # Its name in print and its size.
 _FLOW_NOTE = (
     "Speeds are positive in one common sense of rotation; torques act on the gear set from "
     "outside; positive power enters."
@@ -409,7 +400,10 @@ def part_tables(result: Result) -> Iterator[Table]:
         kinds.setdefault((key.rpartition(".")[2], type(part)), {})[key] = part
     losses = result.stage_losses
     for (kind, _), parts in kinds.items():
-        heads = (_part_head(it) for it in figures(next(iter(parts.values()))))
+        heads = (
+            f"{SHORT_HEADS.get(it.key, it.label)} {unit_text(it.unit)}".rstrip()
+            for it in figures(next(iter(parts.values())))
+        )
         rows = tuple(
             (
                 Cell(in_words(stage)),
@@ -436,7 +430,9 @@ def locking_text(train: Train) -> str:
 
 def _circulation_text(rolling: Mapping[str, float], input_power: float) -> str:
     """Which meshes pass more than enters, in a sentence; empty if none does."""
-    most = {key: abs(power) for key, power in rolling.items() if _circulates(power, input_power)}
+    # a first mesh at rest against its carrier passes the input power itself, up to rounding
+    least = (1 + 1e-9) * input_power
+    most = {key: abs(power) for key, power in rolling.items() if abs(power) > least}
     if not most or not input_power:
         return ""
     largest = max(most, key=lambda key: most[key])
@@ -445,16 +441,6 @@ def _circulation_text(rolling: Mapping[str, float], input_power: float) -> str:
         f"Power circulates: {names} {verb} more than enters, {in_words(largest)} "
         f"{shown(most[largest] / input_power, 3)} times as much."
     )
-
-
-def _circulates(power: float, input_power: float) -> bool:
-    # a first mesh at rest against its carrier passes the input power itself, up to rounding
-    return abs(power) > (1 + 1e-9) * input_power
-
-
-def _part_head(it: Figure) -> str:
-    """Head of the column of a figure, short where many stand side by side."""
-    return f"{SHORT_HEADS.get(it.key, it.label)} {unit_text(it.unit)}".rstrip()
 
 
 # Temperatures and the heat balance, as tables of pages and terminals, and what they mean.
@@ -494,16 +480,16 @@ def _balance(heat: HeatBalance) -> Table:
     """Where the heat leaves the gearbox."""
     whole = sum(way.watts for way in heat.outlets)
     rows = [
-        (Cell(_end(way)), Cell(way.method), *_shared(way.watts, whole, f"heat.ways.{way.key}.heat"))
+        (
+            Cell(f"{in_words(way.hot)} to {in_words(way.into)}"),
+            Cell(way.method),
+            *_shared(way.watts, whole, f"heat.ways.{way.key}.heat"),
+        )
         for way in heat.outlets
     ]
     rows.append((Cell("all losses"), Cell(""), *_shared(whole, whole, "")))
     strong = frozenset([len(rows) - 1])
     return Table(("", "", "W", "of all"), tuple(rows), "Where the heat leaves", strong)
-
-
-def _end(way: HeatWay) -> str:
-    return f"{in_words(way.hot)} to {in_words(way.into)}"
 
 
 def _shared(watts: float, whole: float, key: str) -> tuple[Cell, Cell]:
@@ -591,12 +577,8 @@ def _flank_text(result: Result, warm: Result | str) -> str:
         f"With models.temperatures = flank the {in_words(node)} would be at "
         f"{CELSIUS.to_display(kelvin):.0f} {unit_text(CELSIUS.display)}, "
         f"{kelvin - warm.heat.oil:.0f} K above the oil; the total would be "
-        f"{_total(warm.total, result.total)}."
+        f"{warm.total:.0f} W ({percent(warm.total / result.total - 1, signed=True)})."
     )
-
-
-def _total(watts: float, before: float) -> str:
-    return f"{watts:.0f} W ({percent(watts / before - 1, signed=True)})"
 
 
 def _beyond_text(beyond: BeyondRange, free: Result | str) -> str:
@@ -622,7 +604,10 @@ def side_by_side(
 ) -> Iterator[Table]:
     """Key figures, losses and inputs of two results."""
     figures = [
-        {figure.label: _with_unit(figure) for figure in key_figures(result)}
+        {
+            it.label: replace(it.cell, text=f"{it.cell.text} {it.unit}".rstrip())
+            for it in key_figures(result)
+        }
         for result in (first, second)
     ]
     rows = tuple(
@@ -642,10 +627,6 @@ def side_by_side(
     rows = tuple((Cell(key), *(Cell(one.get(key, MISSING)) for one in inputs)) for key in changed)
     if rows:
         yield Table(("key", *names), rows, "Inputs that differ")
-
-
-def _with_unit(figure: KeyFigure) -> Cell:
-    return replace(figure.cell, text=f"{figure.cell.text} {figure.unit}".rstrip())
 
 
 def _losses(first: Result, second: Result, names: tuple[str, str]) -> Table:

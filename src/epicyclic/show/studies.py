@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from rich.console import Group, RenderableType
-from rich.table import Table
+from rich.console import Group, JustifyMethod, RenderableType
+from rich.table import Column, Table
 from rich.text import Text
 
 from epicyclic.case.messages import one_line
@@ -40,8 +40,7 @@ _EXTREMES = (
     "friction_power",
     "flash_temperature",
 )
-_SMALLEST = ("film_ratio",)
-"""Figures whose smallest value matters."""
+_SMALLEST = ("film_ratio",)  # Figures whose smallest value matters.
 
 
 def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
@@ -50,7 +49,7 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
     for mesh in meshes.values():
         title = Text(str(mesh.attrs["title"]), style="bold")
         parts += [title, _over_period(mesh), _figures(mesh)]
-    notes = dict.fromkeys(line for mesh in meshes.values() for line in _notes(mesh))
+    notes = _notes(meshes)
     parts += [Text(f"• {note}") for note in notes]
     if any(mesh["transmission_error"].isnull().all() for mesh in meshes.values()):
         parts.append(
@@ -61,21 +60,24 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
     return spaced(*parts)
 
 
-def _notes(mesh: xr.Dataset) -> list[str]:
-    return str(mesh.attrs["notes"]).splitlines()
+def _notes(meshes: dict[str, xr.Dataset]) -> dict[str, None]:
+    """Each note once."""
+    texts = (str(mesh.attrs["notes"]) for mesh in meshes.values())
+    return dict.fromkeys(line for text in texts for line in text.splitlines())
 
 
 def _over_period(mesh: xr.Dataset) -> Table:
     """Position by position: deflection, stiffness, the load of every tooth pair."""
-    table = plain_table("Over one base pitch")
     lines = mesh["contact_line"].to_numpy()
     names = ("roll_angle", *_OVER_PERIOD)
-    for name, short in zip(names, ("roll angle", "TE", "stiffness"), strict=True):
-        table.add_column(f"{short}\n{_unit(mesh, name)}", justify="right")
-    for line in lines:
-        table.add_column(f"pair {line + 1}\n{_unit(mesh, 'pair_load')}", justify="right")
-    table.add_column(f"line load\n{_unit(mesh, 'line_load')}", justify="right")
-    table.add_column(f"pressure\n{_unit(mesh, 'hertz_pressure')}", justify="right")
+    heads = [
+        *zip(("roll angle", "TE", "stiffness"), names, strict=True),
+        *((f"pair {line + 1}", "pair_load") for line in lines),
+        ("line load", "line_load"),
+        ("pressure", "hertz_pressure"),
+    ]
+    columns = (Column(f"{head}\n{_unit(mesh, name)}", justify="right") for head, name in heads)
+    table = plain_table("Over one base pitch", *columns)
     for position in range(mesh.sizes["mesh_position"]):
         here = mesh.isel(mesh_position=position)
         cells = [float(here[name]) for name in names]
@@ -87,9 +89,7 @@ def _over_period(mesh: xr.Dataset) -> Table:
 
 def _figures(mesh: xr.Dataset) -> Table:
     """Means over the period, and extremes with the place where they occur."""
-    table = plain_table("Figures")
-    for column in ("", "value", "unit", "at"):
-        table.add_column(column, justify="right" if column == "value" else "left")
+    table = _table("Figures", "", "value", "unit", "at")
     for label, value, name in _means(mesh):
         table.add_row(label, shown(value), _unit(mesh, name), "")
     for name in _EXTREMES:
@@ -163,10 +163,7 @@ def pocket_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
         title = Text(str(mesh.attrs["title"]), style="bold")
         parts += [title, _balance(mesh), _extremes(mesh)]
     models = dict.fromkeys(f"Model: {mesh.attrs['model']}." for mesh in meshes.values())
-    notes = dict.fromkeys(
-        line for mesh in meshes.values() for line in str(mesh.attrs["notes"]).splitlines()
-    )
-    parts.append(Text("\n".join(f"• {line}" for line in (*models, *notes))))
+    parts.append(Text("\n".join(f"• {line}" for line in (*models, *_notes(meshes)))))
     return spaced(*parts)
 
 
@@ -208,17 +205,14 @@ def _at(mesh: xr.Dataset, name: str, index: tuple[int, ...]) -> Iterator[str]:
 
 
 def _table(title: str, *columns: str) -> Table:
-    table = plain_table(title)
-    for column in columns:
-        table.add_column(column, justify="right" if column == "value" else "left")
-    return table
+    sides: dict[str, JustifyMethod] = {"value": "right"}
+    return plain_table(title, *(Column(head, justify=sides.get(head, "left")) for head in columns))
 
 
 # Measured losses beside computed ones, for a terminal.
 
 
-MOST_POINTS = 40
-"""Points that are shown; JSON and the table in Python have all."""
+MOST_POINTS = 40  # Points that are shown; JSON and the table in Python have all.
 
 
 def measured_tables(comparison: MeasuredComparison) -> RenderableType:
@@ -255,7 +249,6 @@ def _point_table(comparison: MeasuredComparison) -> Table:
     measured, states = comparison.measured, comparison.states
     last = list(states)[-1]
     weighted = measured.uncertainty is not None
-    table = plain_table("Points")
     conditions = [
         (unit_text(OPERATING[name].unit), values) for name, values in measured.conditions.items()
     ]
@@ -266,8 +259,8 @@ def _point_table(comparison: MeasuredComparison) -> Table:
     columns.append(("residual W", comparison.residuals(last)))
     if weighted:
         columns.append(("over u", comparison.normalised(last)))
-    for name in ("line", *(name for name, _ in columns)):
-        table.add_column(name, justify="right")
+    heads = ("line", *(name for name, _ in columns))
+    table = plain_table("Points", *(Column(head, justify="right") for head in heads))
     for row, line in enumerate(measured.lines[:MOST_POINTS]):
         mark = "*" if comparison.held_out[row] else ""
         table.add_row(f"{line}{mark}", *(shown(float(values[row])) for _, values in columns))

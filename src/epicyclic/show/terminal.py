@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from rich import box
 from rich.cells import cell_len
 from rich.columns import Columns
-from rich.console import Console, ConsoleOptions, Group, JustifyMethod, RenderableType, RenderResult
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.padding import Padding
 from rich.table import Column, Table
 from rich.text import Text
@@ -18,37 +18,17 @@ from epicyclic.case.messages import sentence
 from epicyclic.losses.ranges import share_text
 from epicyclic.result.result import Result
 from epicyclic.show import page
-from epicyclic.show.result_tables import (
-    bearing_tables,
-    clutches_table,
-    heat_items,
-    key_figures,
-    locking_text,
-    losses_table,
-    members_table,
-    mesh_tables,
-    oil_table,
-    part_tables,
-    planets_table,
-    rolling_table,
-    shafts_table,
-    standing_items,
-    sums_table,
-    terms_table,
-    users_text,
-)
+from epicyclic.show import result_tables as tables
 from epicyclic.study.friction import FrictionComparison, recommended
 from epicyclic.study.operating import operating_line
 
 # Tables of a terminal that keep their numbers whole, however narrow it is.
 
 
-GAP = 3
-"""Between two columns, the spaces on both sides of a line that is not drawn."""
+GAP = 3  # Between two columns, the spaces on both sides of a line that is not drawn.
 LONGEST_WORD = 24
 """Longest word that stays whole; what is longer is an address, or a key with its table."""
-FIRST_SHARE = 0.5
-"""Largest share of the width for the names in the first column."""
+FIRST_SHARE = 0.5  # Largest share of the width for the names in the first column.
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,8 +121,7 @@ def _widths(needs: Sequence[_Need], room: int) -> list[int]:
 # Tables of results, libraries and comparisons for a terminal.
 
 
-PIPE_WIDTH = 100
-"""Width of tables that do not go to a terminal. [characters]"""
+PIPE_WIDTH = 100  # Width of tables that do not go to a terminal. [characters]
 
 
 def terminal() -> Console:
@@ -160,24 +139,26 @@ def result_tables(
     """Everything an engineer reads first: losses, figures, warnings, sources."""
     parts: list[RenderableType] = [_headline(result)]
     parts += [it if isinstance(it, str) else as_on_page(it) for it in known]
-    parts += map(as_on_page, standing_items(result))
+    parts += map(as_on_page, tables.standing_items(result))
     parts += map(as_on_page, _tables(result))
     if result.heat is not None:
-        parts += map(as_on_page, heat_items(result.heat))
+        parts += map(as_on_page, tables.heat_items(result.heat))
     parts += remarks
-    parts += map(as_on_page, (*oil_table(result), *planets_table(result)))
+    parts += map(as_on_page, (*tables.oil_table(result), *tables.planets_table(result)))
     parts += [_methods(result), _list("Warnings", result.warnings)]
     return titled(result.title or result.kind, *parts, _list("Sources", result.sources))
 
 
 def _headline(result: Result) -> Group:
     """Operating point and key figures."""
-    found = [f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in key_figures(result)]
+    found = [
+        f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in tables.key_figures(result)
+    ]
     lines: list[RenderableType] = [
         Text(operating_line(result.inputs["operation"])),
         Columns(found, padding=(0, 3)),
     ]
-    if result.train and (locking := locking_text(result.train)):
+    if result.train and (locking := tables.locking_text(result.train)):
         lines.append(Text(locking, style="bold"))
     return Group(*lines)
 
@@ -185,14 +166,18 @@ def _headline(result: Result) -> Group:
 def _tables(result: Result) -> Iterator[page.Table]:
     """Losses and figures of a set or train."""
     if (train := result.train) is not None:
-        yield from (sums_table(result, train), shafts_table(result), rolling_table(result, train))
-        yield from clutches_table(train)
-        yield from terms_table(result, train)
+        yield from (
+            tables.sums_table(result, train),
+            tables.shafts_table(result),
+            tables.rolling_table(result, train),
+        )
+        yield from tables.clutches_table(train)
+        yield from tables.terms_table(result, train)
     else:
-        yield from (losses_table(result), members_table(result))
-    yield from mesh_tables(result)
-    yield from bearing_tables(result)
-    yield from part_tables(result)
+        yield from (tables.losses_table(result), tables.members_table(result))
+    yield from tables.mesh_tables(result)
+    yield from tables.bearing_tables(result)
+    yield from tables.part_tables(result)
 
 
 def titled(title: str, *parts: RenderableType) -> RenderableType:
@@ -210,9 +195,11 @@ def as_on_page(item: page.Table | page.Listing) -> RenderableType:
     """A table or list of a report, for a terminal."""
     if isinstance(item, page.Listing):
         return _list(item.title, item.items)
-    table = plain_table(item.title)
-    for column, head in enumerate(item.head):
-        table.add_column(head, justify="right" if item.is_numeric(column) else "left")
+    columns = (
+        Column(head, justify="right" if item.is_numeric(place) else "left")
+        for place, head in enumerate(item.head)
+    )
+    table = plain_table(item.title, *columns)
     for place, row in enumerate(item.rows):
         strong = place in item.strong
         table.add_row(
@@ -228,7 +215,7 @@ def _methods(result: Result) -> Group:
     users: dict[str, list[str]] = {}
     for name, method in result.methods.items():
         users.setdefault(method, []).append(name)
-    return _list("Methods", [f"{users_text(names)}: {how}" for how, names in users.items()])
+    return _list("Methods", [f"{tables.users_text(names)}: {how}" for how, names in users.items()])
 
 
 def _list(title: str, items: Sequence[str]) -> Group:
@@ -238,9 +225,10 @@ def _list(title: str, items: Sequence[str]) -> Group:
     return Group(Text(title, style="bold"), *lines)
 
 
-def plain_table(title: str) -> FittedTable:
-    """An empty table in the style of the package."""
+def plain_table(title: str, *columns: Column | str) -> FittedTable:
+    """A table without rows in the style of the package."""
     return FittedTable(
+        *columns,
         title=title,
         title_justify="left",
         title_style="bold",
@@ -251,15 +239,11 @@ def plain_table(title: str) -> FittedTable:
 
 
 def number_table(
-    title: str, *columns: str, no_wrap: tuple[bool, bool] = (False, False)
+    title: str, first: str, *others: str, no_wrap: tuple[bool, bool] = (False, False)
 ) -> FittedTable:
-    """An empty table of names, in its first column, and numbers; `no_wrap` of which of both."""
-    table = plain_table(title)
-    for place, column in enumerate(columns):
-        is_number = place > 0
-        justify: JustifyMethod = "right" if is_number else "left"
-        table.add_column(column, justify=justify, no_wrap=no_wrap[is_number])
-    return table
+    """A table for names, in its first column, and numbers; `no_wrap` of which of both."""
+    numbers = (Column(head, justify="right", no_wrap=no_wrap[1]) for head in others)
+    return plain_table(title, Column(first, no_wrap=no_wrap[0]), *numbers)
 
 
 def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:

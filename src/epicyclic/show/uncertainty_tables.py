@@ -63,8 +63,7 @@ def _some(count: int) -> list[int]:
 # How well the losses of a map are known, in tables.
 
 
-LEAST = 0.02
-"""Largest share in the variance at any point, from which an input is shown. [1]"""
+LEAST = 0.02  # Largest share in the variance at any point, from which an input is shown. [1]
 
 
 def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
@@ -156,8 +155,7 @@ def _value(value: xr.DataArray) -> str:
 
 NO_SHARE = 1e-3
 """Share in the variance of a loss below which curves through samples show no effect. [1]"""
-CUT_OFF = 1e-3
-"""Probability of impossible values that is worth a sentence. [1]"""
+CUT_OFF = 1e-3  # Probability of impossible values that is worth a sentence. [1]
 
 
 def uncertainty_tables(data: xr.Dataset) -> RenderableType:

@@ -15,51 +15,12 @@ from matplotlib.figure import Figure
 from epicyclic.errors import InputError, Problem
 from epicyclic.result.result import in_words, set_of
 from epicyclic.show.files import is_sweep
+from epicyclic.show.plots import loss_map, losses, mesh, sweep
 from epicyclic.show.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.show.plots.heat_network import plot_heat_network
-from epicyclic.show.plots.loss_map import (
-    Limits,
-    limits_of,
-    limits_of_band,
-    limits_of_half_width,
-    map_at,
-    map_line,
-    plot_band_lines,
-    plot_half_width,
-    plot_map,
-    plot_map_lines,
-    plot_map_parts,
-    shown_panels,
-)
-from epicyclic.show.plots.losses import (
-    WIDE,
-    banded,
-    plot_band,
-    plot_drivers,
-    plot_loss_sum,
-    plot_losses,
-)
-from epicyclic.show.plots.mesh import (
-    plot_along_path,
-    plot_mesh_stiffness,
-    plot_pair_loads,
-    plot_plane_of_action,
-    plot_roller_loads,
-    plot_roller_profile,
-    plot_transmission_error,
-)
 from epicyclic.show.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.show.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.show.plots.style import PANEL, TITLE_CHARACTERS, room_of, styled_figure
-from epicyclic.show.plots.sweep import (
-    fields_of,
-    plot_sweep_field,
-    plot_sweep_lines,
-    plot_sweep_parallel,
-    shown_results,
-    sweep_line,
-    varied,
-)
 from epicyclic.show.record import ResultRecord, sets_of
 from epicyclic.study.maps.tables import map_case, map_inputs
 from epicyclic.study.operating import operating_line
@@ -69,8 +30,7 @@ Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
 SLIDE_WIDTHS = (6.4, 9.6, 12.8)
 """Widths of figures of one, two, three and more panels in a row: letters stay readable. [inch]"""
-FLATTEST = 0.75
-"""Height of a figure over that of a slide of its width, at least."""
+FLATTEST = 0.75  # Height of a figure over that of a slide of its width, at least.
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,14 +114,14 @@ def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[St
     def panels(stored: Stored) -> list[Panel]:
         if isinstance(stored, ResultRecord) or "torque_loss" not in stored:
             return []
-        limits = limits_of(stored, name)
+        limits = loss_map.limits_of(stored, name)
         return _over_plane(stored, lambda data: partial(draw, data, name, *more, limits=limits))
 
     return panels
 
 
 def _of_band(
-    draw: Callable[..., Axes], limits: Callable[[xr.Dataset], Limits], *more: object
+    draw: Callable[..., Axes], limits: Callable[[xr.Dataset], loss_map.Limits], *more: object
 ) -> Callable[[Stored], list[Panel]]:
     """The panels of a map with its uncertainty, all with one scale."""
 
@@ -179,12 +139,14 @@ def _over_plane(
 ) -> list[Panel]:
     """One panel for each shown state and temperature, at the first value of further keys."""
     titles = {"state": "state {}", "temperature": "{:g} °C"}
-    shown = {name: data[name].values[places] for name, places in shown_panels(data).items()}
+    shown = {
+        name: data[name].values[places] for name, places in loss_map.shown_panels(data).items()
+    }
     panels = []
     for point in itertools.product(*(values.tolist() for values in shown.values())):
         at = dict(zip(shown, point, strict=True))
         subject = ", ".join(titles[name].format(value) for name, value in at.items())
-        panels.append(Panel(subject, draw(map_at(data, **at))))
+        panels.append(Panel(subject, draw(loss_map.map_at(data, **at))))
     return panels
 
 
@@ -197,7 +159,7 @@ def _uncertainty_of(stored: Stored) -> xr.Dataset | None:
 
 def _drivers(stored: Stored) -> list[Panel]:
     data = _uncertainty_of(stored)
-    return [] if data is None else [Panel("", partial(plot_drivers, data))]
+    return [] if data is None else [Panel("", partial(losses.plot_drivers, data))]
 
 
 def _band(stored: Stored) -> list[Panel]:
@@ -205,7 +167,7 @@ def _band(stored: Stored) -> list[Panel]:
     data = _uncertainty_of(stored)
     if data is None:
         return []
-    return [Panel("", partial(plot_band, data, name)) for name in banded(data)]
+    return [Panel("", partial(losses.plot_band, data, name)) for name in losses.banded(data)]
 
 
 def _of_sweep(
@@ -217,7 +179,7 @@ def _of_sweep(
         if isinstance(stored, ResultRecord) or not is_sweep(stored):
             return []
         enough = len(dimensions(stored)) >= least
-        names = shown_results(stored) if enough else []
+        names = sweep.shown_results(stored) if enough else []
         return [Panel("", partial(draw, stored, name)) for name in names]
 
     return panels
@@ -226,11 +188,11 @@ def _of_sweep(
 def _sweep_points(stored: Stored) -> list[Panel]:
     if (
         isinstance(stored, ResultRecord)
-        or "total" not in shown_results(stored)
-        or len(varied(stored)) < 2
+        or "total" not in sweep.shown_results(stored)
+        or len(sweep.varied(stored)) < 2
     ):
         return []
-    return [Panel("", partial(plot_sweep_parallel, stored))]
+    return [Panel("", partial(sweep.plot_sweep_parallel, stored))]
 
 
 def _pocket_pressure(stored: Stored) -> list[Panel]:
@@ -245,68 +207,70 @@ def _pocket_pressure(stored: Stored) -> list[Panel]:
 
 
 def _power_flow(stored: Stored) -> list[Panel]:
-    if not isinstance(stored, ResultRecord) or not stored.result.input_power:
-        return []
-    return _of_result(plot_power_flow)(stored)
+    has_power = isinstance(stored, ResultRecord) and stored.result.input_power
+    return _of_result(plot_power_flow)(stored) if has_power else []
 
 
 def _heat(stored: Stored) -> list[Panel]:
     heat = stored.result.heat if isinstance(stored, ResultRecord) else None
-    if heat is None or not heat.ways:
-        return []
-    return [Panel("", partial(plot_heat_network, heat))]
+    return [Panel("", partial(plot_heat_network, heat))] if heat and heat.ways else []
 
 
 PLOTS: dict[str, Plot] = {
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
     "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
-    "losses": Plot("Where do the watts go?", _of_result(plot_losses)),
-    "loss-sum": Plot("How do the losses add up?", _of_result(plot_loss_sum)),
+    "losses": Plot("Where do the watts go?", _of_result(losses.plot_losses)),
+    "loss-sum": Plot("How do the losses add up?", _of_result(losses.plot_loss_sum)),
     "power-flow": Plot(
         "Where does the power flow, what circulates, what is lost?", _power_flow, size=SLIDE
     ),
-    "drivers": Plot("What is the uncertainty of the total loss due to?", _drivers, size=WIDE),
+    "drivers": Plot(
+        "What is the uncertainty of the total loss due to?", _drivers, size=losses.WIDE
+    ),
     "band": Plot("How well are total loss and efficiency known?", _band),
     "heat-network": Plot(
         "How warm is every part, and where does its heat flow?", _heat, size=SLIDE
     ),
     "line-load": Plot(
         "How is the load distributed over the flanks?",
-        _of_group("meshes", plot_plane_of_action, "line_load"),
+        _of_group("meshes", mesh.plot_plane_of_action, "line_load"),
     ),
     "pressure": Plot(
         "How high is the contact pressure, and where?",
-        _of_group("meshes", plot_plane_of_action, "hertz_pressure"),
+        _of_group("meshes", mesh.plot_plane_of_action, "hertz_pressure"),
     ),
     "pair-load": Plot(
         "How does one tooth pair carry through its engagement?",
-        _of_group("meshes", plot_pair_loads),
+        _of_group("meshes", mesh.plot_pair_loads),
     ),
     "transmission-error": Plot(
-        "How large is the loaded transmission error?", _of_group("meshes", plot_transmission_error)
+        "How large is the loaded transmission error?",
+        _of_group("meshes", mesh.plot_transmission_error),
     ),
-    "stiffness": Plot("How stiff is the mesh?", _of_group("meshes", plot_mesh_stiffness)),
+    "stiffness": Plot("How stiff is the mesh?", _of_group("meshes", mesh.plot_mesh_stiffness)),
     "friction": Plot(
         "How does friction change along the path of contact?",
-        _of_group("meshes", plot_along_path, "friction_coefficient"),
+        _of_group("meshes", mesh.plot_along_path, "friction_coefficient"),
     ),
     "sliding": Plot(
-        "How fast do the flanks slide?", _of_group("meshes", plot_along_path, "sliding_speed")
+        "How fast do the flanks slide?", _of_group("meshes", mesh.plot_along_path, "sliding_speed")
     ),
     "film": Plot(
-        "Does the oil film separate the flanks?", _of_group("meshes", plot_along_path, "film_ratio")
+        "Does the oil film separate the flanks?",
+        _of_group("meshes", mesh.plot_along_path, "film_ratio"),
     ),
     "friction-power": Plot(
         "Where on the flanks is power lost?",
-        _of_group("meshes", plot_plane_of_action, "friction_power"),
+        _of_group("meshes", mesh.plot_plane_of_action, "friction_power"),
     ),
     "roller-loads": Plot(
         "Which rollers of the planet bearing carry?",
-        _of_group("bearings", plot_roller_loads),
+        _of_group("bearings", mesh.plot_roller_loads),
         projection="polar",
     ),
     "roller-pressure": Plot(
-        "How is the load distributed along the rollers?", _of_group("bearings", plot_roller_profile)
+        "How is the load distributed along the rollers?",
+        _of_group("bearings", mesh.plot_roller_profile),
     ),
     "pocket-pressure": Plot(
         "How does the pressure in a pocket change through its life?", _pocket_pressure
@@ -318,35 +282,42 @@ PLOTS: dict[str, Plot] = {
         "How much power do the pockets take over a mesh period?", _of_group("pockets", plot_power)
     ),
     "efficiency-map": Plot(
-        "How efficient is it over speed and torque?", _of_map(plot_map, "efficiency")
+        "How efficient is it over speed and torque?", _of_map(loss_map.plot_map, "efficiency")
     ),
-    "loss-map": Plot("How much power is lost over speed and torque?", _of_map(plot_map, "total")),
+    "loss-map": Plot(
+        "How much power is lost over speed and torque?", _of_map(loss_map.plot_map, "total")
+    ),
     "torque-loss-map": Plot(
-        "How much torque is lost over speed and torque?", _of_map(plot_map, "torque_loss")
+        "How much torque is lost over speed and torque?", _of_map(loss_map.plot_map, "torque_loss")
     ),
     "loss-over-speed": Plot(
-        "How does the loss grow with speed?", _of_map(plot_map_lines, "total", "speed")
+        "How does the loss grow with speed?", _of_map(loss_map.plot_map_lines, "total", "speed")
     ),
     "loss-over-torque": Plot(
-        "How does the loss grow with torque?", _of_map(plot_map_lines, "total", "torque")
+        "How does the loss grow with torque?", _of_map(loss_map.plot_map_lines, "total", "torque")
     ),
-    "loss-parts": Plot("Which components make up the loss?", _of_map(plot_map_parts, "total")),
+    "loss-parts": Plot(
+        "Which components make up the loss?", _of_map(loss_map.plot_map_parts, "total")
+    ),
     "loss-band": Plot(
         "How well is the loss known over speed and torque?",
-        _of_band(plot_half_width, limits_of_half_width),
+        _of_band(loss_map.plot_half_width, loss_map.limits_of_half_width),
     ),
     "loss-band-lines": Plot(
         "How far may the loss be off along a line?",
-        _of_band(plot_band_lines, limits_of_band, "torque"),
+        _of_band(loss_map.plot_band_lines, loss_map.limits_of_band, "torque"),
     ),
     "lines": Plot(
-        "How do loss and efficiency follow the keys that are varied?",
-        _of_sweep(plot_sweep_lines, varied, 1),
+        "How do loss and efficiency follow the keys that are sweep.varied?",
+        _of_sweep(sweep.plot_sweep_lines, sweep.varied, 1),
     ),
     "contours": Plot(
-        "Where over two keys is the least loss?", _of_sweep(plot_sweep_field, fields_of, 2)
+        "Where over two keys is the least loss?",
+        _of_sweep(sweep.plot_sweep_field, sweep.fields_of, 2),
     ),
-    "parallel": Plot("Which values of all keys go with a small loss?", _sweep_points, size=WIDE),
+    "parallel": Plot(
+        "Which values of all keys go with a small loss?", _sweep_points, size=losses.WIDE
+    ),
 }
 """By the names that ``epicyclic plot`` takes."""
 
@@ -392,7 +363,9 @@ def figure_of(
     rows = math.ceil(len(panels) / columns)
     title, point = about(stored)
     plot = PLOTS[name]
-    inches = _slide(rows, columns)
+    width = SLIDE_WIDTHS[min(columns, len(SLIDE_WIDTHS)) - 1]
+    # all panels can be read on one slide
+    inches = (width, width * SLIDE[1] / SLIDE[0] * max(FLATTEST, rows / columns))
     if plot.is_wide:
         inches = (plot.size[0] * columns, plot.size[1] * rows)
     if size is not None:
@@ -423,14 +396,8 @@ def about(stored: Stored) -> tuple[str, str]:
         return stored.title, operating_line(stored.result.inputs["operation"])
     title = str(stored.attrs.get("title", ""))
     if is_sweep(stored):
-        return title, sweep_line(stored)
+        return title, sweep.sweep_line(stored)
     if "torque_loss" in stored:
-        return title, map_line(stored)
+        return title, loss_map.map_line(stored)
     cycle = str(stored.attrs.get("cycle", ""))
     return title, cycle or operating_line(map_inputs(stored)["operation"])
-
-
-def _slide(rows: int, columns: int) -> tuple[float, float]:
-    """Width and height of a figure in which all panels can be read on one slide. [inch]"""
-    width = SLIDE_WIDTHS[min(columns, len(SLIDE_WIDTHS)) - 1]
-    return width, width * SLIDE[1] / SLIDE[0] * max(FLATTEST, rows / columns)

@@ -34,12 +34,10 @@ FILLS = {
 }
 """Shades of gears that stand alone, several times, and around others."""
 CIRCLE_POINTS = 181
-SHOWN_MODULES = 5.0
-"""Half the width of a drawing of teeth. [transverse modules]"""
+SHOWN_MODULES = 5.0  # Half the width of a drawing of teeth. [transverse modules]
 SKIPPED_POINTS = 4
 """A whole gear is drawn with one point of so many: the others are too near to be seen."""
-HEIGHT_SHARE = 0.5
-"""Height of a drawing of teeth over its width, at least. [1]"""
+HEIGHT_SHARE = 0.5  # Height of a drawing of teeth over its width, at least. [1]
 MARGIN = 1.04
 
 
@@ -233,10 +231,8 @@ def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> Floats:
 POSITION = "position"
 """Layers of a mesh position are called so, with its number and that of their Axes."""
 POINTS_PER_INCH = 72
-SET_SIZE, MESH_SIZE = (7.2, 6.4), (12.8, 5.6)
-"""Width and height of the drawings. [inch]"""
-LARGEST_DOT = 260.0
-"""Area of the contact of a tooth pair that carries all. [point^2]"""
+SET_SIZE, MESH_SIZE = (7.2, 6.4), (12.8, 5.6)  # Width and height of the drawings. [inch]
+LARGEST_DOT = 260.0  # Area of the contact of a tooth pair that carries all. [point^2]
 LINE_WIDTH = 4.0
 
 

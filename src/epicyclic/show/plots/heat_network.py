@@ -31,29 +31,20 @@ if TYPE_CHECKING:
 
 FLOW, PAPER = "#5b7fa6", "#ffffff"
 HEAT_COLOURS = "YlOrRd"
-DARKEST = 0.62
-"""Darkest shade of the colour scale on which words stay readable. [1]"""
+DARKEST = 0.62  # Darkest shade of the colour scale on which words stay readable. [1]
 LEFT, RIGHT = 0.15, SLIDE[0] - 0.15
-SLOT, BROADEST = 1.45, 2.6
-"""Room for each way out of the oil; of a column at most."""
+SLOT, BROADEST = 1.45, 2.6  # Room for each way out of the oil; of a column at most.
 BAY, ONLY_BAY = 1.2, 2.4
 """Room for the way from the oil to the housing; where that is the only one."""
-SHAFTS, OUTSIDE = 6.1, 0.55
-"""Middles of the rows of shafts and of what is outside."""
+SHAFTS, OUTSIDE = 6.1, 0.55  # Middles of the rows of shafts and of what is outside.
 WITH_SHAFTS, WITHOUT = (4.5, 2.75, 1.65), (5.4, 3.3, 1.85)
 """Middles of the rows of parts, oil, and housing."""
-TALL, FLAT = 0.58, 0.22
-"""Half the heights of a part, and of a rail."""
-NARROW = 1.2
-"""Width of a column up to which its words are small."""
-WIDEST, THINNEST = 0.5, 0.015
-"""Widths of arrows."""
-SMALLEST = 0.5
-"""Heat that is not drawn. [W]"""
-SHAFT = "_shaft"
-"""Ends the names of shafts."""
-LETTER = 0.0082
-"""Mean width of a letter over its size. [inch/point]"""
+TALL, FLAT = 0.58, 0.22  # Half the heights of a part, and of a rail.
+NARROW = 1.2  # Width of a column up to which its words are small.
+WIDEST, THINNEST = 0.5, 0.015  # Widths of arrows.
+SMALLEST = 0.5  # Heat that is not drawn. [W]
+SHAFT = "_shaft"  # Ends the names of shafts.
+LETTER = 0.0082  # Mean width of a letter over its size. [inch/point]
 _ARROW = Arrow(reach=(0.07, 0.8), length=(0.13, 0.6), share=0.45)
 _fit = partial(fit, LETTER)
 
@@ -65,6 +56,10 @@ class _Flow:
     start: str
     end: str
     watts: float
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        return self.start, self.end
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,9 +166,10 @@ def _power(watts: float) -> str:
 
 
 def _layout(heat: HeatBalance) -> _Layout:
-    flows = tuple(_flows(heat))
+    every = list(_all_flows(heat))
+    flows = tuple(flow for flow in every if flow.watts >= SMALLEST)
     shafts: dict[str, tuple[str, ...]] = {
-        node: tuple(_other(flow, node) for flow in _all_flows(heat) if node in _ends(flow))
+        node: tuple(other for flow in every if node in flow.ends for other in {*flow.ends} - {node})
         for node in heat.temperatures
         if node.endswith(SHAFT)
     }
@@ -210,23 +206,11 @@ def _all_flows(heat: HeatBalance) -> Iterator[_Flow]:
         yield _Flow(hot, into, watts) if watts >= 0 else _Flow(into, hot, -watts)
 
 
-def _flows(heat: HeatBalance) -> Iterator[_Flow]:
-    return (flow for flow in _all_flows(heat) if flow.watts >= SMALLEST)
-
-
-def _ends(flow: _Flow) -> tuple[str, str]:
-    return flow.start, flow.end
-
-
-def _other(flow: _Flow, node: str) -> str:
-    return flow.end if flow.start == node else flow.start
-
-
 def _ordered(
     parts: list[str], shafts: Mapping[str, tuple[str, ...]], flows: tuple[_Flow, ...]
 ) -> list[str]:
     """Parts on one shaft, and parts that pass heat to each other, side by side."""
-    joined = {node for flow in flows if {*_ends(flow)} <= {*parts} for node in _ends(flow)}
+    joined = {node for flow in flows if {*flow.ends} <= {*parts} for node in flow.ends}
     group = {part: part.rpartition(".")[0] for part in parts}
     group |= {part: shaft for shaft, on in shafts.items() for part in on}
     first = {name: place for place, name in reversed([*enumerate(group[part] for part in parts)])}
@@ -308,10 +292,10 @@ def _rail(ax: Axes, layout: _Layout, node: str, ends: tuple[float, float], y: fl
 
 def _draw(ax: Axes, layout: _Layout, flow: _Flow) -> None:
     """The arrow of a flow, by the rows of its ends."""
-    nodes = {*_ends(flow)}
-    part = next((node for node in _ends(flow) if node in layout.columns), None)
-    shaft = next((node for node in _ends(flow) if node in layout.shafts), None)
-    outlet = next((node for node in _ends(flow) if node in layout.outlets), None)
+    nodes = {*flow.ends}
+    part = next((node for node in flow.ends if node in layout.columns), None)
+    shaft = next((node for node in flow.ends if node in layout.shafts), None)
+    outlet = next((node for node in flow.ends if node in layout.outlets), None)
     parts, rail, shell = layout.rows
     if part is not None:
         x = layout.columns[part]
@@ -335,7 +319,7 @@ def _draw(ax: Axes, layout: _Layout, flow: _Flow) -> None:
         x = layout.edge + 0.5
         _upright(ax, layout, flow, x, {OIL: rail - FLAT, HOUSING: shell + FLAT})
     else:
-        air = next(node for node in _ends(flow) if node != HOUSING)
+        air = next(node for node in flow.ends if node != HOUSING)
         x, y = _outside(layout)[air]
         _upright(ax, layout, flow, x, {HOUSING: shell - FLAT, air: y + 0.36})
 
@@ -364,15 +348,8 @@ def _upright(
 def _bridge(ax: Axes, layout: _Layout, flow: _Flow, x: float) -> None:
     """A gap in the rail of the oil, through which heat reaches the housing."""
     half = layout.broad(flow) / 2 + 0.05
-    ax.add_patch(
-        Rectangle(
-            (x - half, layout.rows[1] - FLAT - 0.02),
-            2 * half,
-            2 * FLAT + 0.04,
-            color=PAPER,
-            zorder=3,
-        )
-    )
+    corner = x - half, layout.rows[1] - FLAT - 0.02
+    ax.add_patch(Rectangle(corner, 2 * half, 2 * FLAT + 0.04, color=PAPER, zorder=3))
 
 
 def _across(ax: Axes, layout: _Layout, flow: _Flow) -> None:
@@ -415,15 +392,8 @@ def _legend(ax: Axes, layout: _Layout) -> None:
     y = 7.2
     steps = 24
     for step in range(steps):
-        ax.add_patch(
-            Rectangle(
-                (0.75 + 0.06 * step, y - 0.09),
-                0.065,
-                0.18,
-                color=colours(DARKEST * step / (steps - 1)),
-                lw=0,
-            )
-        )
+        corner, colour = (0.75 + 0.06 * step, y - 0.09), colours(DARKEST * step / (steps - 1))
+        ax.add_patch(Rectangle(corner, 0.065, 0.18, color=colour, lw=0))
     write = partial(ax.text, y=y, va="center", fontsize=10, color=SOFT)
     write(x=0.68, s=f"{low:.0f}", ha="right")
     write(x=0.82 + 0.06 * steps, s=f"{high:.0f} {unit}")

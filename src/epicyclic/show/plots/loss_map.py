@@ -35,20 +35,16 @@ EFFICIENCIES = (50, 70, 80, 90, 95, 97, 98, 98.5, 99, 99.3, 99.5, 99.7, 99.9)
 """Efficiencies that get a line and a tick. [%]"""
 LEAST_EFFICIENCY, BEST_EFFICIENCY = 50.0, 99.95
 """Between which colours of an efficiency differ, evenly in the logarithm of the loss. [%]"""
-LEAST_LINE = 90
-"""Lines of lower efficiencies run into one another where the torque is zero. [%]"""
-LABELS = 4
-"""Most labels that a line of equal value gets: more collide where lines are close."""
+LEAST_LINE = 90  # Lines of lower efficiencies run into one another where the torque is zero. [%]
+LABELS = 4  # Most labels that a line of equal value gets: more collide where lines are close.
 EDGE = 0.04
 """Share of the width and height of the Axes, along its edges, in which no such label begins."""
 HATCHES = ("", "///", "...", "\\\\\\", "xxx")
-ROOM = 1.03
-"""Height of an axis over the greatest value that it has to show. [1]"""
+ROOM = 1.03  # Height of an axis over the greatest value that it has to show. [1]
 STRETCHED = 0.02
 """Part of the torque axis of an efficiency that is linear, over the largest torque. [1]"""
 MOST_LINES = 5
-MOST_PANELS = 12
-"""States and temperatures with a picture and tables of their own."""
+MOST_PANELS = 12  # States and temperatures with a picture and tables of their own.
 LOSS_SUMS = ("load_dependent", "load_independent", "total", "input_power")
 """Powers of a map that are no components."""
 

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 GROUP_COLOURS = {"load-dependent": COLOURS[0], "load-independent": COLOURS[4]}
 SUM_COLOUR = "0.45"
-ROOM = 1.32
-"""Length of the axis over that of the longest bar, for the numbers beside the bars. [1]"""
+ROOM = 1.32  # Length of the axis over that of the longest bar, for the numbers beside the bars. [1]
 MOST_BARS = 16
 
 
@@ -120,10 +119,8 @@ def _finish(ax: Axes, watts: Iterable[float]) -> None:
 
 
 MOST_DRIVERS = 12
-TICKS = 6
-"""Most ticks under a distribution: its values have many digits."""
-WIDE = (7.2, 4.2)
-"""Width and height of a picture with long names beside its bars. [inch]"""
+TICKS = 6  # Most ticks under a distribution: its values have many digits.
+WIDE = (7.2, 4.2)  # Width and height of a picture with long names beside its bars. [inch]
 
 
 def drivers_figure(data: xr.Dataset) -> Figure:

@@ -19,20 +19,13 @@ from epicyclic.units import format_number, percent, unit_text
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-PANEL = (3.8, 3.1)
-"""Width and height of one of the Axes. [inch]"""
-COLUMNS = 4
-"""Most columns that the legend has."""
-BAND = 0.10
-"""Lines beside those of equal losses. [1]"""
-SERIES_GAP = 0.012
-"""Distance between series of residuals, over the range of the axis. [1]"""
-COVERED = 2.0
-"""Uncertainties that most residuals lie within. [1]"""
-MOST_NUMBERS = 40
-"""Most points whose numbers stand below the residuals."""
-MARKERS = "osD^vP"
-"""One for each group, beside its colour; for print without colours."""
+PANEL = (3.8, 3.1)  # Width and height of one of the Axes. [inch]
+COLUMNS = 4  # Most columns that the legend has.
+BAND = 0.10  # Lines beside those of equal losses. [1]
+SERIES_GAP = 0.012  # Distance between series of residuals, over the range of the axis. [1]
+COVERED = 2.0  # Uncertainties that most residuals lie within. [1]
+MOST_NUMBERS = 40  # Most points whose numbers stand below the residuals.
+MARKERS = "osD^vP"  # One for each group, beside its colour; for print without colours.
 _FADED = {"color": "0.6", "mfc": "none", "ls": "none", "ms": 5, "zorder": 1}
 
 

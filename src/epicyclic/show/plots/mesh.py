@@ -33,12 +33,9 @@ from epicyclic.units import decimals_of, format_number
 
 Floats = NDArray[np.float64]
 
-CIRCLES = 4
-"""Most circles that the scale of loads has."""
-SEEN = 0.02
-"""Share of the highest load from which on a bar is seen. [1]"""
-STEP = 7.5
-"""Between the directions that are tried for the scale of loads. [deg]"""
+CIRCLES = 4  # Most circles that the scale of loads has.
+SEEN = 0.02  # Share of the highest load from which on a bar is seen. [1]
+STEP = 7.5  # Between the directions that are tried for the scale of loads. [deg]
 DOWN = 0.1
 """How much farther from all bars the scale must be for turning it away from straight down. [1]"""
 HATCHES = ("", "///", "...", "xxx", "\\\\\\", "+++")
@@ -119,17 +116,13 @@ FloatArray = NDArray[np.float64]
 FRICTION = "friction_coefficient"
 MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power", "film_ratio")
 """Variables drawn over the plane of action."""
-BOTH_WAYS = (FRICTION, "flash_temperature")
-"""Those drawn along the path of contact too."""
-SAME = 1e-9
-"""Relative difference of coefficients of friction that are one number."""
+BOTH_WAYS = (FRICTION, "flash_temperature")  # Those drawn along the path of contact too.
+SAME = 1e-9  # Relative difference of coefficients of friction that are one number.
 NO_PEAK, PEAKED = 0.95, 1.15
 """A scale of colours ends at this quantile where the highest value is more than so many times it:
 peaks at corners would take the scale from all the rest."""
-MARGIN = 0.06
-"""Above a curve, of the height of the Axes."""
-PATH_PLACES = 40
-"""Places on the path of contact at which values are taken together."""
+MARGIN = 0.06  # Above a curve, of the height of the Axes.
+PATH_PLACES = 40  # Places on the path of contact at which values are taken together.
 
 
 def mesh_figure(mesh: xr.Dataset) -> Figure:
@@ -275,10 +268,8 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
 # Friction models of a case side by side.
 
 
-ROW_HEIGHT = 0.3
-"""Height of one bar. [inch]"""
-ROOM = 1.45
-"""Length of the axis over that of the longest bar, for the words beside the bars. [1]"""
+ROW_HEIGHT = 0.3  # Height of one bar. [inch]
+ROOM = 1.45  # Length of the axis over that of the longest bar, for the words beside the bars. [1]
 COLOUR, OTHER = COLOURS[0], "0.75"
 
 

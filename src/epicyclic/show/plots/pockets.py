@@ -40,8 +40,7 @@ from epicyclic.units import known_text
 
 OVER_LIFE = ("pressure", "axial_speed", "contact_gap_speed", "backlash_gap_speed")
 """Variables drawn over the life of a pocket."""
-DRAWN_SLICES = 9
-"""Most slices that are drawn one by one."""
+DRAWN_SLICES = 9  # Most slices that are drawn one by one.
 GAP_HEIGHT = 8.0
 GAP_SHARE = 0.05
 """Height of the axis of gaps, over the smallest and the largest gap of the backlash side. [1]"""
@@ -175,18 +174,14 @@ def _over_roll(mesh: xr.Dataset, ax: Axes, title: str, label: str) -> Axes:
 
 FloatArray = NDArray[np.float64]
 
-PANELS, COLUMNS = 6, 3
-"""Moments in the life of a pocket that a figure shows."""
-PANEL_WIDTH = 4.2
-"""[inches]"""
+PANELS, COLUMNS = 6, 3  # Moments in the life of a pocket that a figure shows.
+PANEL_WIDTH = 4.2  # [inches]
 BODY, EDGE = "#dcdcdc", "#5a5a5a"
 KINDS = (COLOURS[5], COLOURS[4])
 """A tooth of member 1 in a space of member 2, and the other way round."""
 FOLLOWED, CONTACT, BACKLASH = COLOURS[0], COLOURS[2], COLOURS[6]
-MARGIN = 0.06
-"""Share of a picture left around the places where pockets begin and end. [1]"""
-DEPTH = 4.0
-"""How far a body reaches beyond the roots of its teeth. [tooth heights]"""
+MARGIN = 0.06  # Share of a picture left around the places where pockets begin and end. [1]
+DEPTH = 4.0  # How far a body reaches beyond the roots of its teeth. [tooth heights]
 
 
 def section_figure(
@@ -388,14 +383,11 @@ def _row_of_teeth(tooth: FloatArray, teeth: int, one: float, span: float) -> Flo
 
 Progress = Callable[[int, int], None]
 
-FRAMES = 32
-"""Frames of one mesh period, at most; the picture repeats after it."""
+FRAMES = 32  # Frames of one mesh period, at most; the picture repeats after it.
 FRAMES_PER_SECOND = 12
 DPI = 90
-WIDTH = 9.6
-"""[inches]"""
-PRESSURE_MAP = "RdBu_r"
-"""Blue below ambient, red above."""
+WIDTH = 9.6  # [inches]
+PRESSURE_MAP = "RdBu_r"  # Blue below ambient, red above.
 NO_POCKET = "#ececec"
 PRESSURE_UNITS = ((1.0, "bar", 0.1), (1e2, "kPa", 1e-3), (1e5, "Pa", 0.0))
 """Units over a bar, and the pressure in bar from which on they are read easily."""

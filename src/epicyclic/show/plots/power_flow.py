@@ -19,10 +19,8 @@ from epicyclic.units import RPM, format_number, known_text, percent, torque_text
 # Shapes that the slides of power and of heat have in common. Every length is in inches.
 
 
-INK, SOFT = "#1a1d21", "#5b6470"
-"""Colours of words and of edges."""
-_ROUND = 0.04
-"""Radius of the corners of a box."""
+INK, SOFT = "#1a1d21", "#5b6470"  # Colours of words and of edges.
+_ROUND = 0.04  # Radius of the corners of a box.
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,25 +66,21 @@ def fit(letter: float, text: str, room: float, size: float) -> float:
 # Every length is in inches on a slide of 16 to 9.
 
 
-SLIDE = (13.33, 7.5)
-"""Width and height. [inch]"""
+SLIDE = (13.33, 7.5)  # Width and height. [inch]
 THROUGH, CIRCULATING, LOST = COLOURS[0], COLOURS[4], COLOURS[1]
-DARK = "#8a5f00"
-"""The colour of circulating power, for words."""
+DARK = "#8a5f00"  # The colour of circulating power, for words.
 STRIPE, BOX = "#f2f4f7", "#e3e8ee"
 LABELS, RIGHT_END = 2.55, 1.55
 """Room for the names of shafts at the left, and for the output at the right."""
 TOP, LOWEST, GROUNDS, LEGEND = 6.85, 1.75, 1.45, 0.25
 """Upper edge of the cards of the sets; lower edge of the shafts; brakes; legend."""
-HEAD, ROW = 0.36, 0.24
-"""Heights of the name on a card, and of each of its meshes."""
+HEAD, ROW = 0.36, 0.24  # Heights of the name on a card, and of each of its meshes.
 CHARACTER, WORDS = 0.0085, 0.75
 """Width of a character, and part of a card for words beside its bars at most. [inch/point, 1]"""
 WIDEST, THINNEST, SHORTEST = 0.6, 0.02, 0.55
 """Widths of arrows, whatever the power; length below which they have no label."""
 NO_POWER = 1e-9
-MOST_ORDERED = 6
-"""Sets, and shafts, of which all orders are compared."""
+MOST_ORDERED = 6  # Sets, and shafts, of which all orders are compared.
 _ARROW = Arrow(reach=(0.09, 0.5), length=(0.16, 0.5), share=0.5)
 _fit = partial(fit, CHARACTER)
 _box = partial(draw_box, fc=BOX)

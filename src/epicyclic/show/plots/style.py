@@ -34,34 +34,23 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 """Colours of M. Okabe and K. Ito, Color Universal Design (2008)."""
 COLOUR_MAP = "viridis"
 LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 2)))
-MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-"""Beside colours, for prints in grey."""
-PANEL = (4.8, 3.4)
-"""Width and height of one of the Axes of a figure. [inch]"""
-BELOW = 0.42
-"""Room for the ticks and the label of an x axis. [inch]"""
-PIXELS = 1920
-"""Width of a picture, if nothing else is asked for: that of a slide."""
-AROUND = 0.95
-"""Height that title, ticks and label of the x axis take from a row of Axes. [inch]"""
-SMALL_CHARACTERS, CHARACTERS = 19, 16
-"""That fit into an inch of a legend, and of a label."""
-CHARACTER_POINTS = 132
-"""Characters in an inch of a line, times the size of its letters in points."""
-SMALL_POINTS, MEDIUM_POINTS, TITLE_POINTS = 7.5, 9.0, 10.8
-"""Sizes of letters."""
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")  # Beside colours, for prints in grey.
+PANEL = (4.8, 3.4)  # Width and height of one of the Axes of a figure. [inch]
+BELOW = 0.42  # Room for the ticks and the label of an x axis. [inch]
+PIXELS = 1920  # Width of a picture, if nothing else is asked for: that of a slide.
+AROUND = 0.95  # Height that title, ticks and label of the x axis take from a row of Axes. [inch]
+SMALL_CHARACTERS, CHARACTERS = 19, 16  # That fit into an inch of a legend, and of a label.
+CHARACTER_POINTS = 132  # Characters in an inch of a line, times the size of its letters in points.
+SMALL_POINTS, MEDIUM_POINTS, TITLE_POINTS = 7.5, 9.0, 10.8  # Sizes of letters.
 TITLE_SHARE, CAPTION_SHARE = 1.1, 0.85
 """Points of title and caption for an inch of a wide figure: it is made smaller on a slide."""
 TITLE_CHARACTERS = 11
 """Those of a title for an inch of the room of its Axes, which start beside their ticks. [1/inch]"""
 SHORT_SPAN = 300
 """Largest over smallest value of an axis with logarithms on which 2 and 5 have labels too. [1]"""
-SHORTEST = 12
-"""Characters of a line of a label, at least."""
-ENTRY = 0.45
-"""Room in a legend, beside the text of an entry. [inch]"""
-WIDE = 9.0
-"""Width of a figure from which on its caption has larger letters. [inch]"""
+SHORTEST = 12  # Characters of a line of a label, at least.
+ENTRY = 0.45  # Room in a legend, beside the text of an entry. [inch]
+WIDE = 9.0  # Width of a figure from which on its caption has larger letters. [inch]
 LEGEND_ROW, LEGEND_REST = 0.2, 0.45
 """Height of a line of the legend of a figure, and of what is above it. [inch]"""
 

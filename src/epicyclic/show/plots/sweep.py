@@ -36,22 +36,17 @@ from epicyclic.units import format_number, unit_text
 
 FloatArray = NDArray[np.float64]
 
-RESULTS = ("total", "efficiency")
-"""That pictures of a sweep show."""
+RESULTS = ("total", "efficiency")  # That pictures of a sweep show.
 MOST_LINES = len(COLOURS)
 LEVELS = 8
-LABEL_WIDTH = 14
-"""Width of the labels of parallel axes. [characters]"""
-MOST_TICKS = 4
-"""Most values of a parallel axis that has a tick at each of them."""
+LABEL_WIDTH = 14  # Width of the labels of parallel axes. [characters]
+MOST_TICKS = 4  # Most values of a parallel axis that has a tick at each of them.
 _BACKGROUND = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5}
 """Of the values beside such an axis."""
-MOST_POINTS = 5000
-"""Drawn point by point, and in a report altogether."""
+MOST_POINTS = 5000  # Drawn point by point, and in a report altogether.
 LEFT_OUT = "points_left_out"
 """Attribute of a sweep that is thinned out: the number of its other points."""
-MOST_NAMES = 8
-"""Of a key, in a line of text."""
+MOST_NAMES = 8  # Of a key, in a line of text.
 
 
 def varied(data: xr.Dataset) -> list[str]:
