@@ -79,12 +79,12 @@ def test_public_names_are_documented_and_importable():
         ep.no_such_name  # noqa: B018
 
 
-def test_architecture_names_every_package():
+def test_rules_name_every_package():
     """Its modules are listed from their docstrings when the page is built."""
     source = ROOT / "src" / "epicyclic"
     packages = {path.parent.name for path in source.glob("*/__init__.py")}
     packages |= {path.stem for path in source.glob("*.py") if not path.name.startswith("__")}
-    text = (ROOT / "docs" / "development" / "architecture.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "development" / "rules.md").read_text(encoding="utf-8")
     (listed,) = re.findall(r"```\{modules\}\n(.*?)```", text, re.DOTALL)
     assert sorted(listed.split()) == sorted(packages)
 
