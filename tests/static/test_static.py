@@ -101,7 +101,7 @@ def test_documentation_builds_without_warnings(tmp_path):
     assert is_soon(processor_seconds() - before, LONGEST_BUILD)
     assert list(fetched_by_pages(tmp_path / "html")) == []
     links = dict(links_to_code(tmp_path / "html" / "theory"))
-    assert any("geometry.gear.html" in link for link in links)
+    assert any("gears.gear.html" in link for link in links)
     assert [link for link, leads in links.items() if not leads] == []
 
 
