@@ -155,8 +155,7 @@ try:
 except ImportError:  # Windows, where the folder of a living writer cannot be removed anyway
     fcntl = None  # type: ignore[assignment]
 
-PREFIX = ".epicyclic-"
-"""Begins the names of the private folders."""
+PREFIX = ".epicyclic-"  # Begins the names of the private folders.
 OPTION, FILE, REMEDY = "-o", "FILE", "Name another file."
 
 

@@ -29,10 +29,8 @@ LARGEST = 400_000_000
 MOST_VARIABLES = 2000
 LONG = 1000
 """Texts of more points than this are read apart: xarray makes all as long as the longest one."""
-POINTER = 8
-"""Of a text, which is known only when it is read. [bytes]"""
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-"""First bytes of HDF5, in which NetCDF 4 files are kept."""
+POINTER = 8  # Of a text, which is known only when it is read. [bytes]
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"  # First bytes of HDF5, in which NetCDF 4 files are kept.
 _HEAP = struct.Struct("<4sB3xQ")
 """Head of a heap: signature, version, size of all of it. HDF5 File Format Specification, "Global
 Heap", second hand. [bytes]"""

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 
 KILO = 10_000.0
 """Watts and newton metres are shown in thousands from here on: no more digits than are known."""
-PLAIN_NUMBERS = 1e7
-"""Numbers from here on are shown with a power of ten."""
+PLAIN_NUMBERS = 1e7  # Numbers from here on are shown with a power of ten.
 
 _LONGEST_TEXT = 100
 """A number with a unit takes a few characters; longer text is not searched for one."""

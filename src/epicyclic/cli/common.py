@@ -51,15 +51,11 @@ EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
 # ``EPICYCLIC_PROGRESS=0`` turns both off.
 
 
-EVERY = 15.0
-"""Between two lines, and before the first one. [s]"""
-COMPILING_EVERY = 5.0
-"""The same while kernels are compiled. [s]"""
-COMPILED = 75
-"""Kernels that a result needs, about."""
+EVERY = 15.0  # Between two lines, and before the first one. [s]
+COMPILING_EVERY = 5.0  # The same while kernels are compiled. [s]
+COMPILED = 75  # Kernels that a result needs, about.
 Update = Callable[..., None]
-LONG_SECONDS = 2.0
-"""After which a command that tells nothing of itself says that it works."""
+LONG_SECONDS = 2.0  # After which a command that tells nothing of itself says that it works.
 
 
 def tell(text: str) -> None:
@@ -180,8 +176,7 @@ def working(noun: str) -> Iterator[None]:
 
 PICTURES = (".png", ".svg", ".pdf")
 PAGE, PRINT = ".html", ".pdf"
-SIZES = (30, 2000)
-"""Smallest and largest size of a picture. [mm]"""
+SIZES = (30, 2000)  # Smallest and largest size of a picture. [mm]
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 

@@ -185,10 +185,8 @@ def _ended_interrupted() -> int:
 # waits at the pipe ends the process if it has not ended by itself after a moment.
 
 
-GRACE_SECONDS = 1.0
-"""For the command to end by itself, with its own last words."""
-CLEANING_SECONDS = 0.5
-"""For workers to be ended and temporary files to be removed after that."""
+GRACE_SECONDS = 1.0  # For the command to end by itself, with its own last words.
+CLEANING_SECONDS = 0.5  # For workers to be ended and temporary files to be removed after that.
 
 _interrupted, _interrupt_seen = threading.Event(), threading.Event()
 

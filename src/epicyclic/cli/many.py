@@ -70,8 +70,7 @@ def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None
 # Commands on many cases, resumed where they were interrupted: sweep, map.
 
 
-Write = Callable[["Rows"], str]
-"""Writes the rows of a plan, and tells what it wrote."""
+Write = Callable[["Rows"], str]  # Writes the rows of a plan, and tells what it wrote.
 SHOWN_FAILURES = 10
 
 

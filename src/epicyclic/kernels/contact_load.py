@@ -30,8 +30,7 @@ LINEAR_SHARE = 1e-3
 LEAST_SLOPE = 0.5
 """Slope of delta_c over B below which it is continued as a straight line: the formula would let
 the teeth part again under a growing load. It is reached where b_h is about 0.6 d. [1]"""
-QUICK_STEPS = 30
-"""Newton steps before the careful method takes over; usual are five."""
+QUICK_STEPS = 30  # Newton steps before the careful method takes over; usual are five.
 ENOUGH_DESCENT = 0.1
 """A step is short enough when the slope of the energy has fallen to this part of its start. [1]"""
 MOST_HALVINGS = 30

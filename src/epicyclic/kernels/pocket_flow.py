@@ -26,17 +26,13 @@ from epicyclic.kernels.pocket_stage import (
 
 SDIRK = 1 - math.sqrt(0.5)
 """Coefficient of the two-stage, second-order, L-stable Runge-Kutta method. Alexander (1977). [1]"""
-EASE = 0.125
-"""How long an opening beside a new pocket has next to no inertia. [periods]"""
-NEW_INERTIA = 0.1
-"""Inertia in that time, as that of a step of ten periods over that of a step."""
+EASE = 0.125  # How long an opening beside a new pocket has next to no inertia. [periods]
+NEW_INERTIA = 0.1  # Inertia in that time, as that of a step of ten periods over that of a step.
 SMALLEST = 4**6
 PARTS = ((4, 4), (16, SMALLEST))
 """Into how many a time step is cut at first and at most where it has no solution otherwise."""
-EULER_MOST = 4000
-"""Newton iterations for one time step that is cut, at most."""
-FEWEST = 4
-"""Periods of which a mean is a result."""
+EULER_MOST = 4000  # Newton iterations for one time step that is cut, at most.
+FEWEST = 4  # Periods of which a mean is a result.
 
 
 @kernel

@@ -20,20 +20,17 @@ Openings = tuple[Floats, Floats, Floats, Floats]
 """Areas of axial faces and of gaps [m^2], distances from the cells before and behind them [m]."""
 Rules = tuple[float, float, bool]
 """Time step [rad]; pressure of a void; whether kinetic energy goes on inside a pocket."""
-Pair = tuple[Floats, Floats]
-"""Values at axial faces and at gaps, unless said otherwise."""
+Pair = tuple[Floats, Floats]  # Values at axial faces and at gaps, unless said otherwise.
 State = tuple[Floats, Floats, Floats, Floats]
 """Pressure and full share of the cells, velocities through axial faces and gaps."""
 
 Work = tuple[Floats, Floats, Indices, tuple[Pair, Pair]]
 """Memory of `_advance`: matrix, right side, rows of the cells, laws of the openings."""
 
-SHOCK_VOID = 0.1
-"""Void in a cell from which on its kinetic energy is taken from upstream. [1]"""
+SHOCK_VOID = 0.1  # Void in a cell from which on its kinetic energy is taken from upstream. [1]
 ITERATIONS_MOST = 30
 """Iterations of one time step, which does not count as solved if they are too few."""
-TOLERANCE = 1e-5
-"""Last change of pressures and velocities over the largest of the field. [1]"""
+TOLERANCE = 1e-5  # Last change of pressures and velocities over the largest of the field. [1]
 LOOSE = 0.1
 """The same over the change of the work in the period before, while that is large, but not in the
 last period where there are voids, whose shares hold the mass. [1]"""

@@ -16,14 +16,11 @@ from epicyclic.kernels.compiling import kernel
 
 
 Floats = NDArray[np.float64]
-Mixture = tuple[float, float, float, float, float]
-"""As from `mixture`."""
+Mixture = tuple[float, float, float, float, float]  # As from `mixture`.
 
-GAMMA = 1.4
-"""Ratio of the specific heats of air. [1]"""
+GAMMA = 1.4  # Ratio of the specific heats of air. [1]
 CHOKE_STEP = 0.05
-CHOKE_END = 16.0
-"""Step and end of the table of throat pressures, in the logarithm of the pressure."""
+CHOKE_END = 16.0  # Step and end of the table of throat pressures, in the logarithm of the pressure.
 
 
 @kernel
@@ -149,14 +146,10 @@ Fresh = tuple[Floats, Floats, float]
 Numbers = tuple[Indices, Indices, int, int]
 Fields = tuple[Floats, Floats, Floats]
 
-SHOCK_MACH = 0.5
-"""Mach number from which flow that slows down is taken from upstream. [1]"""
-NEWTON_MOST = 40
-"""Newton iterations of one stage before it is given up."""
-NEWTON_TOLERANCE = 1e-9
-"""Last Newton step over the largest value in the field. [1]"""
-VACUUM = 1e-9 - 1
-"""Pressure next to none, as q."""
+SHOCK_MACH = 0.5  # Mach number from which flow that slows down is taken from upstream. [1]
+NEWTON_MOST = 40  # Newton iterations of one stage before it is given up.
+NEWTON_TOLERANCE = 1e-9  # Last Newton step over the largest value in the field. [1]
+VACUUM = 1e-9 - 1  # Pressure next to none, as q.
 DRIVEN = 4.0
 """Kinetic energy over what pressures and velocities can drive beyond which a root is none: exact
 flows have 1 at most, and differences across the face miss that by less than this. [1]"""

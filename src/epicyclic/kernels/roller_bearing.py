@@ -25,17 +25,13 @@ from epicyclic.kernels.compiling import kernel
 
 FloatArray = NDArray[np.float64]
 
-DEFLECTION_EXPONENT = 1.11
-"""Exponent of the line contact, Talbot (2012) Eq. 3.3a. [1]"""
-LENGTH_EXPONENT = 0.11
-"""Exponent of the loaded length, Talbot (2012) Eq. 3.3a. [1]"""
+DEFLECTION_EXPONENT = 1.11  # Exponent of the line contact, Talbot (2012) Eq. 3.3a. [1]
+LENGTH_EXPONENT = 0.11  # Exponent of the loaded length, Talbot (2012) Eq. 3.3a. [1]
 DEFLECTION_CONSTANT = 1.24e-5
 """Palmgren's constant for steel rollers, Talbot (2012) Eq. 3.3a; N and mm."""
-MM = 1e3
-"""Millimetres in a metre."""
+MM = 1e3  # Millimetres in a metre.
 LARGEST_STEP_HALVINGS = 60
-SUFFICIENT_DECREASE = 1e-4
-"""Armijo constant of the line search. [1]"""
+SUFFICIENT_DECREASE = 1e-4  # Armijo constant of the line search. [1]
 ROUNDING = 16 * 2.2e-16
 """Share of a displacement that is rounding: the force it makes cannot be balanced better. [1]"""
 LENGTH_UPDATES = 25
@@ -45,8 +41,7 @@ LARGEST_GROWTH = 10.0
 """Largest Newton step over the displacement, and over the clearance, that it starts from. [1]"""
 FLATTER = 0.5
 """Share of the gradient to which a step must bring it where the energy is rounding noise. [1]"""
-SMALLEST_LENGTH = 1e-6
-"""Size of a deflection where there is no clearance to compare it with. [m]"""
+SMALLEST_LENGTH = 1e-6  # Size of a deflection where there is no clearance to compare it with. [m]
 NEWTON_SHIFT = 1e-12
 """Share of the reference stiffness added to the Hessian, which is singular without contact. [1]"""
 HIGHEST_SHIFT = 1e-4
@@ -57,8 +52,7 @@ SHIFT_GROWTH = 100.0
 STALLED = 1e-6
 """Residual over the largest load at which an iteration that comes no further has its answer: the
 energy of small forces is rounding. [1]"""
-SMALL_FORCE = 1e-3
-"""A largest load below this counts as this size in `STALLED`. [N]"""
+SMALL_FORCE = 1e-3  # A largest load below this counts as this size in `STALLED`. [N]
 
 
 @kernel

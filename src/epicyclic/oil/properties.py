@@ -22,28 +22,21 @@ import numpy as np
 
 from epicyclic.oil.oil import GoldLaw, Oil, RoelandsLaw
 
-ROELANDS_PRESSURE = 1.96e8
-"""Pole pressure of Roelands' viscosity law. [Pa]"""
+ROELANDS_PRESSURE = 1.96e8  # Pole pressure of Roelands' viscosity law. [Pa]
 ROELANDS_OFFSET = 9.67
 """ln of Roelands' limiting viscosity 6.31e-5 Pa s, with its sign changed. [1]"""
-AIR_GAS_CONSTANT = 287.05
-"""Specific gas constant of dry air (ISO 2533). [J/(kg K)]"""
-SUTHERLAND_CONSTANT = 1.458e-6
-"""beta_s in mu = beta_s T^1.5/(T + S) (ISO 2533). [kg/(m s K^0.5)]"""
-SUTHERLAND_TEMPERATURE = 110.4
-"""S in Sutherland's law for air (ISO 2533). [K]"""
+AIR_GAS_CONSTANT = 287.05  # Specific gas constant of dry air (ISO 2533). [J/(kg K)]
+SUTHERLAND_CONSTANT = 1.458e-6  # beta_s in mu = beta_s T^1.5/(T + S) (ISO 2533). [kg/(m s K^0.5)]
+SUTHERLAND_TEMPERATURE = 110.4  # S in Sutherland's law for air (ISO 2533). [K]
 D341_OFFSET = 0.7
 """Constant added to the viscosity in mm^2/s; D341 adds further terms below 2 mm^2/s. [mm^2/s]"""
-D341_HIGHEST = 2e7
-"""Largest viscosity of D341. Colder oil, which hardly flows, keeps it. [mm^2/s]"""
+D341_HIGHEST = 2e7  # Largest viscosity of D341. Colder oil, which hardly flows, keeps it. [mm^2/s]
 LARGEST_EXPONENT = 2.0
 """10^(10^2) mm^2/s: far beyond what is held, and still a number that can be written."""
-MM2_PER_S = 1e-6
-"""1 mm^2/s in m^2/s."""
+MM2_PER_S = 1e-6  # 1 mm^2/s in m^2/s.
 DEFAULT_CONDUCTIVITY = 0.14
 """Thermal conductivity of an oil that states none: typical of hydrocarbons. [W/(m K)]"""
-SLOPE_STEP = 0.5
-"""Temperature step of the slope of the viscosity. [K]"""
+SLOPE_STEP = 0.5  # Temperature step of the slope of the viscosity. [K]
 
 
 @dataclass(frozen=True, slots=True)

@@ -112,10 +112,8 @@ def shear_problems(law: ShearLaw) -> list[tuple[str, float, str]]:
 
 # What contacts are taken to be like where nobody has measured it: sets of assumptions by name.
 
-SLOPE_RATIO = 0.41
-"""Slope of ln(mu) at high pressure over that at low pressure. [1]"""
-TRANSITION = 0.38e9
-"""Pressure at which the two slopes meet. [Pa]"""
+SLOPE_RATIO = 0.41  # Slope of ln(mu) at high pressure over that at low pressure. [1]
+TRANSITION = 0.38e9  # Pressure at which the two slopes meet. [Pa]
 
 
 @dataclass(frozen=True, slots=True)
