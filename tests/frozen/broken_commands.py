@@ -641,6 +641,7 @@ SOUND: dict[str, str] = {
     "minimal case": "init case.toml --minimal",
     "plots of a pair": f"plot {PAIR}",
     "comparison": f"compare {PAIR} measured.csv {FEW}",
+    "validation": "validate",
     "import of a pair": "rexs import pair.rexs -o c.toml",
     "import of an axle": "rexs import eaxle.rexs -o c.toml",
     "import of a set": "rexs import set.rexs -o c.toml",

@@ -14,8 +14,9 @@ without this script.
 
     python -m frozen.make_frozen differences
 
-works with any commit: it prints the texts that are not the frozen ones, as candidates for
-improved_texts.toml. A candidate is to be shortened to the words that were changed.
+works with any commit: it prints the words of texts that are not the frozen ones, and one word
+before and after them, as candidates for improved_texts.toml. Those that stand elsewhere too must be
+made longer.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ from frozen.chosen_cases import BANDS, BUILT_IN, COARSE, chosen_cases, start_of
 from frozen.command import run_command, toml_of
 from frozen.drawn_cases import drawn_cases, value
 from frozen.entries import Maker, outcome_of
-from frozen.texts import TEXTS, differing, frozen_texts
+from frozen.texts import TEXTS, changed_words, differing, frozen_texts
 
 RESULTS = Path(__file__).with_name("results.json.xz")
 FOUND = Path(__file__).with_name("found_inputs.json")
@@ -238,19 +239,19 @@ def tried(entry: Tables, tables: Tables, maker: Maker) -> Tables:
 
 
 def print_differences() -> None:
-    """Texts that are not the frozen ones, as entries of improved_texts.toml."""
+    """Words that are not the frozen ones, as entries of improved_texts.toml."""
     texts, results = frozen_texts(), json.loads(lzma.decompress(RESULTS.read_bytes()))
-    pairs: dict[tuple[str, str], str] = {}
+    pairs: dict[tuple[str, str], str] = {}  # with the first place of each
     with tempfile.TemporaryDirectory() as name:
         maker = Maker(Path(name))
         for key, entry in texts["entries"].items():
             for pair in differing(entry["outcome"], tried(entry, texts["bases"], maker)):
-                pairs.setdefault(pair, key)
+                pairs.setdefault(changed_words(*pair), key)
     for key, entry in results["cases"].items():
         if "result" in entry:
             now = ep.solve(ep.load_case(entry["case"])).to_dict()
             for pair in differing(entry["result"]["warnings"], now["warnings"]):
-                pairs.setdefault(pair, key)
+                pairs.setdefault(changed_words(*pair), key)
     for (old, new), key in pairs.items():
         print(f"# {key}\n[[text]]\nold = {json.dumps(old, ensure_ascii=False)}")
         print(f"new = {json.dumps(new, ensure_ascii=False)}\n")

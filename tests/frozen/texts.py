@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-__all__ = ["TEXTS", "differing", "frozen_texts", "improved"]
+__all__ = ["TEXTS", "changed_words", "differing", "frozen_texts", "improved"]
 
 TEXTS = Path(__file__).with_name("texts.json.xz")
 IMPROVED = Path(__file__).with_name("improved_texts.toml")
@@ -58,3 +58,16 @@ def differing(frozen: Any, found: Any) -> Iterator[tuple[str, str]]:
             return
     if frozen != found:
         yield tuple(it if isinstance(it, str) else json.dumps(it) for it in (frozen, found))
+
+
+def changed_words(old: str, new: str) -> tuple[str, str]:
+    """The words of two texts that differ, with one before and one after them."""
+    one, two = old.split(" "), new.split(" ")
+    before = after = 0
+    shorter = min(len(one), len(two))
+    while before < shorter and one[before] == two[before]:
+        before += 1
+    while after < shorter - before and one[-1 - after] == two[-1 - after]:
+        after += 1
+    first, rest = max(before - 1, 0), max(after - 1, 0)
+    return " ".join(one[first : len(one) - rest]), " ".join(two[first : len(two) - rest])
