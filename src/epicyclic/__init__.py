@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from epicyclic.plugins.rexs.exporting import write_rexs as write_rexs
     from epicyclic.plugins.rexs.importing import RexsImport as RexsImport
     from epicyclic.plugins.rexs.importing import read_rexs as read_rexs
-    from epicyclic.show.files import open_result as open_result
-    from epicyclic.show.files import save_result as save_result
     from epicyclic.show.html import report_html as report_html
     from epicyclic.show.record import ResultRecord as ResultRecord
+    from epicyclic.show.record import open_result as open_result
     from epicyclic.show.record import record as record
+    from epicyclic.show.record import save_result as save_result
     from epicyclic.show.views import Result as Result
     from epicyclic.show.views import solve as solve
     from epicyclic.show.views import solve_for as solve_for
@@ -73,12 +73,12 @@ _HOME = {
     "loss_map": "epicyclic.study.maps.compute",
     "mesh_contacts": "epicyclic.study.solve",
     "mesh_details": "epicyclic.study.meshes",
-    "open_result": "epicyclic.show.files",
+    "open_result": "epicyclic.show.record",
     "pocket_details": "epicyclic.study.pockets",
     "pocketing_table": "epicyclic.study.pocketing_table",
     "record": "epicyclic.show.record",
     "report_html": "epicyclic.show.html",
-    "save_result": "epicyclic.show.files",
+    "save_result": "epicyclic.show.record",
     "solve": "epicyclic.show.views",
     "solve_for": "epicyclic.show.views",
     "sweep": "epicyclic.study.sweeps.run",

@@ -307,7 +307,7 @@ def test_an_unexpected_error_is_one_line(monkeypatch, capsys):
         raise RuntimeError("something new")
 
     # what takes the function over when it is imported must not find the broken one
-    importlib.import_module("epicyclic.study.bands.quick")
+    importlib.import_module("epicyclic.study.bands.study")
     monkeypatch.setattr("epicyclic.study.solve.solve", broken)
     monkeypatch.setattr("sys.argv", ["epicyclic", "run", "talbot-2012"])
     with pytest.raises(SystemExit) as ended:

@@ -17,8 +17,8 @@ import xarray as xr
 
 import epicyclic as ep
 from epicyclic.cli.main import main
-from epicyclic.study.sweeps import plan as plans
-from epicyclic.study.sweeps.plan import make_plan
+from epicyclic.study.sweeps import run as plans
+from epicyclic.study.sweeps.run import make_plan
 from epicyclic.study.sweeps.runner import Rows, Runner, share_of
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -134,7 +134,7 @@ def test_any_error_of_one_point_is_a_row(case, monkeypatch):
             raise RuntimeError("broken")
         return ep.solve(changed)
 
-    monkeypatch.setattr("epicyclic.study.sweeps.plan.solve", solve)
+    monkeypatch.setattr("epicyclic.study.sweeps.run.solve", solve)
     result = ep.sweep(case, {"planet.count": [3, 4, 5]}, jobs=1)
     assert list(result["status"].values) == ["converged", "failed", "converged"]
     assert result["message"].values[1] == "RuntimeError: broken"
@@ -144,7 +144,7 @@ def test_an_interruption_in_compiled_code_ends_the_sweep(case, monkeypatch):
     def solve(changed, **_):
         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
 
-    monkeypatch.setattr("epicyclic.study.sweeps.plan.solve", solve)
+    monkeypatch.setattr("epicyclic.study.sweeps.run.solve", solve)
     with pytest.raises(KeyboardInterrupt):
         ep.sweep(case, {"planet.count": [3, 4]}, jobs=1)
 

@@ -21,7 +21,7 @@ from epicyclic.library import minimal_case
 from epicyclic.plugins.app import worker as tasks
 from epicyclic.plugins.app.case_form import Desk, Shelves, built_in, form_of, opened, received
 from epicyclic.plugins.app.guard import LARGEST_BODY, Guard
-from epicyclic.plugins.app.serve import names_of
+from epicyclic.plugins.app.page import names_of
 from epicyclic.plugins.app.views import _values
 from epicyclic.plugins.app.worker import Ended, Latest, Worker, WorkError
 from epicyclic.study.operating import OPERATING
@@ -757,7 +757,7 @@ def test_what_is_no_address_is_told(host):
 
 
 def test_another_host_is_told_what_it_means(monkeypatch):
-    from epicyclic.plugins.app import serve
+    from epicyclic.plugins.app import page as serve
     from epicyclic.plugins.app.command import app
 
     asked = []

@@ -334,8 +334,8 @@ def test_bands_of_a_calibrated_case_follow_from_the_covariance(calibration):
 
 
 def test_the_quick_band_knows_correlations(calibration):
-    from epicyclic.study.bands.nearby import look_nearby
-    from epicyclic.study.bands.quick import quick_band
+    from epicyclic.study.bands.plan import look_nearby
+    from epicyclic.study.bands.study import quick_band
 
     calibrated = calibration.calibrated_case
     own = calibrated.given()["uncertainty"]

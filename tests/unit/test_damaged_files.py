@@ -26,7 +26,7 @@ from epicyclic.plugins.contact_solver.contact import contact_model, load_contact
 from epicyclic.plugins.contact_solver.surfaces import read_profile
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.importing import read_rexs
-from epicyclic.show.files import open_map
+from epicyclic.show.record import open_map
 from epicyclic.study.maps.cycle import open_cycle
 from epicyclic.study.measured.table import parse_measurements, read_grid
 from epicyclic.study.sweeps.run import write_dataset

@@ -14,8 +14,14 @@ import epicyclic as ep
 from epicyclic.cli.common import parse_changes
 from epicyclic.cli.main import main
 from epicyclic.study.sweeps.axes import columns_of, parse_expression
-from epicyclic.study.sweeps.plan import SweepPlan, make_plan, parse_links, parse_together
-from epicyclic.study.sweeps.run import to_dataset, to_table
+from epicyclic.study.sweeps.run import (
+    SweepPlan,
+    make_plan,
+    parse_links,
+    parse_together,
+    to_dataset,
+    to_table,
+)
 from epicyclic.study.sweeps.runner import Row, Rows, fingerprint
 from epicyclic.units import with_unit
 

@@ -18,8 +18,8 @@ from epicyclic.library import lubrication_methods
 from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
 from epicyclic.oil.properties import mixture_state, oil_state
 from epicyclic.study.bands.inputs import uncertain_values
-from epicyclic.study.bands.nearby import look_nearby
-from epicyclic.study.bands.quick import quick_band
+from epicyclic.study.bands.plan import look_nearby
+from epicyclic.study.bands.study import quick_band
 from problems import only, problems_of
 from trains import small_axle
 

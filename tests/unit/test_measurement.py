@@ -300,7 +300,7 @@ def test_a_fit_that_does_not_converge_says_so(case, tests, monkeypatch):
 
 
 def test_points_that_fail_are_named_and_left_out(case, tests, monkeypatch):
-    from epicyclic.study.sweeps import plan
+    from epicyclic.study.sweeps import run as plan
 
     solve = plan.solve
 

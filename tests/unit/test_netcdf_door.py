@@ -14,7 +14,7 @@ import epicyclic as ep
 from epicyclic.cli.main import main
 from epicyclic.losses.pocket_tables import read_stored
 from epicyclic.netcdf_file import read_groups
-from epicyclic.show.files import open_map
+from epicyclic.show.record import open_map
 
 
 @pytest.fixture

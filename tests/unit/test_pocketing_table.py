@@ -13,8 +13,7 @@ from epicyclic.files import sealed
 from epicyclic.losses.pocket_tables import FlowFamily, read_stored, stored_table
 from epicyclic.machine.pocket_flow import flow_family
 from epicyclic.study.pockets import mesh_duties
-from epicyclic.study.sweeps.plan import make_plan
-from epicyclic.study.sweeps.run import write_dataset
+from epicyclic.study.sweeps.run import make_plan, write_dataset
 from epicyclic.study.sweeps.runner import fingerprint
 
 COARSE = {

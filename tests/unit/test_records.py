@@ -11,7 +11,7 @@ import xarray as xr
 
 import epicyclic as ep
 from epicyclic.errors import InputError
-from epicyclic.show.files import open_map
+from epicyclic.show.record import open_map
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pint
 import pytest
 
 import epicyclic as ep
-from epicyclic.study.sweeps.plan import make_plan, parse_vary
+from epicyclic.study.sweeps.run import make_plan, parse_vary
 from epicyclic.study.sweeps.runner import fingerprint
 
 

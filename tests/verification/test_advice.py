@@ -15,7 +15,7 @@ from epicyclic.cli.case import run
 from epicyclic.show.advice import advice_texts
 from epicyclic.study.bands.advice import Known, known_of, limits_of, measurements_of, model_remarks
 from epicyclic.study.bands.inputs import remedy_for
-from epicyclic.study.bands.quick import quick_dataset, quick_known
+from epicyclic.study.bands.study import quick_dataset, quick_known
 
 QUICK = {"numerics.mesh_positions": 8, "numerics.contact_segments": 6}
 

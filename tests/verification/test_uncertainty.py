@@ -16,8 +16,7 @@ from epicyclic.errors import InputError
 from epicyclic.losses.pocket_tables import FlowFamily
 from epicyclic.show.plots.catalogue import available
 from epicyclic.study.bands.inputs import uncertain_values
-from epicyclic.study.bands.nearby import look_nearby
-from epicyclic.study.bands.quick import quick_dataset
+from epicyclic.study.bands.plan import look_nearby
 from epicyclic.study.bands.samples import (
     cut_off,
     make_samples,
@@ -26,6 +25,7 @@ from epicyclic.study.bands.samples import (
     sobol_indices,
     standard_uncertainty,
 )
+from epicyclic.study.bands.study import quick_dataset
 from epicyclic.study.sweeps.run import write_dataset
 
 ISOLATED = {

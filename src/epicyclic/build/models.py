@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from epicyclic import library
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
 from epicyclic.case.gearing import Gearing
 from epicyclic.case.tables.base import Material
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
@@ -29,7 +29,6 @@ from epicyclic.case.tables.operation import (
     Surroundings,
     ThermalTable,
 )
-from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import ComputedSet, ListedSet
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
 from epicyclic.contact.temperatures import Solid

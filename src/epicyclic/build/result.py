@@ -21,12 +21,11 @@ from epicyclic.build.models import (
     standing_of,
 )
 from epicyclic.case import gear_tables as flanks
-from epicyclic.case.case import Case
+from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.gear_rules import backlash_notes
 from epicyclic.case.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
-from epicyclic.case.train import TrainCase
 from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.gear import HOUSING
 from epicyclic.gears.mesh import are_evenly_spaced

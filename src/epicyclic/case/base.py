@@ -10,11 +10,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import PrivateAttr
 
-from epicyclic.case.checks import cross_check
 from epicyclic.case.expand import gearing_of
-from epicyclic.case.fields import find_field, locate, to_inputs
+from epicyclic.case.fields import find_field, key_parts, locate, path_of, to_inputs, written
 from epicyclic.case.gear_tables import Gears, GearTable
-from epicyclic.case.messages import key_parts, path_of, written
 from epicyclic.case.read import (
     case_html,
     case_line,
@@ -24,6 +22,7 @@ from epicyclic.case.read import (
     with_value,
     without,
 )
+from epicyclic.case.rules import cross_check
 from epicyclic.case.sizing import Found, complete, converted_roughness, negative_teeth, told_oil
 from epicyclic.case.tables.base import Table
 from epicyclic.case.tables.uncertainty import check_uncertainty

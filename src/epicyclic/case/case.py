@@ -1,23 +1,49 @@
-"""A whole case, and how it is read, checked and changed."""
+"""A whole case, and how it is read, checked and changed: a set, a pair or a train."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from types import MappingProxyType
+from typing import Annotated, Any, Literal, NamedTuple, Self, cast
 
-from pydantic import BaseModel, Field, TypeAdapter
+from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from epicyclic import library
-from epicyclic.case.base import CaseTable, with_changes
+from epicyclic.case.base import CaseTable, as_given, with_changes, with_sizes
 from epicyclic.case.expand import expand
-from epicyclic.case.fields import to_inputs
-from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
+from epicyclic.case.fields import did_you_mean, misspelt, one_line, to_inputs, written
+from epicyclic.case.gear_tables import (
+    Gears,
+    GearTable,
+    PairGear,
+    Planet,
+    Ring,
+    SetMesh,
+    SharedGears,
+)
 from epicyclic.case.gearing import Gearing
-from epicyclic.case.messages import did_you_mean, misspelt, one_line, written
 from epicyclic.case.read import plain, read_file
-from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.rules import (
+    bearing_force_problems,
+    check_listed_bearings,
+    cross_check,
+    operation_problems,
+)
+from epicyclic.case.set_rules import listed_problems, rack_problems, set_problems
+from epicyclic.case.sizing import Found, complete, told_oil
+from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.elements import (
+    ELEMENT_CHECKS,
+    Carrier,
+    ElementTables,
+    PlanetBearing,
+    ThrustBearing,
+    placing_problems,
+)
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -38,10 +64,405 @@ from epicyclic.case.tables.operation import (
     ThermalTable,
 )
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable
-from epicyclic.case.train import TrainCase
-from epicyclic.case.train_tables import StateTable
-from epicyclic.case.validation import tables_of
+from epicyclic.case.train_shape import TrainShape, shape_of_train
+from epicyclic.case.train_tables import (
+    ComputedSet,
+    GivenListedSet,
+    GivenPair,
+    GivenPlanetarySet,
+    ListedGear,
+    ListedMesh,
+    ListedSet,
+    PairSet,
+    PlanetarySet,
+    Position,
+    SetTable,
+    StateTable,
+    TrainOperation,
+)
+from epicyclic.case.validation import Validation, tables_of, validate
 from epicyclic.errors import InputError, Problem
+
+# A train: gear sets joined by shafts, with brakes, clutches, bearings, seals and other drags.
+
+
+_SHARED = ("models", "numerics", "friction_table", "lubrication")
+"""Tables of a train that its computed sets take over where they have none of their own."""
+_GIVEN = ("efficiency", "mesh_efficiency")
+
+
+class _TrainTables(CaseTable):
+    """What a train states beside its elements; its sets are read one by one."""
+
+    kind: Literal["train"]
+    title: str = ""
+    operation: TrainOperation
+    sets: Any = None
+    shafts: dict[str, tuple[str, ...]] = Field(default={})
+    states: dict[str, StateTable] = Field(default={})
+    positions: dict[str, Position] = Field(default={})
+    lubricant: Lubricant | None = None
+    lubrication: LubricationTable | None = LUBRICATION
+    surroundings: Surroundings = Surroundings()
+    thermal: ThermalTable = ThermalTable()
+    friction_table: FrictionTable | None = None
+    models: PlanetaryModels = PlanetaryModels()
+    contact_solver: ContactSolver = ContactSolver()
+    numerics: Numerics = Numerics()
+    uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+
+
+class _TrainHead(ElementTables, _TrainTables):
+    """A train without its sets."""
+
+
+class TrainCase(_TrainHead):
+    """A train: gear sets joined by shafts."""
+
+    sets: dict[str, SetTable]
+
+    _shape: TrainShape = PrivateAttr()
+
+    @property
+    def shape(self) -> TrainShape:
+        """Its bodies, meshes and shafts."""
+        return self._shape
+
+    @property
+    def gearings(self) -> Mapping[str, Gearing]:
+        """Gears and meshes of every set, by its name."""
+        return self._shape.sets
+
+    @property
+    def state(self) -> StateTable:
+        """The state in which it runs: what is braked and joined."""
+        name = self.operation.state
+        return StateTable() if name is None else self.states[name]
+
+    @property
+    def elements(self) -> Iterator[tuple[str, str, Table]]:
+        """Kind, name and table of every bearing, seal and other drag."""
+        for kind in ELEMENT_CHECKS:
+            for name, table in getattr(self, kind).items():
+                yield kind, name, table
+
+    @property
+    def computed(self) -> bool:
+        """False if every loss is given."""
+        sets = any(gearing.computed for gearing in self.shape.sets.values())
+        return sets or any(True for _ in self.elements)
+
+    @property
+    def computed_sets(self) -> Iterator[tuple[str, ComputedSet]]:
+        """Sets whose losses are computed, by name."""
+        for name, table in self.sets.items():
+            if isinstance(table, ComputedSet):
+                yield name, table
+
+    def position_of(self, gear: str) -> float | None:
+        """Position of a gear along its shaft, by its name or that of its body. [m]"""
+        name, _, member = gear.partition(".")
+        body = self.shape.sets[name].bodies.get(member, member)
+        return self.positions.get(gear, self.positions.get(f"{name}.{body}"))
+
+    def inputs(self) -> dict[str, Any]:
+        """The case as nested tables of text and numbers, defaults included, as a file has them."""
+        inputs = super().inputs()
+        for table in inputs["sets"].values():
+            if "members" in table:
+                table["gears"] = table.get("gears", {}) | table.pop("members")
+        return inputs
+
+    def __hash__(self) -> int:
+        operation = self.operation
+        return hash((self.title, *self.sets, operation.state, operation.torque, operation.speed))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return TrainCase.from_tables, (self.given(), self.source)
+
+    @classmethod
+    def from_tables(
+        cls,
+        tables: dict[str, Any],
+        source: str,
+        problems: Sequence[Problem] = (),
+        sound: Mapping[str, Table] = MappingProxyType({}),
+    ) -> Self:
+        """The train of `tables`; parameters and errors as of every case."""
+        folder = Path(source).parent
+        given = tables.get("sets")
+        raw_sets: dict[str, Any] = given if isinstance(given, dict) else {}
+        named = tuple(raw_sets)
+        whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound)
+        found = [*problems]
+        known = {problem.key for problem in problems}
+        found += [problem for problem in whole.problems if problem.key not in known]
+        found += [
+            as_given(problem, tables)
+            for problem in cross_check(
+                {k: v for k, v in whole.sections.items() if k != "operation"},
+                {*tables, "planet_bearing"},  # whether the sets have one is checked with them
+                folder,
+            )
+        ]
+        if not named:
+            shown, allowed = "" if given is None else written(given), "must hold at least one set."
+            remedy = "Add [sets.NAME] and its gears."
+            found.append(Problem("sets", shown, allowed, remedy))
+        shared = {key: tables[key] for key in _SHARED if key in tables and key in whole.sections}
+        sets: dict[str, SetTable] = {}
+        shapes: dict[str, Gearing] = {}
+        sizes: list[Found] = []
+        complete = True
+        joined = _joined_members(tables)
+        for name in named:
+            read = _read_set(raw_sets[name], shared, folder)
+            found += [_below(f"sets.{name}", problem) for problem in read.problems]
+            if "." in name or not name.strip():
+                allowed = "is not a valid name for a set: use letters, and no dot."
+                found.append(Problem(f"sets.{name}", "", allowed, "Choose another name."))
+            sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in read.found]
+            if read.table is not None:
+                sets[name] = read.table
+                shapes[name], wrong = expand(dict(read.table), joined.get(name, ()))
+                complete = complete and not wrong
+                found += [_below(f"sets.{name}", problem) for problem in wrong]
+                if isinstance(read.table, ListedSet) and not wrong:
+                    made, told, lacks = _complete(read.table, shapes[name], raw_sets[name])
+                    sets[name], shapes[name] = made
+                    sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in told]
+                    found += [as_given(_below(f"sets.{name}", lack), tables) for lack in lacks]
+        case = whole.case
+        if case is None or len(sets) < len(named) or not named:
+            return cls._made(None, tables, source, found)
+        values = {key: getattr(case, key) for key in type(case).model_fields}
+        train = cls.model_construct(**values | {"sets": sets})
+        train._source, train._found = source, (*sizes, *told_oil(tables))
+        train._sound = whole.sections
+        train._shape, wrong = shape_of_train(shapes, train.shafts)
+        complete = complete and not wrong
+        found += wrong
+        found += _element_problems(train)
+        found += operation_problems(train, train.shape, complete)
+        found += bearing_force_problems(train, complete)
+        return cls._made(cast(Self, train), tables, source, found)
+
+
+def _below(prefix: str, problem: Problem) -> Problem:
+    """A problem of a set or part as one of the train."""
+    keys = ", ".join(f"{prefix}.{key}" if key else prefix for key in problem.key.split(", "))
+    return replace(problem, key=keys)
+
+
+def _joined_members(tables: Mapping[str, Any]) -> dict[str, set[str]]:
+    """Members of each set that shafts, states, operation and drags name."""
+    found: dict[str, set[str]] = {}
+    for text in _texts([tables.get(key) for key in ("shafts", "states", "operation")]):
+        name, dot, member = text.partition(".")
+        if dot:
+            found.setdefault(name, set()).add(member)
+    return found
+
+
+def _texts(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for key, item in value.items():
+            yield str(key)
+            yield from _texts(item)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from _texts(item)
+
+
+# --- sets -----------------------------------------------------------------------------------------
+
+
+class _ReadSet(NamedTuple):
+    """A set, or its problems."""
+
+    table: SetTable | None
+    problems: list[Problem]
+    found: tuple[Found, ...] = ()
+
+
+def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
+    if not isinstance(raw, dict):
+        remedy = "Write [sets.NAME] and its keys below it."
+        return _ReadSet(None, [Problem("", written(raw), "must be a table of keys.", remedy)])
+    key = (_frozen(raw), _frozen(dict(shared)))
+    return _read_set_cached(_Given(raw, dict(shared), folder, key))
+
+
+@dataclass(frozen=True)
+class _Given:
+    """What a set is read from: equal if every value is the same and of the same type."""
+
+    raw: dict[str, Any] = field(compare=False)
+    shared: dict[str, Any] = field(compare=False)
+    folder: Path
+    key: Hashable  # Both tables, frozen.
+
+
+def _frozen(value: Any) -> Hashable:
+    """Plain values as something to be compared; 1, 1.0 and true are different."""
+    if isinstance(value, dict):
+        return frozenset((key, _frozen(item)) for key, item in value.items())
+    if isinstance(value, list | tuple):
+        return (type(value), *map(_frozen, value))
+    return type(value), value
+
+
+@lru_cache(maxsize=64)
+def _read_set_cached(given: _Given) -> _ReadSet:
+    form, raw = form_of_set(given.raw)
+    if form is None:
+        names = ("sun", "ring", "planet", "pinion", "gear", "meshes", "gears")
+        near = [text for key in raw if (text := did_you_mean(key, names))]
+        remedy = "Give sun and ring, or pinion and gear, or gears and meshes."
+        return _ReadSet(None, [Problem("", "", "has no gears.", (*near, remedy)[0])])
+    if not any(key in raw for key in _GIVEN):
+        raw = {key: value for key, value in given.shared.items() if key in form.model_fields} | raw
+    if "models" in raw and form is PairSet:
+        own = GearPairModels.model_fields
+        raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
+    read: Validation[Any]
+    read, told = with_sizes(validate(form, raw), raw)
+    problems = [_with_gears(problem) for problem in read.problems]
+    if issubclass(form, ComputedSet):
+        tables = {*raw, *given.shared}
+        checked = {k: v for k, v in read.sections.items() if k != "lubrication" or k in given.raw}
+        if "planet_bearings" in raw:
+            tables.add("planet_bearing")
+        problems += [
+            as_given(problem, raw) for problem in cross_check(checked, tables, given.folder)
+        ]
+    if all(key in raw for key in _GIVEN):
+        allowed = "conflicts with mesh_efficiency."
+        remedy = "Give one of them: of the set from sun to ring, or of each of its meshes."
+        problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
+    return _ReadSet(None if problems else read.case, problems, told)
+
+
+def form_of_set(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
+    """The form of a set, None if it has no gears yet, and its tables in that form."""
+    given = any(key in raw for key in _GIVEN)
+    gears = raw.get("gears")
+    listed = isinstance(gears, dict) and any(isinstance(item, dict) for item in gears.values())
+    if "meshes" in raw or listed:
+        return (GivenListedSet if given else ListedSet), all_gears_to_members(raw, given=given)
+    if "pinion" in raw or "gear" in raw:
+        return (GivenPair, _teeth_only(raw)) if given else (PairSet, raw)
+    if {"sun", "ring", "planet"} & raw.keys():
+        return (GivenPlanetarySet, _teeth_only(raw)) if given else (PlanetarySet, raw)
+    return None, raw
+
+
+def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
+    """The tables of a listed set with those of its gears apart from what all gears share."""
+    gears = raw.get("gears", {})
+    if not isinstance(gears, dict):
+        return raw
+    shared = {key: item for key, item in gears.items() if key in SharedGears.model_fields}
+    members = {key: item for key, item in gears.items() if key not in shared}
+    split = {key: value for key, value in raw.items() if key != "gears"} | {"members": members}
+    if given:
+        known = GivenListedSet.model_fields.keys() | {"members"}
+        idle = ListedGear.model_fields.keys() - {"teeth", "internal", "body", "planet"}
+        split["members"] = {
+            name: _without_keys(gear, idle) if isinstance(gear, dict) else gear
+            for name, gear in members.items()
+        }
+        if isinstance(split.get("mesh"), dict):
+            computed = ListedMesh.model_fields.keys()
+            split["mesh"] = {
+                name: _without_keys(mesh, computed) if isinstance(mesh, dict) else mesh
+                for name, mesh in split["mesh"].items()
+                if not isinstance(mesh, dict) or mesh.keys() - computed
+            }
+        return _without_keys(split, ListedSet.model_fields.keys() - known)
+    return split | {"gears": shared}
+
+
+def _without_keys(table: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key not in keys}
+
+
+def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a set without those that do not matter with a given efficiency."""
+    computed = PlanetarySet.model_fields.keys() | PairSet.model_fields.keys()
+    kept = _without_keys(raw, computed - {"sun", "ring", "planet", "pinion", "gear", *_GIVEN})
+    form = GivenPair if "pinion" in raw or "gear" in raw else GivenPlanetarySet
+    for name in ("sun", "ring", "planet", "pinion", "gear"):
+        table = kept.get(name)
+        if isinstance(table, dict) and name in form.model_fields:
+            annotation = form.model_fields[name].annotation
+            assert annotation is not None
+            idle = ListedGear.model_fields.keys() - {*annotation.model_fields, "internal"}
+            kept[name] = _without_keys(table, idle)
+    return kept
+
+
+def _with_gears(problem: Problem) -> Problem:
+    """A problem of a gear of a listed set with the key that the user wrote."""
+    key, remedy = (text.replace("members", "gears", 1) for text in (problem.key, problem.remedy))
+    return replace(problem, key=key, remedy=remedy)
+
+
+def _complete(
+    table: ListedSet, gearing: Gearing, raw: Mapping[str, Any]
+) -> tuple[tuple[ListedSet, Gearing], tuple[Found, ...], list[Problem]]:
+    """A listed set with what it leaves out, what was found, and its problems."""
+    whole, told, problems = complete(gearing, raw)
+    own = dict(table.mesh)
+    for mesh in whole.meshes:
+        name = mesh.table_key.removeprefix("mesh.")
+        former = own.get(name, ListedMesh())
+        if mesh.own_distance != former.center_distance:
+            own[name] = former.model_copy(update={"center_distance": mesh.own_distance})
+    changed = {"members": dict(whole.tables), "gears": whole.shared, "mesh": own}
+    table = table.model_copy(update=changed)
+    if not problems:
+        problems = [*listed_problems(table, whole), *set_problems(whole)]
+        if not any(rack_problems(whole)):
+            problems += check_listed_bearings(table, whole)
+    return (table, whole), told, list(dict.fromkeys(problems))
+
+
+# --- bearings, seals, drags -----------------------------------------------------------------------
+
+
+def _element_problems(train: TrainCase) -> list[Problem]:
+    problems = []
+    taken = dict.fromkeys(train.sets, "sets")
+    for kind, name, table in train.elements:
+        key = f"{kind}.{name}"
+        if "." in name or not name.strip():
+            allowed = "is not a valid name for a part: use letters, and no dot."
+            problems.append(Problem(key, "", allowed, "Choose another name."))
+        if name in taken:
+            allowed = f"has the name of another part, {taken[name]}.{name}."
+            problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
+        taken[name] = kind
+        found = ELEMENT_CHECKS[kind](table)
+        if not found and train.lubricant is not None:
+            found = placing_problems(table, train.shape.names, train.folder)
+        problems += [_below(key, problem) for problem in found]
+    if not train.computed:
+        return problems
+    if train.lubricant is None:
+        remedy = "Add it; 'epicyclic oils' lists the built-in ones."
+        allowed = "the table [lubricant] is missing, which computed losses need."
+        problems.append(Problem("lubricant", "", allowed, remedy))
+    if train.operation.oil_inlet_temperature is None:
+        reason = "is missing, and computed losses need it."
+        advice = 'Add oil_inlet_temperature = "... degC" to [operation].'
+        problems.append(Problem("operation.oil_inlet_temperature", "", reason, advice))
+    return problems
+
+
+# A whole case, and how it is read, checked and changed.
 
 
 class _SetTables(CaseTable):

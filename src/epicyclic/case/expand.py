@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from epicyclic.case.fields import did_you_mean, written
 from epicyclic.case.gear_tables import SetMesh
 from epicyclic.case.gearing import Gearing, GearPairing
-from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.train_tables import ListedMesh
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from epicyclic.case.fields import micrometres, millimetres
 from epicyclic.case.gear_tables import (
     DIGITS,
     GearTable,
@@ -23,7 +24,6 @@ from epicyclic.case.gear_tables import (
     working_flank,
 )
 from epicyclic.case.gearing import Gearing, rim_thickness
-from epicyclic.case.messages import micrometres, millimetres
 from epicyclic.errors import Problem, rising_problems
 from epicyclic.gears.cutting import longest_involute
 from epicyclic.gears.flanks import active_profile

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from epicyclic.case.messages import millimetres
+from epicyclic.case.fields import millimetres
 from epicyclic.case.tables.base import (
     NamedMaterial,
     Roughness,

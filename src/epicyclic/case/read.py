@@ -15,8 +15,7 @@ from unicodedata import category
 import numpy as np
 from pydantic import BaseModel
 
-from epicyclic.case.fields import to_inputs
-from epicyclic.case.messages import dotted, key_parts, one_line, written
+from epicyclic.case.fields import dotted, key_parts, one_line, to_inputs, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, refuse
 from epicyclic.units import format_number, from_pint, unit_text

@@ -10,9 +10,9 @@ import math
 from collections.abc import Iterator, Mapping
 from itertools import combinations, combinations_with_replacement, product
 
+from epicyclic.case.fields import did_you_mean, millimetres
 from epicyclic.case.gear_rules import check_mesh, sound_gears
 from epicyclic.case.gearing import RACK_KEYS, Gearing, GearPairing, Pin
-from epicyclic.case.messages import did_you_mean, millimetres
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from epicyclic.case.fields import micrometres, millimetres
 from epicyclic.case.gear_rules import gears_by_name
 from epicyclic.case.gear_tables import GearTable, allowance_shift, thickness_key
 from epicyclic.case.gearing import Gearing, GearPairing, is_internal
-from epicyclic.case.messages import micrometres, millimetres
 from epicyclic.case.read import value_at
 from epicyclic.case.set_rules import rack_problems
 from epicyclic.case.tables.base import roughness_told, short_oil_told

@@ -13,12 +13,18 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from epicyclic import library
-from epicyclic.case.case import GearPairCase, PlanetaryCase, read_case
-from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
+from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase, form_of_set, read_case
+from epicyclic.case.fields import (
+    choices_of,
+    dict_value,
+    dotted,
+    entry_of,
+    key_parts,
+    quantity_of,
+    table_of,
+)
 from epicyclic.case.gear_tables import SharedGears
-from epicyclic.case.messages import dotted, key_parts
 from epicyclic.case.tables.elements import ELEMENT_CHECKS
-from epicyclic.case.train import TrainCase, form_of_set
 from epicyclic.case.train_tables import ListedSet, PlanetarySet
 
 _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {

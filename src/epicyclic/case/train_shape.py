@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from epicyclic.case.fields import did_you_mean, written
 from epicyclic.case.gearing import Gearing
-from epicyclic.case.messages import did_you_mean, written
 from epicyclic.case.train_tables import StateTable
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING

@@ -20,12 +20,16 @@ from epicyclic.case.fields import (
     choices_of,
     describe,
     dict_value,
+    did_you_mean,
+    dotted,
     locate,
+    misspelt,
     quantity_of,
+    sentence,
     table_of,
     tables_in,
+    written,
 )
-from epicyclic.case.messages import did_you_mean, dotted, misspelt, sentence, written
 from epicyclic.case.read import changed_at, control_problems, value_at
 from epicyclic.case.tables.base import Table
 from epicyclic.errors import Problem

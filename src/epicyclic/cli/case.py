@@ -54,20 +54,19 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
     from epicyclic.show.advice import band_texts, result_json
     from epicyclic.show.result_tables import remarks
     from epicyclic.show.terminal import result_tables
-    from epicyclic.study.bands.quick import quick_known
+    from epicyclic.study.bands.study import quick_known
     from epicyclic.study.solve import solve
 
     loaded = load_with(case, changes)
     if save is not None:
-        from epicyclic.show.files import check_result_output
+        from epicyclic.show.record import check_result_output
 
         check_result_output(save)
     with telling_contacts(loaded):
         result = solve(loaded)
     known = quick_known(loaded, result, brief=True)
     if save is not None:
-        from epicyclic.show.files import save_result
-        from epicyclic.show.record import record
+        from epicyclic.show.record import record, save_result
 
         save_result(record(loaded, result=result), save)
     show(

@@ -213,7 +213,7 @@ def _map(
 ) -> xr.Dataset:
     """The map that is named, or one of the case that is."""
     from epicyclic.cli.common import progress_bar
-    from epicyclic.show.files import open_map
+    from epicyclic.show.record import open_map
     from epicyclic.study.maps.duty import cycle_map
 
     if Path(map_or_case).suffix == _MAP_SUFFIX:

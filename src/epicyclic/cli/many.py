@@ -28,7 +28,7 @@ from epicyclic.errors import InputError, Problem
 if TYPE_CHECKING:
     from epicyclic.case.case import Case
     from epicyclic.study.maps.compute import MapPlan
-    from epicyclic.study.sweeps.plan import SweepPlan
+    from epicyclic.study.sweeps.run import SweepPlan
     from epicyclic.study.sweeps.runner import Journal, Plan, Rows, Runner
 
 
@@ -50,7 +50,7 @@ def refuse_options(options: Mapping[str, object]) -> None:
 
 def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None:
     """Write the map of `file` to `output`, with the temperature as a state if it is `heated`."""
-    from epicyclic.show.files import open_map
+    from epicyclic.show.record import open_map
     from epicyclic.study.maps.compute import with_temperature_state
     from epicyclic.study.maps.formats import write_map
     from epicyclic.study.maps.tables import map_case
@@ -125,8 +125,13 @@ def sweep(
     sweep goes on where it stopped when the same command is given again.
     """
     from epicyclic.study.sweeps.axes import columns_of
-    from epicyclic.study.sweeps.plan import make_plan, parse_links, parse_together, parse_vary
-    from epicyclic.study.sweeps.run import check_output
+    from epicyclic.study.sweeps.run import (
+        check_output,
+        make_plan,
+        parse_links,
+        parse_together,
+        parse_vary,
+    )
 
     loaded = load_with(case, changes)
     check_output(output)
@@ -203,7 +208,7 @@ def loss_map(
 
     FILE.nc is a map that is stored already: it is written in another format, and nothing computed.
     """
-    from epicyclic.show.files import is_stored
+    from epicyclic.show.record import is_stored
 
     if is_stored(case):
         refuse_options(
@@ -221,7 +226,7 @@ def loss_map(
         resolving_texts,
         states_left_out,
     )
-    from epicyclic.study.sweeps.plan import parse_vary
+    from epicyclic.study.sweeps.run import parse_vary
 
     loaded = load_with(case, changes)
     _check_given(values)
@@ -298,7 +303,7 @@ def check_values(values: Mapping[str, str | None]) -> None:
 def parse_axes(case: Case, values: Mapping[str, str | None]) -> dict[str, list[Any]]:
     """The values of speed, torque and temperature, as far as they are given."""
     from epicyclic.study.operating import AXES
-    from epicyclic.study.sweeps.plan import parse_vary
+    from epicyclic.study.sweeps.run import parse_vary
 
     texts = [f"{AXES[axis]}={text}" for axis, text in values.items() if text is not None]
     found = parse_vary(case, texts)

@@ -35,7 +35,7 @@ def merge(files: tuple[Path, ...], output: Path) -> None:
     from epicyclic.study.maps.duty import DutyPlan
     from epicyclic.study.measured.compare import ComparisonPlan
     from epicyclic.study.pocketing_table import TablePlan
-    from epicyclic.study.sweeps.plan import SweepPlan
+    from epicyclic.study.sweeps.run import SweepPlan
     from epicyclic.study.sweeps.runner import gather
 
     own: dict[Any, Callable[..., Write]] = {

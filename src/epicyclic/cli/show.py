@@ -43,7 +43,7 @@ def cases() -> None:
 def oils(name: str | None) -> None:
     """List the built-in oils, or show one with the source of every value."""
     from epicyclic import library
-    from epicyclic.case.messages import did_you_mean
+    from epicyclic.case.fields import did_you_mean
     from epicyclic.show.data_sheet import oil_sheet, oil_table
     from epicyclic.show.terminal import terminal
 
@@ -168,8 +168,7 @@ def plot(
 
 def _stored(source: str, changes: Sequence[str]) -> Stored:
     """What a file holds, or the record of a case."""
-    from epicyclic.show.files import is_stored, open_result
-    from epicyclic.show.record import record
+    from epicyclic.show.record import is_stored, open_result, record
 
     if not is_stored(source):
         return record(load_with(source, changes))

@@ -124,7 +124,7 @@ def _check_use(
 
 
 def _source(source: str, changes: tuple[str, ...]) -> Case | xr.Dataset:
-    from epicyclic.show.files import open_map
+    from epicyclic.show.record import open_map
 
     if Path(source).suffix == MAP_SUFFIX:
         return open_map(source)

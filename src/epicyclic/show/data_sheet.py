@@ -11,8 +11,7 @@ from rich.table import Column
 from rich.text import Text
 
 from epicyclic import library
-from epicyclic.case.case import Case
-from epicyclic.case.train import TrainCase
+from epicyclic.case.case import Case, TrainCase
 from epicyclic.gears.gear import HOUSING
 from epicyclic.oil.oil import GoldLaw, Oil
 from epicyclic.oil.properties import OilState, oil_state

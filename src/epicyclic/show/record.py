@@ -1,4 +1,4 @@
-"""A result with all that a report shows: every mesh, pocket and roller, shapes, inputs."""
+"""A result with all that a report shows, and the files that keep it."""
 
 from __future__ import annotations
 
@@ -7,14 +7,25 @@ import math
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+from pydantic_core import from_json
 
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
+from epicyclic.case.fields import one_line
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.files import check_place, whole_file
 from epicyclic.losses.planet_bearing import RollerBearing
+from epicyclic.netcdf_file import read_groups
 from epicyclic.result.result import Result, set_of
-from epicyclic.study.bands.quick import quick_dataset
+from epicyclic.result.stored import read_result
+from epicyclic.study.bands.study import quick_dataset
+from epicyclic.study.maps.tables import check_map
 from epicyclic.study.meshes import bearing_details, mesh_details
+from epicyclic.study.operating import AXES
 from epicyclic.study.pockets import pocket_details
 from epicyclic.study.shapes import gear_shapes, mesh_views
 from epicyclic.study.solve import solve
@@ -22,6 +33,9 @@ from epicyclic.units import known_text
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+# A result with all that a report shows: every mesh, pocket and roller, shapes, inputs.
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -208,3 +222,410 @@ def _numbers(result: Result) -> xr.Dataset:
             for item in result.numbers()
         }
     )
+
+
+# Files of results: one NetCDF file with a group for each field, readable without this package.
+
+
+# Checks of what a file holds, so that reports and plots can rely on it.
+
+
+RUN_AGAIN = (
+    "Write it again: epicyclic run CASE --save FILE.nc, or epicyclic map CASE ... -o FILE.nc."
+)
+MOST_TEETH = 5000
+LARGEST_VALUE = 1e12  # No number of a gear set is larger, in the units that users see.
+_ROUNDING = 1e-9
+_LIMITS = {
+    "total": (0.0, LARGEST_VALUE),
+    "torque_loss": (0.0, LARGEST_VALUE),
+    "efficiency": (-LARGEST_VALUE, 1.0 + _ROUNDING),
+}
+"""Limits of numbers that have others than these in a map or a sweep."""
+
+_MESH = ("mesh_position", "contact_line", "segment")
+_POCKET = ("tooth", "roll")
+_Needed = Mapping[tuple[str, ...], str]
+
+_NEEDED: dict[str, _Needed] = {
+    "meshes": {
+        _MESH[:1]: "roll_angle weight transmission_error mesh_stiffness",
+        _MESH[:2]: "pair_load",
+        _MESH: "path_position face_position line_load hertz_pressure sliding_speed film_ratio "
+        "friction_coefficient friction_power",
+    },
+    "gears": {
+        ("place",): "center_x center_y direction",
+        (): "reference_diameter base_diameter tip_diameter root_diameter outside_diameter",
+    },
+    "views": {
+        ("gear",): "center_x center_y direction operating_radius",
+        ("end",): "path_x path_y",
+        (): "pressure_angle",
+    },
+    "bearings": {
+        ("roller",): "azimuth",
+        ("row", "slice"): "axial_position",
+        ("row", "roller"): "load",
+        ("row", "roller", "slice"): "line_load pressure",
+    },
+    "pockets": {
+        _POCKET: "roll_angle volume",
+        (*_POCKET, "slice"): "pressure contact_gap_speed backlash_gap_speed",
+        (*_POCKET, "station"): "end_area contact_gap backlash_gap axial_speed",
+        ("mesh_position",): "period_angle instant_power",
+        ("slice",): "slice_position",
+        ("station",): "station_position",
+        (): "power",
+    },
+    "uncertainty": {
+        ("result",): "nominal mean standard_uncertainty expanded_uncertainty low high shortest_low "
+        "shortest_high",
+        ("input", "result"): "contribution",
+        ("sum", "driver"): "first_order",
+        ("result", "sample"): "value",
+        ("input",): "input_value input_uncertainty cut_off",
+    },
+}
+"""Numbers that plots read in each group, by their dimensions."""
+_ATTRIBUTES: dict[str, tuple[tuple[str, type], ...]] = {
+    "meshes": (("title", str), ("pitch_angle_deg", float)),
+    "gears": (("name", str),),
+    "uncertainty": (("title", str), ("grouping", str), ("left_out", str), ("remarks", str)),
+}
+_UNCERTAINTY_TEXTS = {
+    "result": ("result", "unit"),
+    "input": (
+        "input",
+        "input_unit",
+        "input_name",
+        "input_advice",
+        "distribution",
+        "distribution_source",
+    ),
+    "driver": ("driver",),
+    "sum": ("sum",),
+}
+"""Limits of uncertain inputs, by their dimension."""
+_MAY_LACK = {"meshes", "pockets", "uncertainty"}
+"""Groups with NaN where nothing touches, or no pocket is; but places are known everywhere."""
+_PLACES = {
+    "roll_angle",
+    "weight",
+    "path_position",
+    "face_position",
+    "slice_position",
+    "station_position",
+    "period_angle",
+}
+_MAP_NUMBERS = ("torque_loss", "total", "efficiency")
+_MAP_TEXTS = ("status", "message", "warnings")
+
+
+def field_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
+    """What plots would miss in one field of a result."""
+    group = path.partition("/")[0]
+    if group not in _NEEDED:
+        return  # of a later version
+    for dims, names in _NEEDED[group].items():
+        for variable in names.split():
+            yield from _number_problems(f"{path}/{variable}", data, variable, dims)
+            if group not in _MAY_LACK or variable in _PLACES:
+                yield from _value_problems(f"{path}/{variable}", data, variable)
+    yield from _label_problems(path, data)
+    for attribute, kind in _ATTRIBUTES.get(group, ()):
+        if not isinstance(data.attrs.get(attribute), kind):
+            yield Problem(f"{path}/{attribute}", "", "is missing.", RUN_AGAIN)
+    if group == "gears":
+        yield from _gear_problems(path, data)
+    if group == "uncertainty":
+        yield from _uncertainty_problems(path, data)
+
+
+def map_problems(data: xr.Dataset) -> Iterator[Problem]:
+    """What plots and reports would miss in a loss map."""
+    dims = data["torque_loss"].dims
+    for axis in AXES:
+        if axis == "temperature" and axis not in data.coords:
+            continue  # a train whose losses are all given has no oil
+        if axis not in dims:
+            yield Problem(axis, "", "is no axis of the map.", RUN_AGAIN)
+        else:
+            yield from _number_problems(axis, data, axis, (axis,))
+    for name in _MAP_NUMBERS:
+        yield from _number_problems(name, data, name, tuple(map(str, dims)))
+    for name in _MAP_TEXTS:
+        if name not in data or data[name].dtype.kind not in "OU":
+            yield Problem(name, "", "must be text for every point.", RUN_AGAIN)
+    yield from _label_problems("", data)
+
+
+def sweep_problems(data: xr.Dataset) -> Iterator[Problem]:
+    """What plots would miss in a sweep."""
+    dims = tuple(map(str, data["total"].dims))
+    for dim in dims:
+        if dim not in data.coords or data[dim].dtype.kind not in "fiuOU":
+            yield Problem(dim, "", "must be numbers or names.", RUN_AGAIN)
+    for name in ("total", "efficiency"):
+        yield from _number_problems(name, data, name, dims)
+    yield from _label_problems("", data)
+
+
+def _number_problems(
+    place: str, data: xr.Dataset, name: str, dims: tuple[str, ...]
+) -> Iterator[Problem]:
+    if name not in data.variables:
+        yield Problem(place, "", "is missing.", RUN_AGAIN)
+        return
+    array = data[name]
+    if array.dtype.kind != "f" or set(array.dims) != set(dims) or not array.size:
+        over = f"over {', '.join(dims)}" if dims else "alone"
+        yield Problem(place, "", f"must be numbers {over}.", RUN_AGAIN)
+        return
+    low, high = _LIMITS.get(name, (-LARGEST_VALUE, LARGEST_VALUE))
+    values = array.to_numpy()
+    if (values > high).any():
+        yield Problem(place, "", f"must not exceed {high:g}.", RUN_AGAIN)
+    if (values < low).any():
+        yield Problem(place, "", f"must not be below {low:g}.", RUN_AGAIN)
+
+
+def _value_problems(place: str, data: xr.Dataset, name: str) -> Iterator[Problem]:
+    """Where numbers are known everywhere; diameters and radii are lengths."""
+    if name not in data.variables or data[name].dtype.kind != "f":
+        return
+    values = data[name].to_numpy()
+    if np.isnan(values).any():
+        yield Problem(place, "", "must not lack values.", RUN_AGAIN)
+    if name.endswith(("diameter", "radius")) and (values <= 0).any():
+        yield Problem(place, "", "must be positive.", RUN_AGAIN)
+
+
+def _label_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
+    for name, array in data.variables.items():
+        labels = (array.attrs.get("long_name"), array.attrs.get("units"))
+        if array.dtype.kind == "f" and not all(isinstance(label, str) for label in labels):
+            yield Problem(f"{path}/{name}", "", "has no label or no unit.", RUN_AGAIN)
+
+
+def _gear_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
+    """Teeth are counted, and drawn one by one."""
+    teeth, internal = (data.attrs.get(name) for name in ("teeth", "internal"))
+    if internal not in (0, 1):
+        yield Problem(f"{path}/internal", str(internal), "must be 0 or 1.", RUN_AGAIN)
+    if not isinstance(teeth, int | np.integer) or not 1 <= teeth <= MOST_TEETH:
+        allowed = f"must be a whole number from 1 to {MOST_TEETH}."
+        yield Problem(f"{path}/teeth", str(teeth), allowed, RUN_AGAIN)
+    for name in ("x", "y"):
+        if name in data:
+            yield from _number_problems(f"{path}/{name}", data, name, ("point",))
+            yield from _value_problems(f"{path}/{name}", data, name)
+
+
+def _uncertainty_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
+    """Names are text, all that tables look for among them."""
+    for dim, names in _UNCERTAINTY_TEXTS.items():
+        for name in names:
+            if name not in data.variables or data[name].dims != (dim,):
+                yield Problem(f"{path}/{name}", "", f"is missing for every {dim}.", RUN_AGAIN)
+            elif data[name].dtype.kind not in "OU":
+                yield Problem(f"{path}/{name}", "", "must be text.", RUN_AGAIN)
+    known = data["result"].values if "result" in data.variables else ()
+    needed = {"total", "efficiency", "load_dependent", "load_independent"}
+    lacking = needed - set(map(str, known))
+    if lacking:
+        yield Problem(f"{path}/result", "", f"lacks {', '.join(sorted(lacking))}.", RUN_AGAIN)
+    if not isinstance(data.attrs.get("failed"), int | np.integer):
+        yield Problem(f"{path}/failed", "", "must be a number.", RUN_AGAIN)
+
+
+# Files of results: one NetCDF file with a group for each field, readable without this package.
+
+
+SUFFIX = ".nc"
+FORMAT = "epicyclic result"
+FORMAT_VERSION = 1
+
+
+def save_result(result: ResultRecord | Case, path: str | Path) -> None:
+    """Write a result with everything that reports and plots show, whole or not at all.
+
+    Parameters
+    ----------
+    result : ResultRecord, PlanetaryCase, GearPairCase or TrainCase
+        A case is solved first.
+    path : str or Path
+        A ``.nc`` file: NetCDF with groups, its own documentation.
+
+    Raises
+    ------
+    InputError
+        If there is no place for the file.
+    """
+    import xarray as xr
+
+    target = Path(path)
+    check_result_output(target)
+    kept = result if isinstance(result, ResultRecord) else record(result)
+    contents = kept.result
+    text = json.dumps(contents.to_dict(), allow_nan=False, ensure_ascii=False)
+    attributes = {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "title": contents.title,
+        "source": f"epicyclic {contents.versions.get('epicyclic', '')}",
+        "created": kept.created,
+        "conventions": "losses in W of the whole gear set, summed over planets; attribute result: "
+        "the result as JSON; attribute given: the case as it was given; groups: meshes, planet "
+        "bearing, shapes",
+        "result": text,
+        "given": json.dumps(kept.given),
+    }
+    tree = xr.DataTree.from_dict({"/": kept.numbers.assign_attrs(attributes), **kept.fields})
+    with whole_file(target) as temporary:
+        tree.to_netcdf(temporary, engine="netcdf4")
+
+
+def check_result_output(path: Path) -> None:
+    """Raise `InputError` unless a result can be written to `path`."""
+    if path.suffix != SUFFIX:
+        problem = Problem("FILE", str(path), f"must end in {SUFFIX}.", f"Name it {path.stem}.nc.")
+        raise InputError([problem], "the command")
+    check_place(path)
+
+
+def is_stored(name: str | Path) -> bool:
+    """True for the name of a stored result, map or sweep, False for that of a case."""
+    return Path(name).suffix.lower() == SUFFIX
+
+
+def is_sweep(data: xr.Dataset) -> bool:
+    """True for what a sweep makes, False for a loss map."""
+    return "torque_loss" not in data and {"total", "status"} <= set(data.data_vars)
+
+
+def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
+    """Read what `save_result`, `write_map`, 'epicyclic sweep' or 'epicyclic uncertainty' wrote.
+
+    Parameters
+    ----------
+    path : str or Path
+        A ``.nc`` file.
+
+    Returns
+    -------
+    ResultRecord or xarray.Dataset
+        A loss map is a dataset as `loss_map` returns it, a sweep as `sweep`, an uncertainty as
+        `uncertainty`.
+
+    Raises
+    ------
+    InputError
+        If it is no such file, is damaged, or holds too much.
+    """
+    source = Path(path)
+    try:
+        fields = read_groups(source)
+        root = fields.pop("")
+        if root.attrs.get("format") == FORMAT:
+            return _record_of(root, fields)
+        if "torque_loss" in root and "reference_shaft" in root.attrs:
+            raise_any(map_problems(root))
+            raise_any(_attribute_problems(root.attrs, "reference_shaft"))
+            check_map(root)
+            return root
+        if {"contribution", "nominal"} <= set(root.data_vars):
+            raise_any(field_problems("uncertainty/", root))
+            return root
+        if is_sweep(root):
+            raise_any(sweep_problems(root))
+            raise_any(_attribute_problems(root.attrs))
+            return root
+        _refuse("is neither a stored result nor a loss map nor an uncertainty nor a sweep.")
+    except InputError as error:
+        raise InputError(error.problems, str(source)) from None
+
+
+def open_map(path: str | Path) -> xr.Dataset:
+    """Read a loss map. Parameters and errors as for `open_result`."""
+    found = open_result(path)
+    if isinstance(found, ResultRecord):
+        problem = Problem("MAP", str(path), "is a stored result.", "Give a loss map.")
+        raise InputError([problem], "the command")
+    check_map(found, str(path))
+    return found
+
+
+def _refuse(what: str, remedy: str = RUN_AGAIN) -> NoReturn:
+    raise InputError([Problem("", "", f"the file {what}", remedy)])
+
+
+def _record_of(root: xr.Dataset, fields: dict[str, xr.Dataset]) -> ResultRecord:
+    version = root.attrs.get("format_version")
+    if version != FORMAT_VERSION:
+        _refuse(f"has the format version {version}; this program reads {FORMAT_VERSION}.")
+    raise_any(problem for path, data in fields.items() for problem in field_problems(path, data))
+    stated = dict(root.attrs)
+    problems: list[Problem] = []
+    try:
+        datetime.fromisoformat(stated.get("created", ""))
+    except (TypeError, ValueError) as error:
+        problems.append(_problem("created", f"Input should be a valid datetime, {error}"))
+    result: Result | None = None
+    content = _read_json(stated, "result", problems)
+    if content is not None:
+        result, found = read_result(content, _wrong_inputs)
+        problems += (_problem(".".join(filter(None, ("result", *it[:1]))), it[1]) for it in found)
+    given = _read_json(stated, "given", problems)
+    raise_any(problems)
+    assert result is not None
+    return ResultRecord(result, given, stated["created"], root.drop_attrs(deep=False), fields)
+
+
+def _problem(place: str, what: str) -> Problem:
+    return Problem(place, "", f"{one_line(what)}.", RUN_AGAIN)
+
+
+def _read_json(stated: Mapping[str, Any], name: str, problems: list[Problem]) -> Any:
+    """The table that an attribute holds as JSON text."""
+    if name not in stated:
+        problems.append(_problem(name, "Field required"))
+        return None
+    try:
+        found = from_json(str(stated[name]))
+    except ValueError as error:  # also if it is nested too deep
+        problems.append(_problem(name, f"Value error, {error}"))
+        return None
+    if isinstance(found, dict):
+        return found
+    problems.append(_problem(name, "Input should be a valid dictionary"))
+    return None
+
+
+def _attribute_problems(stated: Mapping[str, Any], *more: str) -> Iterator[Problem]:
+    """What reports would miss in the attributes of a map or sweep."""
+    for name in ("title", "source", *more):
+        if not isinstance(stated.get(name), str):
+            what = "Input should be a valid string" if name in stated else "Field required"
+            yield _problem(name, what)
+    problems: list[Problem] = []
+    case = _read_json(stated, "case", problems)
+    versions = _read_json(stated, "versions", problems)
+    yield from problems
+    if case is not None and (wrong := _wrong_inputs(case)):
+        yield _problem("case", f"Value error, {wrong}")
+    if versions is not None and not isinstance(versions.get("epicyclic"), str):
+        yield _problem("versions", "Value error, must name the version of epicyclic")
+
+
+def _wrong_inputs(inputs: Mapping[str, Any]) -> str:
+    """Why inputs are not those of a case with its operating point as text; empty if they are."""
+    if inputs.get("kind") not in ("planetary", "gear_pair", "train"):
+        return "must name the kind of the case"
+    operation = inputs.get("operation")
+    keys = [key.rpartition(".")[2] for key in AXES.values()]
+    if inputs["kind"] == "train":
+        keys = ["speed", "torque", "input", "output"]
+    if not isinstance(operation, dict) or not all(isinstance(operation.get(k), str) for k in keys):
+        return f"must state operation with {', '.join(keys)}"
+    return ""

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from epicyclic.case.case import Case
-from epicyclic.case.messages import sentence
+from epicyclic.case.fields import sentence
 from epicyclic.case.read import flattened
 from epicyclic.case.template import toml_value
 from epicyclic.errors import ConvergenceError

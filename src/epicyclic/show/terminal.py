@@ -14,7 +14,7 @@ from rich.padding import Padding
 from rich.table import Column, Table
 from rich.text import Text
 
-from epicyclic.case.messages import sentence
+from epicyclic.case.fields import sentence
 from epicyclic.losses.ranges import share_text
 from epicyclic.result.result import Result
 from epicyclic.show import page

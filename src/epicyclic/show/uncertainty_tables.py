@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from rich.console import RenderableType
 
-from epicyclic.case.messages import one_line
+from epicyclic.case.fields import one_line
 from epicyclic.result.result import in_words
 from epicyclic.show.advice import LIMITS, MOST, advice_texts, driver_name
 from epicyclic.show.page import (

@@ -135,8 +135,8 @@ class Result(plain.Result):
 
 def save(result: plain.Result, path: Path) -> None:
     """`Result.save`, of any result."""
-    from epicyclic.show.files import save_result
     from epicyclic.show.html import check_pdf, report_html, report_pdf
+    from epicyclic.show.record import save_result
 
     if path.suffix not in FILES:
         allowed = f"must end in {', '.join(FILES)}."

@@ -18,8 +18,7 @@ from epicyclic.build.models import (
     set_cases,
     standing_of,
 )
-from epicyclic.case.case import Case
-from epicyclic.case.train import TrainCase
+from epicyclic.case.case import Case, TrainCase
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.drag import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
 from epicyclic.losses.fitted import FittedOrSchlenk

@@ -8,10 +8,9 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
-from epicyclic.build.temperatures import oil_medium
+from epicyclic.build.machine import oil_medium
 from epicyclic.case.case import Case
-from epicyclic.case.fields import quantity_of
-from epicyclic.case.messages import refused, written
+from epicyclic.case.fields import quantity_of, refused, written
 from epicyclic.errors import ConvergenceError, InputError, one_problem
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.heat import COLDEST, HOTTEST

@@ -27,7 +27,7 @@ from epicyclic.oil.properties import MixtureState
 from epicyclic.result.result import origin
 from epicyclic.study.operating import AXES
 from epicyclic.study.pockets import mesh_duties
-from epicyclic.study.sweeps.plan import SweepPlan, make_plan
+from epicyclic.study.sweeps.run import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Plan, Progress, Row, Rows, Runner
 
 if TYPE_CHECKING:

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from epicyclic.build.machine import Built, build
 from epicyclic.build.result import assemble
-from epicyclic.case.case import Case
-from epicyclic.case.train import TrainCase
+from epicyclic.case.case import Case, TrainCase
 from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.errors import ConvergenceError, one_problem
 from epicyclic.losses.contact import MeshContact

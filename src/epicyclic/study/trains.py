@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from epicyclic.case.train import TrainCase
+from epicyclic.case.case import TrainCase
 from epicyclic.case.train_tables import StateTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import freedom, speeds_of

@@ -20,7 +20,7 @@ from epicyclic.build.gear_sets import roller_bearing
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.meshes import bearing_details
 from epicyclic.study.solve import solve
-from epicyclic.study.sweeps.plan import PointList
+from epicyclic.study.sweeps.run import PointList
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import CELSIUS, NUMBER, WATT, unit_text
 from epicyclic.validation.compare import published_figures

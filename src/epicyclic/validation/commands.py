@@ -198,7 +198,7 @@ def study(
     Each study NAME goes to NAME.nc, NAME.csv and a picture in the folder OUTPUT. An interrupted
     study goes on where it stopped, as a sweep does.
     """
-    from epicyclic.study.sweeps.plan import parse_vary
+    from epicyclic.study.sweeps.run import parse_vary
     from epicyclic.validation.pocketing import STUDIES, make_study
 
     loaded = load_with(case, changes)

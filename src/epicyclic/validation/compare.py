@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.bands.plan import nearby_at
-from epicyclic.study.bands.quick import quick_band
 from epicyclic.study.bands.samples import sample_summary
+from epicyclic.study.bands.study import quick_band
 from epicyclic.study.solve import solve
-from epicyclic.study.sweeps.plan import PointList
-from epicyclic.study.sweeps.run import as_tested, with_unloaded
+from epicyclic.study.sweeps.run import PointList, as_tested, with_unloaded
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.validation.compute import (
     FIGURES,

@@ -15,7 +15,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, build_case, read_case
-from epicyclic.case.messages import did_you_mean, refused, written
+from epicyclic.case.fields import did_you_mean, refused, written
 from epicyclic.case.read import plain
 from epicyclic.errors import Problem, Status, one_problem, raise_any
 from epicyclic.gears.cutting import mated_tools

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, Tag
 
-from epicyclic.case.messages import did_you_mean, millimetres, written
+from epicyclic.case.fields import did_you_mean, millimetres, written
 from epicyclic.case.tables.base import (
     VALUES_OR_ROWS,
     NamedMaterial,

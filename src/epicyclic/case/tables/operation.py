@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.messages import did_you_mean
+from epicyclic.case.fields import did_you_mean
 from epicyclic.case.tables.base import Condition, NamedOil, Table, broken_conditions, option
 from epicyclic.errors import Problem
 from epicyclic.units import (

@@ -18,21 +18,22 @@ from pydantic.fields import FieldInfo
 
 from epicyclic import library
 from epicyclic.case.base import FILE_KEYS
-from epicyclic.case.case import KINDS, Case, build_case, changed_tables
+from epicyclic.case.case import KINDS, Case, build_case, changed_tables, form_of_set
 from epicyclic.case.fields import (
     Named,
     choices_of,
     describe,
     dict_value,
+    dotted,
     entry_of,
     is_text,
+    key_parts,
     quantity_of,
     tables_in,
+    written,
 )
-from epicyclic.case.messages import dotted, key_parts, written
 from epicyclic.case.read import parse_value, read_file, value_at
 from epicyclic.case.template import case_text, toml_key, toml_value
-from epicyclic.case.train import form_of_set
 from epicyclic.case.train_tables import PlanetarySet
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.plugins.app.worker import Worker

@@ -25,7 +25,7 @@ def app(case: str, host: str, port: int, browser: bool) -> None:
         problem = Problem("app", "", "needs NiceGUI.", "Install it: pip install 'epicyclic[app]'.")
         raise InputError([problem], "the command")
     from epicyclic.plugins.app.case_form import opened
-    from epicyclic.plugins.app.serve import LOOPBACK, serve
+    from epicyclic.plugins.app.page import LOOPBACK, serve
 
     desk = opened(case)
     if host not in LOOPBACK:

@@ -38,7 +38,7 @@ from epicyclic.show.views import save
 from epicyclic.study.maps.compute import loss_map
 from epicyclic.study.operating import AXES, operating_line
 from epicyclic.study.solve import solve
-from epicyclic.study.sweeps.plan import parse_vary
+from epicyclic.study.sweeps.run import parse_vary
 
 # Work that follows what changes faster than it can be done.
 

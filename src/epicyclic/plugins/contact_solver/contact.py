@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from epicyclic.build.models import contact_modulus, solid_of
-from epicyclic.case.messages import key_parts
+from epicyclic.case.fields import key_parts
 from epicyclic.case.read import plain, read_file, value_at, with_value
 from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness, Table
 from epicyclic.case.tables.models import (

@@ -11,13 +11,12 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, read_case
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase, read_case
 from epicyclic.case.expand import expand
+from epicyclic.case.fields import one_line
 from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.messages import one_line
 from epicyclic.case.tables.base import Material
 from epicyclic.case.tables.elements import PlanetBearing, ShaftBearingTable
-from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import PairSet, PlanetarySet
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import whole_file

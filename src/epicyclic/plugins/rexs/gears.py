@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase
+from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
 from epicyclic.case.expand import expand
-from epicyclic.case.train import TrainCase
 from epicyclic.case.train_tables import PairSet
 from epicyclic.case.train_tables import PlanetarySet as PlanetaryTable
 from epicyclic.gears import mesh as geometry

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from epicyclic.case.messages import one_line
+from epicyclic.case.fields import one_line
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.units import Quantity
 

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.case.messages import one_line
+from epicyclic.case.fields import one_line
 from epicyclic.errors import EpicyclicError, Problem
 from epicyclic.study.maps.compute import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.study.maps.formats import Format

@@ -14,14 +14,13 @@ from matplotlib.figure import Figure
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.result.result import in_words, set_of
-from epicyclic.show.files import is_sweep
 from epicyclic.show.plots import loss_map, losses, mesh, sweep
 from epicyclic.show.plots.drawing import plot_gear_set, plot_teeth
 from epicyclic.show.plots.heat_network import plot_heat_network
 from epicyclic.show.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.show.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.show.plots.style import PANEL, TITLE_CHARACTERS, room_of, styled_figure
-from epicyclic.show.record import ResultRecord, sets_of
+from epicyclic.show.record import ResultRecord, is_sweep, sets_of
 from epicyclic.study.maps.tables import map_case, map_inputs
 from epicyclic.study.operating import operating_line
 from epicyclic.study.shapes import gear_shapes

@@ -17,7 +17,6 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from epicyclic.show.files import is_sweep
 from epicyclic.show.plots.loss_map import draw_lines
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
@@ -31,6 +30,7 @@ from epicyclic.show.plots.style import (
     title_of,
     write_beside,
 )
+from epicyclic.show.record import is_sweep
 from epicyclic.study.operating import operating_line
 from epicyclic.units import format_number, unit_text
 

@@ -14,15 +14,16 @@ from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import ConvergenceError
 from epicyclic.result.result import Result, versions
-from epicyclic.study.bands.nearby import (
+from epicyclic.study.bands.plan import (
     INPUT_POWER,
     Outputs,
+    SamplePlan,
+    check_samples,
     factors_of,
     known_values,
     outputs_of,
     without_table,
 )
-from epicyclic.study.bands.plan import SamplePlan, check_samples
 from epicyclic.study.bands.samples import probabilities, quantiles, sample_summary
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.runner import Progress, Runner

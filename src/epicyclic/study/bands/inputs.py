@@ -9,9 +9,8 @@ from typing import Any
 
 from epicyclic import library
 from epicyclic.case.base import CaseTable
-from epicyclic.case.fields import Parameter, known_keys, parameter_of, value_of
+from epicyclic.case.fields import Parameter, dotted, key_parts, known_keys, parameter_of, value_of
 from epicyclic.case.gear_tables import GearTable, tolerances_of
-from epicyclic.case.messages import dotted, key_parts
 from epicyclic.case.tables.operation import FACTOR_KEY
 from epicyclic.case.tables.uncertainty import (
     MODEL_FORM,

@@ -14,8 +14,14 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
 from epicyclic.errors import ConvergenceError, InputError, Problem
-from epicyclic.study.bands.nearby import Nearby, Outputs, outputs_of
-from epicyclic.study.bands.plan import check_samples, nearby_at, sampled_case
+from epicyclic.study.bands.plan import (
+    Nearby,
+    Outputs,
+    check_samples,
+    nearby_at,
+    outputs_of,
+    sampled_case,
+)
 from epicyclic.study.bands.samples import COVERAGE, fit_curves, index_values, make_samples
 from epicyclic.study.bands.study import (
     LABELS,

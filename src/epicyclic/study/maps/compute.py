@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.build.machine import build, layout_of
-from epicyclic.case.case import Case, PlanetaryCase
-from epicyclic.case.messages import did_you_mean, written
-from epicyclic.case.train import TrainCase
+from epicyclic.case.case import Case, PlanetaryCase, TrainCase
+from epicyclic.case.fields import did_you_mean, written
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import OIL
@@ -25,8 +24,7 @@ from epicyclic.study.maps.tables import Lookup, check_map, map_case, map_inputs
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
-from epicyclic.study.sweeps.plan import PointList, SweepPlan, make_plan
-from epicyclic.study.sweeps.run import by_keys, to_dataset
+from epicyclic.study.sweeps.run import PointList, SweepPlan, by_keys, make_plan, to_dataset
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
 from epicyclic.units import NEWTON_METRE, RPM, WATT, format_number, unit_text
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.messages import did_you_mean, refused, written
+from epicyclic.case.fields import did_you_mean, refused, written
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.study.maps.compute import (
     Deviation,

@@ -13,11 +13,9 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 from scipy.interpolate import PchipInterpolator
 
-from epicyclic.build.machine import build
-from epicyclic.build.temperatures import term_nodes
+from epicyclic.build.machine import build, term_nodes
 from epicyclic.case.case import Case
-from epicyclic.case.fields import quantity_of
-from epicyclic.case.messages import refused, written
+from epicyclic.case.fields import quantity_of, refused, written
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import OIL, joined_key
@@ -32,7 +30,7 @@ from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of
 from epicyclic.study.maps.tables import Lookup, driven_problem, loss_power
 from epicyclic.study.operating import AXES, STATE, axis_name
-from epicyclic.study.sweeps.plan import SweepPlan, make_plan
+from epicyclic.study.sweeps.run import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Progress
 from epicyclic.units import (
     CELSIUS,

@@ -34,8 +34,7 @@ from epicyclic.study.measured.table import (
     read_frame,
     read_grid,
 )
-from epicyclic.study.sweeps.plan import CasePlan, PointList
-from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, LoadDependent
+from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, CasePlan, LoadDependent, PointList
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
 
 if TYPE_CHECKING:

@@ -20,8 +20,14 @@ from epicyclic.losses.pocket_flow import NETWORK_MODELS
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTable, FlowTables
 from epicyclic.study.measured.table import LOAD_DEPENDENT, Measurements, parts_of
 from epicyclic.study.solve import pocket_flow_numbers
-from epicyclic.study.sweeps.plan import PointList
-from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, LoadDependent, as_tested, with_unloaded
+from epicyclic.study.sweeps.run import (
+    AS_TESTED,
+    COMPUTED,
+    LoadDependent,
+    PointList,
+    as_tested,
+    with_unloaded,
+)
 from epicyclic.study.sweeps.runner import HERE, Rows, Runner
 
 # Flows through pockets for cases next to each other, read between flows at fixed numbers.

@@ -22,6 +22,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.fields import (
     all_keys,
+    did_you_mean,
     field_at,
     is_array,
     is_continuous,
@@ -29,11 +30,15 @@ from epicyclic.case.fields import (
     is_text,
     is_whole_number,
     known_keys,
+    one_line,
+    path_of,
     quantity_of,
+    refused,
+    sentence,
     table_of,
     value_of,
+    written,
 )
-from epicyclic.case.messages import did_you_mean, one_line, path_of, refused, sentence, written
 from epicyclic.case.read import parse_value, plain, value_at
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import read_text, refuse

@@ -1,31 +1,473 @@
-"""`sweep`: rows of results as a dataset, and the files that keep it."""
+"""`sweep`: the cases of the full product, and the dataset that their results make."""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import math
+import re
+from abc import abstractmethod
+from collections import Counter, defaultdict
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.build.machine import layout_of
-from epicyclic.case.case import Case
-from epicyclic.errors import one_problem
+from epicyclic.case.base import FILE_KEYS
+from epicyclic.case.case import Case, TrainCase, build_case
+from epicyclic.case.fields import field_at, is_whole_number
+from epicyclic.case.read import parse_value, plain
+from epicyclic.errors import InputError, Problem, Status, one_problem, raise_any
 from epicyclic.files import check_place, whole_file
+from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
-from epicyclic.study.operating import AXES, axis_name
-from epicyclic.study.sweeps.axes import ROW, columns_of, unit_of
-from epicyclic.study.sweeps.plan import SweepPlan, make_plan
-from epicyclic.study.sweeps.runner import Progress, Rows, Runner
-from epicyclic.units import percent
+from epicyclic.study.operating import AXES, STATE_KEY, axis_name
+from epicyclic.study.solve import pocket_flow_numbers, solve
+from epicyclic.study.sweeps.axes import (
+    MOST_POINTS,
+    ROW,
+    Axis,
+    Point,
+    check_links,
+    columns_of,
+    keys_behind,
+    listed,
+    make_axis,
+    make_group,
+    make_rows,
+    too_many,
+    unit_of,
+)
+from epicyclic.study.sweeps.runner import Plan, Progress, Row, Rows, Runner
+from epicyclic.units import format_number, percent
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+
+# The cases of a sweep, and the tables of pocket flows that they have in common.
+
+
+# Tables of the flows through pockets that the points of a sweep have in common.
+
+
+_LIKE_SPEED = (
+    STATE_KEY,
+    AXES["speed"],
+    "operation.second_speed",
+    AXES["temperature"],
+    "surroundings.pressure",
+)
+"""Keys that change the number of a flow, but not its family."""
+_FEWEST = 8  # Values of these keys for which a table is made: few flows are solved as soon.
+_TORQUE = AXES["torque"]  # Only its sign matters to the pockets.
+
+
+def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = None) -> FlowTables:
+    """Tables for the points `indices`; none where that does not pay.
+
+    A table is made for all points of `plan` that read it, so that it is the same whichever of them
+    are done, and where.
+    """
+    bound = plan.case.numerics.pocket_interpolation
+    samples = {_flow(changes): changes for changes in _changes(plan, range(plan.size))}
+    alike = {tuple(changes.get(key) for key in _LIKE_SPEED) for changes in samples.values()}
+    if bound == 0 or len(alike) < _FEWEST:
+        return {}
+    wanted = set(map(_flow, _changes(plan, indices)))
+    asked: dict[FlowFamily, set[float]] = defaultdict(set)
+    read: set[FlowFamily] = set()
+    for flow, changes in samples.items():
+        try:
+            numbers = pocket_flow_numbers(plan.case.updated(changes))
+        except InputError:
+            continue  # the point reports it
+        for family, number in numbers:
+            asked[family].add(number)
+            if flow in wanted:
+                read.add(family)
+    many = {
+        family: numbers
+        for family, numbers in asked.items()
+        if family in read and len(numbers) >= _FEWEST
+    }
+    return make_tables(many, bound, threads)
+
+
+def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
+    """What the points change; those that cannot be made report it themselves."""
+    for index in indices:
+        with suppress(InputError):
+            yield plan.changes(index)
+
+
+def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Equal for points that differ in the magnitude of torque only."""
+    coasting = str(changes.get(_TORQUE, "")).lstrip().startswith("-")
+    return (coasting, *(str(value) for key, value in changes.items() if key != _TORQUE))
+
+
+# What a sweep varies: keys, their values, and the cases of the full product.
+
+_RANGE = re.compile(
+    r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
+)
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+
+_TRIED = 100  # Points at which links are tried before anything is computed.
+
+# Tables whose keys leave geometry alone: varied innermost, so that geometry is built once.
+_OPERATING_TABLES = (
+    "operation",
+    "lubricant",
+    "surroundings",
+    "models",
+    "contact_solver",
+    "losses",
+    "thermal",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class CasePlan(Plan):
+    """Cases to be solved: one case, and what each point changes in it."""
+
+    case: Case
+    # Tables of flows through pockets that points share, see `prepared`.
+    flow_tables: FlowTables = field(default_factory=dict, kw_only=True, repr=False)
+
+    @property
+    def source(self) -> str:
+        """The file of the case."""
+        return str(Path(self.case.source).absolute())
+
+    @abstractmethod
+    def changes(self, index: int) -> dict[str, Any]:
+        """The keys that point number `index` changes."""
+
+    def prepared(self, indices: Sequence[int], jobs: int | None) -> Self:
+        """With the tables of flows that the points `indices` read."""
+        return replace(self, flow_tables=flow_tables(self, indices, jobs))
+
+    def describe(self) -> dict[str, Any]:
+        """The case, and what is in the files that it names: it may change, their names do not."""
+        contents = [(self.case.folder / file).read_bytes() for file in _files(self.case)]
+        return {
+            "case": self.case.given(),
+            "files": [hashlib.sha256(content).hexdigest() for content in contents],
+        }
+
+    def _solve(self, index: int) -> Row:
+        """One case as a flat record."""
+        case = self.case.updated(self.changes(index))
+        result = solve(case, flow_tables=self.flow_tables)
+        if result.status is not Status.CONVERGED:
+            return Row(str(result.status), message=result.notes[0])
+        return Row(
+            status=str(result.status), warnings=" | ".join(result.warnings), numbers=result.values()
+        )
+
+
+def _files(case: Case) -> Iterator[str]:
+    """The files that a case names."""
+    tables: list[Any] = [case.models]
+    if isinstance(case, TrainCase):
+        tables += [table.models for table in case.sets.values() if hasattr(table, "models")]
+        tables += [table for _, _, table in case.elements]
+    for table in tables:
+        for key in FILE_KEYS:
+            file = getattr(table, key, None)
+            if file is not None:
+                yield file
+
+
+@dataclass(frozen=True, slots=True)
+class SweepPlan(CasePlan):
+    """A sweep: a case, its axes, and the keys that follow from others."""
+
+    kind: ClassVar[str] = "sweep"
+    axes: tuple[Axis, ...] = ()
+    links: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def again(cls, content: Mapping[str, Any], source: str) -> Self:
+        """The plan that `describe` described."""
+        case = build_case(content["case"], {}, source)
+        return cls(case, tuple(map(Axis.again, content["axes"])), content.get("links", {}))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of each axis."""
+        return tuple(len(axis.values) for axis in self.axes)
+
+    @property
+    def size(self) -> int:
+        """Number of cases."""
+        return int(np.prod(self.shape, dtype=int))
+
+    def point(self, index: int) -> Point:
+        """Case number `index`, counted with the last axis fastest."""
+        position = np.unravel_index(index, self.shape)
+        varied = {
+            part.key: part.values[i]
+            for axis, i in zip(self.axes, position, strict=True)
+            for part in axis.keys
+        }
+        return Point(self.case, varied, self.links)
+
+    def changes(self, index: int) -> dict[str, Any]:
+        """The keys that case number `index` changes; raises `InputError` if a link has no value."""
+        return self.point(index).followed()
+
+    def axes_behind(self, key: str) -> list[int]:
+        """Numbers of the axes that the linked `key` follows."""
+        behind = keys_behind(key, self.links)
+        return [
+            number
+            for number, axis in enumerate(self.axes)
+            if behind.intersection(part.key for part in axis.keys)
+        ]
+
+    def order(self) -> list[int]:
+        """Indices of all cases, those that share geometry next to each other."""
+        outer = {
+            number
+            for key in self.links
+            if not _is_operating(key)
+            for number in self.axes_behind(key)
+        }
+        inner = [
+            number not in outer and all(_is_operating(part.key) for part in axis.keys)
+            for number, axis in enumerate(self.axes)
+        ]
+        by_cost = sorted(range(len(self.axes)), key=lambda i: inner[i])
+        numbers = np.arange(self.size).reshape(self.shape)
+        return [int(index) for index in numbers.transpose(by_cost).ravel()]
+
+    def describe(self) -> dict[str, Any]:
+        """The case, the axes and the links."""
+        content = {**CasePlan.describe(self), "axes": [axis.describe() for axis in self.axes]}
+        return content | ({"links": dict(self.links)} if self.links else {})
+
+
+def _is_operating(key: str) -> bool:
+    return key.split(".")[0] in _OPERATING_TABLES
+
+
+@dataclass(frozen=True, slots=True)
+class PointList(CasePlan):
+    """Single points: a case and the keys that each point changes."""
+
+    kind: ClassVar[str] = "points"
+    points: tuple[Mapping[str, Any], ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return len(self.points)
+
+    def changes(self, index: int) -> dict[str, Any]:
+        """The keys that point number `index` changes."""
+        return dict(self.points[index])
+
+    def order(self) -> list[int]:
+        """Indices of all points, by geometry, then operation, then torque, as in a loss map."""
+        return sorted(range(self.size), key=self._place)
+
+    def describe(self) -> dict[str, Any]:
+        """The case and the points."""
+        return {**CasePlan.describe(self), "points": plain(self.points)}
+
+    def _place(self, index: int) -> tuple[list[str], list[str], str]:
+        torque = "operation.torque"
+        changes = {key: str(value) for key, value in sorted(self.points[index].items())}
+        inner = [key for key in changes if _is_operating(key)]
+        return (
+            [f"{key}={text}" for key, text in changes.items() if key not in inner],
+            [f"{key}={changes[key]}" for key in inner if key != torque],
+            changes.get(torque, ""),
+        )
+
+
+def make_plan(
+    case: Case,
+    # Dotted keys to their values, as a case file has them.
+    vary: Mapping[str, Iterable[Any]] | None = None,
+    *,
+    # Groups of keys whose values change together.
+    together: Iterable[Mapping[str, Iterable[Any]]] = (),
+    points: Mapping[str, Iterable[Any]] | None = None,  # The columns of a table of points.
+    links: Mapping[str, str] | None = None,  # Keys to expressions of others.
+) -> SweepPlan:
+    """Check what is to be varied.
+
+    Raises `InputError` for unknown or unsuitable keys, no values, values that cannot be read,
+    repeated ones, or links that have no value.
+    """
+    single = {str(key): listed(values) for key, values in (vary or {}).items()}
+    groups = [
+        {str(key): listed(values) for key, values in group.items()}
+        for group in (*together, *([] if points is None else [points]))
+    ]
+    sizes = [*map(len, single.values()), *(max(map(len, it.values()), default=0) for it in groups)]
+    if not sizes:
+        remedy = "Give at least one key and its values; --vary KEY=VALUES on the command line."
+        raise one_problem("vary", "", "is empty.", remedy, "the sweep")
+    if math.prod(sizes) > MOST_POINTS:  # not worth reading them
+        raise InputError([too_many("vary", math.prod(sizes))], "the sweep")
+    made = [make_axis(case, key, values) for key, values in single.items()]
+    rows = [] if points is None else [make_rows(case, groups.pop())]
+    made += [*(make_group(case, group) for group in groups), *rows]
+    axes = tuple(axis for axis, _ in made if axis is not None)
+    problems = [problem for _, found in made for problem in found]
+    problems += _repeated([*single, *(key for group in groups for key in group), *(points or {})])
+    linked = {str(key): str(text) for key, text in (links or {}).items()}
+    problems += check_links(case, linked, {part.key for axis in axes for part in axis.keys})
+    raise_any(problems, "the sweep")
+    plan = SweepPlan(case, axes, linked)
+    _check_first(plan)
+    return plan
+
+
+def _repeated(keys: Iterable[str]) -> list[Problem]:
+    counts = Counter(map(str, keys))
+    again = (key for key, count in counts.items() if count > 1)
+    return [Problem(key, "", "is varied twice.", "Name a key once.") for key in again]
+
+
+def _check_first(plan: SweepPlan) -> None:
+    """Raise `InputError` if links have no value at any of the first points."""
+    first: InputError | None = None
+    for index in range(min(plan.size, _TRIED) if plan.links else 0):
+        try:
+            plan.changes(index)
+        except InputError as error:
+            first = first or error
+        else:
+            return
+    if first is not None:
+        raise InputError(first.problems, "the sweep")
+
+
+def parse_vary(
+    case: Case, options: Sequence[str], name: str = "--vary", example: str = "operation.speed"
+) -> dict[str, list[Any]]:
+    """The options ``key=a,b,c`` and ``key=start:stop:count`` of a command line.
+
+    `name` is that of the options, `example` one of their keys that holds a speed.
+
+    A unit after the last value, or after the count, holds for all values without one. Raises
+    `InputError` if an option is not of that form.
+    """
+    problems = []
+    vary: dict[str, list[Any]] = {}
+    for option in options:
+        key, equals, text = option.partition("=")
+        key = key.strip()
+        if not equals or not text.strip():
+            problems.append(
+                Problem(
+                    name,
+                    f'"{option}"',
+                    "must be key=a,b,c or key=start:stop:count.",
+                    f'For example {name} "{example}=1000:4000:4 rpm".',
+                )
+            )
+            continue
+        if key in vary:
+            problems.append(
+                Problem(name, f'"{option}"', f"varies {key} again.", "Name a key once.")
+            )
+            continue
+        try:
+            vary[key] = list(_values(case, key, text))
+        except ValueError as error:
+            problems.append(
+                Problem(key, f'"{text}"', f"{error}.", "Write start:stop:count in one unit.")
+            )
+        size = math.prod(map(len, vary.values()))
+        if size > MOST_POINTS:
+            problems.append(too_many(name, size))
+            break
+    raise_any(problems, "the command")
+    return vary
+
+
+def parse_together(case: Case, options: Sequence[str]) -> list[dict[str, list[Any]]]:
+    """The options ``key=a,b; key=c,d`` of a command line. Errors as for `parse_vary`."""
+    example = "planet.count=3,4; operation.speed"
+    groups = ([part for part in option.split(";") if part.strip()] for option in options)
+    return [parse_vary(case, group, "--vary-together", example) for group in groups]
+
+
+def parse_links(options: Sequence[str]) -> dict[str, str]:
+    """The options ``key = expression`` of a command line.
+
+    Raises `InputError` if an option is not of that form, or names a key again.
+    """
+    links: dict[str, str] = {}
+    problems = []
+    for option in options:
+        key, equals, text = (part.strip() for part in option.partition("="))
+        if not equals or not key or not text:
+            example = 'For example --link "ring.teeth = sun.teeth + 2 * planet.teeth".'
+            problems.append(Problem("--link", f'"{option}"', "must be key = expression.", example))
+        elif key in links:
+            problems.append(Problem("--link", f'"{option}"', f"links {key} again.", "Keep one."))
+        links[key] = text
+    raise_any(problems, "the command")
+    return links
+
+
+def _values(case: Case, key: str, text: str) -> Iterator[Any]:
+    match = _RANGE.fullmatch(text)
+    if match is not None:
+        start, stop = _NUMBER.fullmatch(match["start"]), _NUMBER.fullmatch(match["stop"])
+        if start is None or stop is None:
+            raise ValueError("start and stop must be numbers")
+        count = int(match["count"])
+        if count < 1:
+            raise ValueError("the count must be 1 or more")
+        if count > MOST_POINTS:
+            raise ValueError(f"the count must be {MOST_POINTS} or less")
+        units = {unit for unit in (start[2], stop[2], (match["unit"] or "").strip()) if unit}
+        if len(units) > 1:
+            raise ValueError(f"the units {' and '.join(sorted(units))} differ")
+        unit = units.pop() if units else ""
+        field = field_at(case, key)
+        whole = field is not None and is_whole_number(field[0])
+        for number in np.linspace(float(start[1]), float(stop[1]), count):
+            if unit:
+                yield f"{format_number(float(number), 12)} {unit}"
+            elif whole and float(number).is_integer():
+                yield int(number)
+            else:
+                yield float(number)
+        return
+    items = [item.strip() for item in text.split(",") if item.strip()]
+    shared = _unit_of(items[-1]) if items else ""
+    for item in items:
+        yield parse_value(f"{item} {shared}" if shared and _is_bare(item) else item)
+
+
+def _is_bare(item: str) -> bool:
+    match = _NUMBER.fullmatch(item)
+    return match is not None and not match[2]
+
+
+def _unit_of(item: str) -> str:
+    match = _NUMBER.fullmatch(item)
+    return match[2] if match is not None else ""
+
+
+# `sweep`: rows of results as a dataset, and the files that keep it.
 
 
 # Rows of a sweep as an `xarray.Dataset`, and the files it is kept in.
