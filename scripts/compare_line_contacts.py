@@ -24,7 +24,7 @@ from epicyclic.case.read import parse_value
 from epicyclic.contact.fitted_models import regression_groups
 from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.kernels.mixed_ehl import sliding_friction
-from epicyclic.oil.properties import oil_state
+from epicyclic.oil.oil import oil_state
 from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
 
 LEVELS = {

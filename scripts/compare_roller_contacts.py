@@ -29,7 +29,7 @@ from epicyclic.losses.planet_bearing import (
     mixed_ehl_rolling_loss,
     roller_loads,
 )
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 
 PUBLISHED = {"40 degC": 236.0, "60 degC": 195.0, "90 degC": 181.0}
 """Oil inlet temperature: loss of one planet bearing, Talbot (2012), p. 70. [W]"""

@@ -10,7 +10,7 @@ from hypothesis import settings
 import epicyclic as ep
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.gears.mesh import Mesh
-from epicyclic.oil.properties import oil_state
+from epicyclic.oil.oil import oil_state
 
 settings.register_profile("epicyclic", derandomize=True, deadline=None, max_examples=60)
 settings.load_profile("epicyclic")

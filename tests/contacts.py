@@ -11,7 +11,7 @@ import pytest
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact, load_shape, mesh_contact
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 
 STEEL = 227.47e9
 """Equivalent modulus of two steel flanks. [Pa]"""

@@ -22,7 +22,7 @@ from epicyclic.machine.convection import (
     oil_heat_capacity,
     roller_conductance,
 )
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 from reference.heat_transfer import cylinder_in_air, room_convection
 
 AIR = air(333.15, 101325.0)

@@ -16,7 +16,7 @@ from epicyclic.case.gearing import outside_radius
 from epicyclic.cli.main import cli
 from epicyclic.library import lubrication_methods
 from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
-from epicyclic.oil.properties import mixture_state, oil_state
+from epicyclic.oil.oil import mixture_state, oil_state
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.plan import look_nearby
 from epicyclic.study.bands.study import quick_band

@@ -8,8 +8,7 @@ from itertools import pairwise
 import pytest
 
 from epicyclic import library
-from epicyclic.oil.oil import Oil
-from epicyclic.oil.properties import air_viscosity, mixture_state, oil_state
+from epicyclic.oil.oil import Oil, air_viscosity, mixture_state, oil_state
 
 ROUNDING = 1e-12  # relative; a few roundings of doubles
 CELSIUS = 273.15

@@ -7,8 +7,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.contact.line_contact import contacts_at
-from epicyclic.losses.friction import FRICTION_MODELS
-from epicyclic.losses.mixed_ehl import equally_rough, pairing_ratio
+from epicyclic.losses.friction import FRICTION_MODELS, equally_rough, pairing_ratio
 from epicyclic.losses.rolling import ROLLING_MODELS
 
 STEEL = 227.47e9

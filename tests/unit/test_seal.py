@@ -20,8 +20,7 @@ from epicyclic.machine.shaft_parts import (
     seal_loss,
     seal_losses,
 )
-from epicyclic.oil.oil import Oil
-from epicyclic.oil.properties import oil_state
+from epicyclic.oil.oil import Oil, oil_state
 from problems import only, problems_of
 
 RPM = math.pi / 30

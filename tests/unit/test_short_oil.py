@@ -7,7 +7,7 @@ from test_gear_sizes import SET
 from epicyclic import load_case, solve
 from epicyclic.case.case import case_schema
 from epicyclic.contact.fitted_models import builtin_model
-from epicyclic.oil.properties import oil_state
+from epicyclic.oil.oil import oil_state
 from problems import only, problems_of
 
 

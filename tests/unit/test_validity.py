@@ -10,7 +10,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.contact.line_contact import Flanks, InletOil, LineContacts
-from epicyclic.losses.mixed_ehl import TALBOT_GEAR_RANGES, beyond_data
+from epicyclic.losses.friction import TALBOT_GEAR_RANGES, beyond_data
 from epicyclic.losses.planet_bearing import NEEDLE_RANGES
 from epicyclic.losses.ranges import (
     ModelUse,

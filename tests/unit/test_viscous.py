@@ -14,7 +14,7 @@ from epicyclic.losses.drag import (
     reynolds_number,
     viscous_flags,
 )
-from epicyclic.oil.properties import MixtureState, mixture_state
+from epicyclic.oil.oil import MixtureState, mixture_state
 from reference.rotating_body import cylinder_power, laminar_disc_power, turbulent_disc_power
 
 RPM = math.pi / 30

@@ -21,7 +21,7 @@ from epicyclic.losses.pocket_tables import (
     scaled_figures,
 )
 from epicyclic.machine.pocket_flow import flow_family, flow_request
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 
 COARSE = {
     "numerics.pocket_slices": 4,

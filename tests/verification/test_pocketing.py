@@ -20,7 +20,7 @@ from epicyclic.kernels import pocket_stage as pocket_fluid
 from epicyclic.losses import pocket_flow as fluid
 from epicyclic.losses.pocket_flow import bounded_flow, pocket_flow, void_number
 from epicyclic.losses.pocket_geometry import pocket_geometry
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 
 AMBIENT = 101325.0
 RPM = math.pi / 30

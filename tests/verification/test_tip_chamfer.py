@@ -12,7 +12,7 @@ from scipy.integrate import quad
 import epicyclic as ep
 from epicyclic.losses.pocket_flow import pocket_flow
 from epicyclic.losses.pocket_geometry import pocket_geometry
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 
 SHARP = (None, None)
 """The default tools."""

@@ -35,8 +35,7 @@ from epicyclic.losses.shaft_bearing import (
 )
 from epicyclic.machine.element import Element
 from epicyclic.machine.shaft_parts import Seal, ShaftBearing, TableLoss
-from epicyclic.oil.oil import Oil
-from epicyclic.oil.properties import oil_state
+from epicyclic.oil.oil import Oil, oil_state
 
 _FORTY_CELSIUS = 313.15  # 40 degC in kelvin.
 

@@ -54,8 +54,7 @@ from epicyclic.machine.machine import GearSeat, Machine, Operation, ShaftLayout,
 from epicyclic.machine.planets import PlanetLoad
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import lossless_state, solve_machine
-from epicyclic.oil.oil import Oil
-from epicyclic.oil.properties import mixture_state, oil_state
+from epicyclic.oil.oil import Oil, mixture_state, oil_state
 from epicyclic.result.result import Layout, in_words
 
 # From the tables of a case to the model of its temperatures.

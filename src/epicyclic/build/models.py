@@ -38,12 +38,12 @@ from epicyclic.losses.fitted import FittedFriction, FittedOrGoksem, FittedOrSchl
 from epicyclic.losses.friction import (
     DRY_FRICTION,
     FRICTION_MODELS,
+    TALBOT_FLUID,
     FrictionMap,
     FrictionModel,
     FrictionSettings,
     friction_model,
 )
-from epicyclic.losses.mixed_ehl import TALBOT_FLUID
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
 from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
 from epicyclic.losses.pocket_tables import FlowTables

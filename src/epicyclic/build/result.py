@@ -30,7 +30,7 @@ from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.gear import HOUSING
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
-from epicyclic.losses.mixed_ehl import TALBOT_FLUID
+from epicyclic.losses.friction import TALBOT_FLUID
 from epicyclic.losses.ranges import SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY

@@ -17,7 +17,7 @@ from epicyclic.kernels.line_contact import (
     line_load_at_pressure,
     pan_hamrock_minimum_film,
 )
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 
 FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)

@@ -21,7 +21,7 @@ from epicyclic.contact.elastic_teeth import (
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
 from epicyclic.gears.mesh import Mesh
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 
 if TYPE_CHECKING:
     from epicyclic.losses.friction import FrictionModel

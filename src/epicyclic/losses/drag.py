@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
 # Load-independent losses of bearings and of bodies turning in the mixture of oil and air.

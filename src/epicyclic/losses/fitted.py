@@ -16,8 +16,7 @@ from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.interpolation import along_path, over_pressure
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.friction import FRICTION_MODELS, FrictionModel, NothingToSolve
-from epicyclic.losses.mixed_ehl import beyond_data
+from epicyclic.losses.friction import FRICTION_MODELS, FrictionModel, NothingToSolve, beyond_data
 from epicyclic.losses.ranges import (
     ModelUse,
     Range,
@@ -27,7 +26,7 @@ from epicyclic.losses.ranges import (
     check_contacts,
 )
 from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 from epicyclic.units import (
     GIGAPASCAL,
     METRE_PER_SECOND,

@@ -21,16 +21,18 @@ A new one is a function with an entry in `FRICTION_MODELS`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact.fitted_models import regression_groups
+from epicyclic import library
+from epicyclic.contact.fitted_models import OilModel, read_oil_model, regression_groups
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
 from epicyclic.kernels.line_contact import (
@@ -40,14 +42,6 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.kernels.mixed_ehl import sliding_friction_at
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.mixed_ehl import (
-    REGRESSION_SOURCE,
-    TALBOT_FLUID,
-    TALBOT_GEAR_RANGES,
-    equally_rough,
-    held_in_table,
-    pairing_ratio,
-)
 from epicyclic.losses.ranges import (
     OF_THIS_PACKAGE,
     Formula,
@@ -57,6 +51,7 @@ from epicyclic.losses.ranges import (
     held_in_range,
 )
 from epicyclic.units import (
+    CELSIUS,
     GIGAPASCAL,
     METRE_PER_SECOND,
     MICROMETRE,
@@ -64,13 +59,176 @@ from epicyclic.units import (
     MILLIPASCAL_SECOND,
     NEWTON_PER_MM,
     NUMBER,
+    PER_GIGAPASCAL,
     Quantity,
 )
 
-# What a friction model is, and quantities that several of them use.
+# The groups of Talbot's gear regressions, and flanks of unequal roughness in them.
+
+
+# The dimensionless groups of Talbot's gear regressions, kept in the range they were made in.
+#
+# Powers and exponentials of a regression run away outside its data: at a fifth of the lowest
+# simulated Hertz pressure Eq. 5.8 gives coefficients of friction above 1, and with pressure,
+# radius, roughness and viscosity each a factor of two outside Table 5.1, Eq. 5.10 gives rolling
+# losses a million times the power passed on. The conditions are therefore held at the limits of
+# Table 5.1, and the pressure, along which the formulas go on smoothly, at half the lowest and twice
+# the highest. Beyond a held load or speed, rolling losses go on as `beyond_data` says. Every use
+# outside Table 5.1 is flagged.
 
 
 FloatArray = NDArray[np.float64]
+
+TALBOT_FLUID = RegressionFluid(
+    "talbot-2012", "the automatic transmission fluid of Talbot (2012), atf-talbot-2012"
+)
+
+REGRESSION_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012)"
+_SOURCE = "Talbot (2012), Table 5.1"
+_FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 degC"
+_PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SOURCE)
+_HELD_PRESSURE = replace(_PRESSURE, low=0.25, high=5.0)
+"""Where the pressure is held: lightly loaded teeth of the very tests lie below Table 5.1."""
+_RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SOURCE)
+_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SOURCE)
+VISCOSITY_RANGE = Range(
+    "dynamic_viscosity", "dynamic viscosity", 4.9, 48.0, MILLIPASCAL_SECOND, _FLUID_SOURCE
+)
+"""Viscosities of the simulations: the fluid is that of `atf-talbot-2012`, Tables 3.1 and 5.1."""
+PRESSURE_VISCOSITY_RANGE = Range(
+    "pressure_viscosity",
+    "pressure-viscosity coefficient",
+    10.6,
+    16.5,
+    PER_GIGAPASCAL,
+    f"{_FLUID_SOURCE}, calibrated",
+)
+"""As calibrated for that fluid. The regressions contain exp(G) and are the most sensitive to it."""
+_ROUGHNESS = Range("roughness", "rms roughness", 0.1, 0.7, MICROMETRE, _SOURCE)
+
+TALBOT_GEAR_RANGES = (
+    Range("temperature", "oil temperature", 25.0, 100.0, CELSIUS, _SOURCE),
+    VISCOSITY_RANGE,
+    PRESSURE_VISCOSITY_RANGE,
+    _RADIUS,
+    _ROUGHNESS,
+    _PRESSURE,
+    _SPEED,
+    Range("slide_to_roll_ratio", "slide-to-roll ratio", 0.025, 1.0, NUMBER, _SOURCE),
+)
+"""Ranges of the 33,600 simulations behind Eq. 5.8 and 5.10."""
+
+
+_HELD = {
+    item.name: item.limits()
+    for item in (
+        _RADIUS,
+        _HELD_PRESSURE,
+        _SPEED,
+        VISCOSITY_RANGE,
+        PRESSURE_VISCOSITY_RANGE,
+        replace(_ROUGHNESS, name="roughness1"),
+        replace(_ROUGHNESS, name="roughness2"),
+    )
+}
+
+
+Limits = Mapping[str, tuple[float | None, float | None]]
+_OIL = (VISCOSITY_RANGE.name, PRESSURE_VISCOSITY_RANGE.name)
+
+
+@lru_cache(maxsize=2)  # friction and rolling of a mesh ask for the same one
+def held_in_table(contact: LineContacts, *, oil_held: bool = True) -> LineContacts:
+    """The contacts with their conditions held in Table 5.1, but for the slip. Theory (F5).
+
+    Without `oil_held` viscosity and pressure-viscosity stay as they are: the formula goes on.
+    """
+    return contact.held(_HELD if oil_held else without_oil(_HELD))
+
+
+def without_oil(limits: Limits) -> Limits:
+    """Limits of conditions but for those of the oil."""
+    return {name: pair for name, pair in limits.items() if name not in _OIL}
+
+
+def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:
+    """Rolling loss over that of the same contacts with conditions `held`. Theory (R5). [1]
+
+    Below the held load the loss falls with the load, so that it vanishes with it; above, it is
+    that of the held load. Beyond the held speed the rolling force is that of the held speed.
+    """
+    return np.minimum(1.0, contact.line_load / held.line_load) * (
+        contact.rolling_speed / held.rolling_speed
+    )
+
+
+# The published regressions for flanks of unequal roughness.
+#
+# They know the composite roughness only, which hardly falls when one of two rough flanks is
+# polished; but a polished flank keeps the ridges of the other from meeting any. The regression is
+# therefore taken where both flanks are as rough as the rougher one, and from there the solver of
+# this package tells what the smoother flank changes, by its fit to contacts of the same oil.
+
+SIMULATED = "atf-talbot-2012"  # The oil of the regressions, whose contacts were simulated.
+
+
+def equally_rough(contact: LineContacts) -> LineContacts:
+    """The contacts with both surfaces as rough as the rougher one."""
+    rougher = np.maximum(*contact.roughness) + np.zeros(contact.radius.shape)
+    return contact.changed(roughness1=rougher, roughness2=rougher)
+
+
+def pairing_ratio(
+    quantity: str,  # ``"friction"`` or ``"rolling_loss"``.
+    contact: LineContacts,  # n of them.
+) -> FloatArray:
+    """A quantity over what it is with both surfaces as rough as the rougher one. Theory (O13). [1]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from epicyclic.contact.line_contact import contacts_at
+    >>> given = dict(
+    ...     slide_to_roll_ratio=0.3, rolling_speed=10.0, radius=0.01, hertz_pressure=1e9,
+    ...     roughness1=0.4e-6, roughness2=0.4e-6, dynamic_viscosity=6e-3, pressure_viscosity=11e-9,
+    ... )
+    >>> arrays = {name: np.array([value]) for name, value in given.items()}
+    >>> pairing_ratio("friction", contacts_at(**arrays, equivalent_modulus=2.3e11))
+    array([1.])
+    """
+    model = _simulated()
+    return model.value(quantity, contact) / model.value(quantity, equally_rough(contact))
+
+
+@lru_cache(maxsize=1)
+def _simulated() -> OilModel:
+    file = library.oil_model_file(SIMULATED)
+    assert file is not None
+    return read_oil_model(file)
+
+
+# Friction models of gear flanks: the general form, the published formulas, those of the user.
+#
+# =================  ============  ===========================================================
+# name               kind          source
+# =================  ============  ===========================================================
+# mixed-ehl          local         Talbot (2012), Eq. 5.8: regression of mixed-EHL simulations
+# mixed-ehl+pairing  local         as above, for flanks of unequal roughness: solver of this package
+# xu-2007            local         Xu, Kahraman, Anderson, Maddock (2007): regression, full film
+# benedict-kelley    local         Benedict and Kelley (1961)
+# matsumoto          local         Matsumoto and Morikawa (2014): film share
+# doleschel          local         Doleschel (2002): film share
+# schlenk            mean          Schlenk (1994), as in ISO/TR 14179-2
+# niemann-winter     mean          Michaelis (1987), as in Niemann and Winter
+# constant           mean          the case
+# table              local         the case
+# =================  ============  ===========================================================
+#
+# A new one is a function with an entry in `FRICTION_MODELS`.
+
+
+# What a friction model is, and quantities that several of them use.
+
 
 DRY_FRICTION = 0.10
 """Coefficient of dry contact in the film-share models, unless the case has its own. [1]"""
@@ -189,11 +347,13 @@ def mean_roughness_ra(contact: MeshContact) -> float:
 # Friction formulas fitted to gear and disc tests, each held within the range of its tests.
 
 _NIEMANN = "Niemann and Winter, Maschinenelemente II"
-_SPEED = Range("pitch_line_speed", "pitch-line speed", 1.0, 50.0, METRE_PER_SECOND, _NIEMANN)
+_FORMULA_SPEED = Range(
+    "pitch_line_speed", "pitch-line speed", 1.0, 50.0, METRE_PER_SECOND, _NIEMANN
+)
 _LOAD = Range(
     "specific_load", "load for each face width", 150.0, None, NEWTON_PER_MM, _NIEMANN, specific_load
 )
-_PRESSURE = Range(
+_FORMULA_PRESSURE = Range(
     "pitch_point_pressure",
     "Hertz pressure at the pitch point",
     None,
@@ -202,7 +362,7 @@ _PRESSURE = Range(
     OF_THIS_PACKAGE,
     pitch_point_pressure,
 )
-_ROUGHNESS = Range(
+_FORMULA_ROUGHNESS = Range(
     "mean_ra", "mean roughness Ra", None, 5.0, MICROMETRE, OF_THIS_PACKAGE, mean_roughness_ra
 )
 
@@ -214,10 +374,10 @@ def _mean_group(contact: MeshContact, load_factor: float = 1.0) -> float:
     """
     radius, e_eq = pitch_point_radius(contact), contact.flanks.equivalent_modulus
     load = held_in_range(load_factor * specific_load(contact), _LOAD)
-    pressure = held_in_range(hertz_pressure(load, radius, e_eq), _PRESSURE)
+    pressure = held_in_range(hertz_pressure(load, radius, e_eq), _FORMULA_PRESSURE)
     load = line_load_at_pressure(pressure, radius, e_eq)
     speed = contact.pitch_line_speed
-    sum_speed = pitch_point_sum_speed(contact) * held_in_range(speed, _SPEED) / speed
+    sum_speed = pitch_point_sum_speed(contact) * held_in_range(speed, _FORMULA_SPEED) / speed
     group = load * 1e-3 / (sum_speed * radius * 1e3)
     viscosity = contact.oil.dynamic_viscosity * 1e3
     return float(group**0.2 * viscosity**-0.05)
@@ -240,7 +400,7 @@ def schlenk(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
     Theory (F15). N/mm, m/s, mm, mPa s, um; Ra the mean of both flanks. The standard's text was not
     read; the constants agree in several independent implementations. [1]
     """
-    rough = (held_in_range(mean_roughness_ra(contact), _ROUGHNESS) * 1e6) ** 0.25
+    rough = (held_in_range(mean_roughness_ra(contact), _FORMULA_ROUGHNESS) * 1e6) ** 0.25
     mu = 0.048 * _mean_group(contact) * rough * contact.oil.lubricant_factor
     return np.full_like(contact.line_load, mu)
 
@@ -273,9 +433,9 @@ def _niemann_winter_ranges(settings: FrictionSettings) -> tuple[Range, ...]:
     """Those of the tests, for the load with its factor."""
     factor = settings.load_factor
     return (
-        _SPEED,
+        _FORMULA_SPEED,
         replace(_LOAD, of=lambda contact: factor * specific_load(contact)),
-        replace(_PRESSURE, of=lambda contact: factor**0.5 * pitch_point_pressure(contact)),
+        replace(_FORMULA_PRESSURE, of=lambda contact: factor**0.5 * pitch_point_pressure(contact)),
         _RELATIVE_ROUGHNESS,
     )
 
@@ -374,7 +534,7 @@ def paired_friction(contact: LineContacts, settings: FrictionSettings) -> FloatA
 _SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Table 5.1"
 _REGRESSION_PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SUCCESSOR)
 _REGRESSION_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SUCCESSOR)
-_RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
+_FORMULA_RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
 _VISCOSITY_SOURCE = "none is in print; a 75W-90 gear oil from 150 to 25 degC"
 _VISCOSITY = Range(
     "dynamic_viscosity", "dynamic viscosity", 5.0, 180.0, MILLIPASCAL_SECOND, _VISCOSITY_SOURCE
@@ -412,7 +572,7 @@ def xu_2007(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
         * slip**b3
         * held_in_range(contact.rolling_speed, _REGRESSION_SPEED) ** b6
         * viscosity**b7
-        * held_in_range(contact.radius, _RADIUS) ** b8
+        * held_in_range(contact.radius, _FORMULA_RADIUS) ** b8
     )
     return mu
 
@@ -516,7 +676,7 @@ FRICTION_MODELS = {
             ranges=(
                 _REGRESSION_PRESSURE,
                 _REGRESSION_SPEED,
-                _RADIUS,
+                _FORMULA_RADIUS,
                 _VISCOSITY,
                 _REGRESSION_ROUGHNESS,
                 Range(
@@ -561,7 +721,7 @@ FRICTION_MODELS = {
             source="L. Schlenk, Diss. TU Muenchen (1994); ISO/TR 14179-2:2001",
             reliability=_SCATTER_UNKNOWN,
             function=schlenk,
-            ranges=(_SPEED, _LOAD, _PRESSURE, _ROUGHNESS),
+            ranges=(_FORMULA_SPEED, _LOAD, _FORMULA_PRESSURE, _FORMULA_ROUGHNESS),
             takes_oil_temperature=True,
         ),
         FrictionFormula(

@@ -20,7 +20,7 @@ from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
 from epicyclic.losses.drag import SPEED_PARAMETER, speed_parameter
 from epicyclic.losses.fitted import FittedRolling, RaceContacts, weight_of_fit
-from epicyclic.losses.mixed_ehl import (
+from epicyclic.losses.friction import (
     PRESSURE_VISCOSITY_RANGE,
     VISCOSITY_RANGE,
     beyond_data,
@@ -36,7 +36,7 @@ from epicyclic.losses.ranges import (
     check_ranges,
     held_in_range,
 )
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,

@@ -15,7 +15,7 @@ from epicyclic.kernels.pocket_flow import periodic_flow
 from epicyclic.kernels.pocket_network import periodic_network
 from epicyclic.kernels.pocket_stage import GAMMA, choking_table
 from epicyclic.losses.pocket_geometry import Cells, PocketGeometry, pocket_cells
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 
 # Flow of an incompressible mixture through the pockets of a mesh, free of speed and density.
 #

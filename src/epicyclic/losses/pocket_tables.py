@@ -31,7 +31,7 @@ from epicyclic.losses.pocket_flow import (
 )
 from epicyclic.losses.pocket_geometry import PocketGeometry, pocket_geometry
 from epicyclic.netcdf_file import read_attribute
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
 
 # Flows through the pockets of a mesh that differ in one number only.

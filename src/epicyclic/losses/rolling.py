@@ -14,7 +14,7 @@ from epicyclic.contact.line_contact import LineContacts
 from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
 from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
-from epicyclic.losses.mixed_ehl import (
+from epicyclic.losses.friction import (
     REGRESSION_SOURCE,
     TALBOT_FLUID,
     TALBOT_GEAR_RANGES,

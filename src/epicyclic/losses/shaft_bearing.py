@@ -20,7 +20,7 @@ from epicyclic.losses.drag import (
 )
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 from epicyclic.units import NUMBER
 
 # Friction of catalogue bearings on shafts after Palmgren, Harris, or a table of the user.

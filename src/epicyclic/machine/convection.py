@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.oil.properties import AIR_GAS_CONSTANT, MixtureState, air_viscosity
+from epicyclic.oil.oil import AIR_GAS_CONSTANT, MixtureState, air_viscosity
 
 # How oil, air and their mixture conduct and store heat.
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import BearingLoad
-from epicyclic.oil.oil import Oil
-from epicyclic.oil.properties import (
+from epicyclic.oil.oil import (
     MixtureState,
+    Oil,
     OilState,
     extrapolated_viscosity,
     mixture_state,

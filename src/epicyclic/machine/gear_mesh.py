@@ -46,7 +46,7 @@ from epicyclic.machine.pocket_flow import (
     pocketing_method,
     stored_note,
 )
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 from epicyclic.units import (
     CELSIUS,
     DEGREE,

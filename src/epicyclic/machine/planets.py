@@ -43,7 +43,7 @@ from epicyclic.losses.ranges import Flags, SomeFlags
 from epicyclic.machine.convection import roller_conductance
 from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Loss, figure
 from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
-from epicyclic.oil.properties import OilState
+from epicyclic.oil.oil import OilState
 from epicyclic.units import (
     CELSIUS,
     DEGREE,

@@ -28,7 +28,7 @@ from epicyclic.losses.pocket_tables import (
 )
 from epicyclic.losses.ranges import Range
 from epicyclic.machine.element import Fluids
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 from epicyclic.units import BAR, DEGREE, METRE_PER_SECOND, MILLIMETRE, WATT, format_number, percent
 
 if TYPE_CHECKING:

@@ -1,11 +1,16 @@
-"""An oil as data: what a file of the oil library or a table in a case states about it."""
+"""An oil as data, and its properties at a temperature."""
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
@@ -19,6 +24,9 @@ from epicyclic.units import (
     Temperature,
     as_stated,
 )
+
+# An oil as data: what a file of the oil library or a table in a case states about it.
+
 
 STEEPEST_DENSITY = -2.0
 """Oils lose 0.6 to 0.8 kg/m^3 for each kelvin; steeper lines may end below zero. [kg/(m^3 K)]"""
@@ -211,3 +219,177 @@ def _repeated(name: str, first: int, second: int, temperature: float) -> InitErr
 def _fault(place: tuple[str | int, ...], given: str, what: str, remedy: str) -> InitErrorDetails:
     error = PydanticCustomError("oil", "{what}", {"what": what, "remedy": remedy})
     return InitErrorDetails(type=error, loc=place, input=given)
+
+
+# Properties of an oil at temperature, and of its mixture with air.
+#
+# ==================== =========================================================================
+# property             source
+# ==================== =========================================================================
+# kinematic viscosity  ASTM D341: log log(nu + 0.7) linear in log T, nu in mm^2/s
+# density              linear in temperature
+# pressure-viscosity   Gold et al. (2001), or Roelands (1966): alpha = z (ln mu + 9.67)/1.96e8
+# air                  ideal gas; Sutherland's law for its viscosity
+# mixture density      by volume; mixture viscosity by mass (Cicchitti et al. 1960)
+# ==================== =========================================================================
+
+
+ROELANDS_PRESSURE = 1.96e8  # Pole pressure of Roelands' viscosity law. [Pa]
+ROELANDS_OFFSET = 9.67
+"""ln of Roelands' limiting viscosity 6.31e-5 Pa s, with its sign changed. [1]"""
+AIR_GAS_CONSTANT = 287.05  # Specific gas constant of dry air (ISO 2533). [J/(kg K)]
+SUTHERLAND_CONSTANT = 1.458e-6  # beta_s in mu = beta_s T^1.5/(T + S) (ISO 2533). [kg/(m s K^0.5)]
+SUTHERLAND_TEMPERATURE = 110.4  # S in Sutherland's law for air (ISO 2533). [K]
+D341_OFFSET = 0.7
+"""Constant added to the viscosity in mm^2/s; D341 adds further terms below 2 mm^2/s. [mm^2/s]"""
+D341_HIGHEST = 2e7  # Largest viscosity of D341. Colder oil, which hardly flows, keeps it. [mm^2/s]
+LARGEST_EXPONENT = 2.0
+"""10^(10^2) mm^2/s: far beyond what is held, and still a number that can be written."""
+MM2_PER_S = 1e-6  # 1 mm^2/s in m^2/s.
+DEFAULT_CONDUCTIVITY = 0.14
+"""Thermal conductivity of an oil that states none: typical of hydrocarbons. [W/(m K)]"""
+SLOPE_STEP = 0.5  # Temperature step of the slope of the viscosity. [K]
+
+
+@dataclass(frozen=True, slots=True)
+class OilState:
+    """Oil at one temperature and ambient pressure."""
+
+    temperature: float  # [K]
+    kinematic_viscosity: float  # [m^2/s]
+    density: float  # [kg/m^3]
+    dynamic_viscosity: float  # [Pa s]
+    pressure_viscosity: float  # alpha of d(ln mu)/dp at ambient pressure. [1/Pa]
+    thermoviscosity: float  # beta = -d(ln nu)/dT. [1/K]
+    thermal_conductivity: float  # [W/(m K)]
+    lubricant_factor: float  # X_L of ISO/TR 14179-2. [1]
+
+
+@dataclass(frozen=True, slots=True)
+class MixtureState:
+    """Mixture of oil and air around the gears."""
+
+    oil_fraction: float  # xi, by volume at ambient pressure. [1]
+    density: float  # [kg/m^3]
+    dynamic_viscosity: float  # [Pa s]
+
+    @property
+    def kinematic_viscosity(self) -> float:
+        """mu/rho. Theory (L10). [m^2/s]"""
+        return self.dynamic_viscosity / self.density
+
+
+@lru_cache(maxsize=256)
+def oil_state(oil: Oil, temperature: float) -> OilState:
+    """Properties of `oil` at `temperature` in kelvin. Theory (L3)."""
+    nu = _kinematic_viscosity(oil, temperature)
+    rho = _density(oil, temperature)
+    return OilState(
+        temperature=temperature,
+        kinematic_viscosity=nu,
+        density=rho,
+        dynamic_viscosity=rho * nu,
+        pressure_viscosity=_pressure_viscosity(oil, temperature, nu, rho * nu),
+        thermoviscosity=_thermoviscosity(oil, temperature),
+        thermal_conductivity=(
+            DEFAULT_CONDUCTIVITY
+            if oil.thermal_conductivity is None
+            else oil.thermal_conductivity.value
+        ),
+        lubricant_factor=oil.lubricant_factor.value,
+    )
+
+
+def mixture_state(oil: OilState, oil_fraction: float, pressure: float) -> MixtureState:
+    """Oil at `oil_fraction` by volume, the rest air at the oil's temperature and `pressure`.
+
+    Theory (L7), (L8). The rules reproduce the densities and viscosities printed in Talbot (2012),
+    p. 139, to the last digit: density by volume, viscosity weighted by mass (Cicchitti et al.
+    1960).
+    """
+    air_density = pressure / (AIR_GAS_CONSTANT * oil.temperature)
+    density = oil_fraction * oil.density + (1 - oil_fraction) * air_density
+    oil_mass_fraction = oil_fraction * oil.density / density
+    viscosity = oil_mass_fraction * oil.dynamic_viscosity + (1 - oil_mass_fraction) * air_viscosity(
+        oil.temperature
+    )
+    return MixtureState(oil_fraction, density, viscosity)
+
+
+def air_viscosity(temperature: float) -> float:
+    """Dynamic viscosity of air, Sutherland's law, 100 to 1900 K. ISO 2533. Theory (L9). [Pa s]"""
+    return SUTHERLAND_CONSTANT * math.pow(temperature, 1.5) / (temperature + SUTHERLAND_TEMPERATURE)
+
+
+def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
+    """`extrapolated_viscosity`, held at the largest one of D341. Theory (L1). [m^2/s]"""
+    return min(extrapolated_viscosity(oil, temperature), D341_HIGHEST * MM2_PER_S)
+
+
+def extrapolated_viscosity(oil: Oil, temperature: float) -> float:
+    """ASTM D341 between neighbouring points, and beyond the outermost two. Theory (L1). [m^2/s]"""
+    y = _piecewise_line(math.log10(temperature), *_viscosity_points(oil))
+    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
+
+
+@lru_cache(maxsize=64)
+def _viscosity_points(oil: Oil) -> tuple[list[float], list[float]]:
+    """Logarithm of the temperature, and ordinate of D341, of the points of an oil. Theory (L1)."""
+    points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
+    return (
+        [math.log10(point.temperature) for point in points],
+        [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points],
+    )
+
+
+def _thermoviscosity(oil: Oil, temperature: float) -> float:
+    """-d(ln nu)/dT by central difference. Theory (L6). [1/K]"""
+    colder = _kinematic_viscosity(oil, temperature - SLOPE_STEP)
+    warmer = _kinematic_viscosity(oil, temperature + SLOPE_STEP)
+    return math.log(colder / warmer) / (2 * SLOPE_STEP)
+
+
+def _density(oil: Oil, temperature: float) -> float:
+    """Density. Theory (L2). [kg/m^3]"""
+    points = sorted(oil.density, key=lambda point: point.temperature)
+    if len(points) == 1:
+        return points[0].value + oil.density_slope.value * (temperature - points[0].temperature)
+    return _piecewise_line(
+        temperature, [point.temperature for point in points], [point.value for point in points]
+    )
+
+
+def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> float:
+    """Pressure-viscosity coefficient. Theory (L4). [1/Pa]"""
+    law = oil.pressure_viscosity
+    if isinstance(law, GoldLaw):
+        return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9
+    # z, linear between the points of the law and constant beyond them: (L5)
+    index = float(np.interp(temperature, *_roelands_points(oil, law)))
+    return index * roelands_slope(mu)
+
+
+def roelands_slope(mu: float) -> float:
+    """alpha/z of Roelands' law, (ln mu + 9.67)/1.96e8 with mu in Pa s. Theory (L5). [1/Pa]"""
+    return (math.log(mu) + ROELANDS_OFFSET) / ROELANDS_PRESSURE
+
+
+@lru_cache(maxsize=64)
+def _roelands_points(oil: Oil, law: RoelandsLaw) -> tuple[list[float], list[float]]:
+    """Temperatures and indices z of the points of an oil. Theory (L5)."""
+    points = sorted(law.point, key=lambda point: point.temperature)
+    index = [
+        point.value
+        / roelands_slope(
+            _kinematic_viscosity(oil, point.temperature) * _density(oil, point.temperature)
+        )
+        for point in points
+    ]
+    return [point.temperature for point in points], index
+
+
+def _piecewise_line(x: float, xs: list[float], ys: list[float]) -> float:
+    """Straight lines through the points, the outermost ones continued beyond them."""
+    upper = min(max(1, bisect_left(xs, x)), len(xs) - 1)
+    slope = (ys[upper] - ys[upper - 1]) / (xs[upper] - xs[upper - 1])
+    return ys[upper] + slope * (x - xs[upper])

@@ -13,8 +13,7 @@ from rich.text import Text
 from epicyclic import library
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.gears.gear import HOUSING
-from epicyclic.oil.oil import GoldLaw, Oil
-from epicyclic.oil.properties import OilState, oil_state
+from epicyclic.oil.oil import GoldLaw, Oil, OilState, oil_state
 from epicyclic.show import page
 from epicyclic.show.page import MISSING, shown
 from epicyclic.show.terminal import as_on_page, plain_table, titled

@@ -12,7 +12,7 @@ from epicyclic.gears import measures
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.measures import FlankTolerances
 from epicyclic.gears.mesh import Mesh, recommended_backlash
-from epicyclic.oil.properties import OilState, oil_state
+from epicyclic.oil.oil import OilState, oil_state
 
 
 @dataclass(frozen=True, slots=True)

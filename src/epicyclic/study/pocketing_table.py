@@ -23,7 +23,7 @@ from epicyclic.losses.pocket_tables import (
     store,
 )
 from epicyclic.machine.pocket_flow import POCKETING_SOURCE, flow_request, pocketing_method
-from epicyclic.oil.properties import MixtureState
+from epicyclic.oil.oil import MixtureState
 from epicyclic.result.result import origin
 from epicyclic.study.operating import AXES
 from epicyclic.study.pockets import mesh_duties

@@ -25,7 +25,7 @@ from epicyclic.losses.pocket_flow import NETWORK_MODELS, PocketFlow
 from epicyclic.losses.pocket_tables import FLOW_NUMBERS, flow_figures
 from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.pocket_flow import flow_request, oil_in_mesh
-from epicyclic.oil.properties import mixture_state
+from epicyclic.oil.oil import mixture_state
 from epicyclic.result.result import origin
 from epicyclic.study.meshes import variable
 from epicyclic.study.pockets import mesh_duties

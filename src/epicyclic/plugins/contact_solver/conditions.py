@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
-from epicyclic.oil.properties import ROELANDS_OFFSET, ROELANDS_PRESSURE, OilState
+from epicyclic.oil.oil import ROELANDS_OFFSET, ROELANDS_PRESSURE, OilState
 from epicyclic.oil.rheology import (
     Carreau,
     LimitingStress,

@@ -35,8 +35,7 @@ from epicyclic.errors import InputError, Problem, Status
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges, range_left
 from epicyclic.machine.element import oil_flags
-from epicyclic.oil.oil import Conductivity, HeatCapacity
-from epicyclic.oil.properties import OilState, oil_state
+from epicyclic.oil.oil import Conductivity, HeatCapacity, OilState, oil_state
 from epicyclic.oil.rheology import DEFAULT, PRESETS
 from epicyclic.plugins.contact_solver.conditions import (
     DRY_SPEED,

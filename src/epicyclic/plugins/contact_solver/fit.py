@@ -26,7 +26,7 @@ from epicyclic.contact.fitted_models import (
 from epicyclic.contact.line_contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import write_file
-from epicyclic.oil.properties import oil_state
+from epicyclic.oil.oil import oil_state
 from epicyclic.plugins.contact_solver.campaign import (
     AXES,
     Campaign,

@@ -24,8 +24,7 @@ from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import HOUSING, Gear
 from epicyclic.machine.element import Figure
 from epicyclic.machine.shaft_parts import ShaftBearingFigures
-from epicyclic.oil.oil import Oil
-from epicyclic.oil.properties import oil_state
+from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.plugins.rexs.draft import DIGITS
 from epicyclic.plugins.rexs.files import Document, new_document, read_document
 from epicyclic.plugins.rexs.gears import planet_bearings
