@@ -18,8 +18,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from epicyclic.cache_folder import private_folder
-
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
 
@@ -53,6 +51,8 @@ _MISSING_CARET = re.compile(r"(?<=[^\W\d])(?=[+-]?[0-9])")
 def registry() -> UnitRegistry[float]:
     """The unit registry, built at first use (building it is most of the cost of pint)."""
     import pint
+
+    from epicyclic.cache_folder import private_folder  # needed where pint is
 
     ureg: UnitRegistry[float]
     try:

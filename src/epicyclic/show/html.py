@@ -24,12 +24,13 @@ from epicyclic.show.page import Drawings, Item, KeyFigure, Section, gallery
 from epicyclic.show.plots.catalogue import Stored, available
 from epicyclic.show.plots.loss_map import map_line
 from epicyclic.show.plots.sweep import sweep_line, thinned
-from epicyclic.show.record import ResultRecord, is_sweep
+from epicyclic.show.record import ResultRecord
 from epicyclic.show.result_page import result_sections
 from epicyclic.show.result_tables import key_figures
 from epicyclic.show.uncertainty_tables import band_figures, uncertainty_items
 from epicyclic.study.maps.tables import map_inputs
 from epicyclic.study.operating import operating_line
+from epicyclic.study.sweeps.run import is_sweep
 
 # Reports as one HTML file that needs nothing else: style, figures and script lie within it.
 

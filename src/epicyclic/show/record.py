@@ -499,11 +499,6 @@ def is_stored(name: str | Path) -> bool:
     return Path(name).suffix.lower() == SUFFIX
 
 
-def is_sweep(data: xr.Dataset) -> bool:
-    """True for what a sweep makes, False for a loss map."""
-    return "torque_loss" not in data and {"total", "status"} <= set(data.data_vars)
-
-
 def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
     """Read what `save_result`, `write_map`, 'epicyclic sweep' or 'epicyclic uncertainty' wrote.
 

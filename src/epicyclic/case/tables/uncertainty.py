@@ -30,7 +30,7 @@ from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, Number, Quantity, format_number
 
 if TYPE_CHECKING:
-    from epicyclic.case.base import CaseTable
+    from epicyclic.case.case import CaseTable
 
 
 Stated = str | Number

@@ -17,8 +17,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from epicyclic import library
-from epicyclic.case.base import FILE_KEYS
-from epicyclic.case.case import KINDS, Case, build_case, changed_tables, form_of_set
+from epicyclic.case.case import FILE_KEYS, KINDS, Case, build_case, changed_tables, form_of_set
 from epicyclic.case.fields import (
     Named,
     choices_of,

@@ -20,10 +20,11 @@ from epicyclic.show.plots.heat_network import plot_heat_network
 from epicyclic.show.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.show.plots.power_flow import SLIDE, plot_power_flow
 from epicyclic.show.plots.style import PANEL, TITLE_CHARACTERS, room_of, styled_figure
-from epicyclic.show.record import ResultRecord, is_sweep, sets_of
+from epicyclic.show.record import ResultRecord, sets_of
 from epicyclic.study.maps.tables import map_case, map_inputs
 from epicyclic.study.operating import operating_line
 from epicyclic.study.shapes import gear_shapes
+from epicyclic.study.sweeps.run import is_sweep
 
 Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4

@@ -30,8 +30,8 @@ from epicyclic.show.plots.style import (
     title_of,
     write_beside,
 )
-from epicyclic.show.record import is_sweep
 from epicyclic.study.operating import operating_line
+from epicyclic.study.sweeps.run import is_sweep
 from epicyclic.units import format_number, unit_text
 
 FloatArray = NDArray[np.float64]

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from epicyclic import library
-from epicyclic.case.base import CaseTable
+from epicyclic.case.case import CaseTable
 from epicyclic.case.fields import Parameter, dotted, key_parts, known_keys, parameter_of, value_of
 from epicyclic.case.gear_tables import GearTable, tolerances_of
 from epicyclic.case.tables.operation import FACTOR_KEY

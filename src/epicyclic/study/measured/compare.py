@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.case.base import CaseTable
-from epicyclic.case.case import Case, build_case
+from epicyclic.case.case import Case, CaseTable, build_case
 from epicyclic.case.fields import Parameter, no_start, parameter_of
 from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.study.measured.comparison import (

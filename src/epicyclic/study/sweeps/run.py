@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.build.machine import layout_of
-from epicyclic.case.base import FILE_KEYS
-from epicyclic.case.case import Case, TrainCase, build_case
+from epicyclic.case.case import FILE_KEYS, Case, TrainCase, build_case
 from epicyclic.case.fields import field_at, is_whole_number
 from epicyclic.case.read import parse_value, plain
 from epicyclic.errors import InputError, Problem, Status, one_problem, raise_any
@@ -741,3 +740,8 @@ def sweep(
     table = points if points is None or isinstance(points, Mapping) else columns_of(points)
     plan = make_plan(case, vary, together=together, points=table, links=links)
     return to_dataset(plan, runner.run(plan))
+
+
+def is_sweep(data: xr.Dataset) -> bool:
+    """True for what a sweep makes, False for a loss map."""
+    return "torque_loss" not in data and {"total", "status"} <= set(data.data_vars)
