@@ -29,6 +29,7 @@ from epicyclic.study.operating import AXES
 from epicyclic.study.pockets import pocket_details
 from epicyclic.study.shapes import gear_shapes, mesh_views
 from epicyclic.study.solve import solve
+from epicyclic.study.sweeps.run import is_sweep
 from epicyclic.units import known_text
 
 if TYPE_CHECKING:
