@@ -20,8 +20,7 @@ from epicyclic.errors import InputError
 from epicyclic.library import minimal_case
 from epicyclic.plugins.app import worker as tasks
 from epicyclic.plugins.app.case_form import Desk, Shelves, built_in, form_of, opened, received
-from epicyclic.plugins.app.guard import LARGEST_BODY, Guard
-from epicyclic.plugins.app.page import names_of
+from epicyclic.plugins.app.page import LARGEST_BODY, Guard, names_of
 from epicyclic.plugins.app.views import _values
 from epicyclic.plugins.app.worker import Ended, Latest, Worker, WorkError
 from epicyclic.study.operating import OPERATING

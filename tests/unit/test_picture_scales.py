@@ -15,9 +15,8 @@ import epicyclic as ep
 import listed_trains
 from epicyclic.cli.common import parse_size
 from epicyclic.result.result import of_gear
-from epicyclic.show.drawings import draw
 from epicyclic.show.page import Cell, Table
-from epicyclic.show.plots.catalogue import figure_of
+from epicyclic.show.plots.catalogue import draw, figure_of
 from epicyclic.show.plots.drawing import plot_gear_set
 from epicyclic.show.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
 from epicyclic.show.plots.losses import plot_loss_sum, plot_losses

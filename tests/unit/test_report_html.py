@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.show.drawings import draw
+from epicyclic.show.plots.catalogue import draw
 from epicyclic.show.plots.loss_map import map_at
 
 VOID = {"meta", "br", "link", "img", "col"}

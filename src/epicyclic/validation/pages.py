@@ -9,7 +9,6 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from epicyclic.result.result import versions
-from epicyclic.show.drawings import explorable, svg_text
 from epicyclic.show.html import page_html
 from epicyclic.show.page import (
     MISSING,
@@ -25,6 +24,7 @@ from epicyclic.show.page import (
     number,
     shown,
 )
+from epicyclic.show.plots.catalogue import explorable, svg_text
 from epicyclic.show.plots.style import styled_figure
 from epicyclic.show.terminal import number_table
 from epicyclic.units import percent, unit_text
