@@ -9,7 +9,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from epicyclic.gears.cutting import form_radius, tooth_outline
+from epicyclic.gears.cutting import (
+    RackTool,
+    ShaperTool,
+    Tool,
+    default_tool,
+    form_radius,
+    tooth_outline,
+)
 from epicyclic.gears.gear import (
     BasicRack,
     Gear,
@@ -17,7 +24,6 @@ from epicyclic.gears.gear import (
     half_angle_from_thickness,
     involute,
 )
-from epicyclic.gears.generation import RackTool, ShaperTool, Tool, default_tool
 from simulated_tools import MODULE, distance_to, gaps, shaper_polygon, turned
 
 ROUNDING_ERROR = 1e-12  # a few hundred roundings of doubles, relative

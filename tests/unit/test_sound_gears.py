@@ -8,9 +8,8 @@ import math
 import pytest
 
 from epicyclic.case.case import read_case
-from epicyclic.gears.cutting import form_radius, longest_involute
+from epicyclic.gears.cutting import RackTool, ShaperTool, form_radius, longest_involute
 from epicyclic.gears.gear import involute
-from epicyclic.gears.generation import RackTool, ShaperTool
 from problems import problems_of
 
 TALBOT, PAIR = "talbot-2012", "talbot-2012-pair"

@@ -12,7 +12,7 @@ import epicyclic as ep
 from asymmetric import gear_pair
 from epicyclic import library
 from epicyclic.cli.case import run
-from epicyclic.show.advice import advice_texts
+from epicyclic.show.uncertainty_tables import advice_texts
 from epicyclic.study.bands.advice import Known, known_of, limits_of, measurements_of, model_remarks
 from epicyclic.study.bands.inputs import remedy_for
 from epicyclic.study.bands.study import quick_dataset, quick_known

@@ -19,8 +19,8 @@ from epicyclic.contact.elastic_teeth import (
     mesh_compliance,
     tooth_plate,
 )
+from epicyclic.gears.cutting import default_tool
 from epicyclic.gears.flanks import FlankDeviations, MicroGeometry, Relief, Topography
-from epicyclic.gears.generation import default_tool
 from epicyclic.machine.solve import NEAR, STEEPEST
 
 STEEL = GearBody(206e9, 0.3)

@@ -13,9 +13,8 @@ from asymmetric import gear_pair
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.cli.uncertainty import uncertainty as command
 from epicyclic.errors import InputError
-from epicyclic.show.advice import LIMITS
 from epicyclic.show.html import report_html
-from epicyclic.show.uncertainty_tables import uncertainty_items
+from epicyclic.show.uncertainty_tables import LIMITS, uncertainty_items
 from epicyclic.study.bands.samples import fit_curves, index_values, make_samples
 from epicyclic.study.sweeps.run import write_dataset
 

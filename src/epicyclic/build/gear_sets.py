@@ -24,9 +24,8 @@ from epicyclic.case.tables.models import Numerics
 from epicyclic.case.tables.operation import LubricationTable
 from epicyclic.contact.elastic_teeth import GearBody, Rim
 from epicyclic.contact.line_contact import Flanks
-from epicyclic.gears.cutting import cutting_tool, fitted_tool
+from epicyclic.gears.cutting import Tool, cutting_tool, fitted_tool
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear
-from epicyclic.gears.generation import Tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.drag import Dipped
 from epicyclic.losses.fitted import FittedRolling

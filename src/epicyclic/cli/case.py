@@ -51,9 +51,9 @@ if TYPE_CHECKING:
 )
 def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
     """Compute the losses of a case and print them by component."""
-    from epicyclic.show.advice import band_texts, result_json
     from epicyclic.show.result_tables import remarks
     from epicyclic.show.terminal import result_tables
+    from epicyclic.show.uncertainty_tables import band_texts, result_json
     from epicyclic.study.bands.study import quick_known
     from epicyclic.study.solve import solve
 

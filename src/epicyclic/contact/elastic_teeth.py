@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
 from epicyclic.errors import ConvergenceError
-from epicyclic.gears.cutting import tooth_outline
+from epicyclic.gears.cutting import Tool, default_tool, tooth_outline
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
 from epicyclic.gears.gear import Gear
-from epicyclic.gears.generation import Tool, default_tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.contact_load import solve_all_positions
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width

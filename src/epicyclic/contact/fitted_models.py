@@ -21,9 +21,8 @@ from epicyclic import library
 from epicyclic.contact.line_contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, sealed, unsealed
-from epicyclic.kernels.eyring import eyring_means
 from epicyclic.kernels.interpolation import covariance_sums, covariances
-from epicyclic.kernels.line_contact import pan_hamrock_central_film
+from epicyclic.kernels.line_contact import eyring_means, pan_hamrock_central_film
 from epicyclic.kernels.mixed_ehl import (
     BLEND_HALF_WIDTH,
     FRICTION_BOUNDARY_LIMIT,

@@ -1,8 +1,9 @@
-"""Tooth outlines with the fillet that the generating tool leaves, and the tool of a gear."""
+"""Tools that generate gears, the tooth outlines that they leave, and the tool of a gear."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
@@ -10,24 +11,417 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.gears.gear import Gear
-from epicyclic.gears.generation import (
-    Cut,
-    RackTool,
-    ShaperTool,
-    Tool,
-    default_tool,
-    fit_tool,
-    zero_between,
-)
+from epicyclic.gears.gear import Gear, half_angle_from_profile_shift, inverse_involute, involute
 from epicyclic.gears.mesh import Mesh
+
+# Tools that generate gears: racks and pinion-type cutters, fitted to the gear that they cut.
+
+
+# Tools that generate gears: a rack for external gears, a pinion-type cutter for internal ones.
+
+
+@dataclass(frozen=True, slots=True)
+class RackTool:
+    """A rack, the tool of external gears.
+
+    The rounding is a circle in the normal section of the rack. The transverse section of the gear
+    is generated exactly by the transverse section of the rack, where that circle is an ellipse,
+    1/cos(beta) times as wide as high; the ellipse is used, not a circle in its place.
+
+    The tip line of the rack touches the root circle of the gear, and its teeth fill the spaces of
+    the gear on the reference circle: tool addendum and profile shift follow from the gear.
+    """
+
+    # rho_fP, rounding of the tool tip in the normal section; zero for a sharp corner. [m]
+    tip_radius: float
+
+    def __post_init__(self) -> None:
+        _check_rounding(self.tip_radius)
+
+
+@dataclass(frozen=True, slots=True)
+class ShaperTool:
+    """A pinion-type cutter, the tool of internal gears.
+
+    Its rounding is a circle in the transverse section, tangent to the tip circle and to the
+    involute flank of the cutter. The generating centre distance is the one without backlash, where
+    the cutter fills the spaces of the ring, and the tip radius of the cutter is the root radius of
+    the ring less that distance. Infeed of the cutter is taken as axial.
+    """
+
+    teeth: int  # z_0.
+    # Rounding of the tool tip in the transverse section; zero for a sharp corner. [m]
+    tip_radius: float
+    # x_0: new cutters have a positive one, reground ones a smaller. [1]
+    profile_shift_coefficient: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check_rounding(self.tip_radius)
+        if self.teeth < 1:
+            raise ValueError("a shaper cutter needs at least one tooth")
+
+
+Tool = RackTool | ShaperTool
+
+
+def _check_rounding(tip_radius: float) -> None:
+    if not (math.isfinite(tip_radius) and tip_radius >= 0.0):
+        raise ValueError("the rounding of a tool tip must be zero or positive")
+
+
+# Zero of a function of one argument.
+
+
+def zero_between(function: Callable[[float], float], low: float, high: float) -> float:
+    """Zero of `function` between two arguments, by the Illinois variant of regula falsi.
+
+    If rounding errors leave both ends with one sign, the end closer to zero is returned.
+    """
+    at_low, at_high = function(low), function(high)
+    if at_low * at_high >= 0.0:
+        return low if abs(at_low) < abs(at_high) else high
+    for _ in range(100):
+        middle = high - at_high * (high - low) / (at_high - at_low)
+        at_middle = function(middle)
+        if at_middle == 0.0 or abs(high - low) <= 1e-15 * abs(high) or middle in (low, high):
+            return middle
+        if at_middle * at_high < 0.0:
+            low, at_low = high, at_high
+        else:
+            at_low /= 2
+        high, at_high = middle, at_middle
+    return high
+
+
+# Gears as a tool generates them: the tool fitted to the gear, and the fillet that it leaves.
+#
+# External gears are cut by a rack (hob, grinding worm), internal ones by a pinion-type shaper
+# cutter. Tooth thickness, tip and root radius are the gear's own and are met exactly: the tool is
+# fitted to them. Fillets follow from the law of gearing: where tool and gear touch, the common
+# normal passes through the pitch point of the generating motion (Litvin and Fuentes, Gear Geometry
+# and Applied Theory, 2nd ed., chapter 6). Each fillet is therefore a closed form of one parameter,
+# the angle of that normal from the line of centres: zero at the root circle, the complement of the
+# generating pressure angle where the rounding of the tool goes over into its flank. Where no source
+# is named, the formula was derived from this law. Symbols follow ISO 21771; angles in radians,
+# lengths in metres.
+
+Floats = NDArray[np.float64]
+
+RACK_ROUNDING = 0.38  # rho_fP / m_n of the default rack. ISO 53, profile A. [1]
+
+SHAPER_ROUNDING = 0.2
+"""Tip rounding of the default shaper cutter over m_n: a usual value, not a standardised one. [1]"""
+
+SHAPER_TEETH_SHARE = 1 / 3  # Teeth of the default shaper cutter over those of the ring. [1]
+
+SHAPER_TEETH_LEAST = 10  # Fewest teeth of the default shaper cutter. [1]
+
+SHAPER_TEETH_SHARE_MOST = 2 / 3
+"""Most teeth of the default shaper cutter over those of the ring. [1]"""
+
+PATH_STEPS = 257
+"""Positions of the cutter at which its way out of the ring is checked: cuts of a few thousandths of
+a module may pass between two of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class RackCut:
+    """Generation of an external gear by a rack whose pitch line rolls on the reference circle."""
+
+    tool_radius: float  # Rounding used, normal section. [m]
+    # Angle of the contact normal from the line of centres where the rounding ends. [rad]
+    last_normal: float
+    # Radius of curvature of the involute there, negative beyond its start: undercut. [m]
+    last_curvature: float
+    pitch_radius: float  # r. [m]
+    stretch: float  # Width of the rounding over its height in the transverse section. [1]
+    # Centre of the rounding, below the pitch line and from the middle of the rack tooth. [m]
+    center_depth: float
+    center_offset: float
+
+    @property
+    def root_angle(self) -> float:
+        """Half the angle of the root arc. [rad]"""
+        return self.center_offset / self.pitch_radius
+
+    def fillet(self, normal: Floats) -> tuple[Floats, Floats]:
+        """Radius, and angle from the middle of the space, where the contact normal has `normal`.
+
+        Theory (G30).
+        """
+        sine, cosine, tangent = np.sin(normal), np.cos(normal), np.tan(normal)
+        # The point of the ellipse, about its centre, where its outward normal has this angle.
+        support = np.sqrt((self.stretch * sine) ** 2 + cosine**2)
+        aside = self.tool_radius * self.stretch**2 * sine / support
+        depth = self.center_depth + self.tool_radius * cosine / support
+        # The normal through this point meets the pitch point when the rack has moved so far.
+        x = depth * tangent
+        travel = x - self.center_offset - aside
+        y = self.pitch_radius - depth
+        return np.hypot(x, y), np.arctan2(x, y) - travel / self.pitch_radius
+
+
+@dataclass(frozen=True, slots=True)
+class ShaperCut:
+    """Generation of an internal gear by a pinion-type cutter."""
+
+    tool_radius: float  # As for `RackCut`.
+    last_normal: float  # As for `RackCut`.
+    last_curvature: float  # As for `RackCut`.
+    cutter_pitch_radius: float  # r_w of cutter and ring in the generating motion. [m]
+    pitch_radius: float  # r_w of cutter and ring in the generating motion. [m]
+    # Centre of the rounding about the cutter axis, from the middle of the cutter tooth. [m], [rad]
+    center_radius: float
+    center_angle: float
+
+    @property
+    def center_distance(self) -> float:
+        """a_0. [m]"""
+        return self.pitch_radius - self.cutter_pitch_radius
+
+    @property
+    def ratio(self) -> float:
+        """z_0/z: turn of the ring for one of the cutter. [1]"""
+        return self.cutter_pitch_radius / self.pitch_radius
+
+    @property
+    def root_angle(self) -> float:
+        """Half the angle of the root arc. [rad]"""
+        return self.center_angle * self.ratio
+
+    def fillet(self, normal: Floats) -> tuple[Floats, Floats]:
+        """Radius, and angle from the middle of the space, where the contact normal has `normal`.
+
+        Theory (G33).
+        """
+        sine, cosine = np.sin(normal), np.cos(normal)
+        # Distance from the pitch point, along the normal, of the circle that the centre of the
+        # rounding runs on; rounding errors may leave it a hair out of reach at the end.
+        reach = np.maximum(0.0, self.center_radius**2 - (self.cutter_pitch_radius * sine) ** 2)
+        distance = np.sqrt(reach) - self.cutter_pitch_radius * cosine
+        cutter_turn = (
+            np.arctan2(distance * sine, self.cutter_pitch_radius + distance * cosine)
+            - self.center_angle
+        )
+        x = (distance + self.tool_radius) * sine
+        y = self.pitch_radius + (distance + self.tool_radius) * cosine
+        return np.hypot(x, y), np.arctan2(x, y) - cutter_turn * self.ratio
+
+    def center_path(
+        self,
+        # Angle of that centre about the cutter axis, from the line of centres. [rad]
+        cutter_angle: Floats,
+    ) -> tuple[Floats, Floats]:
+        """Centre of the rounding as the ring sees it; angles from the middle of the space.
+
+        Theory (G35).
+        """
+        x = self.center_radius * np.sin(cutter_angle)
+        y = self.center_distance + self.center_radius * np.cos(cutter_angle)
+        ring_turn = (cutter_angle - self.center_angle) * self.ratio
+        return np.hypot(x, y), np.arctan2(x, y) - ring_turn
+
+
+Cut = RackCut | ShaperCut
+
+
+def default_tool(gear: Gear) -> Tool:
+    """Tool assumed where none is given.
+
+    External gears: a rack with rho_fP = 0.38 m_n, profile A of ISO 53. Internal gears: a shaper
+    cutter without profile shift and with a tip rounding of 0.2 m_n; its tooth count is the one
+    nearest to a third of the ring's that can generate the ring, between 10 and two thirds of it.
+    Raises `ValueError` if no such shaper cutter generates the ring.
+    """
+    module = gear.rack.normal_module
+    if not gear.internal:
+        return RackTool(RACK_ROUNDING * module)
+    _check_gear(gear)
+    wanted = gear.teeth * SHAPER_TEETH_SHARE
+    most = int(gear.teeth * SHAPER_TEETH_SHARE_MOST)
+    reasons = []
+    for teeth in sorted(range(SHAPER_TEETH_LEAST, most + 1), key=lambda z: abs(z - wanted)):
+        tool = ShaperTool(teeth, SHAPER_ROUNDING * module)
+        try:
+            fit_tool(gear, tool)
+        except ValueError as error:
+            reasons.append(str(error))
+        else:
+            return tool
+    if not reasons:
+        raise ValueError(
+            f"a shaper cutter of {SHAPER_TEETH_LEAST} teeth is too large for the {gear.name} of "
+            f"{gear.teeth} teeth"
+        )
+    raise ValueError(
+        f"no shaper cutter of {SHAPER_TEETH_LEAST} to {most} teeth without profile shift generates "
+        f"the {gear.name}: {reasons[0]}"
+    )
+
+
+def fit_tool(gear: Gear, tool: Tool) -> Cut:
+    """Fit the tool to the gear, and check that both can be.
+
+    Raises `ValueError` if the tool cannot generate this gear.
+    """
+    _check_gear(gear)
+    if gear.internal != isinstance(tool, ShaperTool):
+        kind = (
+            "an internal gear needs a shaper cutter"
+            if gear.internal
+            else "an external gear needs a rack"
+        )
+        raise ValueError(f"the {gear.name} cannot be cut with this tool: {kind}")
+    if isinstance(tool, RackTool):
+        return _rack_cut(gear, tool)
+    cut = _shaper_cut(gear, tool)
+    _check_trimming(gear, cut)
+    return cut
+
+
+def _check_gear(gear: Gear) -> None:
+    height = gear.tip_radius - gear.root_radius
+    if gear.root_radius <= 0.0 or (height >= 0.0 if gear.internal else height <= 0.0):
+        raise ValueError(f"root and tip circle of the {gear.name} leave no height for a tooth")
+    if gear.tip_half_angle < 0.0:
+        raise ValueError(f"the teeth of the {gear.name} are pointed before they reach the tip")
+
+
+def _rack_cut(gear: Gear, tool: RackTool) -> RackCut:
+    """The rack that cuts `gear`, its rounding reduced to what fits its tip. Theory (G28), (G29)."""
+    rack = gear.rack
+    alpha_t, alpha_n = rack.transverse_pressure_angle, rack.normal_pressure_angle
+    radius = gear.reference_radius
+    addendum = radius - gear.root_radius
+    # Half the width of the rack tooth on the pitch line: that of the space it fills.
+    half_width = math.pi * rack.transverse_module / 2 - radius * gear.thickness_half_angle
+    half_tip = half_width - addendum * math.tan(alpha_t)
+    if half_tip < 0.0:
+        raise ValueError(
+            f"the root circle of the {gear.name} lies deeper than a pointed rack tooth reaches"
+        )
+    stretch = 1 / math.cos(rack.helix_angle)
+    # How much of the tip land a rounding of unit radius takes on one side, transverse.
+    land = stretch / math.cos(alpha_n) - math.tan(alpha_t)
+    rounding = min(tool.tip_radius, half_tip / land)
+    flank_depth = addendum - rounding * (1 - math.sin(alpha_n))
+    return RackCut(
+        tool_radius=rounding,
+        last_normal=math.pi / 2 - alpha_t,
+        last_curvature=radius * math.sin(alpha_t) - flank_depth / math.sin(alpha_t),
+        pitch_radius=radius,
+        stretch=stretch,
+        center_depth=addendum - rounding,
+        center_offset=max(0.0, half_tip - rounding * land),
+    )
+
+
+def _shaper_cut(gear: Gear, tool: ShaperTool) -> ShaperCut:
+    """The cutter that cuts `gear`, its rounding reduced to what fits its tip. Theory (G32)."""
+    rack = gear.rack
+    difference = gear.teeth - tool.teeth
+    if difference <= 0:
+        raise ValueError(
+            f"a shaper cutter of {tool.teeth} teeth does not fit into the {gear.name} of "
+            f"{gear.teeth} teeth"
+        )
+    half_angle = half_angle_from_profile_shift(rack, tool.teeth, tool.profile_shift_coefficient)
+    alpha = _generating_pressure_angle(gear, tool.teeth, half_angle)
+    base = tool.teeth * rack.transverse_module / 2 * math.cos(rack.transverse_pressure_angle)
+    pitch = base / math.cos(alpha)
+    center_distance = pitch * difference / tool.teeth
+    action = center_distance * math.sin(alpha)
+    tip = gear.root_radius - center_distance
+    if tip <= base:
+        raise ValueError(
+            f"the root circle of the {gear.name} is not generated by a shaper cutter of "
+            f"{tool.teeth} teeth, whose tip would lie inside its base circle"
+        )
+    if gear.tip_radius <= gear.base_radius or gear.tip_involute_length < action:
+        raise ValueError(
+            f"the tip of the {gear.name} is not generated by a shaper cutter of {tool.teeth} teeth,"
+            f" whose involute would have to go on inside its base circle"
+        )
+    base_half_angle = half_angle + involute(rack.transverse_pressure_angle)
+
+    def center_angle(rounding: float) -> float:
+        curvature = math.sqrt(max(0.0, (tip - rounding) ** 2 - base**2))
+        roll = (rounding + curvature) / base
+        return base_half_angle - roll + math.atan(curvature / base)
+
+    if center_angle(0.0) < 0.0:
+        raise ValueError(
+            f"the root circle of the {gear.name} lies deeper than a pointed shaper cutter of "
+            f"{tool.teeth} teeth reaches"
+        )
+    # A rounding larger than this would touch the flank inside the base circle of the cutter.
+    rounding = min(tool.tip_radius, tip - base)
+    if center_angle(rounding) < 0.0:
+        rounding = zero_between(center_angle, 0.0, rounding)
+    flank_curvature = rounding + math.sqrt(max(0.0, (tip - rounding) ** 2 - base**2))
+    return ShaperCut(
+        tool_radius=rounding,
+        last_normal=math.pi / 2 - alpha,
+        last_curvature=action + flank_curvature,
+        cutter_pitch_radius=pitch,
+        pitch_radius=center_distance + pitch,
+        center_radius=tip - rounding,
+        center_angle=max(0.0, center_angle(rounding)),
+    )
+
+
+def _generating_pressure_angle(gear: Gear, cutter_teeth: int, cutter_half_angle: float) -> float:
+    """Operating pressure angle of cutter and ring without backlash. Theory (G31). [rad]
+
+    Both thicknesses on the pitch circles add up to the pitch there. ISO 21771 gives the same
+    relation in terms of profile shifts: inv(alpha_w) = inv(alpha) + 2 tan(alpha) sum(x)/sum(z).
+    """
+    space = math.pi - gear.teeth * gear.thickness_half_angle - cutter_teeth * cutter_half_angle
+    value = involute(gear.rack.transverse_pressure_angle) + space / (gear.teeth - cutter_teeth)
+    if value <= 0.0:
+        raise ValueError(
+            f"the spaces of the {gear.name} are too narrow for a shaper cutter of {cutter_teeth} "
+            f"teeth"
+        )
+    return inverse_involute(value)
+
+
+def _check_trimming(gear: Gear, cut: ShaperCut) -> None:
+    """Refuse a cutter whose tip cuts the flanks of the ring on its way out of the space.
+
+    The rounding is a disc inside the cutter tooth, and nowhere on its path may the disc reach over
+    flank or tip corner. The way in is the mirror image, with the other flank.
+    """
+    # Beyond this angle the disc has left the tip circle of the ring.
+    distance, center, outside = cut.center_distance, cut.center_radius, gear.tip_radius
+    outside -= cut.tool_radius
+    cosine = (outside**2 - distance**2 - center**2) / (2 * distance * center)
+    greatest = math.acos(min(1.0, max(-1.0, cosine)))
+    radius, angle = cut.center_path(np.linspace(0.0, greatest, PATH_STEPS))
+    # Involutes of one base circle are parallel: their distance, along the tangent of that circle,
+    # is the arc between them on it.
+    base = gear.base_radius
+    curvature = np.sqrt(np.maximum(0.0, radius**2 - base**2))
+    space = math.pi / gear.teeth - gear.half_angles_at(curvature)
+    to_flank = base * (space - angle)
+    on_flank = (radius >= base) & (curvature + to_flank >= gear.tip_involute_length)
+    corner = math.pi / gear.teeth - gear.half_angle_at(gear.tip_radius)
+    to_corner = np.abs(radius * np.exp(1j * (angle - corner)) - gear.tip_radius)
+    closest = float(np.min(np.where(on_flank, to_flank, to_corner)))
+    # At the end of the fillet the disc just touches; this much is rounding error.
+    if closest < cut.tool_radius - 1e-9 * gear.reference_radius:
+        raise ValueError(
+            f"the shaper cutter cuts away the tips of the {gear.name}: it needs fewer teeth"
+        )
+
+
+# Tooth outlines with the fillet that the generating tool leaves, and the tool of a gear.
+
 
 # Transverse tooth outlines with the root fillet that a generating tool leaves.
 #
 # Angles in radians, lengths in metres.
 
-
-Floats = NDArray[np.float64]
 
 POINTS_PER_SECTION = 32
 """Points on each section of an outline: chords leave the curve by 0.001 m_t at most, about."""

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.gears.cutting import tooth_outline
+from epicyclic.gears.cutting import Tool, tooth_outline
 from epicyclic.gears.gear import Gear, involute
-from epicyclic.gears.generation import Tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels import pocket_geometry as kernels
 from epicyclic.kernels.interpolation import monotone_cubic

@@ -20,7 +20,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.files import sealed, unsealed
-from epicyclic.gears.generation import Tool
+from epicyclic.gears.cutting import Tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.pocket_flow import (
     NETWORK_MODELS,

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.contact.temperatures import Solid
+from epicyclic.gears.cutting import Tool
 from epicyclic.gears.flanks import FlankDeviations
-from epicyclic.gears.generation import Tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import (
     LOAD_DISTRIBUTIONS,

@@ -14,9 +14,8 @@ from scipy.integrate import cumulative_trapezoid
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, one_problem
-from epicyclic.gears.cutting import tooth_outline
+from epicyclic.gears.cutting import Tool, tooth_outline
 from epicyclic.gears.gear import Gear
-from epicyclic.gears.generation import Tool
 from epicyclic.losses.pocket_flow import POCKETING_MODELS, PocketFlow, PocketModel, sound_speed
 from epicyclic.losses.pocket_geometry import (
     PocketGeometry,

@@ -13,9 +13,8 @@ from epicyclic.build.machine import build as build_machine
 from epicyclic.case.case import Case
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing, outside_radius
-from epicyclic.gears.cutting import tooth_outline
+from epicyclic.gears.cutting import Tool, tooth_outline
 from epicyclic.gears.gear import Gear
-from epicyclic.gears.generation import Tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import MeshDuty

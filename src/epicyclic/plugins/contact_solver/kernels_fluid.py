@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from epicyclic.kernels.compiling import kernel
-from epicyclic.kernels.eyring import two_slopes
+from epicyclic.kernels.line_contact import two_slopes
 
 BARUS, ROELANDS, TWO_SLOPE = 0, 1, 2  # Codes of the viscosity-pressure laws.
 NEWTONIAN, EYRING, LIMITING, CARREAU = 0, 1, 2, 3  # Codes of the laws of shear.
