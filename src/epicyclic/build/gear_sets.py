@@ -149,9 +149,6 @@ def _reference(case: SetCase, bodies: Mapping[str, str], order: Sequence[str]) -
     return Reference(bodies[loaded], levers[loaded], ends)
 
 
-# --- meshes ---------------------------------------------------------------------------------------
-
-
 def _meshes(
     key: str, case: SetCase, bodies: Mapping[str, str], flow_tables: FlowTables
 ) -> Iterator[GearMesh]:
@@ -209,9 +206,6 @@ def _tools(gearing: Gearing) -> dict[str, Tool]:
         name: fitted_tool(gearing.gear(name), table.tool_tip_radius, needed[name])
         for name, table in gearing.tables.items()
     }
-
-
-# --- planets --------------------------------------------------------------------------------------
 
 
 def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
@@ -333,9 +327,6 @@ def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:
         equivalent_modulus=contact_modulus(table.material, table.material),
         slices=numerics.bearing_slices,
     )
-
-
-# --- what turns in oil and air --------------------------------------------------------------------
 
 
 def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tuple[Disc, ...]]]:

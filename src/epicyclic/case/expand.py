@@ -39,9 +39,6 @@ def gearing_of(parts: Parts) -> Gearing | None:
     return None
 
 
-# --- sun, planets and ring; pinion and gear -------------------------------------------------------
-
-
 def _planetary(parts: Parts) -> Gearing:
     """Sun, planets and ring, with the torques of the members without losses. Theory (K3), (K4)."""
     sun, ring = parts["sun"].teeth, parts["ring"].teeth
@@ -142,9 +139,6 @@ def _given_pair_problems(parts: Parts) -> Iterator[Problem]:
     if "gears" not in parts and parts["gear"].internal and gear <= pinion:
         allowed = f"must exceed the {pinion} teeth of the pinion, which turns inside it."
         yield Problem("gear.teeth", str(gear), allowed, "Check both tooth numbers.")
-
-
-# --- listed gears and meshes ----------------------------------------------------------------------
 
 
 def _listed(parts: Parts, joined: set[str]) -> tuple[Gearing, list[Problem]]:

@@ -125,8 +125,6 @@ class Gearing:
         """The key of the number of planets."""
         return "planets" if self.listed else "planet.count"
 
-    # --- gears ------------------------------------------------------------------------------------
-
     def rack_keys(self, gear: str) -> dict[str, float]:
         """What is given of the basic rack of a gear: its own keys, else those that gears share."""
         found: dict[str, float] = {}
@@ -169,8 +167,6 @@ class Gearing:
     def in_order(self) -> list[str]:
         """All gears in the order of the meshes; the order of tables in a file has no meaning."""
         return list(dict.fromkeys(gear for mesh in self.meshes for gear in mesh.pair))
-
-    # --- meshes -----------------------------------------------------------------------------------
 
     def distance_key(self, mesh: GearPairing) -> str:
         """The key that states the centre distance of a mesh."""
@@ -278,8 +274,6 @@ class Gearing:
                 angle = math.atan2(ahead_y - y, ahead_x - x)
             directions[mesh.key] = angle if mesh.first == mesh.pair[0] else angle + math.pi
         return directions
-
-    # --- planets ----------------------------------------------------------------------------------
 
     @property
     def positions(self) -> dict[str, float]:
@@ -393,9 +387,6 @@ def outward_of(
     length = math.hypot(x, y)
     sine, cosine = math.sin(own.angle), math.cos(own.angle)
     return (x * sine - y * cosine) / length, (x * cosine + y * sine) / length
-
-
-# --- gears from their tables ----------------------------------------------------------------------
 
 
 def basic_rack(
