@@ -22,13 +22,13 @@ import epicyclic as ep
 from epicyclic.build.gear_sets import roller_bearing
 from epicyclic.build.machine import build
 from epicyclic.contact.fitted_models import read_oil_model
-from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import (
     RollerBearing,
     fitted_rolling_loss,
     mixed_ehl_rolling_loss,
     roller_loads,
 )
+from epicyclic.losses.rolling import FittedRolling
 from epicyclic.oil.oil import OilState
 
 PUBLISHED = {"40 degC": 236.0, "60 degC": 195.0, "90 degC": 181.0}

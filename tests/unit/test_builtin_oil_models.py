@@ -19,10 +19,9 @@ from epicyclic.build.models import resolve_models, standing_of
 from epicyclic.case.read import plain
 from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
 from epicyclic.contact.line_contact import contacts_at
-from epicyclic.losses.fitted import REACH, weight_of_fit
 from epicyclic.losses.friction import FRICTION_MODELS, SIMULATED
 from epicyclic.losses.reliability import RELIABILITY, reliability
-from epicyclic.losses.rolling import ROLLING_MODELS
+from epicyclic.losses.rolling import REACH, ROLLING_MODELS, weight_of_fit
 from epicyclic.plugins.contact_solver.fit import fit_quantity
 from epicyclic.show.result_tables import standing_items
 from epicyclic.show.terminal import result_tables

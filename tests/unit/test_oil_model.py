@@ -19,8 +19,8 @@ from epicyclic.errors import InputError
 from epicyclic.files import sealed
 from epicyclic.kernels import mixed_ehl
 from epicyclic.library import oil_model_file
-from epicyclic.losses.fitted import domain_ranges
 from epicyclic.losses.ranges import ModelUse, check_ranges
+from epicyclic.losses.rolling import domain_ranges
 from epicyclic.plugins.contact_solver.fit import fit_quantity
 
 STEEL = 227.47e9

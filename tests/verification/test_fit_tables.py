@@ -7,8 +7,8 @@ import pytest
 
 import asymmetric
 import epicyclic as ep
-from epicyclic.losses import fitted
-from epicyclic.losses.fitted import RaceContacts
+from epicyclic.losses import rolling as fitted
+from epicyclic.losses.rolling import RaceContacts
 
 CASES = {
     "asymmetric": (asymmetric.planetary, "iso-vg-100-pao"),

@@ -28,9 +28,9 @@ from epicyclic.gears.cutting import Tool, cutting_tool, fitted_tool
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.drag import Dipped
-from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.losses.rolling import FittedRolling
 from epicyclic.machine.disc import Disc, Jets, Sump, ThrustBearing
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import GearMesh

@@ -34,7 +34,6 @@ from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_mo
 from epicyclic.contact.temperatures import Solid
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus
-from epicyclic.losses.fitted import FittedFriction, FittedOrGoksem, FittedOrSchlenk, FittedRolling
 from epicyclic.losses.friction import (
     DRY_FRICTION,
     FRICTION_MODELS,
@@ -49,7 +48,14 @@ from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.losses.reliability import RELIABILITY, reliability
-from epicyclic.losses.rolling import ROLLING_MODELS, RollingModel
+from epicyclic.losses.rolling import (
+    ROLLING_MODELS,
+    FittedFriction,
+    FittedOrGoksem,
+    FittedOrSchlenk,
+    FittedRolling,
+    RollingModel,
+)
 from epicyclic.machine.element import Fluids, fluids_at
 from epicyclic.machine.gear_mesh import MeshModels
 from epicyclic.machine.gear_set import LossChoice

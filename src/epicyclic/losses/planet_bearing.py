@@ -19,7 +19,6 @@ from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
 from epicyclic.losses.drag import SPEED_PARAMETER, speed_parameter
-from epicyclic.losses.fitted import FittedRolling, RaceContacts, weight_of_fit
 from epicyclic.losses.friction import (
     PRESSURE_VISCOSITY_RANGE,
     VISCOSITY_RANGE,
@@ -36,6 +35,7 @@ from epicyclic.losses.ranges import (
     check_ranges,
     held_in_range,
 )
+from epicyclic.losses.rolling import FittedRolling, RaceContacts, weight_of_fit
 from epicyclic.oil.oil import OilState
 from epicyclic.units import (
     CELSIUS,

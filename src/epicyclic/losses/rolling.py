@@ -1,30 +1,63 @@
-"""Rolling loss per contact length of a mesh: a new model is a function with an entry below."""
+"""Rolling losses by formula, and friction and rolling from the fitted models of an oil."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Protocol
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact.fitted_models import regression_groups, rolling_scale
-from epicyclic.contact.line_contact import LineContacts
-from epicyclic.kernels.line_contact import goksem_hargreaves_force, martin_force
+from epicyclic.contact.fitted_models import OilModel, regression_groups, rolling_scale
+from epicyclic.contact.line_contact import CONDITIONS, Flanks, LineContacts
+from epicyclic.gears.mesh import Mesh
+from epicyclic.kernels.interpolation import along_path, over_pressure
+from epicyclic.kernels.line_contact import (
+    goksem_hargreaves_force,
+    line_load_at_pressure,
+    martin_force,
+)
 from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction import (
+    FRICTION_MODELS,
     REGRESSION_SOURCE,
     TALBOT_FLUID,
     TALBOT_GEAR_RANGES,
+    FrictionModel,
+    NothingToSolve,
     beyond_data,
     equally_rough,
     held_in_table,
     pairing_ratio,
 )
-from epicyclic.losses.ranges import Formula, LossModel, Range
-from epicyclic.units import NUMBER
+from epicyclic.losses.ranges import (
+    Formula,
+    LossModel,
+    ModelUse,
+    Range,
+    RangeFlags,
+    RegressionFluid,
+    ValidityFlag,
+    check_contacts,
+)
+from epicyclic.oil.oil import OilState
+from epicyclic.units import (
+    GIGAPASCAL,
+    METRE_PER_SECOND,
+    MICROMETRE,
+    MILLIMETRE,
+    MILLIPASCAL_SECOND,
+    NUMBER,
+    PER_GIGAPASCAL,
+    Quantity,
+)
+
+# Rolling loss per contact length of a mesh: a new model is a function with an entry below.
+
 
 FloatArray = NDArray[np.float64]
 
@@ -138,3 +171,340 @@ ROLLING_MODELS = {
         ),
     )
 }
+
+
+# Friction and rolling loss from the fitted models of an oil.
+
+
+# Fitted quantities of one mesh or bearing at one speed, as tables.
+#
+# With one oil and one pair of surfaces, radius, speeds and slip of a contact of flanks follow from
+# its place on the path of contact, those of a roller from its race. What is left is the pressure,
+# which changes from pass to pass and from one operating point to the next: a fit is evaluated once
+# for all of them.
+
+
+POINTS, PRESSURES = 48, 32
+"""Points on each side of the pitch point, and of the pressure: losses are off by some 1e-5."""
+RACE_PRESSURES = 64  # Points of the pressure at the race of a bearing.
+LEAST_SLIP = 0.01
+"""Slip at which points stop to crowd: fits change with the slip over its logarithm above. [1]"""
+NO_SLIP = 1e-300  # Sliding speed at the pitch point, of which only the sign counts. [m/s]
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """How the flanks of a mesh move at places on its path. Attributes as of `MeshContact`."""
+
+    mesh: Mesh
+    speed1: float
+    speed2: float
+
+    def speeds(self, path: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """u_r and u_s. [m/s]"""
+        curvature1 = self.mesh.pitch_point + path
+        one, two = self.speed1 * curvature1, self.speed2 * self.mesh.curvature2(curvature1)
+        return (one + two) / 2, one - two
+
+    def radius(self, path: FloatArray) -> FloatArray:
+        """Equivalent radius. [m]"""
+        return self.mesh.equivalent_radius(self.mesh.pitch_point + path)
+
+
+@dataclass(frozen=True, eq=False)
+class RaceContacts(LineContacts):
+    """Rollers on the races of a bearing: under the same loads on each of them, without slip."""
+
+    oil: OilState
+    races: tuple[float, ...]  # Equivalent radius at each. [m]
+    speed: float  # Rolling speed. [m/s]
+
+
+def tabulated(
+    model: OilModel,
+    quantity: str,  # As for its `value`.
+    form: str,  # As for its `value`.
+    contacts: MeshContact | RaceContacts,  # n of them.
+) -> FloatArray:
+    """`OilModel.value` at every contact of a mesh or bearing, interpolated. Theory (O16)."""
+    pressure = np.clip(contacts.hertz_pressure, *model.fits[quantity].domain["hertz_pressure"])
+    fit = model, quantity, form
+    if isinstance(contacts, MeshContact):
+        motion = _Motion(contacts.mesh, contacts.speed1, contacts.speed2)
+        return along_path(
+            contacts.path, pressure, *_path_table(*fit, motion, contacts.flanks, contacts.oil)
+        )
+    return np.concatenate(
+        [
+            over_pressure(
+                own, *_race_table(*fit, race, contacts.speed, contacts.flanks, contacts.oil)
+            )
+            for race, own in zip(
+                contacts.races, np.split(pressure, len(contacts.races)), strict=True
+            )
+        ]
+    )
+
+
+@lru_cache(maxsize=64)
+def _race_table(
+    model: OilModel,
+    quantity: str,
+    form: str,
+    radius: float,
+    speed: float,
+    flanks: Flanks[float],
+    oil: OilState,
+) -> tuple[FloatArray, FloatArray]:
+    """Arguments of `over_pressure`: lowest and highest pressure, and what lies between them."""
+    pressures = np.geomspace(*model.fits[quantity].domain["hertz_pressure"], RACE_PRESSURES)
+    radii = np.full_like(pressures, radius)
+    contacts = LineContacts(
+        line_load=line_load_at_pressure(pressures, radii, flanks.equivalent_modulus),
+        radius=radii,
+        rolling_speed=np.full_like(pressures, speed),
+        sliding_speed=np.zeros_like(pressures),
+        flanks=flanks,
+        oil=oil,
+    )
+    return pressures[[0, -1]], model.value(quantity, contacts, form)
+
+
+@lru_cache(maxsize=64)
+def _path_table(
+    model: OilModel, quantity: str, form: str, motion: _Motion, flanks: Flanks[float], oil: OilState
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Arguments of `along_path`: ends, crowding, lowest and highest pressure, values."""
+    path = np.array([motion.mesh.path_start, motion.mesh.path_end]) - motion.mesh.pitch_point
+    ends = np.array([min(path[0], 0.0), max(path[1], 0.0)])
+    rolling, sliding = motion.speeds(ends)
+    slip = np.abs(sliding) / rolling
+    crowding = np.log1p(np.maximum(slip, LEAST_SLIP) / LEAST_SLIP)
+    outwards = np.linspace(0.0, crowding, POINTS)
+    places = ends * np.expm1(outwards) / np.expm1(crowding)
+    # nothing slides at the pitch point, but each side has its sign there too
+    sliding = motion.speeds(places)[1] + NO_SLIP * np.sign(sliding)
+    pressures = np.geomspace(*model.fits[quantity].domain["hertz_pressure"], PRESSURES)
+    place, pressure = (grid.ravel() for grid in np.meshgrid(places.T, pressures, indexing="ij"))
+    radius = motion.radius(place)
+    contacts = LineContacts(
+        line_load=line_load_at_pressure(pressure, radius, flanks.equivalent_modulus),
+        radius=radius,
+        rolling_speed=motion.speeds(place)[0],
+        sliding_speed=np.repeat(sliding.T, PRESSURES),
+        flanks=flanks,
+        oil=oil,
+    )
+    values = model.value(quantity, contacts, form).reshape(2, POINTS, PRESSURES)
+    return ends, crowding, pressures[[0, -1]], values
+
+
+# Friction and rolling loss of an oil that was characterised: fits to its simulated contacts.
+
+_LABELS: dict[str, tuple[str, Quantity]] = {
+    "slide_to_roll_ratio": ("slide-to-roll ratio", NUMBER),
+    "rolling_speed": ("rolling speed", METRE_PER_SECOND),
+    "radius": ("equivalent radius", MILLIMETRE),
+    "hertz_pressure": ("Hertz pressure", GIGAPASCAL),
+    "roughness1": ("rms roughness of surface 1", MICROMETRE),
+    "roughness2": ("rms roughness of surface 2", MICROMETRE),
+    "dynamic_viscosity": ("dynamic viscosity", MILLIPASCAL_SECOND),
+    "pressure_viscosity": ("pressure-viscosity coefficient", PER_GIGAPASCAL),
+}
+"""Label and unit of each condition that spans a domain."""
+
+
+@dataclass(frozen=True)
+class _Fit(RangeFlags):
+    """What friction and rolling loss share that are fitted to the simulated contacts of one oil."""
+
+    name: ClassVar = "fitted"
+    title: ClassVar = "fit to simulated contacts of the oil"
+    made_for: ClassVar[RegressionFluid | None] = None
+
+    model: OilModel
+    form: str
+    quantity: str  # Which of the fits of the model.
+
+    @property
+    def source(self) -> str:
+        """What was simulated."""
+        simulated = self.model.simulations.get("simulated", 0)
+        title, version = self.model.oil.title, self.model.version
+        return f"{simulated} contacts of {title} simulated with epicyclic {version}"
+
+    @cached_property
+    def ranges(self) -> tuple[Range, ...]:
+        """The domain of the fit."""
+        return domain_ranges(self.model, self.quantity)
+
+    def fitted(self, contact: LineContacts) -> FloatArray:
+        """The quantity at every contact."""
+        if isinstance(contact, MeshContact | RaceContacts):
+            return tabulated(self.model, self.quantity, self.form, contact)
+        return self.model.value(self.quantity, contact, self.form)
+
+
+@dataclass(frozen=True)
+class FittedFriction(NothingToSolve, _Fit):
+    """Coefficients fitted to the simulated contacts of one oil. Theory (O9)."""
+
+    takes_oil_temperature: ClassVar[bool] = False
+
+    quantity: str = "friction"
+
+    def coefficient(self, contact: LineContacts) -> FloatArray:
+        """See the class. [1]"""
+        return self.fitted(contact)
+
+
+@dataclass(frozen=True)
+class FittedRolling(_Fit):
+    """Rolling loss fitted to the simulated contacts of one oil. Theory (O9).
+
+    Beyond the loads and speeds of the simulations the loss goes on as that of the regressions,
+    Theory (R5).
+    """
+
+    # ``"rolling_loss"`` of gear teeth or ``"bearing_rolling_loss"``.
+    quantity: str = "rolling_loss"
+
+    def loss_density(self, contact: LineContacts) -> FloatArray:
+        """See the class. [W/m]"""
+        held = contact.held(self.model.fits[self.quantity].domain)
+        return self.fitted(contact) * beyond_data(contact, held)
+
+
+def domain_ranges(model: OilModel, quantity: str) -> tuple[Range, ...]:
+    """The domain of a fit."""
+    source = f"the simulations of {model.oil.name}"
+    ranges = []
+    for name, (label, unit) in _LABELS.items():
+        limits = model.fits[quantity].domain[name]
+        shown = (unit.to_display(value) if unit.si else value for value in limits)
+        low, high = (float(f"{value:.4g}") for value in shown)
+        ranges.append(Range(name, label, low, high, unit, source))
+    return tuple(ranges)
+
+
+# Fitted models where their contacts were simulated, a general formula beyond: what `auto` takes.
+#
+# Beyond the simulations the weight of the fit falls smoothly, so that losses over speed, load or
+# temperature have no step.
+
+Fit = TypeVar("Fit", FittedFriction, FittedRolling)
+
+REACH = 1.5  # Factor beyond a limit of the simulations at which a fit has no weight left. [1]
+MODULUS_SLACK = 1.1
+"""Factor by which the equivalent modulus may differ from the simulated one: that of steels does
+not, that of other materials does. [1]"""
+
+
+NO_LEAST = "slide_to_roll_ratio"
+"""The condition without a lower limit: where little slides, little is lost, and fits go on."""
+
+
+def weight_of_fit(
+    model: OilModel,
+    quantity: str,  # A key of its fits.
+    contacts: LineContacts,  # n of them.
+) -> FloatArray:
+    """Weight of a fit at each contact: 1 within its simulations, 0 far beyond them. [1]
+
+    Theory (O11).
+    """
+    domain = model.fits[quantity].domain
+    modulus = contacts.flanks.equivalent_modulus / model.equivalent_modulus
+    beyond: float | FloatArray = max(1.0, modulus, 1 / modulus) / MODULUS_SLACK
+    for name in CONDITIONS:  # numbers first take less time than arrays of one number each
+        value = getattr(contacts, name)
+        low, high = domain[name]
+        if high > 0:
+            beyond = np.maximum(beyond, value / high)
+        if low > 0 and name != NO_LEAST:
+            beyond = np.maximum(beyond, low / value)
+    t = np.clip(np.log(beyond) / math.log(REACH), 0.0, 1.0)
+    return 1 - t * t * (3 - 2 * t)
+
+
+@dataclass(frozen=True, slots=True)
+class _FittedOrFormula(Generic[Fit]):
+    """A fit to the contacts of an oil, and a formula beyond them. Theory (O11)."""
+
+    name: ClassVar[str]
+    made_for: ClassVar[RegressionFluid | None] = None
+    beyond: ClassVar[FrictionModel | RollingModel]
+
+    fitted: Fit
+
+    @property
+    def title(self) -> str:
+        """Both methods."""
+        return f"{self.fitted.title}, beyond them {self.beyond.title}"
+
+    @property
+    def source(self) -> str:
+        """Source of both."""
+        return f"{self.fitted.source}; {self.beyond.source}"
+
+    @property
+    def ranges(self) -> tuple[Range, ...]:
+        """Where the fit holds."""
+        return tuple(
+            replace(item, low=None) if item.name == NO_LEAST else item
+            for item in self.fitted.ranges
+        )
+
+    def weight(self, contact: LineContacts) -> FloatArray:
+        """Weight of the fit at each contact. [1]"""
+        return weight_of_fit(self.fitted.model, self.fitted.quantity, contact)
+
+    def flags(self, role: str, contact: MeshContact, loss: FloatArray) -> tuple[ValidityFlag, ...]:
+        """What leaves the range of the fit, and that of the formula where the formula is used."""
+        where = contact.mesh.name
+        fit = ModelUse(role, self.name, where, instead=self.beyond.name)
+        outside = check_contacts(fit, self.ranges, contact, loss)
+        rest: FloatArray = (1 - self.weight(contact)) * loss
+        if not rest.any():
+            return outside
+        formula = ModelUse(role, self.beyond.name, where)
+        part = float(rest.sum() / loss.sum())
+        return outside + check_contacts(formula, self.beyond.ranges, contact, rest, part)
+
+
+@dataclass(frozen=True, slots=True)
+class FittedOrSchlenk(NothingToSolve, _FittedOrFormula[FittedFriction]):
+    """The fit to the contacts of an oil, and the mean friction of Schlenk beyond them.
+
+    Theory (O11).
+    """
+
+    name: ClassVar = "fitted-or-schlenk"
+    takes_oil_temperature: ClassVar[bool] = False
+    beyond: ClassVar[FrictionModel] = FRICTION_MODELS["schlenk"]
+
+    def coefficient(self, contact: MeshContact) -> FloatArray:
+        """See the class. [1]"""
+        weight, fitted = self.weight(contact), self.fitted.coefficient(contact)
+        if (weight == 1).all():
+            return fitted
+        formula = self.beyond.coefficient(contact.seen_by(self.beyond))
+        return weight * fitted + (1 - weight) * formula
+
+
+@dataclass(frozen=True, slots=True)
+class FittedOrGoksem(_FittedOrFormula[FittedRolling]):
+    """The fit to the contacts of an oil, and the loss of Goksem and Hargreaves beyond them.
+
+    Theory (O11).
+    """
+
+    name: ClassVar = "fitted-or-goksem-hargreaves"
+    beyond: ClassVar[RollingModel] = ROLLING_MODELS["goksem-hargreaves"]
+
+    def loss_density(self, contact: MeshContact) -> FloatArray:
+        """See the class. [W/m]"""
+        weight, fitted = self.weight(contact), self.fitted.loss_density(contact)
+        if (weight == 1).all():
+            return fitted
+        return weight * fitted + (1 - weight) * self.beyond.loss_density(contact)

@@ -25,7 +25,6 @@ from epicyclic.losses.drag import (
     bearing_viscous_loss,
     viscous_flags,
 )
-from epicyclic.losses.fitted import FittedRolling
 from epicyclic.losses.planet_bearing import (
     BearingLoss,
     RollerBearing,
@@ -40,6 +39,7 @@ from epicyclic.losses.planet_bearing import (
     tilting_moments,
 )
 from epicyclic.losses.ranges import Flags, SomeFlags
+from epicyclic.losses.rolling import FittedRolling
 from epicyclic.machine.convection import roller_conductance
 from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Loss, figure
 from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads

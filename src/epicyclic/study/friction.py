@@ -21,9 +21,9 @@ from epicyclic.build.models import (
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.drag import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
-from epicyclic.losses.fitted import FittedOrSchlenk
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.losses.ranges import ValidityFlag, range_left, share_text
+from epicyclic.losses.rolling import FittedOrSchlenk
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.gear_mesh import OHLENDORF_SOURCE
 from epicyclic.machine.gear_set import GearSet

@@ -20,7 +20,7 @@ from epicyclic.case.read import value_at
 from epicyclic.contact.fitted_models import FORMS, REGIMES, OilModel, QuantityFit
 from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.errors import Status
-from epicyclic.losses.fitted import domain_ranges
+from epicyclic.losses.rolling import domain_ranges
 from epicyclic.plugins.contact_solver.contact import FRAMES, ContactFigure, ContactResult
 from epicyclic.plugins.contact_solver.rough import Frame
 from epicyclic.plugins.contact_solver.surfaces import Profile
