@@ -18,13 +18,18 @@ from markupsafe import Markup
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.show.inputs import input_tables
-from epicyclic.show.map_page import map_key_figures, map_sections, sweep_key_figures, sweep_sections
 from epicyclic.show.page import Drawings, Item, KeyFigure, Section, gallery
 from epicyclic.show.plots.catalogue import Stored, available, draw
 from epicyclic.show.plots.loss_map import map_line
 from epicyclic.show.plots.sweep import sweep_line, thinned
 from epicyclic.show.record import ResultRecord
-from epicyclic.show.result_page import result_sections
+from epicyclic.show.result_page import (
+    map_key_figures,
+    map_sections,
+    result_sections,
+    sweep_key_figures,
+    sweep_sections,
+)
 from epicyclic.show.result_tables import key_figures
 from epicyclic.show.uncertainty_tables import band_figures, uncertainty_items
 from epicyclic.study.maps.tables import map_inputs

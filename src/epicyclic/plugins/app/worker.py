@@ -25,13 +25,17 @@ from epicyclic.losses.friction import contact_progress
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.files import is_rexs
 from epicyclic.result.result import in_words, set_of
-from epicyclic.show.map_page import map_key_figures, map_sections
 from epicyclic.show.page import Drawing, KeyFigure, Section, Table
 from epicyclic.show.plots.catalogue import PLOTS, Stored, figure_of, svg_text
 from epicyclic.show.plots.drawing import POSITION, Turning, turning_mesh, turning_set
 from epicyclic.show.plots.style import figure_bytes
 from epicyclic.show.record import ResultRecord, growing_record, sets_of
-from epicyclic.show.result_page import result_section, result_sections
+from epicyclic.show.result_page import (
+    map_key_figures,
+    map_sections,
+    result_section,
+    result_sections,
+)
 from epicyclic.show.result_tables import key_figures, side_by_side
 from epicyclic.show.views import save
 from epicyclic.study.maps.compute import loss_map
