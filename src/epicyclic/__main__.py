@@ -11,7 +11,7 @@ import os
 import signal
 from typing import NoReturn
 
-from epicyclic.cli.common import EXIT_INTERRUPTED
+from epicyclic.errors import EXIT_INTERRUPTED
 from epicyclic.files import look_seldom
 
 

@@ -52,6 +52,13 @@ def printable(text: str) -> str:
     )
 
 
+# Exit codes of the command.
+EXIT_DONE = 0
+EXIT_ERROR, EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_POINTS = 1, 2, 3, 4
+EXIT_INCOMPLETE = 5
+EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
+
+
 class EpicyclicError(Exception):
     """Base of every error this package raises on purpose."""
 

@@ -117,9 +117,9 @@ class ElementTables(Table):
 KEY: list[Edit] = [
     (
         "case/tables/models.py",
-        "    factor: Number = Field(default=1.0",
-        '    share: Number = Field(default=1.0, ge=0, le=1, description="Counted part.")\n'
-        "    factor: Number = Field(default=1.0",
+        '    factor: Number = option("Multiplies the term."',
+        '    share: Number = option("Counted part.", 1.0, ge=0, le=1)\n'
+        '    factor: Number = option("Multiplies the term."',
     ),
     (
         "build/models.py",

@@ -15,7 +15,7 @@ from rich.console import Console
 
 import epicyclic as ep
 from epicyclic import library
-from epicyclic.build.models import resolve_models, standing_of
+from epicyclic.build.models import resolve_models, set_cases, standing_of
 from epicyclic.case.read import plain
 from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
 from epicyclic.contact.line_contact import contacts_at
@@ -26,6 +26,12 @@ from epicyclic.plugins.contact_solver.fit import fit_quantity
 from epicyclic.show.result_tables import standing_items
 from epicyclic.show.terminal import result_tables
 from epicyclic.study.friction import compare_friction, recommended
+
+
+def set_of(case):
+    """The only set of a case."""
+    return dict(set_cases(case, [""]))[""]
+
 
 OIL = "iso-vg-220-mineral"
 STEEL = 227.47e9
@@ -96,7 +102,7 @@ def case(model, tmp_path, monkeypatch):
 
 
 def test_auto_takes_the_built_in_models(case):
-    models = resolve_models(case)
+    models = resolve_models(set_of(case))
     assert models["friction"] == "fitted-or-schlenk"
     assert models["rolling"] == "fitted-or-goksem-hargreaves"
     assert models["bearing"] == "fitted-or-palmgren"
@@ -113,12 +119,12 @@ def test_auto_takes_the_built_in_models(case):
 
 def test_full_complement_bearings_keep_their_own_formula(case):
     changed = case.updated({"planet_bearing.cage": "full-complement"})
-    assert resolve_models(changed)["bearing"] == "palmgren"
+    assert resolve_models(set_of(changed))["bearing"] == "palmgren"
 
 
 def test_an_oil_without_simulations_has_no_built_in_models(case):
     changed = case.updated({"lubricant.oil": "iso-vg-46-pao"})
-    assert resolve_models(changed)["friction"] == "schlenk"
+    assert resolve_models(set_of(changed))["friction"] == "schlenk"
     assert not [note for note in ep.solve(changed).warnings if "are not used" in note]
 
 
@@ -137,7 +143,7 @@ def test_an_oil_with_other_properties_has_none(case, name):
     table["name"] = name
     table["kinematic_viscosity"][0]["value"] = "221.5 mm^2/s"
     changed = case.updated({"lubricant.oil": table})
-    assert resolve_models(changed)["rolling"] == "goksem-hargreaves"
+    assert resolve_models(set_of(changed))["rolling"] == "goksem-hargreaves"
     told = [note for note in ep.solve(changed).warnings if "are not used" in note]
     assert len(told) == (name == OIL)
     assert all("kinematic_viscosity" in note for note in told)
@@ -148,7 +154,7 @@ def test_where_a_value_is_from_does_not_matter(case):
     table["kinematic_viscosity"][0]["source"] = "another certificate"
     table["lubricant_factor"] = {"value": 0.93}
     changed = case.updated({"lubricant.oil": table})
-    assert resolve_models(changed)["friction"] == "fitted-or-schlenk"
+    assert resolve_models(set_of(changed))["friction"] == "fitted-or-schlenk"
 
 
 def test_a_file_of_the_user_comes_before_that_built_in(case, model, tmp_path):
@@ -156,7 +162,7 @@ def test_a_file_of_the_user_comes_before_that_built_in(case, model, tmp_path):
     file = tmp_path / "own.json"
     file.write_text(only.to_text())
     changed = case.updated({"models.oil_model": str(file)})
-    models = resolve_models(changed)
+    models = resolve_models(set_of(changed))
     assert models["friction"] == "fitted-or-schlenk"
     assert models["rolling"] == "goksem-hargreaves"
     assert models["bearing"] == "palmgren"
@@ -164,7 +170,7 @@ def test_a_file_of_the_user_comes_before_that_built_in(case, model, tmp_path):
 
 @pytest.mark.parametrize("key", ["friction", "rolling", "bearing"])
 def test_fitted_models_need_a_file_or_one_built_in(case, key):
-    assert resolve_models(case.updated({f"models.{key}": "fitted"}))[key] == "fitted"
+    assert resolve_models(set_of(case.updated({f"models.{key}": "fitted"})))[key] == "fitted"
     with pytest.raises(ep.InputError) as error:
         case.updated({f"models.{key}": "fitted", "lubricant.oil": "iso-vg-68-pao"})
     assert [problem.key for problem in error.value.problems] == [f"models.{key}"]
@@ -235,7 +241,7 @@ def test_temperatures_are_found_where_fit_and_formula_mix(case):
 def test_the_result_says_how_well_its_models_are_known(case):
     result = ep.solve(case)
     known = json.loads(result.to_json())["standing"]
-    assert known == dict(result.standing) == standing_of(case)
+    assert known == dict(result.standing) == standing_of(set_of(case))
     assert known["friction"].startswith("fitted-or-schlenk: median error ")
     assert "against 80 contacts simulated for iso-vg-220-mineral" in known["friction"]
     assert "beyond them schlenk: " in known["friction"]

@@ -136,7 +136,7 @@ def test_a_write_protected_file_is_not_replaced(tmp_path, monkeypatch):
 WRITER = """\
 import signal, sys, time
 from pathlib import Path
-from epicyclic.whole_file import whole_file
+from epicyclic.files import whole_file
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a suite in the background ignores it
 with whole_file(Path(sys.argv[1])) as temporary:
     temporary.write_text("half")

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.common import (
-    EXIT_NO_SOLUTION,
     beside,
     case_argument,
     check_ending,
@@ -25,7 +24,7 @@ from epicyclic.cli.common import (
     set_option,
     show,
 )
-from epicyclic.errors import InputError, Problem, Status
+from epicyclic.errors import EXIT_NO_SOLUTION, InputError, Problem, Status
 
 if TYPE_CHECKING:
     import xarray as xr

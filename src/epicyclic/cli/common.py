@@ -40,12 +40,6 @@ if TYPE_CHECKING:
 # Exit codes of the command.
 
 
-EXIT_DONE = 0
-EXIT_ERROR, EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_POINTS = 1, 2, 3, 4
-EXIT_INCOMPLETE = 5
-EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
-
-
 # Progress on standard error: a bar on a terminal, a line now and then in a file or pipe.
 #
 # ``EPICYCLIC_PROGRESS=0`` turns both off.

@@ -16,15 +16,7 @@ from typing import Any, NoReturn
 import click
 
 from epicyclic.cli.case import check, friction, heat, mesh, run, warm_up
-from epicyclic.cli.common import (
-    EXIT_BROKEN_PIPE,
-    EXIT_DONE,
-    EXIT_ERROR,
-    EXIT_INPUT,
-    EXIT_INTERRUPTED,
-    EXIT_NO_SOLUTION,
-    tell_compilation,
-)
+from epicyclic.cli.common import tell_compilation
 from epicyclic.cli.compare import compare
 from epicyclic.cli.duty import duty
 from epicyclic.cli.many import loss_map, sweep
@@ -32,7 +24,18 @@ from epicyclic.cli.merge import merge
 from epicyclic.cli.pockets import pockets, pockets_table
 from epicyclic.cli.show import cases, init, oils, plot, report, schema
 from epicyclic.cli.uncertainty import compare_cases, uncertainty
-from epicyclic.errors import ConvergenceError, InputError, is_interrupt, printable
+from epicyclic.errors import (
+    EXIT_BROKEN_PIPE,
+    EXIT_DONE,
+    EXIT_ERROR,
+    EXIT_INPUT,
+    EXIT_INTERRUPTED,
+    EXIT_NO_SOLUTION,
+    ConvergenceError,
+    InputError,
+    is_interrupt,
+    printable,
+)
 from epicyclic.registry import load, offered
 
 # The command ``epicyclic``: parses, calls the library, prints.

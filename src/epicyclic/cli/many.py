@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from epicyclic.cli.common import (
-    EXIT_FAILED_POINTS,
     case_argument,
     load_with,
     output_option,
@@ -23,7 +22,7 @@ from epicyclic.cli.common import (
     shard_option,
     temperature_option,
 )
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import EXIT_FAILED_POINTS, InputError, Problem
 
 if TYPE_CHECKING:
     from epicyclic.case.case import Case

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from epicyclic.cli.common import (
-    EXIT_NO_SOLUTION,
     PICTURES,
     contact_set_option,
     draw,
@@ -25,7 +24,7 @@ from epicyclic.cli.common import (
     show,
 )
 from epicyclic.cli.many import Write, compute
-from epicyclic.errors import Status
+from epicyclic.errors import EXIT_NO_SOLUTION, Status
 from epicyclic.files import write_file
 
 if TYPE_CHECKING:

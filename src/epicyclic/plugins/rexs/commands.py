@@ -12,7 +12,6 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from epicyclic.cli.common import (
-    EXIT_INCOMPLETE,
     case_argument,
     case_with_remarks,
     load_with,
@@ -20,7 +19,7 @@ from epicyclic.cli.common import (
     parse_changes,
     set_option,
 )
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import EXIT_INCOMPLETE, InputError, Problem
 from epicyclic.files import write_file
 from epicyclic.show.terminal import plain_table
 
