@@ -103,7 +103,14 @@ def test_the_last_line_counts_what_the_rows_are(rows):
 
 def test_open_figures_are_counted_apart(rows):
     figure = ClosureFigure(
-        "spur", "W", "axes", 97.0, 119.0, 0.03, "half a step", dict.fromkeys(CLOSURES, 125.0)
+        what="spur",
+        unit="W",
+        source="axes",
+        low=97.0,
+        high=119.0,
+        tolerance=0.03,
+        cause="half a step",
+        computed=dict.fromkeys(CLOSURES, 125.0),
     )
     worse = replace(figure, computed=figure.computed | {"talbot-2012": 120.5})
     told = summary(rows, (figure, worse))

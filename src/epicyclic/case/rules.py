@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epicyclic.case.expand import gearing_of
+from epicyclic.case.expand import expand, gearing_of
 from epicyclic.case.fields import did_you_mean, millimetres, written
 from epicyclic.case.gear_rules import gears_by_name
 from epicyclic.case.gearing import Gearing
@@ -88,11 +88,13 @@ def cross_check(
     gearing = gearing_of(sections)
     if gearing is not None and gearing.computed:
         problems += set_problems(gearing)
-        bearing, sharing = sections.get("planet_bearing"), sections.get("load_sharing")
+        bearing = sections.get("planet_bearing")
         if isinstance(bearing, PlanetBearing) and gearing.planets:
             problems += check_bores(gearing, {"planet_bearing": (bearing, gearing.planets)})
-        if isinstance(sharing, LoadSharing) and gearing.count is not None:
-            problems += _check_load_sharing(sharing, gearing)
+    sharing = sections.get("load_sharing")
+    if isinstance(sharing, LoadSharing) and {"sun", "planet", "ring"} <= sections.keys():
+        # tooth numbers are enough, whether the gears fit or not
+        problems += _check_load_sharing(sharing, expand({"gears": None, **sections})[0])
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))
