@@ -109,7 +109,7 @@ def test_a_rack_by_name_is_that_of_its_numbers():
     one, two = (ep.load_case(it).gearings["S"] for it in (named, tables))
     for name, member in one.tables.items():
         assert one.gear(name) == two.gear(name)
-        module = one.rack(name).normal_module
+        module = one.racks[name].normal_module
         radius = None if member.internal else pytest.approx(0.39 * module)
         assert member.tool_tip_radius == radius
     both = copy.deepcopy(named)

@@ -106,7 +106,7 @@ def _set_case(
     gearing: Gearing,
     found: tuple[str, ...],
 ) -> SetCase:
-    parts = dict(table)
+    parts = vars(table)
     bearing, own = parts.get("planet_bearing"), parts.get("planet_bearings", {})
     losses = dict(table.losses)
     if isinstance(table, ListedSet):

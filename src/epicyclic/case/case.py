@@ -128,6 +128,7 @@ class CaseTable(Table):
     _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="")
     _found: tuple[Found, ...] = PrivateAttr(default=())
+    _gearings: dict[str, Gearing] = PrivateAttr(default_factory=dict)
     _sound: Mapping[str, Table] = PrivateAttr(default_factory=dict)
     """What became of each of `_tables` by itself: those that stay need not be read again."""
 
@@ -187,18 +188,21 @@ class CaseTable(Table):
         Raises `InputError` with `problems` and every other one.
         """
         valid = validate(cls, tables, sound)
-        validation, told = with_sizes(valid, tables)
+        validation, told, gearing = with_sizes(valid, tables)
+        folder = Path(source).parent
         known = {problem.key for problem in problems}
         found = [
             *problems,
             *(problem for problem in validation.problems if problem.key not in known),
             *(
                 as_given(problem, tables)
-                for problem in cross_check(validation.sections, tables, Path(source).parent)
+                for problem in cross_check(validation.sections, tables, folder, gearing)
             ),
         ]
         made = cls._made(validation.case, tables, source, found)
         made._found, made._sound = told, valid.sections
+        if gearing is not None:
+            made._gearings = {"": gearing}
         return made
 
     @classmethod
@@ -250,10 +254,11 @@ class CaseTable(Table):
 
 def with_sizes(
     validation: Validation[AnyCase], raw: Mapping[str, Any]
-) -> tuple[Validation[AnyCase], tuple[Found, ...]]:
+) -> tuple[Validation[AnyCase], tuple[Found, ...], Gearing | None]:
     """A validation with what its gears leave out; without [gears] if that cannot be found.
 
-    Also what was found, and how signs and roughness were understood.
+    Also what was found and how signs and roughness were understood, and the gears of a planetary
+    set or a pair if nothing is wrong with their tables.
     """
     told: tuple[Found, ...] = ()
     if validation.case is not None:
@@ -261,26 +266,26 @@ def with_sizes(
     sections = dict(validation.sections)
     gears = sections.get("gears")
     if not isinstance(gears, Gears):
-        return validation, told
+        return validation, told, None
     gearing = gearing_of(sections)
     if gearing is None:
         # something follows from gears of which some are not valid
         tables = [table for table in sections.values() if isinstance(table, GearTable)]
         if gears.center_distance is None or not all(table.states_thickness for table in tables):
             del sections["gears"]
-            return Validation(None, sections, validation.problems), told
-        return validation, told
+            return Validation(None, sections, validation.problems), told, None
+        return validation, told, None
     whole, found, problems = complete(gearing, raw)
     if problems:
         del sections["gears"]
-        return Validation(None, sections, [*validation.problems, *problems]), told
+        return Validation(None, sections, [*validation.problems, *problems]), told, None
     assert whole.shared is not None
     now: dict[str, Table] = {"gears": whole.shared, **whole.tables}
     changed = {key: table for key, table in now.items() if table is not sections[key]}
     case = validation.case
     if case is not None and changed:
         case = case.model_copy(update=changed)
-    return Validation(case, sections | changed, validation.problems), told + found
+    return Validation(case, sections | changed, validation.problems), told + found, whole
 
 
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:
@@ -573,7 +578,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         own = GearPairModels.model_fields
         raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
     read: Validation[Any]
-    read, told = with_sizes(validate(form, raw), raw)
+    read, told, gearing = with_sizes(validate(form, raw), raw)
     problems = [_with_gears(problem) for problem in read.problems]
     if issubclass(form, ComputedSet):
         tables = {*raw, *given.shared}
@@ -581,7 +586,8 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         if "planet_bearings" in raw:
             tables.add("planet_bearing")
         problems += [
-            as_given(problem, raw) for problem in cross_check(checked, tables, given.folder)
+            as_given(problem, raw)
+            for problem in cross_check(checked, tables, given.folder, gearing)
         ]
     if all(key in raw for key in _GIVEN):
         allowed = "conflicts with mesh_efficiency."
@@ -726,7 +732,7 @@ class _SetTables(CaseTable):
     @property
     def gearings(self) -> dict[str, Gearing]:
         """Its gears and meshes; the only set has no name."""
-        return {"": expand(dict(self))[0]}
+        return self._gearings
 
 
 class PlanetaryCase(_SetTables):

@@ -91,7 +91,7 @@ def _check_rim(gear: Gear, owner: str, table: GearTable) -> list[Problem]:
 
 
 def _no_involute_for_thickness(gearing: Gearing, name: str) -> Problem:
-    rack, table, key = gearing.rack(name), gearing.tables[name], gearing.key(name)
+    rack, table, key = gearing.racks[name], gearing.tables[name], gearing.key(name)
     base = table.teeth * rack.transverse_module * math.cos(rack.transverse_pressure_angle)
     if table.dimension_over_pins is not None:
         shown = millimetres(table.dimension_over_pins)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from epicyclic.case.gear_tables import (
     GearTable,
@@ -74,9 +74,12 @@ class Arrangement:
     individual: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Gearing:
-    """The gears of a set, the bodies on which they stand, and their meshes."""
+    """The gears of a set, the bodies on which they stand, and their meshes.
+
+    What follows from its fields is found once, when it is first asked for.
+    """
 
     bodies: Mapping[str, str]  # The body of each gear.
     planets: tuple[str, ...]  # Bodies that stand on the carrier; empty for fixed axes.
@@ -125,22 +128,24 @@ class Gearing:
         """The key of the number of planets."""
         return "planets" if self.listed else "planet.count"
 
-    def rack_keys(self, gear: str) -> dict[str, float]:
-        """What is given of the basic rack of a gear: its own keys, else those that gears share."""
-        found: dict[str, float] = {}
-        for group in RACK_KEYS:
-            for owner in (self.tables[gear], self.shared):
-                own = {
-                    key: value for key in group if (value := getattr(owner, key, None)) is not None
-                }
-                if own:
-                    found |= own
-                    break
+    @cached_property
+    def rack_keys(self) -> dict[str, dict[str, float]]:
+        """What is given of each basic rack: keys of the gear, else those that all gears share."""
+        found: dict[str, dict[str, float]] = {name: {} for name in self.tables}
+        for name, keys in found.items():
+            for group in RACK_KEYS:
+                for owner in (self.tables[name], self.shared):
+                    given = vars(owner)  # gears of a planetary set have none of these keys
+                    own = {key: given[key] for key in group if given.get(key) is not None}
+                    if own:
+                        keys |= own
+                        break
         return found
 
-    def rack(self, gear: str) -> BasicRack:
-        """Transverse module and pressure angle from whichever form the case gives."""
-        return basic_rack(**self.rack_keys(gear))
+    @cached_property
+    def racks(self) -> dict[str, BasicRack]:
+        """Module and pressure angle of each gear, from whichever form the case gives."""
+        return {gear: basic_rack(**keys) for gear, keys in self.rack_keys.items()}
 
     def gear(self, name: str) -> Gear:
         """A gear by its name.
@@ -151,7 +156,7 @@ class Gearing:
         assert self.shared is not None
         table, shared = self.tables[name], self.shared
         heights = (shared.addendum_coefficient, shared.dedendum_coefficient)
-        return _gear(name, table, self.rack(name), *heights)
+        return _gear(name, table, self.racks[name], *heights)
 
     def rings(self) -> Iterator[tuple[str, GearTable, Gear]]:
         """Name, table and geometry of every internal gear."""
@@ -163,7 +168,7 @@ class Gearing:
         """The gears on a body, in the order of the tables."""
         return [gear for gear, own in self.bodies.items() if own == body]
 
-    @property
+    @cached_property
     def in_order(self) -> list[str]:
         """All gears in the order of the meshes; the order of tables in a file has no meaning."""
         return list(dict.fromkeys(gear for mesh in self.meshes for gear in mesh.pair))
@@ -178,7 +183,7 @@ class Gearing:
             else (f"{mesh.table_key}.center_distance")
         )
 
-    @property
+    @cached_property
     def distances(self) -> dict[str, float | None]:
         """Centre distance of each mesh by its key; None if nothing states it. [m]
 
@@ -224,12 +229,12 @@ class Gearing:
         assert distance is not None
         return _mesh(mesh.title, self.gear(mesh.first), self.gear(mesh.second), distance)
 
-    @property
+    @cached_property
     def geometries(self) -> tuple[Mesh, ...]:
         """The geometry of every mesh."""
         return tuple(map(self.geometry, self.meshes))
 
-    @property
+    @cached_property
     def hands(self) -> dict[str, int]:
         """Hand of the helix of each gear, +1 right.
 
@@ -275,7 +280,7 @@ class Gearing:
             directions[mesh.key] = angle if mesh.first == mesh.pair[0] else angle + math.pi
         return directions
 
-    @property
+    @cached_property
     def positions(self) -> dict[str, float]:
         """Middle of the face of each gear on a planet from the middle of its bearing. [m]
 
@@ -293,7 +298,7 @@ class Gearing:
                 start += width
         return positions
 
-    @property
+    @cached_property
     def pins(self) -> dict[str, Pin]:
         """Where the pins stand on an arm of the carrier, by the bodies of planets. Theory (A4).
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epicyclic.case.expand import expand, gearing_of
+from epicyclic.case.expand import expand
 from epicyclic.case.fields import did_you_mean, millimetres, written
 from epicyclic.case.gear_rules import gears_by_name
 from epicyclic.case.gearing import Gearing
@@ -67,6 +67,7 @@ def cross_check(
     sections: Mapping[str, Table],  # The tables that are valid by themselves.
     given: Collection[str],  # Names of the tables that the case has, valid or not.
     folder: Path,  # Where the files lie that the case names.
+    gearing: Gearing | None = None,  # Of a planetary set or a pair whose gears are sound.
 ) -> list[Problem]:
     """Problems between keys and tables of a case."""
     problems: list[Problem] = []
@@ -85,8 +86,7 @@ def cross_check(
         problems += check_ways_out(thermal, models.temperatures, flow)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
-    gearing = gearing_of(sections)
-    if gearing is not None and gearing.computed:
+    if gearing is not None:
         problems += set_problems(gearing)
         bearing = sections.get("planet_bearing")
         if isinstance(bearing, PlanetBearing) and gearing.planets:
@@ -94,7 +94,8 @@ def cross_check(
     sharing = sections.get("load_sharing")
     if isinstance(sharing, LoadSharing) and {"sun", "planet", "ring"} <= sections.keys():
         # tooth numbers are enough, whether the gears fit or not
-        problems += _check_load_sharing(sharing, expand({"gears": None, **sections})[0])
+        own = gearing or expand({"gears": None, **sections})[0]
+        problems += _check_load_sharing(sharing, own)
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))

@@ -118,7 +118,7 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
 
 def rack_problems(gearing: Gearing) -> Iterator[Problem]:
     """What the basic racks of the gears lack, or have twice."""
-    given = {gear: gearing.rack_keys(gear) for gear in gearing.tables}
+    given = gearing.rack_keys
     for group in RACK_KEYS:
         names = " or ".join(group)
         without = [gear for gear, keys in given.items() if not keys.keys() & set(group)]

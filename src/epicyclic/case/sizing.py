@@ -13,8 +13,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass
 from typing import Any
 
-import numpy as np
-
 from epicyclic.case.fields import micrometres, millimetres
 from epicyclic.case.gear_rules import gears_by_name
 from epicyclic.case.gear_tables import GearTable, allowance_shift, thickness_key
@@ -170,7 +168,7 @@ def _with_named_rack(gearing: Gearing) -> tuple[Gearing, tuple[Found, ...]]:
     tables = {}
     for gear, table in gearing.tables.items():
         keeps = table.tool_tip_radius is not None or is_internal(table)
-        radius = rounding * gearing.rack(gear).normal_module
+        radius = rounding * gearing.racks[gear].normal_module
         tables[gear] = table if keeps else table.model_copy(update={"tool_tip_radius": radius})
     coefficients = {
         "addendum_coefficient": 1.0,
@@ -188,10 +186,10 @@ def _sized(gearing: Gearing) -> Iterator[_Sized]:
     """The meshes whose gears have one basic rack: profile shifts of others tell no distance."""
     distances = gearing.distances
     for mesh in gearing.meshes:
-        one, two = (gearing.rack(gear) for gear in (mesh.first, mesh.second))
-        if not np.allclose(
-            astuple(one), astuple(two), rtol=_ALIKE, atol=_ALIKE * one.normal_module
-        ):
+        one, two = (gearing.racks[gear] for gear in (mesh.first, mesh.second))
+        least = _ALIKE * one.normal_module
+        pairs = zip(astuple(one), astuple(two), strict=True)
+        if not all(math.isclose(a, b, rel_tol=_ALIKE, abs_tol=least) for a, b in pairs):
             continue
         teeth = [gearing.tables[gear].teeth for gear in (mesh.first, mesh.second)]
         central = gearing.central_gear(mesh)
@@ -219,6 +217,9 @@ def _completed(gearing: Gearing, solver: _Solver) -> Gearing:
         shared = shared.model_copy(update={"center_distance": next(iter(found.values()))})
         found = {}
     assert shared is not None
+    same = all(table is gearing.tables[name] for name, table in solver.tables.items())
+    if same and shared is gearing.shared and not found:
+        return gearing  # with what follows from it
     return gearing.changed(solver.tables, shared, found)
 
 
