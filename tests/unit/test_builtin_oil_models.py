@@ -19,6 +19,7 @@ from epicyclic.build.models import resolve_models, set_cases, standing_of
 from epicyclic.case.read import plain
 from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
 from epicyclic.contact.line_contact import contacts_at
+from epicyclic.files import sealed, unsealed
 from epicyclic.losses.friction import FRICTION_MODELS, SIMULATED
 from epicyclic.losses.reliability import RELIABILITY, reliability
 from epicyclic.losses.rolling import REACH, ROLLING_MODELS, weight_of_fit
@@ -345,3 +346,27 @@ def test_the_manual_shows_the_table():
         str(Path(__file__).parents[2] / "scripts" / "update_oil_model_table.py")
     )
     assert script["table"]() in script["PAGE"].read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("own", "made", "readable"),
+    [
+        ("0.2.0.dev0", "0.1.0", True),
+        ("0.2.0.dev0", "0.2.0.dev0", True),
+        ("0.2.0.dev0", "0.2.0", False),
+        ("0.10.0", "0.9.1", True),
+        ("0.2.0", "next", False),
+    ],
+)
+def test_models_of_a_later_version_are_refused_whatever_versions_are_called(
+    monkeypatch, tmp_path, own, made, readable
+):
+    text = library.oil_model_file("iso-vg-100-mineral").read_text(encoding="utf-8")
+    path = tmp_path / "model.json"
+    path.write_text(sealed(unsealed(text) | {"version": made}, indent=2), encoding="utf-8")
+    monkeypatch.setattr("epicyclic.contact.fitted_models.metadata.version", lambda name: own)
+    if readable:
+        assert read_oil_model(path).version == made
+    else:
+        with pytest.raises(ep.InputError, match="made by version"):
+            read_oil_model(path)

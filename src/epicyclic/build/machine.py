@@ -289,9 +289,6 @@ def _housing(table: HousingTable) -> Housing:
     )
 
 
-# From any case to the machine that it describes.
-
-
 # What the builders hand on: a machine, how it is driven, and the words about it.
 
 

@@ -330,9 +330,6 @@ def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) ->
     return tables
 
 
-# A whole case, and how it is read, checked and changed: a set, a pair or a train.
-
-
 # A train: gear sets joined by shafts, with brakes, clutches, bearings, seals and other drags.
 
 

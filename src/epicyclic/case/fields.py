@@ -508,9 +508,9 @@ class Parameter:
 
     key: str  # Dotted key of the case.
     unit: str  # Display unit; empty for pure numbers.
-    start: float  # Value in the case, and bounds of the schema, in `unit`.
-    low: float  # Value in the case, and bounds of the schema, in `unit`.
-    high: float  # Value in the case, and bounds of the schema, in `unit`.
+    start: float  # Value in the case, in `unit`.
+    low: float  # Bounds of the schema, in `unit`.
+    high: float
 
     @property
     def ends(self) -> tuple[float, float]:

@@ -37,9 +37,6 @@ if TYPE_CHECKING:
     from epicyclic.study.load import ForeignCase
 
 
-# Exit codes of the command.
-
-
 # Progress on standard error: a bar on a terminal, a line now and then in a file or pipe.
 #
 # ``EPICYCLIC_PROGRESS=0`` turns both off.

@@ -21,9 +21,6 @@ from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.contact_load import solve_all_positions
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width
 
-# Elastic teeth: plates on an elastic foundation, ring rims, influence coefficients of a mesh.
-
-
 # Linear algebra on one thread.
 #
 # The matrices here are small: threads cost more than they save. More than one would also round

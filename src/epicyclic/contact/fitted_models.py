@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -15,6 +14,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from packaging.version import InvalidVersion, Version
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from epicyclic import library
@@ -603,10 +603,6 @@ _OF_THE_FILM = {"rolling_speed": False, "roughness1": True, "roughness2": True}
 _MAY_BE_ZERO = ("slide_to_roll_ratio", "roughness1", "roughness2")
 
 
-def _parts(version: str) -> list[int]:
-    return [int(part) for part in version.split(".")]
-
-
 class _Data(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -695,9 +691,12 @@ class OilModel(_Data):
     @classmethod
     def _check_version(cls, version: str) -> str:
         own = metadata.version("epicyclic")
-        if not re.fullmatch(r"\d+(\.\d+)*", version) or _parts(version) > _parts(own):
-            raise ValueError(f"made by version {version[:40]}; this is {own}")
-        return version
+        try:
+            if Version(version) <= Version(own):
+                return version
+        except InvalidVersion:
+            pass
+        raise ValueError(f"made by version {version[:40]}; this is {own}")
 
     def to_text(self) -> str:
         """What its file holds."""

@@ -14,9 +14,6 @@ from numpy.typing import NDArray
 from epicyclic.gears.gear import Gear, half_angle_from_profile_shift, inverse_involute, involute
 from epicyclic.gears.mesh import Mesh
 
-# Tools that generate gears: racks and pinion-type cutters, fitted to the gear that they cut.
-
-
 # Tools that generate gears: a rack for external gears, a pinion-type cutter for internal ones.
 
 
@@ -413,9 +410,6 @@ def _check_trimming(gear: Gear, cut: ShaperCut) -> None:
         raise ValueError(
             f"the shaper cutter cuts away the tips of the {gear.name}: it needs fewer teeth"
         )
-
-
-# Tooth outlines with the fillet that the generating tool leaves, and the tool of a gear.
 
 
 # Transverse tooth outlines with the root fillet that a generating tool leaves.

@@ -63,9 +63,6 @@ from epicyclic.units import (
     Quantity,
 )
 
-# The groups of Talbot's gear regressions, and flanks of unequal roughness in them.
-
-
 # The dimensionless groups of Talbot's gear regressions, kept in the range they were made in.
 #
 # Powers and exponentials of a regression run away outside its data: at a fifth of the lowest
@@ -205,26 +202,6 @@ def _simulated() -> OilModel:
     file = library.oil_model_file(SIMULATED)
     assert file is not None
     return read_oil_model(file)
-
-
-# Friction models of gear flanks: the general form, the published formulas, those of the user.
-#
-# =================  ============  ===========================================================
-# name               kind          source
-# =================  ============  ===========================================================
-# mixed-ehl          local         Talbot (2012), Eq. 5.8: regression of mixed-EHL simulations
-# mixed-ehl+pairing  local         as above, for flanks of unequal roughness: solver of this package
-# xu-2007            local         Xu, Kahraman, Anderson, Maddock (2007): regression, full film
-# benedict-kelley    local         Benedict and Kelley (1961)
-# matsumoto          local         Matsumoto and Morikawa (2014): film share
-# doleschel          local         Doleschel (2002): film share
-# schlenk            mean          Schlenk (1994), as in ISO/TR 14179-2
-# niemann-winter     mean          Michaelis (1987), as in Niemann and Winter
-# constant           mean          the case
-# table              local         the case
-# =================  ============  ===========================================================
-#
-# A new one is a function with an entry in `FRICTION_MODELS`.
 
 
 # What a friction model is, and quantities that several of them use.

@@ -173,9 +173,6 @@ ROLLING_MODELS = {
 }
 
 
-# Friction and rolling loss from the fitted models of an oil.
-
-
 # Fitted quantities of one mesh or bearing at one speed, as tables.
 #
 # With one oil and one pair of surfaces, radius, speeds and slip of a contact of flanks follow from

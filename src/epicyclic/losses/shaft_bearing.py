@@ -104,12 +104,12 @@ class CatalogueBearing:
     """A rolling bearing as a catalogue states it."""
 
     type: BearingType  # One of `BEARING_TYPES`.
-    bore: float  # d, D and B. [m]
-    outside_diameter: float  # d, D and B. [m]
-    width: float = math.nan  # d, D and B. [m]
+    bore: float  # d. [m]
+    outside_diameter: float  # D. [m]
+    width: float = math.nan  # B. [m]
     cage: Cage = "caged"  # ``"caged"`` or ``"full-complement"``.
-    dynamic_load_rating: float = math.nan  # C and C0; NaN where they are unknown. [N]
-    static_load_rating: float = math.nan  # C and C0; NaN where they are unknown. [N]
+    dynamic_load_rating: float = math.nan  # C; NaN where it is unknown. [N]
+    static_load_rating: float = math.nan  # C0; NaN where it is unknown. [N]
     # Y of a tapered roller bearing, 0.4 cot of its contact angle; NaN for other types. [1]
     axial_factor: float = math.nan
 
@@ -378,10 +378,10 @@ class ContactSeal:
 class SkfMoments:
     """Friction moments of SKF's model."""
 
-    rolling: float  # M_rr, M_sl, M_seal and M_drag. [N m]
-    sliding: float  # M_rr, M_sl, M_seal and M_drag. [N m]
-    seal: float  # M_rr, M_sl, M_seal and M_drag. [N m]
-    drag: float  # M_rr, M_sl, M_seal and M_drag. [N m]
+    rolling: float  # M_rr. [N m]
+    sliding: float  # M_sl. [N m]
+    seal: float  # M_seal. [N m]
+    drag: float  # M_drag. [N m]
 
 
 @dataclass(frozen=True, slots=True)

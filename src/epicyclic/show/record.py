@@ -225,9 +225,6 @@ def _numbers(result: Result) -> xr.Dataset:
     )
 
 
-# Files of results: one NetCDF file with a group for each field, readable without this package.
-
-
 # Checks of what a file holds, so that reports and plots can rely on it.
 
 

@@ -312,9 +312,6 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
 """By name; each computes nothing of a growing record that it does not show."""
 
 
-# The reports of a loss map and of a sweep: their chapters.
-
-
 # The report of a loss map: its chapters.
 
 

@@ -119,9 +119,6 @@ def driver_name(key: str) -> str:
     return key
 
 
-# How well a result or a map is known, in tables: for terminals and pages.
-
-
 # Tables over the speeds and torques of a map.
 
 

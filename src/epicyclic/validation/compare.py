@@ -378,11 +378,11 @@ class SettledFigure:
     unit: str
     # The published value, or the ends of its range; empty where none is known here.
     published: tuple[float, ...]
-    inlet: float  # By how temperatures follow.
-    flank: float  # By how temperatures follow.
-    network: float  # By how temperatures follow.
-    low: float  # The least and the most of the network with all combinations of `estimates`.
-    high: float  # The least and the most of the network with all combinations of `estimates`.
+    inlet: float  # With everything at the inlet temperature.
+    flank: float  # With flanks as their own losses heat them.
+    network: float  # With the heat network.
+    low: float  # The least of the network with all combinations of `estimates`.
+    high: float  # The most of the network with all combinations of `estimates`.
 
 
 def estimates() -> tuple[Estimate, ...]:

@@ -567,10 +567,10 @@ _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")
 class PublishedStudy:
     """Values that the text of the source prints, in display units."""
 
-    helix_angle: float  # A loss and where it holds. [deg], [mm], [rpm], [W]
-    face_width: float  # A loss and where it holds. [deg], [mm], [rpm], [W]
-    speed: float  # A loss and where it holds. [deg], [mm], [rpm], [W]
-    loss: float  # A loss and where it holds. [deg], [mm], [rpm], [W]
+    helix_angle: float  # Where the loss holds. [deg]
+    face_width: float  # [mm]
+    speed: float  # [rpm]
+    loss: float  # [W]
     exponent: float  # Exponent of the speed in the loss of the spur pair. [1]
     # Helix angle, face width, and the losses between which the one at `speed` lies, by the axes of
     # the figures. [deg], [mm], [W], [W]

@@ -176,12 +176,6 @@ async def _answer(send: Any, status: int, text: str, headers: Mapping[str, str])
     await send({"type": "http.response.body", "body": body})
 
 
-# The page, and the server that gives it to browsers of this machine.
-
-
-# The page: the form on the left, what follows from it on the right, files to open and save.
-
-
 # Opening and saving: files go through the browser, never by a path on the page.
 
 

@@ -418,9 +418,6 @@ def about(stored: Stored) -> tuple[str, str]:
     return title, cycle or operating_line(map_inputs(stored)["operation"])
 
 
-# Figures of a page: still ones as SVG, and their data to explore.
-
-
 # Figures to explore: the lines, bars and fields of matplotlib Axes as data for plotly.js.
 #
 # Every plot is thus written once. What has no counterpart (drawings, text) stays a still figure.

@@ -25,9 +25,6 @@ from epicyclic.study.solve import flows_around, solve, without_torque
 from epicyclic.study.sweeps.run import AS_TESTED, CasePlan
 from epicyclic.study.sweeps.runner import Row, Rows, Runner
 
-# Results that have a band, and their change with each uncertain input.
-
-
 # From losses and factors of models to the results that have a band.
 
 

@@ -49,9 +49,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# How well the losses over a map, and the energy of a duty cycle, are known.
-
-
 # How well the losses of a map are known: the same samples of all inputs at each of its points.
 
 FloatArray = NDArray[np.float64]

@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Loss maps: computed over speed, torque and temperature, resolved near zero torque.
-
-
 # How far the energy lost over a duty cycle is off, because a map is interpolated.
 #
 # A sample of the points is solved directly. They are drawn with a probability that grows with the

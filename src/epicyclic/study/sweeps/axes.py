@@ -48,9 +48,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-# What a sweep varies: axes of keys and values, and tables of points.
-
-
 # Axes of a sweep: keys and their values, alone or changing together.
 
 MOST_POINTS = 1_000_000  # Rows of more points do not fit into memory.
@@ -324,9 +321,6 @@ def _value(cell: Any, unit: str) -> Any:
     value = parse_value(cell) if isinstance(cell, str) else cell
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return f"{value!r} {unit}" if unit not in ("", "1") and is_number else value
-
-
-# Keys of a sweep that follow from others by expressions.
 
 
 # Expressions over the keys of a case: numbers with units, sums, products and some functions.

@@ -51,9 +51,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# The cases of a sweep, and the tables of pocket flows that they have in common.
-
-
 # Tables of the flows through pockets that the points of a sweep have in common.
 
 
@@ -464,9 +461,6 @@ def _is_bare(item: str) -> bool:
 def _unit_of(item: str) -> str:
     match = _NUMBER.fullmatch(item)
     return match[2] if match is not None else ""
-
-
-# `sweep`: rows of results as a dataset, and the files that keep it.
 
 
 # Rows of a sweep as an `xarray.Dataset`, and the files it is kept in.
