@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 LARGEST_WHEEL = 3_000_000
 """Of which most is fitted models of oils. [byte]"""
 CORE = (
-    "tests/frozen",
+    "tests/frozen/test_frozen_results.py",
     "tests/unit/test_damaged_files.py",
     "tests/unit/test_records.py",
     "tests/unit/test_report_html.py",

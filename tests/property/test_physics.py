@@ -140,13 +140,19 @@ def assert_sensible(result):
         assert 0.0 <= flag.share <= 1.0
     parsed = json.loads(result.to_json())
     assert parsed["losses"].keys() == result.losses.keys()
-    assert parsed["status"] == "converged"
+    assert parsed["status"] == ("unphysical" if flattened(result) else "converged")
     for mesh in result.meshes.values():
         if mesh.contact is not None:
             # dry steel has some 0.2, and no model knows more than that and its factor of roughness
             assert 0.0 < mesh.friction_mean < 0.5
             assert mesh.hertz_pressure_max > 0.0
     assert_rolling_is_bounded(result)
+
+
+def flattened(result):
+    """Whether teeth are pressed flat over more than their radius: Hertz, p = E' b / (4 R)."""
+    modulus = 207e9 / (1.0 - 0.3**2)
+    return any(4.0 * mesh.hertz_pressure_max > modulus for mesh in result.meshes.values())
 
 
 def assert_rolling_is_bounded(result):

@@ -421,16 +421,16 @@ def test_every_answer_forbids_what_lies_elsewhere():
 def test_a_port_that_is_taken_and_a_case_that_is_none_are_told():
     import socket
 
-    from epicyclic.plugins.app.command import app
+    from epicyclic.cli.main import cli
 
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         options = ["talbot-2012", "--port", str(taken.getsockname()[1]), "--no-browser"]
-        found = CliRunner().invoke(app, options)
+        found = CliRunner().invoke(cli, ["app", *options])
     assert isinstance(found.exception, InputError)
     assert "cannot be listened at" in str(found.exception)
-    assert isinstance(CliRunner().invoke(app, ["talbot-2013"]).exception, InputError)
+    assert isinstance(CliRunner().invoke(cli, ["app", "talbot-2013"]).exception, InputError)
 
 
 # --- the page -------------------------------------------------------------------------------------
@@ -747,24 +747,24 @@ def test_a_machine_that_does_not_know_its_own_name_has_loopback_addresses(monkey
 
 @pytest.mark.parametrize("host", ["", "a\0b", "\udcff", "a" * 300, "no-such-host.invalid"])
 def test_what_is_no_address_is_told(host):
-    from epicyclic.plugins.app.command import app
+    from epicyclic.cli.main import cli
 
-    found = CliRunner().invoke(app, ["talbot-2012", "--host", host, "--no-browser"])
+    found = CliRunner().invoke(cli, ["app", "talbot-2012", "--host", host, "--no-browser"])
     assert isinstance(found.exception, InputError)
     assert "cannot be listened at" in str(found.exception)
     assert len(str(found.exception)) < 300
 
 
 def test_another_host_is_told_what_it_means(monkeypatch):
+    from epicyclic.cli.main import cli
     from epicyclic.plugins.app import page as serve
-    from epicyclic.plugins.app.command import app
 
     asked = []
     monkeypatch.setattr(serve, "serve", lambda desk, *where: asked.append(where[:2]))
-    found = CliRunner().invoke(app, ["talbot-2012", "--host", "192.0.2.7", "--port", "8080"])
+    found = CliRunner().invoke(cli, ["app", "talbot-2012", "--host", "192.0.2.7", "--port", "8080"])
     assert asked == [("192.0.2.7", 8080)]
     assert "not encrypted" in found.stderr
-    assert not CliRunner().invoke(app, ["talbot-2012"]).stderr
+    assert not CliRunner().invoke(cli, ["app", "talbot-2012"]).stderr
 
 
 @pytest.mark.parametrize(

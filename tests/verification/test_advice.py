@@ -11,7 +11,7 @@ from click.testing import CliRunner
 import epicyclic as ep
 from asymmetric import gear_pair
 from epicyclic import library
-from epicyclic.cli.case import run
+from epicyclic.cli.main import cli
 from epicyclic.show.uncertainty_tables import advice_texts
 from epicyclic.study.bands.advice import Known, known_of, limits_of, measurements_of, model_remarks
 from epicyclic.study.bands.inputs import remedy_for
@@ -99,11 +99,11 @@ def test_the_recommended_model_and_the_largest_warning_are_told():
 def test_run_tells_it_in_four_sentences_and_as_json(band):
     texts = list(advice_texts(known_of(band), brief=True))
     assert 3 <= len(texts) <= 4
-    printed = CliRunner().invoke(run, ["talbot-2012-pair"])
+    printed = CliRunner().invoke(cli, ["run", "talbot-2012-pair"])
     assert printed.exit_code == 0, printed.output
     assert "What limits the trust in it" in printed.output
     assert "Measured, this would narrow the band" in " ".join(printed.output.split())
-    asked = CliRunner().invoke(run, ["talbot-2012-pair", "--json", "-"])
+    asked = CliRunner().invoke(cli, ["run", "talbot-2012-pair", "--json", "-"])
     found = json.loads(asked.output)
     pair = ep.load_case("talbot-2012-pair")
     result = ep.solve(pair)

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 import epicyclic as ep
 from asymmetric import gear_pair
 from epicyclic.case.tables.uncertainty import UncertainValue
-from epicyclic.cli.uncertainty import uncertainty as command
+from epicyclic.cli.main import cli
 from epicyclic.errors import InputError
 from epicyclic.show.html import report_html
 from epicyclic.show.uncertainty_tables import LIMITS, uncertainty_items
@@ -287,8 +287,17 @@ def test_the_command_on_a_map(plain_map, over_map, tmp_path):
     ep.write_map(plain_map, tmp_path / "map.nc")
     output, picture = tmp_path / "band.nc", tmp_path / "band.png"
     run = CliRunner().invoke(
-        command,
-        [str(tmp_path / "map.nc"), "--jobs", "1", "-o", str(output), "--plot", str(picture)],
+        cli,
+        [
+            "uncertainty",
+            str(tmp_path / "map.nc"),
+            "--jobs",
+            "1",
+            "-o",
+            str(output),
+            "--plot",
+            str(picture),
+        ],
     )
     assert run.exit_code == 0, run.output
     assert "95 % band of the total loss, W, at 0 °C" in run.output
@@ -309,6 +318,6 @@ def test_the_command_on_a_map(plain_map, over_map, tmp_path):
     ],
 )
 def test_options_that_do_not_go_together(arguments, message):
-    run = CliRunner().invoke(command, arguments)
+    run = CliRunner().invoke(cli, ["uncertainty", *arguments])
     assert run.exit_code != 0
     assert message in str(run.exception)

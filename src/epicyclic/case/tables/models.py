@@ -279,7 +279,7 @@ class ContactSolver(OilBehaviour):
     def _assume(cls, keys: Any) -> Any:
         """Fill in what the preset says of keys that are not given."""
         preset = value_at(keys, ("preset",))
-        if preset not in PRESETS:
+        if not isinstance(preset, str) or preset not in PRESETS:
             return keys
         film = film_text(PRESETS[preset])
         return {**behaviour_of(preset), "asperity_film": film, **keys}
