@@ -52,6 +52,9 @@ def oil(
         thermoviscosity=thermoviscosity,
         thermal_conductivity=thermal_conductivity,
         lubricant_factor=lubricant_factor,
+        pressure_viscosity_exponent=0.139,
+        limiting_traction=0.047,
+        boundary_friction=0.065,
     )
 
 

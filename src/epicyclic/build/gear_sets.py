@@ -165,7 +165,10 @@ def _meshes(
             tools=(tools[drawn.first], tools[drawn.second]),
             roundings=(one.tool_tip_radius, two.tool_tip_radius),
             flanks=Flanks(
-                contact_modulus(one.material, two.material), one.roughness, two.roughness
+                contact_modulus(one.material, two.material),
+                one.roughness,
+                two.roughness,
+                (solid_of(one.material).effusivity, solid_of(two.material).effusivity),
             ),
             solids=gear_bodies(mesh, tables, gearing.count or 1),
             deviations=flanks.flank_deviations(mesh, tables, drawn.table.misalignment),

@@ -35,7 +35,6 @@ from epicyclic.contact.temperatures import Solid
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.friction import (
-    DRY_FRICTION,
     FRICTION_MODELS,
     TALBOT_FLUID,
     FrictionMap,
@@ -43,6 +42,7 @@ from epicyclic.losses.friction import (
     FrictionSettings,
     friction_model,
 )
+from epicyclic.losses.mixed_lubrication import Surfaces
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
 from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
 from epicyclic.losses.pocket_tables import FlowTables
@@ -236,10 +236,17 @@ def bearing_model(case: SetCase, bearing: PlanetBearing | None) -> str:
     return _automatic(case, "bearing_rolling_loss", FITTED_OR_PALMGREN, "palmgren")
 
 
+def preset_of(case: SetCase) -> str:
+    """What ``auto`` stands for in a case."""
+    return case.models.preset
+
+
 def _friction_name(case: SetCase) -> str:
     chosen = case.models.friction
     if chosen != "auto":
         return chosen
+    if preset_of(case) == "general":
+        return "mixed-lubrication"
     return _automatic(case, "friction", FittedOrSchlenk.name, "schlenk")
 
 
@@ -247,6 +254,8 @@ def _rolling_name(case: SetCase) -> str:
     chosen = case.models.rolling
     if chosen != "auto":
         return chosen
+    if preset_of(case) == "general":
+        return "goksem-hargreaves"
     return _automatic(case, "rolling_loss", FittedOrGoksem.name, "goksem-hargreaves")
 
 
@@ -276,14 +285,20 @@ def standing_of(case: SetCase) -> dict[str, str]:
 
 def friction_settings(case: SetCase) -> FrictionSettings:
     """The numbers that friction models take from the case."""
-    table, boundary = case.friction_table, case.models.boundary_friction
+    table, models = case.friction_table, case.models
     return FrictionSettings(
         constant=case.models.constant_friction,
-        boundary=DRY_FRICTION if boundary is None else boundary,
+        boundary=models.boundary_friction,
         fluid=case.models.fluid_friction,
         table=None if table is None else FrictionMap(tuple(table.axes().items()), table.friction),
         oil_held=case.models.oil_beyond_range == "held",
         load_factor=case.models.application_factor * case.models.mesh_load_factor,
+        surfaces=Surfaces(
+            running_in=models.running_in_factor if models.running_in == "run-in" else 1.0,
+            cutoff=models.profile_cutoff,
+            hurst_exponent=models.hurst_exponent,
+            hardness=models.flank_hardness,
+        ),
     )
 
 

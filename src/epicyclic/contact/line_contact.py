@@ -22,6 +22,8 @@ from epicyclic.oil.oil import OilState
 FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 
+STEEL_EFFUSIVITY = 12.4e3
+"""Of case-hardened steel, ISO/TS 6336-20: for contacts that do not say. [W s^0.5/(m^2 K)]"""
 CONDITIONS = (
     "slide_to_roll_ratio",
     "rolling_speed",
@@ -42,6 +44,8 @@ class Flanks(Generic[Real]):
     equivalent_modulus: float  # E_eq. [Pa]
     roughness1: Real  # rms. [m]
     roughness2: Real  # rms. [m]
+    # Of both bodies, which carry off the heat of sliding. [W s^0.5/(m^2 K)]
+    effusivities: tuple[float, float] = (STEEL_EFFUSIVITY, STEEL_EFFUSIVITY)
 
     @property
     def composite_roughness(self) -> Real:

@@ -3,6 +3,7 @@
 =================  ============  ===========================================================
 name               kind          source
 =================  ============  ===========================================================
+mixed-lubrication  local         `epicyclic.losses.mixed_lubrication`: for any oil
 mixed-ehl          local         Talbot (2012), Eq. 5.8: regression of mixed-EHL simulations
 mixed-ehl+pairing  local         as above, for flanks of unequal roughness: solver of this package
 xu-2007            local         Xu, Kahraman, Anderson, Maddock (2007): regression, full film
@@ -42,6 +43,7 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.kernels.mixed_ehl import sliding_friction_at
 from epicyclic.losses.contact import MeshContact
+from epicyclic.losses.mixed_lubrication import RUN_IN, Surfaces, mixed_friction
 from epicyclic.losses.ranges import (
     OF_THIS_PACKAGE,
     Formula,
@@ -249,11 +251,12 @@ class FrictionSettings:
 
     constant: float = 0.0  # Coefficient of the model constant. [1]
     # Coefficients of dry and of separated contact in the film-share models. [1]
-    boundary: float = DRY_FRICTION
+    boundary: float | None = None  # None: that of each model.
     fluid: float = 0.0
     table: FrictionMap | None = None
     oil_held: bool = True  # False to continue the model mixed-ehl beyond its oil.
     load_factor: float = 1.0  # K_A K_gamma, for the model niemann-winter. [1]
+    surfaces: Surfaces = RUN_IN  # For the model mixed-lubrication.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -468,7 +471,8 @@ FILM_RANGES = (
 
 def _mixed(dry: FloatArray, settings: FrictionSettings) -> FloatArray:
     """mu = xi mu_b + (1 - xi) mu_f. Theory (F8). [1]"""
-    return dry * settings.boundary + (1 - dry) * settings.fluid
+    boundary = DRY_FRICTION if settings.boundary is None else settings.boundary
+    return dry * boundary + (1 - dry) * settings.fluid
 
 
 def doleschel(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
@@ -622,6 +626,19 @@ _NOT_COMPARED = "no comparison with measurements was found"
 FRICTION_MODELS = {
     model.name: model
     for model in (
+        FrictionFormula(
+            name="mixed-lubrication",
+            title="film and asperities sharing the load",
+            source="M. Masjedi and M. M. Khonsari, J. Tribol. 134 (2012) 011503; P. K. Gupta et "
+            "al., J. Tribol. 114 (1992) 55; C. R. Evans and K. L. Johnson, Proc. IMechE C 200 "
+            "(1986) 303",
+            reliability="nothing fitted to gears; its error on measured ones: 'epicyclic validate "
+            "--measured'",
+            function=lambda contact, settings: mixed_friction(
+                contact, settings.surfaces, settings.boundary
+            ),
+            ranges=FILM_RANGES,
+        ),
         FrictionFormula(
             name="mixed-ehl",
             title="mixed-EHL friction regression",

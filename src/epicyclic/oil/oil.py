@@ -79,6 +79,29 @@ class LubricantFactor(_Data):
     source: str = ""
 
 
+class Traction(_Data):
+    """A coefficient of friction of an oil, with its source."""
+
+    value: Number = Field(gt=0, le=0.2)
+    source: str = ""
+
+
+ARANA = "after Arana, Larranaga, Ulacia, Proc. IMechE J 233 (2019) 303"
+LIMITING_TRACTION = {
+    "mineral": Traction(value=0.047, source=f"paraffinic mineral oil, {ARANA}"),
+    "atf": Traction(value=0.047, source=f"as paraffinic mineral oil, {ARANA}"),
+    "pao": Traction(value=0.035, source=f"polyalphaolefin, {ARANA}"),
+    "ester": Traction(value=0.035, source="estimate: as polyalphaolefin"),
+    "pag": Traction(value=0.03, source="estimate: a little below polyalphaolefin"),
+}
+"""What an oil has that states none, by its kind."""
+BOUNDARY_FRICTION = {
+    "gear-oil": Traction(value=0.065, source=f"FZG gears in gear oils, {ARANA}"),
+    "none": Traction(value=0.08, source=f"Robbe-Valloire, {ARANA}"),
+}
+"""Friction of flanks that touch, by the level of additives. [1]"""
+
+
 class GoldLaw(_Data):
     """alpha = s nu^t with nu in mm^2/s and alpha in 1/GPa (Gold et al. 2001). Theory (L4)."""
 
@@ -146,6 +169,14 @@ class Oil(_Data):
     lubricant_factor: LubricantFactor = Field(
         default=LubricantFactor(value=1.0, source="X_L of ISO/TR 14179-2, mineral oil"),
         description="X_L of the friction model of ISO/TR 14179-2.",
+    )
+    limiting_traction: Traction | None = Field(
+        default=None,
+        description="Shear stress over pressure that a film tends to. Default: by the kind.",
+    )
+    additives: Literal["gear-oil", "none"] = Field(
+        default="gear-oil",
+        description="Package against wear and scuffing, by which flanks that touch rub less.",
     )
     friction_regression: Literal["talbot-2012", "xu-2007"] | None = Field(
         default=None,
@@ -263,6 +294,9 @@ class OilState:
     thermoviscosity: float  # beta = -d(ln nu)/dT. [1/K]
     thermal_conductivity: float  # [W/(m K)]
     lubricant_factor: float  # X_L of ISO/TR 14179-2. [1]
+    pressure_viscosity_exponent: float  # d(ln alpha)/d(ln nu). [1]
+    limiting_traction: float  # Lambda, of the shear stress at high pressure. [1]
+    boundary_friction: float  # mu_b, of asperities. [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,6 +331,9 @@ def oil_state(oil: Oil, temperature: float) -> OilState:
             else oil.thermal_conductivity.value
         ),
         lubricant_factor=oil.lubricant_factor.value,
+        pressure_viscosity_exponent=_pressure_viscosity_exponent(oil, rho * nu),
+        limiting_traction=(oil.limiting_traction or LIMITING_TRACTION[oil.kind]).value,
+        boundary_friction=BOUNDARY_FRICTION[oil.additives].value,
     )
 
 
@@ -367,6 +404,12 @@ def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> f
     # z, linear between the points of the law and constant beyond them: (L5)
     index = float(np.interp(temperature, *_roelands_points(oil, law)))
     return index * roelands_slope(mu)
+
+
+def _pressure_viscosity_exponent(oil: Oil, mu: float) -> float:
+    """d(ln alpha)/d(ln nu), density and index z held. Theory (L4), (L5). [1]"""
+    law = oil.pressure_viscosity
+    return law.t if isinstance(law, GoldLaw) else 1 / (math.log(mu) + ROELANDS_OFFSET)
 
 
 def roelands_slope(mu: float) -> float:

@@ -181,8 +181,12 @@ def mesh_stiffness_of(mesh: LoadedMesh) -> float:
 
 TEST_TORQUES = (250, 500, 750, 1000)  # Loaded tests: torque on the sun. [N m]
 TEST_SPEEDS = (1000, 2000, 3000, 4000)  # Speeds of the sun. [rpm]
-AS_IN_THE_SOURCE = {"models.mesh_loads": "without-losses", "planet.mass": "0 kg"}
-"""Talbot (2012), Eq. 3.7 and 3.8, p. 68: no losses, no centrifugal force."""
+AS_IN_THE_SOURCE = {
+    "models.preset": "talbot-2012",
+    "models.mesh_loads": "without-losses",
+    "planet.mass": "0 kg",
+}
+"""Its regressions; Talbot (2012), Eq. 3.7 and 3.8, p. 68: no losses, no centrifugal force."""
 KELVIN = 273.15  # 0 degC in kelvin.
 
 

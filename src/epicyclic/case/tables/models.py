@@ -10,6 +10,7 @@ from pydantic import Field, Tag, model_validator
 from epicyclic.case.read import value_at
 from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table, option
 from epicyclic.errors import Problem
+from epicyclic.gears.flanks import FLANK_HARDNESS, HURST_EXPONENT, RUNNING_IN
 from epicyclic.oil.oil import Conductivity, HeatCapacity
 from epicyclic.oil.rheology import (
     DEFAULT,
@@ -206,6 +207,7 @@ class LoadSharing(Table):
 
 FrictionName = Literal[
     "auto",
+    "mixed-lubrication",
     "mixed-ehl",
     "mixed-ehl+pairing",
     "schlenk",
@@ -292,6 +294,12 @@ class GearPairModels(Table):
     """Which method computes what."""
 
     STAND_INS: ClassVar[dict[str, object]] = {
+        "preset": None,
+        "running_in": None,
+        "running_in_factor": None,
+        "profile_cutoff": None,
+        "hurst_exponent": None,
+        "flank_hardness": None,
         "constant_friction": None,
         "boundary_friction": None,
         "fluid_friction": None,
@@ -315,17 +323,45 @@ class GearPairModels(Table):
         "planet_tilt": None,
     }
 
+    preset: Literal["general", "talbot-2012"] = option(
+        "What auto stands for: general: models for any oil; talbot-2012: the regressions of that "
+        "study for its fluid, for others fits to simulated contacts where there are some, else "
+        "formulas.",
+        "general",
+    )
     friction: FrictionName = option(
-        "auto: mixed-ehl for the fluid it was made for, fitted-or-schlenk for an oil with fitted "
-        "models, else schlenk; ehl-direct: the contacts of the mesh solved.",
+        "auto: mixed-lubrication, or that of the preset; ehl-direct: the contacts of the mesh "
+        "solved.",
         "auto",
     )
     constant_friction: Number = option("For friction = constant.", 0.04, ge=0, le=1)
     boundary_friction: Number | None = option(
-        "Of dry contact (estimate; an oil's own is measured). Default: 0.10 for matsumoto and "
-        "doleschel, 0.12 for ehl-direct.",
+        "Of dry contact (estimate; an oil's own is measured). Default: by the additives of the oil "
+        "for mixed-lubrication, 0.10 for matsumoto and doleschel, 0.12 for ehl-direct.",
         ge=0,
         le=1,
+    )
+    running_in: Literal["run-in", "as-made"] = option(
+        "State of the flanks for mixed-lubrication. as-made: also of flanks whose roughness was "
+        "measured after running.",
+        "run-in",
+    )
+    running_in_factor: Number = option(
+        "Roughness after running-in over that as made (estimate).", RUNNING_IN, gt=0, le=1
+    )
+    profile_cutoff: SmallLength | None = option(
+        "Of the profiles whose roughness is stated. Default: as ISO 21920-3 has it for their "
+        "roughness, some 0.8 mm for Ra 0.45 um."
+    )
+    hurst_exponent: Number = option(
+        "Of the profile: how its roughness grows with the length seen (estimate; ground steel 0.5 "
+        "to 0.8).",
+        HURST_EXPONENT,
+        ge=0,
+        le=1,
+    )
+    flank_hardness: Stress = option(
+        "Of the softer flank; 1 HV is 9.81 MPa.", f"{FLANK_HARDNESS * 1e-9:g} GPa"
     )
     fluid_friction: Number = option(
         "Of separated contact, for matsumoto and doleschel (estimate, as above).", 0.02, ge=0, le=1
@@ -343,11 +379,7 @@ class GearPairModels(Table):
         "goksem-hargreaves",
         "fitted",
         "fitted-or-goksem-hargreaves",
-    ] = option(
-        "auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves for an oil "
-        "with fitted models, else goksem-hargreaves.",
-        "auto",
-    )
+    ] = option("auto: goksem-hargreaves, or that of the preset.", "auto")
     oil_model: str | None = option(
         "For fitted and auto: a file of 'epicyclic oil characterise', from the folder of the "
         "case. Default: the models built in for the oil."

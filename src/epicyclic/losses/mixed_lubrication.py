@@ -1,0 +1,195 @@
+"""Friction of rough, lubricated flanks, for any oil: film and asperities share the load.
+
+At each contact, Theory (X1) to (X8):
+
+1. the film of Pan and Hamrock, thinned by the heat at the inlet (Gupta et al.);
+2. the roughness that acts: what is shorter than the contact is wide, after running-in;
+3. the share of the load on asperities (Masjedi and Khonsari);
+4. the shear stress of the film: Eyring with a limit, as hot as friction makes it;
+5. mu = xi mu_b + (1 - xi) tau/p.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.contact.temperatures import flash_temperature
+from epicyclic.gears.flanks import (
+    FLANK_HARDNESS,
+    HURST_EXPONENT,
+    MIDDLE_OF_CLASS,
+    PROFILE_CUTOFF,
+    RA_OVER_RQ,
+    RUNNING_IN,
+)
+from epicyclic.kernels.line_contact import pan_hamrock_central_film
+from epicyclic.kernels.mixed_lubrication import film_stress
+from epicyclic.losses.contact import MeshContact
+from epicyclic.oil.oil import OilState
+
+FloatArray = NDArray[np.float64]
+
+FILM_EXPONENT = 0.705  # Of the speed number in the film of Masjedi and Khonsari. [1]
+MEAN_FLASH = 2 / 3
+"""Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
+MEAN_PRESSURE = math.pi / 4  # Mean over largest pressure of Hertz. [1]
+LEAST_FILM_SHARE = 0.1
+"""Least numerator of (X1), which heavy load and strong heat would bring below zero. [1]"""
+
+
+@dataclass(frozen=True, slots=True)
+class Surfaces:
+    """What of the roughness acts, and how hard it is. Theory (X2), (X3)."""
+
+    running_in: float = RUNNING_IN
+    cutoff: float | None = None  # Of the measured profiles; None: `usual_cutoff`. [m]
+    hurst_exponent: float = HURST_EXPONENT
+    hardness: float = FLANK_HARDNESS
+
+
+RUN_IN = Surfaces()
+
+
+def acting_roughness(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
+    """sigma^2 = sum of (f Rq (2 b/l_c)^H)^2 of both flanks, 2 b/l_c at most 1. Theory (X2). [m]
+
+    A self-affine profile has an rms height that grows with the length L that is looked at as L^H;
+    what is longer than the contact is wide leaves both flanks parallel and breaks no film.
+    """
+    width = 2 * contact.hertz_half_width
+    heights = []
+    for roughness in contact.roughness:
+        cutoff = usual_cutoff(roughness) if surfaces.cutoff is None else surfaces.cutoff
+        heights.append(roughness * np.minimum(width / cutoff, 1.0) ** surfaces.hurst_exponent)
+    sigma: FloatArray = surfaces.running_in * np.hypot(*heights)
+    return sigma
+
+
+def usual_cutoff(
+    roughness: float,  # rms. [m]
+) -> float:
+    """Cut-off with which a profile of this roughness is measured. Theory (X2). [m]
+
+    ISO 21920-3 has 0.08 mm for Ra to 0.02 um, 0.25 mm to 0.1 um, 0.8 mm to 2 um, 2.5 mm to 10 um,
+    8 mm above. The root through the middle of these classes stands for their steps, so that a
+    rougher flank never seems smoother.
+
+    Examples
+    --------
+    >>> round(1e3 * usual_cutoff(0.56e-6), 2)
+    0.8
+    """
+    return PROFILE_CUTOFF * (RA_OVER_RQ * roughness / MIDDLE_OF_CLASS) ** 0.5
+
+
+def inlet_heating(contact: MeshContact) -> FloatArray:
+    """phi_T, film over that without heat at its inlet. Theory (X1). [1]
+
+    Gupta, Cheng, Zhu, Forster, Schrand, J. Tribol. 114 (1992) 55, second hand:
+    (1 - 13.2 (p_h/E) L^0.42)/(1 + 0.213 (1 + 2.23 S^0.83) L^0.64) with L = mu beta u_r^2/k and
+    the slide-to-roll ratio S.
+    """
+    oil = contact.oil
+    heat = (
+        oil.dynamic_viscosity
+        * oil.thermoviscosity
+        * contact.rolling_speed**2
+        / oil.thermal_conductivity
+    )
+    pressure = contact.hertz_pressure / contact.flanks.equivalent_modulus
+    slip = 1 + 2.23 * contact.slide_to_roll_ratio**0.83
+    factor: FloatArray = np.maximum(1 - 13.2 * pressure * heat**0.42, LEAST_FILM_SHARE) / (
+        1 + 0.213 * slip * heat**0.64
+    )
+    return factor
+
+
+def central_film(contact: MeshContact) -> FloatArray:
+    """Film of the smooth contact, thinned by heat at its inlet. Theory (X1). [m]"""
+    film = pan_hamrock_central_film(
+        contact.speed_number, contact.material_number, contact.load_number
+    )
+    return contact.radius * film * inlet_heating(contact)
+
+
+def asperity_share(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
+    """Share xi of the load that asperities carry, 0 to 1. Theory (X3). [1]
+
+    Masjedi and Khonsari, J. Tribol. 134 (2012) 011503, second hand: a fit to solutions of the
+    Reynolds equation with elasto-plastic asperities of statistically described height,
+    0.005 W^-0.408 U^-0.088 G^0.103 ln(1 + 4470 s^6.015 V^1.168 W^0.485 U^-3.741 G^-2.898) in per
+    cent, with s = sigma/R and V = hardness/E. Heat at the inlet acts as a lower speed.
+    """
+    speed = contact.speed_number * inlet_heating(contact) ** (1 / FILM_EXPONENT)
+    load, material = contact.load_number, contact.material_number
+    rough = acting_roughness(contact, surfaces) / contact.radius
+    hard = surfaces.hardness / contact.flanks.equivalent_modulus
+    touching = (
+        np.log(4470.0) + 6.015 * np.log(rough) + 1.168 * math.log(hard) + 0.485 * np.log(load)
+    ) - (3.741 * np.log(speed) + 2.898 * np.log(material))
+    share = 5e-5 * load**-0.408 * speed**-0.088 * material**0.103 * np.logaddexp(0.0, touching)
+    return np.minimum(share, 1.0)
+
+
+def mixed_friction(
+    contact: MeshContact,
+    surfaces: Surfaces,
+    boundary: float | None = None,  # mu_b; None: that of the oil. [1]
+) -> FloatArray:
+    """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (X4) to (X8). [1]"""
+    oil = contact.oil
+    boundary = oil.boundary_friction if boundary is None else boundary
+    share = asperity_share(contact, surfaces)
+    film = central_film(contact)
+    pressure = MEAN_PRESSURE * contact.hertz_pressure
+    slip = np.abs(contact.sliding_speed)
+    # flank temperature for a coefficient of friction of 1
+    flash = MEAN_FLASH * flash_temperature(
+        1.0,
+        contact.line_load,
+        slip,
+        *contact.surface_speeds,
+        contact.hertz_half_width,
+        *contact.flanks.effusivities,
+    )
+    stress = film_stress(
+        pressure,
+        slip / film,
+        flash * share * boundary,
+        flash * (1 - share) / pressure,
+        slip * film / (12 * oil.thermal_conductivity),  # mean across the film, heated evenly
+        oil.limiting_traction,
+        _oil_constants(oil),
+    )
+    mu: FloatArray = share * boundary + (1 - share) * stress / pressure
+    return mu
+
+
+@lru_cache(maxsize=64)
+def _oil_constants(oil: OilState) -> FloatArray:
+    """As `eyring_stress` takes them: the line of ASTM D341 that touches at this temperature."""
+    shifted = oil.kinematic_viscosity * 1e6 + 0.7
+    ordinate = math.log10(math.log10(shifted))
+    # d(log log(nu + 0.7))/d(log T) from beta = -d(ln nu)/dT
+    slope = (
+        oil.thermoviscosity
+        * oil.temperature
+        * (shifted - 0.7)
+        / (shifted * math.log(10) * math.log10(shifted))
+    )
+    return np.array(
+        [
+            oil.temperature,
+            ordinate,
+            slope,
+            oil.density,
+            oil.pressure_viscosity,
+            oil.kinematic_viscosity,
+            oil.pressure_viscosity_exponent,
+        ]
+    )

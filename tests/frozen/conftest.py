@@ -1,0 +1,13 @@
+"""What was frozen was computed with the models that ``auto`` stood for then."""
+
+from __future__ import annotations
+
+import pytest
+
+from epicyclic.build import models
+
+
+@pytest.fixture(autouse=True)
+def former_models(monkeypatch):
+    """Cases as with the preset talbot-2012, without a key for it."""
+    monkeypatch.setattr(models, "preset_of", lambda case: "talbot-2012")
