@@ -21,7 +21,7 @@ CLOSE = 1e-12  # Relative width of the bracket at which the stress counts as fou
 def eyring_stress(
     temperature: float, pressure: float, rate: float, limit: float, oil: FloatArray
 ) -> float:
-    """tau_E arsinh(eta rate/tau_E) with tau_E = Lambda/alpha, eta of Barus. Theory (X5), (X6). [Pa]
+    """tau_E arsinh(eta rate/tau_E) with tau_E = Lambda/alpha, eta of Barus. Theory (Y6). [Pa]
 
     `pressure` [Pa], shear `rate` [1/s], `limit` Lambda [1]; `oil` holds T0 [K], ordinate and slope
     of ASTM D341, density [kg/m^3], alpha at T0 [1/Pa], nu at T0 [m^2/s] and d(ln alpha)/d(ln nu).
@@ -30,8 +30,8 @@ def eyring_stress(
     viscosity = max((10.0 ** (10.0**ordinate) - 0.7) * 1e-6, LEAST_VISCOSITY)
     alpha = oil[4] * (viscosity / oil[5]) ** oil[6]
     x = math.log(oil[3] * viscosity * rate * alpha / limit) + alpha * pressure
-    arsinh = x + math.log(2.0) if x > LARGE else math.asinh(math.exp(x))
-    return limit / alpha * arsinh
+    stress: float = limit / alpha * (x + math.log(2.0) if x > LARGE else math.asinh(math.exp(x)))
+    return stress
 
 
 @kernel
@@ -39,7 +39,7 @@ def film_stress(
     pressure: FloatArray, rate: FloatArray, warm: FloatArray, flash: FloatArray,
     heating: FloatArray, limit: float, oil: FloatArray,
 ) -> FloatArray:  # fmt: skip
-    """Stress tau of each film at the temperature T0 + warm + (flash + heating) tau. Theory (X7).
+    """Stress tau of each film at the temperature T0 + warm + (flash + heating) tau. Theory (Y7).
 
     Parameters
     ----------

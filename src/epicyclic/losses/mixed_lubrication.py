@@ -1,6 +1,6 @@
 """Friction of rough, lubricated flanks, for any oil: film and asperities share the load.
 
-At each contact, Theory (X1) to (X8):
+At each contact, in the order of docs/theory/mixed-lubrication.md:
 
 1. the film of Pan and Hamrock, thinned by the heat at the inlet (Gupta et al.);
 2. the roughness that acts: what is shorter than the contact is wide, after running-in;
@@ -39,12 +39,12 @@ MEAN_FLASH = 2 / 3
 """Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
 MEAN_PRESSURE = math.pi / 4  # Mean over largest pressure of Hertz. [1]
 LEAST_FILM_SHARE = 0.1
-"""Least numerator of (X1), which heavy load and strong heat would bring below zero. [1]"""
+"""Least numerator of (Y1), which heavy load and strong heat would bring below zero. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
 class Surfaces:
-    """What of the roughness acts, and how hard it is. Theory (X2), (X3)."""
+    """What of the roughness acts, and how hard it is."""
 
     running_in: float = RUNNING_IN
     cutoff: float | None = None  # Of the measured profiles; None: `usual_cutoff`. [m]
@@ -56,7 +56,7 @@ RUN_IN = Surfaces()
 
 
 def acting_roughness(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
-    """sigma^2 = sum of (f Rq (2 b/l_c)^H)^2 of both flanks, 2 b/l_c at most 1. Theory (X2). [m]
+    """sigma^2 = sum of (f Rq (2 b/l_c)^H)^2 of both flanks, 2 b/l_c at most 1. Theory (Y3). [m]
 
     A self-affine profile has an rms height that grows with the length L that is looked at as L^H;
     what is longer than the contact is wide leaves both flanks parallel and breaks no film.
@@ -73,7 +73,7 @@ def acting_roughness(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
 def usual_cutoff(
     roughness: float,  # rms. [m]
 ) -> float:
-    """Cut-off with which a profile of this roughness is measured. Theory (X2). [m]
+    """Cut-off with which a profile of this roughness is measured. Theory (Y4). [m]
 
     ISO 21920-3 has 0.08 mm for Ra to 0.02 um, 0.25 mm to 0.1 um, 0.8 mm to 2 um, 2.5 mm to 10 um,
     8 mm above. The root through the middle of these classes stands for their steps, so that a
@@ -84,11 +84,11 @@ def usual_cutoff(
     >>> round(1e3 * usual_cutoff(0.56e-6), 2)
     0.8
     """
-    return PROFILE_CUTOFF * (RA_OVER_RQ * roughness / MIDDLE_OF_CLASS) ** 0.5
+    return PROFILE_CUTOFF * math.sqrt(RA_OVER_RQ * roughness / MIDDLE_OF_CLASS)
 
 
 def inlet_heating(contact: MeshContact) -> FloatArray:
-    """phi_T, film over that without heat at its inlet. Theory (X1). [1]
+    """phi_T, film over that without heat at its inlet. Theory (Y1). [1]
 
     Gupta, Cheng, Zhu, Forster, Schrand, J. Tribol. 114 (1992) 55, second hand:
     (1 - 13.2 (p_h/E) L^0.42)/(1 + 0.213 (1 + 2.23 S^0.83) L^0.64) with L = mu beta u_r^2/k and
@@ -110,15 +110,16 @@ def inlet_heating(contact: MeshContact) -> FloatArray:
 
 
 def central_film(contact: MeshContact) -> FloatArray:
-    """Film of the smooth contact, thinned by heat at its inlet. Theory (X1). [m]"""
+    """Film of the smooth contact, thinned by heat at its inlet. Theory (Y2). [m]"""
     film = pan_hamrock_central_film(
         contact.speed_number, contact.material_number, contact.load_number
     )
-    return contact.radius * film * inlet_heating(contact)
+    thinned: FloatArray = contact.radius * film * inlet_heating(contact)
+    return thinned
 
 
 def asperity_share(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
-    """Share xi of the load that asperities carry, 0 to 1. Theory (X3). [1]
+    """Share xi of the load that asperities carry, 0 to 1. Theory (Y5). [1]
 
     Masjedi and Khonsari, J. Tribol. 134 (2012) 011503, second hand: a fit to solutions of the
     Reynolds equation with elasto-plastic asperities of statistically described height,
@@ -133,7 +134,8 @@ def asperity_share(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
         np.log(4470.0) + 6.015 * np.log(rough) + 1.168 * math.log(hard) + 0.485 * np.log(load)
     ) - (3.741 * np.log(speed) + 2.898 * np.log(material))
     share = 5e-5 * load**-0.408 * speed**-0.088 * material**0.103 * np.logaddexp(0.0, touching)
-    return np.minimum(share, 1.0)
+    held: FloatArray = np.minimum(share, 1.0)
+    return held
 
 
 def mixed_friction(
@@ -141,7 +143,7 @@ def mixed_friction(
     surfaces: Surfaces,
     boundary: float | None = None,  # mu_b; None: that of the oil. [1]
 ) -> FloatArray:
-    """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (X4) to (X8). [1]"""
+    """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]"""
     oil = contact.oil
     boundary = oil.boundary_friction if boundary is None else boundary
     share = asperity_share(contact, surfaces)

@@ -1,0 +1,166 @@
+"""Film and asperities sharing the load: limits, symmetry, and what the film is like."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import epicyclic as ep
+from contacts import STEEL
+from contacts import oil as oil_with
+from epicyclic.contact.line_contact import Flanks
+from epicyclic.kernels.mixed_lubrication import eyring_stress, film_stress
+from epicyclic.losses import mixed_lubrication as model
+from epicyclic.losses.mixed_lubrication import RUN_IN, Surfaces, mixed_friction
+from epicyclic.oil.oil import oil_state
+from epicyclic.study.solve import mesh_contacts
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """A coarse gear pair."""
+    coarse = {"numerics.mesh_positions": 6, "numerics.contact_segments": 5}
+    return ep.load_case("talbot-2012-pair").updated(
+        {**coarse, "losses.mesh_pocketing.include": False, "models.load_distribution": "uniform"}
+    )
+
+
+@pytest.fixture(scope="module")
+def contact(pair):
+    """Contacts of a loaded pair in motion."""
+    case = pair.updated({"operation.torque": "133 N*m", "operation.speed": "2400 rpm"})
+    return mesh_contacts(case)["mesh"]
+
+
+def rough(contact, one, two):
+    return replace(contact, flanks=replace(contact.flanks, roughness1=one, roughness2=two))
+
+
+def test_a_rougher_flank_never_loses_less(contact):
+    heights = np.geomspace(0.01e-6, 5e-6, 60)
+    friction = np.array([mixed_friction(rough(contact, r, 0.3e-6), RUN_IN) for r in heights])
+    assert (np.diff(friction, axis=0) >= -1e-12).all()
+    assert friction[-1].mean() > 1.2 * friction[0].mean()
+
+
+def test_exchanged_roughness_changes_nothing(contact):
+    one = mixed_friction(rough(contact, 1.5e-6, 0.4e-6), RUN_IN)
+    other = mixed_friction(rough(contact, 0.4e-6, 1.5e-6), RUN_IN)
+    assert one == pytest.approx(other, rel=1e-12)
+
+
+def test_creeping_flanks_have_boundary_friction(contact):
+    slow = replace(
+        contact,
+        rolling_speed=1e-9 * contact.rolling_speed,
+        sliding_speed=1e-9 * contact.sliding_speed,
+    )
+    assert model.asperity_share(slow, RUN_IN) == pytest.approx(1.0)
+    assert mixed_friction(slow, RUN_IN) == pytest.approx(contact.oil.boundary_friction)
+    assert mixed_friction(slow, RUN_IN, 0.11) == pytest.approx(0.11)
+
+
+def test_smooth_flanks_have_the_friction_of_the_film(contact):
+    smooth = rough(contact, 1e-9, 2e-9)
+    assert (model.asperity_share(smooth, RUN_IN) < 1e-6).all()
+    friction = mixed_friction(smooth, RUN_IN)
+    assert (friction < contact.oil.limiting_traction).all()
+    assert (friction > 0).all()
+
+
+def test_the_film_is_as_hot_as_its_stress_makes_it(contact):
+    pressure, rate = np.array([0.6e9, 0.9e9]), np.array([1e6, 4e6])
+    warm, flash, heating = np.array([3.0, 7.0]), np.array([4e-7, 6e-7]), np.array([1e-7, 2e-7])
+    oil = model._oil_constants(contact.oil)
+    stress = film_stress(pressure, rate, warm, flash, heating, 0.047, oil)
+    for i in range(2):
+        hot = oil[0] + warm[i] + (flash[i] + heating[i]) * stress[i]
+        assert stress[i] == pytest.approx(
+            eyring_stress(hot, pressure[i], rate[i], 0.047, oil), rel=1e-10
+        )
+        assert stress[i] < eyring_stress(oil[0], pressure[i], rate[i], 0.047, oil)
+
+
+def test_stress_over_pressure_tends_to_the_limiting_traction(contact):
+    oil = model._oil_constants(contact.oil)
+    over = [eyring_stress(oil[0], p, 1e6, 0.047, oil) / p for p in (1e9, 1e10, 1e12)]
+    assert over[0] < over[1] < over[2]
+    assert over[2] == pytest.approx(0.047, rel=1e-3)
+
+
+def test_viscosity_of_the_film_is_that_of_the_oil():
+    """At little stress the fluid is Newtonian, with the viscosity of ASTM D341 when warm."""
+    oil = ep.load_case("talbot-2012-pair").lubricant.oil
+    cold, hot = oil_state(oil, 363.15), oil_state(oil, 373.15)
+    stress = eyring_stress(373.15, 0.0, 1.0, 0.047, model._oil_constants(cold))
+    # density falls by 0.7 % in between, which is left out
+    assert stress == pytest.approx(hot.dynamic_viscosity, rel=0.012)
+
+
+def test_roughness_that_acts():
+    """By hand: 2 b 0.2 mm, cut-off 0.8 mm, H 0.5 leave half."""
+    flanks = Flanks(STEEL, 0.3e-6, 0.4e-6)
+
+    class Contact:
+        hertz_half_width = np.array([0.1e-3, 0.8e-3])
+        roughness = flanks.roughness1, flanks.roughness2
+
+    surfaces = Surfaces(running_in=0.7, cutoff=0.8e-3, hurst_exponent=0.5, hardness=6e9)
+    found = model.acting_roughness(Contact(), surfaces)
+    assert found == pytest.approx([0.7 * 0.5e-6 / 2, 0.7 * 0.5e-6])
+
+
+def test_share_of_the_asperities_as_printed(contact):
+    """Masjedi and Khonsari (2012), term by term, without heat at the inlet."""
+    cold = replace(contact, oil=replace(contact.oil, thermoviscosity=0.0))
+    w, u, g = cold.load_number, cold.speed_number, cold.material_number
+    s = model.acting_roughness(cold, RUN_IN) / cold.radius
+    v = RUN_IN.hardness / cold.flanks.equivalent_modulus
+    inner = 1 + 4470 * s**6.015 * v**1.168 * w**0.485 * u**-3.741 * g**-2.898
+    percent = 0.005 * w**-0.408 * u**-0.088 * g**0.103 * np.log(inner)
+    assert model.asperity_share(cold, RUN_IN) == pytest.approx(np.minimum(percent / 100, 1))
+
+
+def test_kind_and_additives_decide(pair):
+    stated = {"viscosity_40": "220 mm^2/s", "viscosity_100": "19 mm^2/s"}
+    at = {"operation.torque": "133 N*m", "operation.speed": "2400 rpm"}
+
+    def sliding(**oil):
+        case = pair.updated({**at, "lubricant.oil": {**stated, **oil}})
+        return ep.solve(case).losses["mesh_sliding"]
+
+    assert sliding(kind="pag") < sliding(kind="pao") < sliding(kind="mineral")
+    plain, package = (sliding(kind="mineral", additives=level) for level in ("none", "gear-oil"))
+    assert plain > package
+    grippy = sliding(kind="mineral", limiting_traction={"value": 0.07, "source": "disc test"})
+    assert grippy > package
+
+
+def test_running_in_smooths(pair):
+    at = {"operation.torque": "133 N*m", "operation.speed": "700 rpm"}
+    losses = [
+        ep.solve(pair.updated({**at, **keys})).losses["mesh_sliding"]
+        for keys in (
+            {"models.running_in_factor": 0.5},
+            {},
+            {"models.running_in": "as-made", "models.running_in_factor": 0.5},
+        )
+    ]
+    assert losses[0] < losses[1] < losses[2]
+
+
+def test_inlet_heating_by_hand():
+    """L = 2, S = 0.5, p/E = 0.005."""
+
+    class Contact:
+        oil = oil_with(viscosity=0.02, thermoviscosity=0.04, thermal_conductivity=0.144)
+        rolling_speed = np.array([math.sqrt(2 * 0.144 / (0.02 * 0.04))])
+        hertz_pressure = np.array([0.005 * STEEL])
+        flanks = Flanks(STEEL, 1e-7, 1e-7)
+        slide_to_roll_ratio = np.array([0.5])
+
+    expected = (1 - 13.2 * 0.005 * 2**0.42) / (1 + 0.213 * (1 + 2.23 * 0.5**0.83) * 2**0.64)
+    assert model.inlet_heating(Contact()) == pytest.approx([expected])
