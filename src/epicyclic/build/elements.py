@@ -26,11 +26,11 @@ from epicyclic.losses.shaft_bearing import (
     BearingLoad,
     BearingModel,
     CatalogueBearing,
-    ContactSeal,
     PalmgrenModel,
     SkfModel,
     TableModel,
     full_film_friction,
+    seal_moment,
     skf_constants,
 )
 from epicyclic.machine.element import Element
@@ -107,9 +107,9 @@ def _skf_model(table: ShaftBearingTable, oil: Oil) -> SkfModel:
         starvation=STARVATION[table.lubrication],
         oil_level=table.oil_level,
         drag_variable=table.drag_variable,
-        seal=None
+        seal_moment=0.0
         if seal is None
-        else ContactSeal(seal.counterface_diameter, seal.factor, seal.exponent, seal.constant),
+        else seal_moment(seal.counterface_diameter, seal.factor, seal.exponent, seal.constant),
     )
 
 
