@@ -12,7 +12,7 @@ import pytest
 
 from epicyclic import library
 from epicyclic.build.elements import build_element
-from epicyclic.case.tables.elements import ShaftBearingTable, bearing_problems
+from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
@@ -464,7 +464,7 @@ SHAFTS = {"input": "input", "output": "output"}
 
 
 def build(table, oil, tmp_path, shafts=SHAFTS):
-    assert bearing_problems(table) == []
+    assert table.problems() == []
     return build_element("bearings", "input.front", table, shafts=shafts, oil=oil, folder=tmp_path)
 
 
@@ -575,7 +575,7 @@ def test_table_over_the_load(oil, tmp_path, state):
     ],
 )
 def test_contradictions_are_found(changes, key):
-    problem = only(tuple(bearing_problems(bearing_table(**changes))))
+    problem = only(tuple(bearing_table(**changes).problems()))
     assert problem.key == key
     assert problem.allowed.endswith(".")
     assert problem.remedy
@@ -583,7 +583,7 @@ def test_contradictions_are_found(changes, key):
 
 def test_full_complement_rollers_need_no_series():
     table = bearing_table(type="cylindrical", cage="full-complement", model="skf-2018")
-    assert bearing_problems(table) == []
+    assert table.problems() == []
 
 
 def test_unknown_shafts_are_found(oil, tmp_path):
