@@ -413,7 +413,7 @@ def part_tables(result: Result) -> Iterator[Table]:
             for key, part in parts.items()
             for stage in (key.rpartition(".")[0],)
         )
-        yield Table(("", "loss, W", *heads), rows, _TITLES.get(kind, in_words(kind)))
+        yield Table(("", "loss, W", *heads), rows, _TITLES.get(kind, in_words(kind).capitalize()))
 
 
 def locking_text(train: Train) -> str:
