@@ -21,14 +21,14 @@ SOURCE = Path(__file__).parents[1] / "src" / "epicyclic"
 CEILINGS = {
     "lines": 72_000,
     "lines of the core": 56_000,
-    "lines of case": 8_501,  # aim: 4,500
+    "lines of case": 8_490,  # aim: 4,500
     "files": 280,
     "longest chain of imports": 25,
     "modules loaded by epicyclic.case.case": 45,
     "kernels loaded by epicyclic.case.case": 0,
-    "functions of one solution": 690,  # aim: 500
-    "pairs of classes with the same fields": 10,  # aim: 5
-    "tests of the kind of a set": 19,  # aim: 0; in plug-ins, validation and maps
+    "functions of one solution": 685,  # aim: 500
+    "pairs of classes with the same fields": 5,
+    "tests of the kind of a set": 0,
 }
 APART = ("plugins", "validation")
 KINDS = ("PlanetaryCase", "GearPairCase", "PlanetarySet", "PairSet", "ListedSet", "ComputedSet")
@@ -129,10 +129,7 @@ def kind_tests() -> list[str]:
         if room(path) in KIND_ROOMS:
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and ast.unparse(node.func) in (
-                "isinstance",
-                "issubclass",
-            ):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in TESTS:
                 asked = {item.id for item in ast.walk(node.args[1]) if isinstance(item, ast.Name)}
                 if asked & {*KINDS}:
                     found.append(f"{name_of(path)}:{node.lineno}")

@@ -4,7 +4,7 @@ A row of a table in how-to/case-file.md starts with a key in backticks, then its
 ``sphinx-build -W`` a missing key, a key that no longer exists or a wrong default ends the build.
 
 The directive ``{case-keys} PREFIX MODULE.TABLE`` lists the keys of a table from the schema; those
-named in its content, one a line, are left out.
+named in its content, one a line, are left out. how-to/trains.md has one for every kind of element.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ from sphinx.util.docutils import SphinxDirective
 from epicyclic.case.case import GearPairCase, PlanetaryCase
 from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.tables.elements import ElementTables
 from epicyclic.units import Quantity
 
-PAGE = "how-to/case-file.md"
+PAGE, PAGE_OF_TRAINS = "how-to/case-file.md", "how-to/trains.md"
 ROW = re.compile(r"^\| `(?P<key>[\w.<>]+)` \| (?P<default>[^|]*) \|", re.MULTILINE)
 GEARS = ("sun", "planet", "ring", "pinion", "gear")
 WITH_PAGES_OF_THEIR_OWN = ("material", "oil")
@@ -89,6 +90,10 @@ def check(app: Sphinx) -> None:
         logger.warning("%s: the key %s is not described", PAGE, key)
     for key in described.keys() - schema.keys():
         logger.warning("%s: there is no key %s", PAGE, key)
+    trains = (Path(app.srcdir) / PAGE_OF_TRAINS).read_text(encoding="utf-8")
+    for kind in ElementTables.model_fields:
+        if f"{{case-keys}} {kind}.<name> " not in trains:
+            logger.warning("%s: the keys of %s are not listed", PAGE_OF_TRAINS, kind)
     for key in schema.keys() & described.keys():
         if schema[key] and described[key] != schema[key]:
             logger.warning(

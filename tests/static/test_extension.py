@@ -78,7 +78,7 @@ class MagnetBrake:
     (
         "case/tables/elements.py",
         "class ElementTables(Table):\n",
-        '''class BrakeTable(Table):
+        '''class BrakeTable(ElementTable):
     """A magnet brake on a shaft."""
 
     shaft: str
@@ -94,11 +94,6 @@ class ElementTables(Table):
         "    drags: dict[str, DragTable] = Field(default={})\n",
         "    drags: dict[str, DragTable] = Field(default={})\n"
         "    brakes: dict[str, BrakeTable] = Field(default={})\n",
-    ),
-    (
-        "case/tables/elements.py",
-        '    "drags": drag_problems,\n',
-        '    "drags": drag_problems,\n    "brakes": lambda table: [],\n',
     ),
     (
         "build/elements.py",

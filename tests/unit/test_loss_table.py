@@ -9,7 +9,7 @@ import pytest
 
 from epicyclic import library
 from epicyclic.build.elements import build_element
-from epicyclic.case.tables.elements import DragTable, drag_problems
+from epicyclic.case.tables.elements import DragTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.loss_table import LossTable, read_loss_table, table_problems
 from epicyclic.losses.ranges import ModelUse
@@ -245,7 +245,7 @@ def test_keys_reach_the_element(oil, tmp_path, state):
         temperature=["40 degC", "90 degC"],
         torque=[["1 N*m", "0.5 N*m"], ["3 N*m", "1.5 N*m"]],
     )
-    assert drag_problems(table) == []
+    assert table.problems() == []
     drag = build_element("drags", "brake_a", table, shafts={"a": "a"}, oil=oil, folder=tmp_path)
     assert drag.key == "brake_a"
     assert drag.between == ("a", HOUSING)
@@ -255,7 +255,7 @@ def test_keys_reach_the_element(oil, tmp_path, state):
 
 def test_a_pump_over_its_speed(oil, tmp_path, state):
     table = drag_table(speed=["0 rpm", "2000 rpm"], power=["0 W", "400 W"])
-    assert drag_problems(table) == []
+    assert table.problems() == []
     pump = build_element("drags", "pump", table, shafts={"a": "a"}, oil=oil, folder=tmp_path)
     assert pump.evaluate(state(-1000 * RPM, 0.0)).losses["drag"].watts == pytest.approx(200.0)
 
@@ -273,7 +273,7 @@ def test_a_pump_over_its_speed(oil, tmp_path, state):
     ],
 )
 def test_contradictions_are_found(keys, key):
-    assert only(tuple(drag_problems(drag_table(**keys)))).key == key
+    assert only(tuple(drag_table(**keys).problems())).key == key
 
 
 def test_files_with_a_load_are_refused(oil, tmp_path):

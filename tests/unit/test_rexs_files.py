@@ -188,7 +188,7 @@ def solved(tmp_path_factory):
 
 def attributes(path, component):
     model = build_model(read_document(path).content)
-    return {name: item.value for name, item in model.components[component].attributes.items()}
+    return {item.id: item.value for item in model.components[component].attributes}
 
 
 def test_results_are_added_and_all_else_stays(tmp_path, solved):

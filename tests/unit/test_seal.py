@@ -9,7 +9,7 @@ import pytest
 
 from epicyclic import library
 from epicyclic.build.elements import build_element
-from epicyclic.case.tables.elements import SealTable, seal_problems
+from epicyclic.case.tables.elements import SealTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import (
@@ -135,7 +135,7 @@ def test_only_the_speed_difference_counts(state):
 
 def build(oil, folder, **keys):
     table = SealTable.model_validate({"shaft": "input", "diameter": "40 mm"} | keys)
-    assert seal_problems(table) == []
+    assert table.problems() == []
     return build_element(
         "seals", "input.seal", table, shafts={"input": "input"}, oil=oil, folder=folder
     )
@@ -178,7 +178,7 @@ def test_table_of_the_user(oil, tmp_path, state):
 )
 def test_contradictions_are_found(keys, key):
     table = SealTable.model_validate({"shaft": "input", "diameter": "40 mm"} | keys)
-    assert only(tuple(seal_problems(table))).key == key
+    assert only(tuple(table.problems())).key == key
 
 
 def test_a_missing_file_is_named(oil, tmp_path):

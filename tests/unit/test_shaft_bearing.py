@@ -12,7 +12,7 @@ import pytest
 
 from epicyclic import library
 from epicyclic.build.elements import build_element
-from epicyclic.case.tables.elements import ShaftBearingTable, bearing_problems
+from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
@@ -20,7 +20,6 @@ from epicyclic.losses.shaft_bearing import (
     STARVATION,
     BearingLoad,
     CatalogueBearing,
-    ContactSeal,
     PalmgrenModel,
     SkfModel,
     TableModel,
@@ -31,6 +30,7 @@ from epicyclic.losses.shaft_bearing import (
     harris_coefficient,
     load_moment,
     minimum_load,
+    seal_moment,
     skf_constants,
     skf_drag_moment,
     skf_load_variables,
@@ -225,10 +225,10 @@ def test_submerged_bearing_does_not_starve():
 
 def test_moment_of_contact_seals():
     # 0.028 45^2 N mm + 2 N mm
-    seal = ContactSeal(45e-3, 0.028, 2.0, 2e-3)
-    assert seal.moment * 1e3 == pytest.approx(58.7, rel=1e-12)  # rounding
-    model = skf(BALL, seal=seal)
-    assert skf_moments(model, BALL, BearingLoad(0.0, 0.0), 10.0, 20e-6).seal == seal.moment
+    moment = seal_moment(45e-3, 0.028, 2.0, 2e-3)
+    assert moment * 1e3 == pytest.approx(58.7, rel=1e-12)  # rounding
+    model = skf(BALL, seal_moment=moment)
+    assert skf_moments(model, BALL, BearingLoad(0.0, 0.0), 10.0, 20e-6).seal == moment
 
 
 @pytest.mark.parametrize("bearing", [BALL, ROLLER, TAPER], ids=lambda b: b.type)
@@ -320,7 +320,7 @@ def test_minimum_loads():
 MODELS = {
     "palmgren": PalmgrenModel(2.0, 0.0003),
     "harris": PalmgrenModel(2.0, None),
-    "skf-2018": skf(BALL, oil_level=20e-3, seal=ContactSeal(45e-3, 0.028, 2.0, 2e-3)),
+    "skf-2018": skf(BALL, oil_level=20e-3, seal_moment=seal_moment(45e-3, 0.028, 2.0, 2e-3)),
     "table": TableModel(
         LossTable("torque", {"speed": np.array([0.0, 1000.0])}, np.array([0.1, 0.3]))
     ),
@@ -464,7 +464,7 @@ SHAFTS = {"input": "input", "output": "output"}
 
 
 def build(table, oil, tmp_path, shafts=SHAFTS):
-    assert bearing_problems(table) == []
+    assert table.problems() == []
     return build_element("bearings", "input.front", table, shafts=shafts, oil=oil, folder=tmp_path)
 
 
@@ -506,7 +506,7 @@ def test_keys_reach_the_element(oil, tmp_path):
         6e-8,
         0.005,
         0.0003,
-        ContactSeal(0.045, 0.03, 2.1, 0.0),
+        seal_moment(0.045, 0.03, 2.1, 0.0),
     )
     assert bearing.minimum_load_factor == 0.2
     assert bearing.reference_speed == pytest.approx(9000 * RPM)
@@ -575,7 +575,7 @@ def test_table_over_the_load(oil, tmp_path, state):
     ],
 )
 def test_contradictions_are_found(changes, key):
-    problem = only(tuple(bearing_problems(bearing_table(**changes))))
+    problem = only(tuple(bearing_table(**changes).problems()))
     assert problem.key == key
     assert problem.allowed.endswith(".")
     assert problem.remedy
@@ -583,7 +583,7 @@ def test_contradictions_are_found(changes, key):
 
 def test_full_complement_rollers_need_no_series():
     table = bearing_table(type="cylindrical", cage="full-complement", model="skf-2018")
-    assert bearing_problems(table) == []
+    assert table.problems() == []
 
 
 def test_unknown_shafts_are_found(oil, tmp_path):

@@ -1,6 +1,6 @@
 """The elements that a train adds by tables of their own: bearings, seals, other drags.
 
-A new kind is one module in `epicyclic.machine`, one table of keys with its line in `ELEMENT_CHECKS`
+A new kind is one module in `epicyclic.machine`, one table of keys with its line in `ElementTables`
 of `epicyclic.case.tables.elements`, and one function here with its line in `_BUILDERS`.
 """
 
@@ -11,13 +11,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from epicyclic.case.tables.elements import (
-    DragTable,
-    SealTable,
-    ShaftBearingTable,
-    between,
-    points_of,
-)
+from epicyclic.case.tables.elements import DragTable, SealTable, ShaftBearingTable, between
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
     DEFAULT_FLANGE_COEFFICIENTS,
@@ -26,11 +20,11 @@ from epicyclic.losses.shaft_bearing import (
     BearingLoad,
     BearingModel,
     CatalogueBearing,
-    ContactSeal,
     PalmgrenModel,
     SkfModel,
     TableModel,
     full_film_friction,
+    seal_moment,
     skf_constants,
 )
 from epicyclic.machine.element import Element
@@ -79,7 +73,7 @@ def _known(value: float | None) -> float:
 
 def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingModel:
     if table.model == "table":
-        points = points_of(table, folder)
+        points = table.points(folder)
         assert points is not None
         return TableModel(points)
     if table.model == "skf-2018":
@@ -107,9 +101,9 @@ def _skf_model(table: ShaftBearingTable, oil: Oil) -> SkfModel:
         starvation=STARVATION[table.lubrication],
         oil_level=table.oil_level,
         drag_variable=table.drag_variable,
-        seal=None
+        seal_moment=0.0
         if seal is None
-        else ContactSeal(seal.counterface_diameter, seal.factor, seal.exponent, seal.constant),
+        else seal_moment(seal.counterface_diameter, seal.factor, seal.exponent, seal.constant),
     )
 
 
@@ -117,7 +111,7 @@ def _seal(name: str, table: SealTable, bodies: tuple[str, str], oil: Oil, folder
     viscosity = oil_state(oil, _FORTY_CELSIUS).kinematic_viscosity
     if table.model != "table":
         return Seal(name, bodies, table.diameter, table.model, viscosity)
-    points = points_of(table, folder)
+    points = table.points(folder)
     assert points is not None
     return Seal(name, bodies, table.diameter, points, viscosity)
 
@@ -125,9 +119,7 @@ def _seal(name: str, table: SealTable, bodies: tuple[str, str], oil: Oil, folder
 def _drag(
     name: str, table: DragTable, bodies: tuple[str, str], oil: Oil, folder: Path
 ) -> TableLoss:
-    points = points_of(table, folder)
-    assert points is not None
-    return TableLoss(name, bodies, points)
+    return TableLoss(name, bodies, table.points(folder))
 
 
 _BUILDERS: Mapping[str, Callable[..., Element]] = {
@@ -138,7 +130,7 @@ _BUILDERS: Mapping[str, Callable[..., Element]] = {
 
 
 def build_element(
-    kind: str,  # ``"bearings"``, ``"seals"`` or ``"drags"``.
+    kind: str,  # A field of `ElementTables`, ``"bearings"``.
     name: str,
     table: Any,  # Its table, which the checks found sound.
     *,

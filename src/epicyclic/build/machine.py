@@ -422,7 +422,7 @@ def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
             elements=tuple(elements),
             layouts=tuple(shaft_layouts(case, sets)),
         ),
-        operation=_operation(case),
+        operation=operation_of(case),
         known_fluids=fluids_of(case) if case.computed else None,
         sets=sets,
         layout=_layout(case, elements),
@@ -434,14 +434,15 @@ def train_layout(case: TrainCase) -> Layout:
     return _layout(case, [*_sets(case, {}), *_parts(case)])
 
 
-def _operation(case: TrainCase) -> Operation:
+def _train_operation(case: TrainCase) -> Operation:
     shape, operation = case.shape, case.operation
+    held = shape.held(case.state)
     driven, output = (shape.shaft_of(name) or "" for name in (operation.input, operation.output))
     speeds = {driven: operation.speed}
-    speeds |= dict.fromkeys(shape.held(case.state), 0.0)
+    speeds |= dict.fromkeys(held, 0.0)
     speeds |= {shape.shaft_of(name) or "": speed for name, speed in operation.speeds.items()}
     torques = {shape.shaft_of(name) or "": torque for name, torque in operation.torques.items()}
-    return Operation(driven, output, operation.torque, speeds, torques)
+    return Operation(driven, output, operation.torque, speeds, torques, held)
 
 
 def _sets(case: TrainCase, flow_tables: FlowTables) -> Iterator[GearSet]:
@@ -534,7 +535,7 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
     """A set or pair by itself."""
     ((_, own),) = set_cases(case, [""])
     gearing = own.gearing
-    operation = _set_operation(case)
+    operation = operation_of(case)
     members = gearing.members
     others = [member for member in members if member not in (operation.input, operation.output)]
     bodies = {body: body for body in (*members, *gearing.planets)}
@@ -555,17 +556,19 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
     )
 
 
-def _set_operation(case: PlanetaryCase | GearPairCase) -> Operation:
+def operation_of(case: Case) -> Operation:
+    """How the machine of a case is driven."""
+    if isinstance(case, TrainCase):
+        return _train_operation(case)
     table = case.operation
     if not isinstance(table, PlanetaryOperation):
         return Operation("pinion", "gear", table.torque, {"pinion": table.speed})
     held = table.fixed or table.second_input
     assert held is not None
     (output,) = {"sun", "ring", CARRIER} - {table.input, held}
-    held_speed = 0.0 if table.second_speed is None else table.second_speed
-    return Operation(
-        table.input, output, table.torque, {table.input: table.speed, held: held_speed}
-    )
+    speeds: dict[str, float] = {table.input: table.speed, held: table.second_speed or 0.0}
+    still = () if table.fixed is None else (held,)
+    return Operation(table.input, output, table.torque, speeds, held=still)
 
 
 def layout_of(case: Case) -> Layout:

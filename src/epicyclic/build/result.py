@@ -45,7 +45,7 @@ from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, stage_torques
 from epicyclic.result.result import (
     HeatBalance,
-    HeatWay,
+    HeatPath,
     LossTerm,
     MemberState,
     OilSupply,
@@ -432,7 +432,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
 
 
 def _heat(case: Case, built: Built, settled: Settled) -> HeatBalance | None:
-    """Temperatures and the ways of the heat; None if everything is at the inlet temperature."""
+    """Temperatures and the paths of the heat; None if everything is at the inlet temperature."""
     if built.thermal is None:
         return None
     answer, solution = settled.answer, settled.solution
@@ -440,17 +440,17 @@ def _heat(case: Case, built: Built, settled: Settled) -> HeatBalance | None:
         model=case.models.temperatures,
         temperatures=answer.temperatures,
         sources=heat_of(solution),
-        ways=tuple(_ways(case, answer)),
+        ways=tuple(_heat_paths(case, answer)),
         given=answer.given,
         residual=answer.residual,
         evaluations=settled.evaluations,
     )
 
 
-def _ways(case: Case, answer: Answer) -> Iterator[HeatWay]:
+def _heat_paths(case: Case, answer: Answer) -> Iterator[HeatPath]:
     flows = answer.flows or {}
     for link in answer.links:
-        yield HeatWay(
+        yield HeatPath(
             link.key,
             link.hot,
             link.target,
@@ -461,7 +461,7 @@ def _ways(case: Case, answer: Answer) -> Iterator[HeatWay]:
         )
     power = case.thermal.cooler_power
     if answer.links and power:
-        yield HeatWay("oil-cooler", OIL, "cooler", power, math.nan, "given power", "given")
+        yield HeatPath("oil-cooler", OIL, "cooler", power, math.nan, "given power", "given")
 
 
 def _losses(solution: Solution) -> Iterator[tuple[str, Loss]]:

@@ -55,8 +55,8 @@ from epicyclic.case.set_rules import listed_problems, rack_problems, set_problem
 from epicyclic.case.sizing import Found, complete, converted_roughness, negative_teeth, told_oil
 from epicyclic.case.tables.base import Table
 from epicyclic.case.tables.elements import (
-    ELEMENT_CHECKS,
     Carrier,
+    ElementTable,
     ElementTables,
     PlanetBearing,
     ThrustBearing,
@@ -387,9 +387,9 @@ class TrainCase(_TrainHead):
         return StateTable() if name is None else self.states[name]
 
     @property
-    def elements(self) -> Iterator[tuple[str, str, Table]]:
+    def elements(self) -> Iterator[tuple[str, str, ElementTable]]:
         """Kind, name and table of every bearing, seal and other drag."""
-        for kind in ELEMENT_CHECKS:
+        for kind in ElementTables.model_fields:
             for name, table in getattr(self, kind).items():
                 yield kind, name, table
 
@@ -693,7 +693,7 @@ def _element_problems(train: TrainCase) -> list[Problem]:
             allowed = f"has the name of another part, {taken[name]}.{name}."
             problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
         taken[name] = kind
-        found = ELEMENT_CHECKS[kind](table)
+        found = table.problems()
         if not found and train.lubricant is not None:
             found = placing_problems(table, train.shape.names, train.folder)
         problems += [_below(key, problem) for problem in found]

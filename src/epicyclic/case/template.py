@@ -24,7 +24,7 @@ from epicyclic.case.fields import (
     table_of,
 )
 from epicyclic.case.gear_tables import SharedGears
-from epicyclic.case.tables.elements import ELEMENT_CHECKS
+from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.train_tables import ListedSet, PlanetarySet
 
 _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
@@ -269,7 +269,7 @@ def _train_text(tables: Mapping[str, Any], head: list[str], about: Mapping[str, 
     known = [key for key in _DEFAULTS if writer.is_known(key)]
     lines += [line for key in ("lubricant", *known) for line in writer.table(key, fields[key])]
     lines += [line for name in tables.get("sets", {}) for line in writer.one_set(name)]
-    lines += [line for kind in ELEMENT_CHECKS for line in writer.parts(kind)]
+    lines += [line for kind in ElementTables.model_fields for line in writer.parts(kind)]
     left_out = ", ".join(f"[{key}]" for key in _DEFAULTS if key not in known)
     lines += ["", f"# Defaults hold for the tables {left_out},"]
     lines.append(

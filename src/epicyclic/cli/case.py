@@ -232,7 +232,7 @@ def _check_target(quantity: str, target: str | None) -> None:
 
 
 def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
-    from epicyclic.show.result_tables import found_text, heat_items, remarks, ways_items
+    from epicyclic.show.result_tables import found_text, heat_items, heat_path_items, remarks
     from epicyclic.show.terminal import as_on_page, titled
 
     assert result.heat is not None
@@ -240,7 +240,7 @@ def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
         result.title or result.kind,
         *([] if found is None else [found_text(found)]),
         *(as_on_page(item) for item in heat_items(result.heat)),
-        *(as_on_page(item) for item in ways_items(result.heat)),
+        *(as_on_page(item) for item in heat_path_items(result.heat)),
         *remarks(case, result),
     )
 

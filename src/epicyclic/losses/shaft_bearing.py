@@ -358,20 +358,14 @@ class SkfConstants:
     is_read: bool
 
 
-@dataclass(frozen=True, slots=True)
-class ContactSeal:
-    """Contact seals of a bearing, both together: K_S1 d_s^beta + K_S2."""
-
-    counterface_diameter: float  # d_s. [m]
-    factor: float  # K_S1 and beta, for d_s in mm and a moment in N mm.
-    exponent: float  # K_S1 and beta, for d_s in mm and a moment in N mm.
-    constant: float  # K_S2. [N m]
-
-    @property
-    def moment(self) -> float:
-        """M_seal. Theory (J12). [N m]"""
-        diameter = self.counterface_diameter * 1e3
-        return 1e-3 * self.factor * math.pow(diameter, self.exponent) + self.constant
+def seal_moment(
+    diameter: float,  # d_s, of the counterface. [m]
+    factor: float,  # K_S1, for d_s in mm and a moment in N mm.
+    exponent: float,  # beta. [1]
+    constant: float,  # K_S2. [N m]
+) -> float:
+    """M_seal of the contact seals of a bearing, both together. Theory (J12). [N m]"""
+    return 1e-3 * factor * math.pow(diameter * 1e3, exponent) + constant
 
 
 @dataclass(frozen=True, slots=True)
@@ -395,7 +389,7 @@ class SkfModel:
     oil_level: float = 0.0
     # V_M at this oil level; None for the estimate of `drag_variable`. [1]
     drag_variable: float | None = None
-    seal: ContactSeal | None = None
+    seal_moment: float = 0.0  # M_seal, by `seal_moment`. [N m]
 
     name: ClassVar = "skf-2018"
     terms: ClassVar = ("mechanical", "drag")
@@ -628,6 +622,6 @@ def skf_moments(
     return SkfMoments(
         rolling=1e-3 * hot * dry * rolling * math.pow(at.viscosity * at.rpm, 0.6),
         sliding=1e-3 * sliding * mu_sl,
-        seal=0.0 if model.seal is None else model.seal.moment,
+        seal=model.seal_moment,
         drag=skf_drag_moment(model, bearing, speed, viscosity),
     )

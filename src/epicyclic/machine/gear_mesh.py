@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -35,9 +34,17 @@ from epicyclic.losses.mesh import (
     ohlendorf_loss_factor,
 )
 from epicyclic.losses.pocket_tables import FLOW_NUMBERS, FlowFigures
-from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE, SomeFlags
+from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Fluids, Loss, figure
+from epicyclic.machine.element import (
+    LOAD_DEPENDENT,
+    LOAD_INDEPENDENT,
+    ElementResult,
+    Figures,
+    Fluids,
+    Loss,
+    figure,
+)
 from epicyclic.machine.pocket_flow import (
     POCKETING_SOURCE,
     MeshFlow,
@@ -188,20 +195,12 @@ class MeshFigures:
     flash_temperature_max: float = figure("flash temperature, largest", KELVIN)
 
 
-@dataclass(frozen=True, slots=True)
-class MeshOutcome:
-    """Losses and flags of one mesh, how its figures are found, and what the next pass goes on from.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeshResult(ElementResult):
+    """Losses, figures and flags of one mesh, and what the next pass goes on from."""
 
-    The latter are the teeth under load, if they are elastic, and the friction model with what it
-    has solved.
-    """
-
-    losses: dict[str, Loss]
-    figures: Callable[[], MeshFigures]
-    flags: SomeFlags
-    notes: tuple[str, ...]
-    elastic: LoadedMesh | None
-    friction: FrictionModel
+    elastic: LoadedMesh | None  # The teeth under load, if they are elastic.
+    friction: FrictionModel  # With what it has solved.
 
 
 def distribute_load(duty: MeshDuty, last: LoadedMesh | None = None) -> LineLoads:
@@ -259,11 +258,11 @@ def solve_mesh(
     flow: MeshFlow,
     count: int,
     oil: OilState,
-    last: MeshOutcome | None = None,
-) -> MeshOutcome:
+    last: MeshResult | None = None,
+) -> MeshResult:
     """Losses and figures of one mesh of `count` in parallel, with `oil` on its flanks.
 
-    `last`, the outcome under nearly this torque, saves work.
+    `last`, the result under nearly this torque, saves work.
     """
     friction = duty.models.friction if last is None else last.friction
     rolling = duty.models.rolling
@@ -307,7 +306,14 @@ def solve_mesh(
     if duty.models.by_loss_factor:
         notes += loss_factor_notes(duty.mesh)
     notes += friction.remarks
-    return MeshOutcome(losses, figures, loss.flags, notes, elastic, friction)
+    return MeshResult(
+        losses=losses,
+        figures=Figures({duty.key: figures}),
+        flags=loss.flags,
+        notes=notes,
+        elastic=elastic,
+        friction=friction,
+    )
 
 
 def _heat(nodes: tuple[str, str], share1: float) -> tuple[tuple[str, float], ...]:

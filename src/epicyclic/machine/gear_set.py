@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -21,7 +21,7 @@ from epicyclic.machine.element import (
     State,
     joined_key,
 )
-from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshOutcome, solve_mesh
+from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshResult, solve_mesh
 from epicyclic.machine.planets import (
     BearingFigures,
     LoadSharing,
@@ -157,20 +157,16 @@ class GearSetResult(ElementResult):
     shares: tuple[float, ...] = ()
     drags: Drags
     flows: Mapping[tuple[bool, ...], Flows]  # By which gears drive.
-    meshes: Mapping[str, MeshOutcome]
+    meshes: Mapping[str, MeshResult]
     rollers: Mapping[tuple[str, float], RollerLoads | None]  # By planet and share of the load.
     known_flows: KnownFlows  # Through pockets, also those at other temperatures.
 
 
-@dataclass(frozen=True, slots=True)
-class _Branch:
-    """Losses of all planets with one and the same share, and how figures of one are found."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Branch(ElementResult):
+    """Losses of all planets with one and the same share, and the figures of one."""
 
-    losses: Mapping[str, Loss]
-    figures: Mapping[str, Callable[[], Any]]
-    flags: SomeFlags
-    notes: tuple[str, ...]
-    meshes: Mapping[str, MeshOutcome]
+    meshes: Mapping[str, MeshResult]
     rollers: Mapping[tuple[str, float], RollerLoads | None]
 
 
@@ -225,7 +221,7 @@ class GearSet:
         first = branches[0]
         return GearSetResult(
             losses={name: found[name] for name in self.choices},
-            figures=Figures(first.figures),
+            figures=first.figures,
             flags=Flags(partial(_widest, branches)) + drags.flags,
             notes=first.notes,
             shares=shares if self.planets else (),
@@ -383,7 +379,7 @@ class GearSet:
         share: float,
         planets: int,
         flows: Flows,
-        last_meshes: Mapping[str, MeshOutcome],
+        last_meshes: Mapping[str, MeshResult],
         last_rollers: Mapping[tuple[str, float], RollerLoads | None],
     ) -> _Branch:
         duties = {duty.key: duty for duty in self.duties(state, torques, share)}
@@ -424,21 +420,25 @@ class GearSet:
         ]
         notes += tuple(note for mesh in meshes for note in mesh.notes)
         losses: dict[str, Loss] = {}
-        figures: dict[str, Callable[[], Any]] = {}
         flags: SomeFlags = ()
         for planet, bearing in zip(self.planets, bearings, strict=True):
             losses |= {
                 name: self._in_bearing(loss, planet) for name, loss in bearing.losses.items()
             }
             flags += bearing.flags
-            if bearing.figures is not None:
-                figures[planet.key] = bearing.figures
         for duty, mesh in zip(duties.values(), meshes, strict=True):
             losses |= self._of_mesh(duty, mesh.losses)
             flags = mesh.flags + flags
-            figures[duty.key] = mesh.figures
-        outcomes = dict(zip(duties, meshes, strict=True))
-        return _Branch(losses, figures, flags, notes, outcomes, rollers)
+        parts: list[ElementResult] = [*bearings, *meshes]
+        figures = {key: partial(it.figures.__getitem__, key) for it in parts for key in it.figures}
+        return _Branch(
+            losses=losses,
+            figures=Figures(figures),
+            flags=flags,
+            notes=notes,
+            meshes=dict(zip(duties, meshes, strict=True)),
+            rollers=rollers,
+        )
 
     def _of_mesh(self, duty: MeshDuty, losses: Mapping[str, Loss]) -> dict[str, Loss]:
         """Losses of a mesh where they act: sliding is a share of its power, half of the rest brakes

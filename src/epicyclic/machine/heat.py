@@ -58,7 +58,7 @@ class Answer:
     """What the heat of the losses leads to."""
 
     temperatures: Mapping[str, float]  # Temperatures of all nodes. [K]
-    links: tuple[Link, ...] = ()  # Ways of the heat; empty where temperatures follow from formulas.
+    links: tuple[Link, ...] = ()  # Paths of heat; empty where temperatures follow from formulas.
     flows: Mapping[str, float] | None = None  # Heat through every link. [W]
     # Temperatures of nodes that are given. [K]
     given: Mapping[str, float] = field(default_factory=dict[str, float])
@@ -280,7 +280,7 @@ BULK_METHODS: Mapping[str, Callable[[list[_Side], Solution, float], float]] = {
 """How much warmer than the oil a gear is."""
 
 
-# The network of a machine: nodes of its parts, the oil and the housing, and the ways between.
+# The network of a machine: nodes of its parts, the oil and the housing, and the paths between.
 
 AMBIENT = "air"
 COOLANT = "coolant"
@@ -326,7 +326,7 @@ class Housing:
         inside = self.inner_coefficient * self.inner_area
         if self.method == "iso-14179-1":
             whole = self.coefficient * self.area
-            # the coefficient is that of both ways together, whatever the wall adds
+            # the coefficient is that of both paths together, whatever the wall adds
             inside = max(inside, LEAST_INSIDE * whole)
             outside = whole * inside / (inside - whole)
             how = "coefficient from oil to air", "ISO/TR 14179-1, second hand"
@@ -501,7 +501,7 @@ class NetworkModel:
         left = network.cut_off()
         if any(node == OIL or heat.get(node) for node in left):
             allowed = f"the heat of {', '.join(left)} has no way out."
-            raise one_problem("thermal", "", allowed, _WAYS_OUT)
+            raise one_problem("thermal", "", allowed, _OUTLET_REMEDY)
         # parts at rest, which nothing heats or cools, are as warm as the oil
         resting = (
             Link(f"{node}-oil", node, OIL, AT_REST, "at rest", "any conductance serves")
@@ -515,7 +515,7 @@ class NetworkModel:
         solution: Solution,  # Speeds, and loads of the bearings.
         heat: Mapping[str, float],  # That arises at each node, less the power of a cooler. [W]
     ) -> tuple[Link, ...]:
-        """All ways of the heat but that to the air."""
+        """All paths of the heat but that to the air."""
         own = self.settings
         oil, mixture = self.media_at(around)
         carried = self._carried(oil, sum(heat.values()))
@@ -530,8 +530,8 @@ class NetworkModel:
                 press_fit=own.press_fit,
             )
 
-        ways = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
-        return tuple(map(self._changed, ways))
+        paths = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
+        return tuple(map(self._changed, paths))
 
     def capacities(self) -> dict[str, float]:
         """Heat that each node stores for a kelvin. Theory (W35). [J/K]
@@ -635,7 +635,7 @@ class NetworkModel:
         raise_any(_no_such("thermal.conductances", "way of the heat", unknown, known))
 
 
-_WAYS_OUT = (
+_OUTLET_REMEDY = (
     "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] or "
     "thermal.cooler_conductance; for single parts thermal.jet_shares or thermal.conductances."
 )

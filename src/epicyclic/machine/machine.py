@@ -284,6 +284,12 @@ class Operation:
     speeds: Mapping[str, float]
     # Further torques from outside. [N m]
     torques: Mapping[str, float] = field(default_factory=dict[str, float])
+    held: tuple[str, ...] = ()  # Bodies of `speeds` that something holds still.
+
+    @property
+    def driven(self) -> tuple[str, ...]:
+        """Bodies of given speed beside the input that are not held."""
+        return tuple(body for body in self.speeds if body not in (self.input, *self.held))
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,10 +38,17 @@ from epicyclic.losses.planet_bearing import (
     roller_loads_next_to,
     tilting_moments,
 )
-from epicyclic.losses.ranges import Flags, SomeFlags
+from epicyclic.losses.ranges import Flags
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.machine.convection import roller_conductance
-from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, Loss, figure
+from epicyclic.machine.element import (
+    LOAD_DEPENDENT,
+    LOAD_INDEPENDENT,
+    ElementResult,
+    Figures,
+    Loss,
+    figure,
+)
 from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.oil.oil import OilState
 from epicyclic.units import (
@@ -510,21 +517,15 @@ class BearingFigures:
 
 
 @dataclass(frozen=True, slots=True)
-class BearingOutcome:
-    """Losses of the planet bearings, and how the figures of one of them are found.
+class BearingResult(ElementResult):
+    """Losses of the planet bearings, and the figures of one of them."""
 
-    `loads`, those on its rollers, is what the next pass goes on from.
-    """
-
-    losses: dict[str, Loss]
-    figures: Callable[[], BearingFigures] | None = None
-    flags: SomeFlags = ()
-    loads: RollerLoads | None = None
+    loads: RollerLoads | None = None  # On its rollers: what the next pass goes on from.
 
 
-def missing_bearing(key: str, reason: str) -> BearingOutcome:
+def missing_bearing(key: str, reason: str) -> BearingResult:
     """The losses of a bearing that is not there."""
-    return BearingOutcome(
+    return BearingResult(
         {
             f"{key}_mechanical": Loss(LOAD_DEPENDENT, left_out=reason),
             f"{key}_viscous": Loss(LOAD_INDEPENDENT, left_out=reason),
@@ -540,7 +541,7 @@ def solve_bearing(
     oil: OilState,
     speed: float,  # Speed of the planet against the carrier. [rad/s]
     last: RollerLoads | None = None,  # The rollers under nearly this load, which saves work.
-) -> BearingOutcome:
+) -> BearingResult:
     """Losses of `count` planet bearings under the same load."""
     bearing = own.bearing
     if last is None:
@@ -557,16 +558,17 @@ def solve_bearing(
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
-    return BearingOutcome(
+    figures = partial(_bearing_figures, own, loads, load, speed, oil, loss.loss)
+    return BearingResult(
         {
             f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * loss.loss, *own.method),
             f"{key}_viscous": Loss(
                 LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE
             ),
         },
-        partial(_bearing_figures, own, loads, load, speed, oil, loss.loss),
+        Figures({key: figures}),
         loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
-        loads,
+        loads=loads,
     )
 
 

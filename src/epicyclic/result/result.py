@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 
-# Temperatures of a result, and the ways of its heat.
+# Temperatures of a result, and the paths of its heat.
 
 
 @dataclass(frozen=True, slots=True)
-class HeatWay:
+class HeatPath:
     """Heat from one part to another.
 
     Attributes
@@ -63,7 +63,7 @@ class HeatWay:
 
 @dataclass(frozen=True, slots=True)
 class HeatBalance:
-    """Temperatures that follow from the losses, and the ways of their heat.
+    """Temperatures that follow from the losses, and the paths of their heat.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class HeatBalance:
         Temperatures of all nodes. [K]
     sources : mapping of str to float
         Heat that losses bring to each node. [W]
-    ways : tuple of HeatWay
+    ways : tuple of HeatPath
         Empty with ``"flank"``.
     given : mapping of str to float
         Temperatures that were given: of the oil inlet, the air, a coolant; of all oil with
@@ -88,7 +88,7 @@ class HeatBalance:
     temperatures: Mapping[str, float] = field(metadata=stored(unit=CELSIUS))
     given: Mapping[str, float] = field(metadata=stored(unit=CELSIUS))
     sources: Mapping[str, float]
-    ways: tuple[HeatWay, ...] = field(metadata=stored(index="key"))
+    ways: tuple[HeatPath, ...] = field(metadata=stored(index="key"))
     residual: float
     evaluations: int
 
@@ -105,9 +105,9 @@ class HeatBalance:
         return heat
 
     @property
-    def outlets(self) -> tuple[HeatWay, ...]:
-        """The ways that lead out of the gearbox."""
-        return tuple(way for way in self.ways if way.into not in self.temperatures)
+    def outlets(self) -> tuple[HeatPath, ...]:
+        """The paths that lead out of the gearbox."""
+        return tuple(path for path in self.ways if path.into not in self.temperatures)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers and text, in the units stated beside them."""

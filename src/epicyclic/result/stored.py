@@ -126,7 +126,7 @@ def _contradictions(found: Mapping[str, Any], data: Mapping[str, Any]) -> Iterat
             yield "heat.model", "must be 'flank' or 'network'"
         if OIL not in {**heat.temperatures, **heat.given}:
             yield "heat", "the temperature of the oil is missing"
-        if not {way.hot for way in heat.ways} <= heat.temperatures.keys():
+        if not {path.hot for path in heat.ways} <= heat.temperatures.keys():
             yield "heat", "ways name parts without temperatures"
     train: Train | None = found["train"]
     if train is None:

@@ -11,7 +11,7 @@ from typing import Any
 
 from epicyclic.case.case import KINDS, form_of_set
 from epicyclic.case.fields import Place, dict_value, locate, quantity_of
-from epicyclic.case.tables.elements import ELEMENT_CHECKS
+from epicyclic.case.tables.elements import ElementTables
 from epicyclic.show.page import Cell, Table
 from epicyclic.units import format_number, unit_text
 
@@ -67,7 +67,7 @@ def input_tables(
                 schema, _ = form_of_set(own)
                 of_set = _Source(schema, stated, source.used)
                 tables += _set_tables(of_set, (), kept, key)
-        elif name in ELEMENT_CHECKS:
+        elif name in ElementTables.model_fields:
             title = _TITLES_OF_PARTS.get(name, _title(name))
             tables += _side_by_side(source, title, (name,), table)
         else:

@@ -165,13 +165,13 @@ def _number(value: float | None) -> str:
 
 
 def _heat(result: Result, drawings: Drawings) -> tuple[Item, ...]:
-    """Temperatures, and the ways of the heat."""
+    """Temperatures, and the paths of the heat."""
     if result.heat is None:
         return ()
     heat = result.heat
     picture = gallery(drawings, "heat-network", wide=True)
-    ways = tables.ways_items(heat) if heat.ways else ()
-    return (*picture, Row(tuple(tables.heat_items(heat))), *ways)
+    paths = tables.heat_path_items(heat) if heat.ways else ()
+    return (*picture, Row(tuple(tables.heat_items(heat))), *paths)
 
 
 def _gears(record: ResultRecord, drawings: Drawings) -> Iterator[Item]:

@@ -413,7 +413,7 @@ def part_tables(result: Result) -> Iterator[Table]:
             for key, part in parts.items()
             for stage in (key.rpartition(".")[0],)
         )
-        yield Table(("", "loss, W", *heads), rows, _TITLES.get(kind, in_words(kind)))
+        yield Table(("", "loss, W", *heads), rows, _TITLES.get(kind, in_words(kind).capitalize()))
 
 
 def locking_text(train: Train) -> str:
@@ -478,14 +478,14 @@ def _temperatures(heat: HeatBalance) -> Table:
 
 def _balance(heat: HeatBalance) -> Table:
     """Where the heat leaves the gearbox."""
-    whole = sum(way.watts for way in heat.outlets)
+    whole = sum(path.watts for path in heat.outlets)
     rows = [
         (
-            Cell(f"{in_words(way.hot)} to {in_words(way.into)}"),
-            Cell(way.method),
-            *_shared(way.watts, whole, f"heat.ways.{way.key}.heat"),
+            Cell(f"{in_words(path.hot)} to {in_words(path.into)}"),
+            Cell(path.method),
+            *_shared(path.watts, whole, f"heat.ways.{path.key}.heat"),
         )
-        for way in heat.outlets
+        for path in heat.outlets
     ]
     rows.append((Cell("all losses"), Cell(""), *_shared(whole, whole, "")))
     strong = frozenset([len(rows) - 1])
@@ -497,25 +497,25 @@ def _shared(watts: float, whole: float, key: str) -> tuple[Cell, Cell]:
     return tenths(watts, key), Cell(share, math.nan)
 
 
-def ways_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
-    """Every way of the heat, and where its conductance is from."""
+def heat_path_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
+    """Every path of the heat, and where its conductance is from."""
     rows = tuple(
         (
-            Cell(way.key),
-            Cell(in_words(way.hot)),
-            Cell(in_words(way.into)),
-            tenths(way.watts, f"heat.ways.{way.key}.heat"),
+            Cell(path.key),
+            Cell(in_words(path.hot)),
+            Cell(in_words(path.into)),
+            tenths(path.watts, f"heat.ways.{path.key}.heat"),
             number(
-                None if math.isnan(way.conductance) else way.conductance,
-                f"heat.ways.{way.key}.conductance",
+                None if math.isnan(path.conductance) else path.conductance,
+                f"heat.ways.{path.key}.conductance",
             ),
-            Cell(way.method),
+            Cell(path.method),
         )
-        for way in heat.ways
+        for path in heat.ways
     )
     methods: dict[str, set[str]] = {}
-    for way in heat.ways:
-        methods.setdefault(way.method, set()).add(way.source or "given")
+    for path in heat.ways:
+        methods.setdefault(path.method, set()).add(path.source or "given")
     return (
         Table(("", "from", "to", "W", "W/K", "method"), rows, "Paths of the heat", note=_SIGN),
         Listing(

@@ -33,7 +33,7 @@ MOST_STEPS, STEP = 6, 4.0
 
 
 def heat_balance(case: Case) -> HeatBalance:
-    """Temperatures of all parts of a gearbox, and the ways of its heat.
+    """Temperatures of all parts of a gearbox, and the paths of its heat.
 
     Parameters
     ----------

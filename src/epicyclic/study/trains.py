@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from epicyclic.case.case import TrainCase
+from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.train_tables import StateTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import freedom, speeds_of
@@ -17,7 +18,7 @@ from epicyclic.machine.balance import freedom, speeds_of
 
 LOSS_KINDS = ("given", "sliding", "rolling", "pocketing", "bearings", "seals", "drag")
 """In the order of their columns; ``"given"`` are those of meshes of given efficiency."""
-_OF_PARTS = {"bearings": "bearings", "seals": "seals", "drags": "drag"}
+_OF_PARTS = {"bearings": "bearings", "seals": "seals"}  # Losses of all other parts are drag.
 
 
 def loss_sums(
@@ -29,7 +30,11 @@ def loss_sums(
 
     Returns dict of str to dict of str to float: of `LOSS_KINDS` those that the set or part has.
     """
-    kinds = {name: kind for table, kind in _OF_PARTS.items() for name in inputs.get(table, {})}
+    kinds = {
+        name: _OF_PARTS.get(table, "drag")
+        for table in ElementTables.model_fields
+        for name in inputs.get(table, {})
+    }
     sums: dict[str, dict[str, float]] = {}
     for key, watts in losses.items():
         stage, _, term = key.partition(".")

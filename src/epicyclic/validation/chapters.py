@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.build.gear_sets import roller_bearing
+from epicyclic.build.machine import build
+from epicyclic.build.models import fluids_of
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.meshes import bearing_details
 from epicyclic.study.solve import solve
@@ -24,7 +25,7 @@ from epicyclic.study.sweeps.run import PointList
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import CELSIUS, NUMBER, WATT, unit_text
 from epicyclic.validation.compare import published_figures
-from epicyclic.validation.compute import source_case
+from epicyclic.validation.compute import planet_bearing, source_case
 from epicyclic.validation.pocketing import FIGURES_AGAIN
 
 if TYPE_CHECKING:
@@ -176,7 +177,7 @@ def bearing_families(figures: Sequence[str], runner: Runner = HERE) -> list[Fami
 
 def _oil() -> str:
     """What the example says of its oil where nothing else is studied."""
-    temperature = CELSIUS.text(source_case().operation.oil_inlet_temperature, 3)
+    temperature = CELSIUS.text(fluids_of(source_case()).oil.temperature, 3)
     return f"oil at {unit_text(temperature)}"
 
 
@@ -210,13 +211,10 @@ def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
     found = []
     for value in values:
         case = source_case().updated(_WITHOUT_FLOW | dict(lever.changes(value)))
-        assert case.planet_bearing is not None
         result = solve(case)
         assert result.bearing is not None
         assert result.bearing.loads is not None
-        details = bearing_details(
-            roller_bearing(case.planet_bearing, case.numerics), result.bearing.loads
-        )
+        details = bearing_details(planet_bearing(build(case)), result.bearing.loads)
         found.append((f"{lever.label} {value:g} {unit_text(lever.unit)}", details))
     return found
 

@@ -14,10 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.build.gear_sets import roller_bearing
-from epicyclic.build.machine import build
+from epicyclic.build.machine import Built, build
 from epicyclic.build.models import fluids_of
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, read_case
+from epicyclic.case.case import Case, read_case
 from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
@@ -37,7 +36,7 @@ from epicyclic.losses.friction import (
     specific_load,
 )
 from epicyclic.losses.mesh import ohlendorf_closed_form, ohlendorf_loss_factor
-from epicyclic.losses.planet_bearing import roller_loads
+from epicyclic.losses.planet_bearing import RollerBearing, roller_loads
 from epicyclic.result.result import Result
 from epicyclic.study.solve import loaded_meshes, mesh_contacts, solve
 
@@ -82,8 +81,7 @@ def _solved(case: str, friction: str | float, load_distribution: str = "complian
 
 
 def _planets(case: str) -> int:
-    given = _case(case)
-    return given.planet.count if isinstance(given, PlanetaryCase) else 1
+    return _case(case).gearings[""].count or 1
 
 
 def mesh_geometry(case: str, mesh: str, figure: str) -> float:
@@ -190,14 +188,19 @@ AS_IN_THE_SOURCE = {
 KELVIN = 273.15  # 0 degC in kelvin.
 
 
-def source_case() -> PlanetaryCase:
+def source_case() -> Case:
     """The set of the dissertation, computed as there."""
-    case = read_case("talbot-2012")
-    assert isinstance(case, PlanetaryCase)
-    return case.updated(AS_IN_THE_SOURCE)
+    return read_case("talbot-2012").updated(AS_IN_THE_SOURCE)
 
 
-def _published_case(**changes: object) -> PlanetaryCase:
+def planet_bearing(built: Built) -> RollerBearing:
+    """The planet bearing of the set of the dissertation."""
+    (planet,) = built.sets[""].planets
+    assert planet.bearing is not None
+    return planet.bearing.bearing
+
+
+def _published_case(**changes: object) -> Case:
     return source_case().updated({key.replace("__", "."): value for key, value in changes.items()})
 
 
@@ -241,13 +244,15 @@ def _computed_tests(temperature: str, finish: str, planets: Iterable[int]) -> li
 def planet_bearing_loss(temperature: str, composite_roughness: float) -> float:
     """Rolling loss of one planet bearing at 333 N m on the branch and 4000 rpm. [W]"""
     rough = f"{composite_roughness / math.sqrt(2)} um"
-    case = _published_case(
-        operation__torque="999 N*m",
-        operation__oil_inlet_temperature=temperature,
-        planet_bearing__roller_roughness=rough,
-        planet_bearing__race_roughness=rough,
+    result = solve(
+        _published_case(
+            operation__torque="999 N*m",
+            operation__oil_inlet_temperature=temperature,
+            planet_bearing__roller_roughness=rough,
+            planet_bearing__race_roughness=rough,
+        )
     )
-    return solve(case).losses["planet_bearing_mechanical"] / case.planet.count
+    return result.losses["planet_bearing_mechanical"] / len(result.planet_shares)
 
 
 def planet_bearing_ratio(temperature: str, rough: float, smooth: float) -> float:
@@ -267,12 +272,10 @@ def azimuth_of_gained_rollers(low: int, high: int, couple: bool) -> float:
 
 def _loaded_rollers(branch_torque: int, couple: bool) -> NDArray[np.bool_]:
     """Which rollers carry load in either row."""
-    case = _published_case(operation__torque=f"{3 * branch_torque} N*m")
-    assert case.planet_bearing is not None
-    bearing = roller_bearing(case.planet_bearing, case.numerics)
-    load = build(case).planet_loads()["planet_bearing"]
+    built = build(_published_case(operation__torque=f"{3 * branch_torque} N*m"))
+    load = built.planet_loads()["planet_bearing"]
     moments = (load.moment_x, load.moment_y) if couple else (0.0, 0.0)
-    loads = roller_loads(bearing, load.force, 0.0, *moments)
+    loads = roller_loads(planet_bearing(built), load.force, 0.0, *moments)
     loaded: NDArray[np.bool_] = loads.intensity.sum(axis=(0, 2)) > 0
     return loaded
 
@@ -397,7 +400,6 @@ def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
             "lubricant": {"oil": "iso-vg-100-mineral"},
         }
     )
-    assert isinstance(case, GearPairCase)
     return loaded_meshes(case)["mesh"]
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.build.models import fluids_of
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, build_case, read_case
+from epicyclic.case.case import Case, build_case, read_case
 from epicyclic.case.fields import did_you_mean, refused, written
 from epicyclic.case.read import plain
 from epicyclic.errors import Problem, Status, one_problem, raise_any
@@ -542,7 +542,9 @@ def _coordinate(axis: StudyAxis) -> tuple[str, NDArray[np.float64], dict[str, st
 def _member(plan: StudyPlan) -> str:
     """Whose speed it is, and against what."""
     name = plan.duty.mesh.gear1.name
-    return f"{name} against the carrier" if isinstance(plan.case, PlanetaryCase) else name
+    sets = [it for it in plan.case.gearings.values() if it.computed and it.planets]
+    planets = any(plan.duty.mesh in gearing.geometries for gearing in sets)
+    return f"{name} against the carrier" if planets else name
 
 
 def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
@@ -601,13 +603,13 @@ def study_again(
 def published_study(case: Case) -> PublishedStudy | None:
     """The published values if they hold for `case`, the example of the source."""
     example = read_case(EXAMPLE)
-    assert isinstance(example, GearPairCase)
-    if not isinstance(case, GearPairCase) or not _is_example(case, example):
+    if not _is_example(case, example):
         return None
+    gearing = example.gearings[""]
     loss, exponent = _figure("pocketing_loss"), _figure("pocketing_speed_exponent")
     return PublishedStudy(
         helix_angle=DEGREE.to_display(DEGREE.parse(loss["with"]["helix_angle"])),
-        face_width=MILLIMETRE.to_display(example.pinion.face_width),
+        face_width=MILLIMETRE.to_display(gearing.tables["pinion"].face_width),
         speed=RPM.to_display(example.operation.speed),
         loss=loss["value"],
         exponent=exponent["value"],
@@ -624,8 +626,8 @@ def published_study(case: Case) -> PublishedStudy | None:
     )
 
 
-def _is_example(case: GearPairCase, example: GearPairCase) -> bool:
-    same = all(getattr(case, table) == getattr(example, table) for table in _SAME)
+def _is_example(case: Case, example: Case) -> bool:
+    same = all(getattr(case, table, None) == getattr(example, table) for table in _SAME)
     one, other = (item.operation.oil_inlet_temperature for item in (case, example))
     return same and one == other
 

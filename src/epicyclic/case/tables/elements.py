@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, Tag
@@ -143,12 +143,46 @@ class LossTableTable(PointsTable):
         return "torque" if self.torque is not None else "power"
 
 
-class DragTable(LossTableTable):
+class ElementTable(Table):
+    """An element of a train: what it is between, and what contradicts itself in its table."""
+
+    @property
+    def bodies(self) -> dict[str, str]:
+        """The two bodies that it is between, by their keys."""
+        return {key: getattr(self, key) for key in ("shaft", "against")}
+
+    def problems(self) -> list[Problem]:
+        """What contradicts itself, or is missing; keys are relative to the table."""
+        (_, first), (key, second) = self.bodies.items()
+        if first != second:
+            return []
+        reason = "is the same body twice: nothing moves between them."
+        return [Problem(key, written(second), reason, f'Name another shaft, or "{HOUSING}".')]
+
+    def points(self, folder: Path) -> LossTable | None:
+        """Its torque or power if it states a table; raises `InputError` for a bad file."""
+        return None
+
+
+_DRAG_AXES = ("speed", "temperature")  # Axes of the tables of parts that carry no load.
+
+
+class DragTable(ElementTable, LossTableTable):
     """Drag of a clutch, a brake, a pump or another part, from a table."""
 
     between: tuple[str, str] = Field(
         description='The two shafts whose speeds differ; one of them may be "housing".'
     )
+
+    @property
+    def bodies(self) -> dict[str, str]:
+        return {f"between[{number}]": body for number, body in enumerate(self.between)}
+
+    def problems(self) -> list[Problem]:
+        return super().problems() + loss_table_problems(self, _DRAG_AXES)
+
+    def points(self, folder: Path) -> LossTable:
+        return _loss_table(self, folder, "", _DRAG_AXES)
 
 
 class BearingSealTable(Table):
@@ -160,7 +194,7 @@ class BearingSealTable(Table):
     constant: DragTorque = option("K_S2.", "0 N*m")
 
 
-class ShaftBearingTable(Table):
+class ShaftBearingTable(ElementTable):
     """A rolling bearing of a shaft."""
 
     STAND_INS: ClassVar[dict[str, object]] = {
@@ -252,8 +286,32 @@ class ShaftBearingTable(Table):
     reference_speed: ReferenceSpeed | None = option("Of cylindrical rollers, for the minimum load.")
     table: LossTableTable | None = option("For model = table.")
 
+    def problems(self) -> list[Problem]:
+        from epicyclic.losses.shaft_bearing import bearing_types  # cases without bearings need not
 
-class SealTable(Table):
+        problems = _size_problems(self) + super().problems() + _force_problems(self)
+        if self.type not in bearing_types(self.model):
+            reason = f"has no constants for {self.type} roller bearings."
+            remedy = 'Choose model = "palmgren" or "table".'
+            return [*problems, Problem("model", written(self.model), reason, remedy)]
+        problems += _own_table_problems(self, LossTableTable.AXES)
+        if self.model == "skf-2018":
+            problems += _skf_problems(self)
+        if (
+            self.type == "deep-groove"
+            and self.model in ("harris", "skf-2018")
+            and self.static_load_rating is None
+        ):
+            reason = f"is missing; the model {self.model} needs it for ball bearings."
+            problems.append(Problem("static_load_rating", "", reason, "Add C0 from the catalogue."))
+        return problems
+
+    def points(self, folder: Path) -> LossTable | None:
+        axes = LossTableTable.AXES
+        return None if self.table is None else _loss_table(self.table, folder, "table.", axes)
+
+
+class SealTable(ElementTable):
     """A radial lip seal on a shaft."""
 
     shaft: str = Field(description="The shaft under the lip.")
@@ -266,34 +324,14 @@ class SealTable(Table):
     )
     table: LossTableTable | None = option("For model = table.")
 
+    def problems(self) -> list[Problem]:
+        return super().problems() + _own_table_problems(self, _DRAG_AXES)
+
+    def points(self, folder: Path) -> LossTable | None:
+        return None if self.table is None else _loss_table(self.table, folder, "table.", _DRAG_AXES)
+
 
 # What contradicts itself, or is missing, in one of these tables; keys are relative to the table.
-
-_DRAG_AXES = ("speed", "temperature")  # Axes of the tables of parts that carry no load.
-
-
-def bearing_problems(table: ShaftBearingTable) -> list[Problem]:
-    """What contradicts itself, or is missing, in the table of a bearing."""
-    from epicyclic.losses.shaft_bearing import bearing_types  # cases without bearings need it not
-
-    problems = _size_problems(table) + _force_problems(table)
-    if table.type not in bearing_types(table.model):
-        reason = f"has no constants for {table.type} roller bearings."
-        remedy = 'Choose model = "palmgren" or "table".'
-        return [*problems, Problem("model", written(table.model), reason, remedy)]
-    if table.model == "table":
-        return problems + _own_table_problems(table, LossTableTable.AXES)
-    problems += _own_table_problems(table, LossTableTable.AXES)
-    if table.model == "skf-2018":
-        problems += _skf_problems(table)
-    if (
-        table.type == "deep-groove"
-        and table.model in ("harris", "skf-2018")
-        and table.static_load_rating is None
-    ):
-        reason = f"is missing; the model {table.model} needs it for ball bearings."
-        problems.append(Problem("static_load_rating", "", reason, "Add C0 from the catalogue."))
-    return problems
 
 
 def _size_problems(table: ShaftBearingTable) -> list[Problem]:
@@ -322,7 +360,7 @@ def _size_problems(table: ShaftBearingTable) -> list[Problem]:
 
 
 def _force_problems(table: ShaftBearingTable) -> list[Problem]:
-    problems = _same_body_problems({"shaft": table.shaft, "against": table.against})
+    problems = []
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
         problems.append(Problem("radial_force", "", "is missing; axial_force is given.", remedy))
@@ -356,27 +394,6 @@ def _skf_problems(table: ShaftBearingTable) -> list[Problem]:
         reason = "is missing; the drag of rollers in an oil bath needs it."
         problems.append(Problem("width", "", reason, "Add B from the catalogue."))
     return problems
-
-
-def seal_problems(table: SealTable) -> list[Problem]:
-    """What contradicts itself, or is missing, in the table of a seal."""
-    bodies = {"shaft": table.shaft, "against": table.against}
-    return _same_body_problems(bodies) + _own_table_problems(table, _DRAG_AXES)
-
-
-def drag_problems(table: DragTable) -> list[Problem]:
-    """What contradicts itself, or is missing, in the table of a drag."""
-    first, second = table.between
-    problems = _same_body_problems({"between[0]": first, "between[1]": second})
-    return problems + loss_table_problems(table, _DRAG_AXES)
-
-
-def _same_body_problems(bodies: Mapping[str, str]) -> list[Problem]:
-    (_, first), (key, second) = bodies.items()
-    if first != second:
-        return []
-    reason = "is the same body twice: nothing moves between them."
-    return [Problem(key, written(second), reason, f'Name another shaft, or "{HOUSING}".')]
 
 
 def _own_table_problems(
@@ -428,41 +445,25 @@ class ElementTables(Table):
     drags: dict[str, DragTable] = Field(default={})
 
 
-ELEMENT_CHECKS: Mapping[str, Callable[[Any], list[Problem]]] = {
-    "bearings": bearing_problems,
-    "seals": seal_problems,
-    "drags": drag_problems,
-}
-"""By kind: the problems of a table that need no other table."""
-
-
 # How they stand in a train.
 
 
-def bodies_of(table: Table) -> dict[str, str]:
-    """The two bodies that a part is between, by their keys."""
-    keys = dict(table)
-    if "between" in keys:
-        return {f"between[{number}]": body for number, body in enumerate(keys["between"])}
-    return {key: keys[key] for key in ("shaft", "against")}
-
-
-def placing_problems(table: Table, shafts: Mapping[str, str], folder: Path) -> list[Problem]:
+def placing_problems(table: ElementTable, shafts: Mapping[str, str], folder: Path) -> list[Problem]:
     """Why a part that is sound by itself cannot be in a train: unknown shafts, a bad file."""
     try:
         between(table, shafts)
-        points_of(table, folder)
+        table.points(folder)
     except InputError as error:
         return list(error.problems)
     return []
 
 
 def between(
-    table: Table,
+    table: ElementTable,
     shafts: Mapping[str, str],  # The bodies beside the housing, by all their names.
 ) -> tuple[str, str]:
     """The bodies that a part is between; raises `InputError` for unknown ones."""
-    names = bodies_of(table)
+    names = table.bodies
     known = {**shafts, HOUSING: HOUSING}
     raise_any(
         Problem(
@@ -480,18 +481,6 @@ def between(
         key, name = list(names.items())[1]
         raise InputError([Problem(key, written(name), reason, "Name another shaft.")])
     return first, second
-
-
-def points_of(table: Table, folder: Path) -> LossTable | None:
-    """The torque or power that a part states as a table; raises `InputError` for a bad file."""
-    if isinstance(table, DragTable):
-        return _loss_table(table, folder, "", _DRAG_AXES)
-    assert isinstance(table, ShaftBearingTable | SealTable)
-    if table.table is None:
-        return None
-    is_bearing = isinstance(table, ShaftBearingTable)
-    axes = LossTableTable.AXES if is_bearing else _DRAG_AXES
-    return _loss_table(table.table, folder, "table.", axes)
 
 
 def _loss_table(

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from importlib.metadata import version
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase, read_case
-from epicyclic.case.expand import expand
+from epicyclic.build.machine import operation_of
+from epicyclic.build.models import SetCase, set_cases
+from epicyclic.case.case import Case, TrainCase, read_case
 from epicyclic.case.fields import one_line
-from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.gearing import Gearing, GearPairing
 from epicyclic.case.tables.base import Material
-from epicyclic.case.tables.elements import PlanetBearing, ShaftBearingTable
-from epicyclic.case.train_tables import PairSet, PlanetarySet
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, ShaftBearingTable
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import whole_file
 from epicyclic.gears.flanks import RA_OVER_RQ
-from epicyclic.gears.gear import HOUSING, Gear
+from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.machine.element import Figure
 from epicyclic.machine.shaft_parts import ShaftBearingFigures
 from epicyclic.oil.oil import Oil, oil_state
@@ -61,16 +60,6 @@ _OIL_TYPES = {
 }
 
 
-def case_parts(case: PlanetaryCase | GearPairCase) -> Iterator[Component | Relation]:
-    """Components and relations that describe the gear set of a case."""
-    builder = Builder()
-    if isinstance(case, PlanetaryCase):
-        _planetary(builder, case)
-    else:
-        _pair(builder, case)
-    return builder.parts()
-
-
 class Builder:
     """Collects parts and numbers them."""
 
@@ -81,14 +70,13 @@ class Builder:
     def add(self, kind: str, name: str, /, **attributes: Any) -> int:
         """A component; attributes as text, flags, numbers, or numbers with the unit they have."""
         number = len(self.components) + 1
-        self.components.append(Component(number, kind, name, _made(attributes)))
+        self.components.append(Component(number, kind, name, tuple(_made(attributes))))
         return number
 
     def extend(self, number: int, /, **attributes: Any) -> None:
         """Further attributes of a component."""
         own = self.components[number - 1]
-        made = {**own.attributes, **_made(attributes)}
-        self.components[number - 1] = replace(own, attributes=made)
+        self.components[number - 1] = own.changed(_made(attributes))
 
     def relate(self, kind: str, order: int | None = None, **roles: int) -> None:
         """A relation of components by their roles."""
@@ -106,16 +94,14 @@ class Builder:
             self.relate("assembly", assembly=assembly, part=part)
 
 
-def _made(attributes: Mapping[str, Any]) -> dict[str, Attribute]:
-    made = {}
+def _made(attributes: Mapping[str, Any]) -> Iterator[Attribute]:
     for key, value in attributes.items():
         known = term(key)
         if isinstance(value, tuple) and isinstance(value[-1], str):
             value = written(value[0], value[1], known.unit)
         if isinstance(value, float):
             value = float(f"{value:.15g}")
-        made[known.id] = Attribute(known.id, known.unit, value)
-    return made
+        yield Attribute(known.id, known.unit, value)
 
 
 def surroundings(builder: Builder, case: Case, **attributes: Any) -> tuple[int, int, int]:
@@ -159,8 +145,9 @@ def add_shaft(
     return shaft
 
 
-def _gear(builder: Builder, shaft: int, table: GearTable, made: Gear, hand: int, name: str) -> int:
+def _gear(builder: Builder, gearing: Gearing, gear: str, shaft: int, name: str) -> int:
     """A gear on its shaft, with its flanks and material."""
+    table, made, hand = gearing.tables[gear], gearing.gear(gear), gearing.hands[gear]
     number = builder.add(
         "ring_gear" if made.internal else "cylindrical_gear",
         name,
@@ -201,13 +188,20 @@ def _material(builder: Builder, material: Material) -> int:
 
 
 def _stage(
-    builder: Builder, owner: int, oil: int, gears: Sequence[int], center: float, name: str = "mesh"
-) -> int:
+    builder: Builder,
+    owners: tuple[int, int],
+    gearing: Gearing,
+    mesh: GearPairing,
+    gears: Mapping[str, int],
+    name: str = "mesh",
+) -> None:
+    """A mesh; `owners` are unit or planetary stage, and oil."""
+    owner, oil = owners
+    center = gearing.distances[mesh.key]
     stage = builder.add("cylindrical_stage", name, center_distance=(center, "m"))
     builder.part(owner, stage)
-    builder.relate("stage", stage=stage, gear_1=gears[0], gear_2=gears[1])
+    builder.relate("stage", stage=stage, gear_1=gears[mesh.first], gear_2=gears[mesh.second])
     builder.relate("reference", origin=stage, referenced=oil)
-    return stage
 
 
 def add_load(builder: Builder, shaft: int, torque: float) -> None:
@@ -218,85 +212,63 @@ def add_load(builder: Builder, shaft: int, torque: float) -> None:
     builder.part(shaft, load)
 
 
-def _pair(builder: Builder, case: GearPairCase) -> None:
-    unit, _, oil = surroundings(builder, case)
-    shafts = {
-        "pinion": add_shaft(builder, unit, "pinion shaft", case.operation.speed),
-        "gear": add_shaft(builder, unit, "gear shaft"),
-    }
-    add_pair(builder, case, (unit, oil), shafts, "mesh")
-    add_load(builder, shafts["pinion"], case.operation.torque)
-
-
-def add_pair(
-    builder: Builder,
-    case: GearPairCase | PairSet,
-    owners: tuple[int, int],
-    shafts: Mapping[str, int],
-    name: str,
-) -> dict[str, int]:
-    """Both gears on their shafts, and their stage; `owners` are unit and oil. Returns the gears."""
-    unit, oil = owners
-    hand = -1 if isinstance(case, PairSet) and case.hand == "left" else 1
-    gearing, _ = expand(dict(case))
-    made = {name: gearing.gear(name) for name in gearing.tables}
-    hands = {"pinion": hand, "gear": hand if made["gear"].internal else -hand}
-    tables = {"pinion": case.pinion, "gear": case.gear}
-    numbers = {
-        member: _gear(builder, shafts[member], tables[member], one, hands[member], member)
-        for member, one in made.items()
-    }
-    center = case.gears.distance
-    _stage(builder, unit, oil, list(numbers.values()), center, name)
-    return numbers
-
-
-def _planetary(builder: Builder, case: PlanetaryCase) -> None:
+def case_parts(case: Case) -> Iterator[Component | Relation]:
+    """Components and relations that describe a case of one gear set."""
+    builder = Builder()
     unit, casing, oil = surroundings(builder, case)
-    operation = case.operation
-    speeds = {operation.input: operation.speed}
-    if operation.second_input is not None and operation.second_speed is not None:
-        speeds[operation.second_input] = operation.second_speed
-    title = case.title or "planetary stage"
-    stage = builder.add("planetary_stage", title)
-    builder.part(unit, stage)
-    shafts = {
-        name: add_shaft(builder, unit, f"{name} shaft", speeds.get(name))
-        for name in ("sun", "ring", "carrier")
-    }
-    if operation.fixed is not None:
-        hold(builder, shafts[operation.fixed], casing, operation.fixed)
+    ((_, own),) = set_cases(case, [""])
+    operation = operation_of(case)
+    shafts = {}
+    for name in own.gearing.members:
+        speed = None if name in operation.held else operation.speeds.get(name)
+        shafts[name] = add_shaft(builder, unit, f"{name} shaft", speed)
+    for name in operation.held:
+        hold(builder, shafts[name], casing, name)
+    title = (case.title or "planetary stage") if own.gearing.planets else "mesh"
+    add_set(builder, own, (unit, oil), shafts, title)
     add_load(builder, shafts[operation.input], operation.torque)
-    add_planetary(builder, case, (unit, stage, oil), shafts)
+    return builder.parts()
 
 
-def hold(builder: Builder, shaft: int, casing: int, name: str) -> None:
-    """A shaft that stands still."""
-    joint = builder.add("coupling", f"holds the {name}")
-    builder.relate("side", assembly=joint, inner_part=shaft, outer_part=casing)
+def add_set(
+    builder: Builder, case: SetCase, owners: tuple[int, int], shafts: Mapping[str, int], name: str
+) -> dict[str, int]:
+    """A set: its gears on their shafts and their stages; `owners` are unit and oil.
+
+    Returns the gears that turn on shafts which others can join.
+    """
+    unit, oil = owners
+    gearing = case.gearing
+    owner = unit
+    if gearing.planets:
+        owner = _planetary_stage(builder, unit, case.carrier, shafts, name)
+    central = {
+        gear: _gear(builder, gearing, gear, shafts[body], gear)
+        for gear, body in gearing.bodies.items()
+        if body in shafts
+    }
+    if not gearing.planets:
+        for mesh in gearing.meshes:
+            _stage(builder, (owner, oil), gearing, mesh, central, name)
+    for number in range(1, (gearing.count or 0) + 1):
+        _planet(builder, case, (unit, owner, oil), central, number)
+    return central
 
 
-def add_planetary(
-    builder: Builder,
-    case: PlanetaryCase | PlanetarySet,
-    owners: tuple[int, int, int],
-    shafts: Mapping[str, int],
-) -> None:
-    """The gears of a planetary set on their shafts; `owners` are unit, stage and oil."""
-    _, stage, _ = owners
-    for name in ("sun", "ring"):
-        builder.relate("central_shaft", planetary_stage=stage, shaft=shafts[name])
-    builder.relate("planet_carrier_shaft", planetary_stage=stage, shaft=shafts["carrier"])
-    _carrier(builder, case, stage, shafts["carrier"])
-    _planets(builder, case, owners, shafts)
-
-
-def _carrier(builder: Builder, case: PlanetaryCase | PlanetarySet, stage: int, shaft: int) -> None:
+def _planetary_stage(
+    builder: Builder, unit: int, size: Carrier | None, shafts: Mapping[str, int], name: str
+) -> int:
+    """A planetary stage with its central shafts and its carrier."""
+    stage = builder.add("planetary_stage", name)
+    builder.part(unit, stage)
+    for member, shaft in shafts.items():
+        if member != CARRIER:
+            builder.relate("central_shaft", planetary_stage=stage, shaft=shaft)
+    builder.relate("planet_carrier_shaft", planetary_stage=stage, shaft=shafts[CARRIER])
     carrier = builder.add("planet_carrier", "carrier")
     builder.part(stage, carrier)
-    builder.part(carrier, shaft)
-    if case.carrier is not None:
-        size = case.carrier
+    builder.part(carrier, shafts[CARRIER])
+    if size is not None:
         plate = builder.add(
             "side_plate",
             "carrier as a disc",
@@ -304,33 +276,35 @@ def _carrier(builder: Builder, case: PlanetaryCase | PlanetarySet, stage: int, s
             length=(size.width, "m"),
         )
         builder.part(carrier, plate)
+    return stage
 
 
-def _planets(
+def _planet(
     builder: Builder,
-    case: PlanetaryCase | PlanetarySet,
+    case: SetCase,
     owners: tuple[int, int, int],
-    shafts: Mapping[str, int],
+    central: Mapping[str, int],
+    number: int,
 ) -> None:
-    """Sun, ring, and for each planet its shaft, pin, bearing and two meshes."""
+    """A planet: its shaft, pin, bearing and meshes; `owners` are unit, stage and oil."""
     unit, stage, oil = owners
-    tables = {"sun": case.sun, "planet": case.planet, "ring": case.ring}
-    gearing, _ = expand(dict(case))
-    made = {name: gearing.gear(name) for name in tables}
-    hand = -1 if isinstance(case, PlanetarySet) and case.hand == "left" else 1
-    sun = _gear(builder, shafts["sun"], case.sun, made["sun"], hand, "sun")
-    ring = _gear(builder, shafts["ring"], case.ring, made["ring"], -hand, "ring")
-    center = case.gears.distance
-    for number in range(1, case.planet.count + 1):
-        name = f"planet {number}"
-        shaft, pin = (add_shaft(builder, unit, f"{name}, {part}") for part in ("shaft", "pin"))
-        builder.relate("planet_shaft", planetary_stage=stage, shaft=shaft)
-        builder.relate("planet_pin", planetary_stage=stage, shaft=pin)
-        planet = _gear(builder, shaft, case.planet, made["planet"], -hand, name)
-        if case.planet_bearing is not None:
-            _bearing(builder, case.planet_bearing, pin, shaft, name)
-        for gears in ((sun, planet), (planet, ring)):
-            _stage(builder, stage, oil, gears, center)
+    (body,) = case.gearing.planets
+    name = f"{body} {number}"
+    shaft, pin = (add_shaft(builder, unit, f"{name}, {part}") for part in ("shaft", "pin"))
+    builder.relate("planet_shaft", planetary_stage=stage, shaft=shaft)
+    builder.relate("planet_pin", planetary_stage=stage, shaft=pin)
+    gears = {**central, body: _gear(builder, case.gearing, body, shaft, name)}
+    bearing = case.bearings[body]
+    if bearing is not None:
+        _bearing(builder, bearing, pin, shaft, name)
+    for mesh in case.gearing.meshes:
+        _stage(builder, (stage, oil), case.gearing, mesh, gears)
+
+
+def hold(builder: Builder, shaft: int, casing: int, name: str) -> None:
+    """A shaft that stands still."""
+    joint = builder.add("coupling", f"holds the {name}")
+    builder.relate("side", assembly=joint, inner_part=shaft, outer_part=casing)
 
 
 def _bearing(builder: Builder, bearing: PlanetBearing, pin: int, shaft: int, name: str) -> None:
@@ -386,8 +360,8 @@ def train_parts(case: TrainCase) -> Iterator[Component | Relation]:
             "is neither a planetary set nor a pair with computed losses.",
             "A new REXS file cannot describe it; write the results into the original file.",
         )
-        for name, table in case.sets.items()
-        if not isinstance(table, PlanetarySet | PairSet)
+        for name, gearing in case.gearings.items()
+        if gearing.listed or not gearing.computed
     ]
     raise_any(problems)
     names = list(case.states)
@@ -409,14 +383,15 @@ def train_parts(case: TrainCase) -> Iterator[Component | Relation]:
 def _places(case: TrainCase) -> dict[str, Place]:
     """Across the axes of the shafts, from centre distances and directions, the first at zero."""
     steps: list[tuple[str, str, Place]] = []
-    for name, table in case.sets.items():
-        bodies = case.shape.bodies_of(name)
-        if isinstance(table, PairSet):
-            length, toward = table.gears.distance, table.direction
-            step = (length * math.cos(toward), length * math.sin(toward))
-            steps.append((bodies["pinion"], bodies["gear"], step))
-        else:
-            steps += [(bodies["sun"], bodies[other], (0.0, 0.0)) for other in ("ring", "carrier")]
+    for name, gearing in case.gearings.items():
+        first, *others = map(case.shape.bodies_of(name).__getitem__, gearing.members)
+        if gearing.planets:
+            steps += [(first, other, (0.0, 0.0)) for other in others]
+            continue
+        (mesh,) = gearing.meshes
+        length, toward = gearing.distances[mesh.key] or 0.0, mesh.direction
+        step = (length * math.cos(toward), length * math.sin(toward))
+        steps += [(first, other, step) for other in others]
     found: dict[str, Place] = {}
     for start in case.shape.names.values():
         found.setdefault(start, (0.0, 0.0))
@@ -464,21 +439,13 @@ def _sets(
     shafts: Mapping[str, int],
     places: Mapping[str, Place],
 ) -> None:
-    unit, oil = owners
-    for name, table in case.sets.items():
-        members = case.shape.sets[name].members
-        own = {member: shafts[f"{name}.{member}"] for member in members}
-        if isinstance(table, PlanetarySet):
-            stage = builder.add("planetary_stage", name)
-            builder.part(unit, stage)
-            add_planetary(builder, table, (unit, stage, oil), own)
-        elif isinstance(table, PairSet):
-            gears = add_pair(builder, table, owners, own, name)
-            for member, number in gears.items():
-                position = case.position_of(f"{name}.{member}")
-                shaft = case.shape.shaft_of(f"{name}.{member}") or ""
-                if position is not None and shaft in places:
-                    builder.extend(number, **_at(position, places[shaft]))
+    for name, own in set_cases(case, case.gearings):
+        joined = {member: shafts[f"{name}.{member}"] for member in own.gearing.members}
+        for gear, number in add_set(builder, own, owners, joined, name).items():
+            position = case.position_of(f"{name}.{gear}")
+            shaft = case.shape.shaft_of(f"{name}.{gear}") or ""
+            if position is not None and shaft in places and not own.gearing.planets:
+                builder.extend(number, **_at(position, places[shaft]))
 
 
 def _loads(builder: Builder, case: TrainCase, shafts: Mapping[str, int]) -> None:
@@ -583,12 +550,8 @@ def _differences(
     chosen: PlanetaryParts | Pair, tables: Mapping[str, Any], place: str
 ) -> list[Problem]:
     """Numbers of teeth that are not those of the file."""
-    if isinstance(chosen, Pair):
-        members = {"pinion": chosen.pinion, "gear": chosen.gear}
-    else:
-        members = {"sun": chosen.sun, "planet": chosen.planets[0], "ring": chosen.ring}
     problems = []
-    for name, component in members.items():
+    for name, component in chosen.gears.items():
         stated = component.get("number_of_teeth")
         table = tables.get(name)
         here = table.get("teeth") if table else None
@@ -659,13 +622,11 @@ def _meshes(
     model: Model, chosen: PlanetaryParts | Pair, result: Result, place: str
 ) -> Iterator[tuple[Component, Attribute]]:
     """Results of the meshes and planet bearings of a set, whose figures begin with `place`."""
-    if isinstance(chosen, Pair):
-        yield from _mesh(model, chosen.mesh, result, f"{place}mesh", 1)
-        return
-    for name, meshes in (("sun_mesh", chosen.sun_meshes), ("ring_mesh", chosen.ring_meshes)):
+    for key, meshes in chosen.meshes_by_key.items():
         for mesh in meshes:
-            yield from _mesh(model, mesh, result, f"{place}{name}", len(meshes))
-    yield from _bearing_results(model, chosen, result, f"{place}planet_bearing")
+            yield from _mesh(model, mesh, result, f"{place}{key}", len(meshes))
+    if isinstance(chosen, PlanetaryParts):
+        yield from _bearing_results(model, chosen, result, f"{place}planet_bearing")
 
 
 def _mesh(

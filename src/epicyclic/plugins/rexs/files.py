@@ -17,15 +17,7 @@ from pydantic_core import from_json
 from epicyclic.case.fields import one_line
 from epicyclic.errors import InputError
 from epicyclic.files import read_bytes
-from epicyclic.plugins.rexs.model import (
-    Attribute,
-    Coded,
-    Component,
-    RawComponent,
-    RawRelation,
-    Relation,
-    refuse,
-)
+from epicyclic.plugins.rexs.model import Attribute, Coded, Component, Relation, refuse
 
 if TYPE_CHECKING:
     from epicyclic.plugins.rexs.model import Content
@@ -64,15 +56,15 @@ class JsonContent:
     def version(self) -> str:
         return str(self.model.get("version", ""))
 
-    def components(self) -> Iterator[RawComponent]:
+    def components(self) -> Iterator[Component]:
         return map(_component, _objects(self.model, "components"))
 
-    def relations(self) -> Iterator[RawRelation]:
+    def relations(self) -> Iterator[Relation]:
         for item in _objects(self.model, "relations"):
-            refs = tuple((_text(ref, "role"), ref.get("id")) for ref in _objects(item, "refs"))
-            yield RawRelation(item.get("id"), _text(item, "type"), item.get("order"), refs)
+            refs = tuple((_text(ref, "role"), _id(ref)) for ref in _objects(item, "refs"))
+            yield Relation(_id(item), _text(item, "type"), refs, item.get("order"))
 
-    def load_cases(self) -> Iterator[tuple[Any, Iterator[RawComponent]]]:
+    def load_cases(self) -> Iterator[tuple[Any, Iterator[Component]]]:
         spectra = self.model.get("load_spectrum")
         holder = {"": spectra if isinstance(spectra, list) else [spectra] if spectra else []}
         for spectrum in _objects(holder, ""):
@@ -92,7 +84,7 @@ class JsonContent:
 
     def add(self, part: Component | Relation) -> None:
         if isinstance(part, Component):
-            attributes = [_written(attribute) for attribute in part.attributes.values()]
+            attributes = [_written(attribute) for attribute in part.attributes]
             item = {"id": part.id, "type": part.type, "name": part.name, "attributes": attributes}
             self.model["components"].append(item)
             return
@@ -111,13 +103,18 @@ def _objects(owner: dict[str, Any], name: str) -> list[dict[str, Any]]:
     return items
 
 
+def _id(owner: dict[str, Any] | etree._Element) -> Any:
+    """An id as the file has it; `build_model` checks it."""
+    return owner.get("id")
+
+
 def _text(owner: dict[str, Any], name: str) -> str:
     return str(owner.get(name) or "")
 
 
-def _component(item: dict[str, Any]) -> RawComponent:
+def _component(item: dict[str, Any]) -> Component:
     attributes = tuple(map(_attribute, _objects(item, "attributes")))
-    return RawComponent(item.get("id"), _text(item, "type"), _text(item, "name"), attributes)
+    return Component(_id(item), _text(item, "type"), _text(item, "name"), attributes)
 
 
 def _attribute(item: dict[str, Any]) -> Attribute:
@@ -190,20 +187,17 @@ class XmlContent:
     def version(self) -> str:
         return str(self.root.get("version", ""))
 
-    def components(self) -> Iterator[RawComponent]:
+    def components(self) -> Iterator[Component]:
         return map(_component_xml, self._component_elements())
 
-    def relations(self) -> Iterator[RawRelation]:
+    def relations(self) -> Iterator[Relation]:
         for holder in _children(self.root, "relations"):
             for element in _children(holder, "relation"):
-                refs = tuple(
-                    (ref.get("role", ""), ref.get("id")) for ref in _children(element, "ref")
-                )
-                yield RawRelation(
-                    element.get("id"), element.get("type", ""), element.get("order"), refs
-                )
+                refs = tuple((ref.get("role", ""), _id(ref)) for ref in _children(element, "ref"))
+                order: Any = element.get("order")
+                yield Relation(_id(element), element.get("type", ""), refs, order)
 
-    def load_cases(self) -> Iterator[tuple[Any, Iterator[RawComponent]]]:
+    def load_cases(self) -> Iterator[tuple[Any, Iterator[Component]]]:
         for spectrum in _children(self.root, "load_spectrum"):
             for element in _children(spectrum, "load_case"):
                 yield element.get("id"), map(_component_xml, _children(element, "component"))
@@ -223,7 +217,7 @@ class XmlContent:
             holder = next(_children(self.root, "components"))
             head = {"id": str(part.id), "type": part.type, "name": part.name}
             element = etree.SubElement(holder, "component", head)
-            for attribute in part.attributes.values():
+            for attribute in part.attributes:
                 _fill(etree.SubElement(element, "attribute", {"id": attribute.id}), attribute)
             return
         holder = next(_children(self.root, "relations"))
@@ -261,14 +255,12 @@ def _children(element: etree._Element, name: str) -> Iterator[etree._Element]:
     return (child for child in element if _name(child) == name)
 
 
-def _component_xml(element: etree._Element) -> RawComponent:
+def _component_xml(element: etree._Element) -> Component:
     attributes = tuple(
         Attribute(child.get("id", ""), child.get("unit"), _value(child))
         for child in _children(element, "attribute")
     )
-    return RawComponent(
-        element.get("id"), element.get("type", ""), element.get("name", ""), attributes
-    )
+    return Component(_id(element), element.get("type", ""), element.get("name", ""), attributes)
 
 
 def _value(element: etree._Element) -> Any:

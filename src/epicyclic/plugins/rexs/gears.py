@@ -7,10 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
-from epicyclic.case.expand import expand
-from epicyclic.case.train_tables import PairSet
-from epicyclic.case.train_tables import PlanetarySet as PlanetaryTable
+from epicyclic.case.case import Case
 from epicyclic.gears import mesh as geometry
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import involute
@@ -575,29 +572,13 @@ _Computed = Iterator[tuple[geometry.Mesh, tuple[Component, Component], Component
 
 def _all_computed(case: Case, chosen: PlanetaryParts | Pair | Train) -> _Computed:
     """Every mesh; of a train those of its sets whose losses are computed."""
-    if not isinstance(chosen, Train):
-        if not isinstance(case, TrainCase):
-            yield from _computed(case, chosen)
-        return
-    sets = case.sets if isinstance(case, TrainCase) else {}
-    for name, one in chosen.sets.items():
-        table = sets.get(name)
-        if isinstance(table, PlanetaryTable | PairSet):
-            yield from _computed(table, one)
-
-
-def _computed(
-    case: PlanetaryCase | GearPairCase | PlanetaryTable | PairSet, chosen: PlanetaryParts | Pair
-) -> _Computed:
-    """The meshes of a set."""
-    if isinstance(case, PlanetaryCase | PlanetaryTable) and isinstance(chosen, PlanetaryParts):
-        sun_mesh, ring_mesh = expand(dict(case))[0].geometries
-        planet = chosen.planets[0]
-        yield sun_mesh, (chosen.sun, planet), chosen.sun_meshes[0].stage
-        yield ring_mesh, (planet, chosen.ring), chosen.ring_meshes[0].stage
-    elif isinstance(case, GearPairCase | PairSet) and isinstance(chosen, Pair):
-        (mesh,) = expand(dict(case))[0].geometries
-        yield mesh, (chosen.pinion, chosen.gear), chosen.mesh.stage
+    for name, one in (chosen.sets if isinstance(chosen, Train) else {"": chosen}).items():
+        gearing, gears = case.gearings.get(name), one.gears
+        if gearing is None or gearing.tables.keys() != gears.keys():
+            continue
+        for drawn, mesh in zip(gearing.meshes, gearing.geometries, strict=True):
+            stage = one.meshes_by_key[drawn.key][0].stage
+            yield mesh, (gears[drawn.first], gears[drawn.second]), stage
 
 
 def _compared(

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -195,12 +195,12 @@ def _number(value: Any) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """A machine part, a stage, a load or a property, with its attributes by id."""
+    """A machine part, a stage, a load or a property, with its attributes."""
 
-    id: int
+    id: int  # Until `build_model` has checked it: as the file has it.
     type: str
     name: str = ""
-    attributes: Mapping[str, Attribute] = field(default_factory=dict)
+    attributes: tuple[Attribute, ...] = ()
 
     def __str__(self) -> str:
         name = f' "{one_line(self.name)}"' if self.name.strip() else ""
@@ -210,9 +210,9 @@ class Component:
         """The attribute with the newest id `name`, under any id that it has had."""
         known = term(name)
         for candidate in known.ids:
-            found = self.attributes.get(candidate)
-            if found is not None and found.value not in (None, "", ()):
-                return found if found.unit else replace(found, unit=known.unit)
+            for found in self.attributes:
+                if found.id == candidate and found.value not in (None, "", ()):
+                    return found if found.unit else replace(found, unit=known.unit)
         return None
 
     def amount(self, name: str) -> tuple[float, str] | None:
@@ -222,6 +222,11 @@ class Component:
         """
         found = self.get(name)
         return None if found is None else (found.number(), checked_unit(found))
+
+    def changed(self, attributes: Iterable[Attribute]) -> Component:
+        """The component with these attributes, in place of those with the same ids."""
+        every = {attribute.id: attribute for attribute in (*self.attributes, *attributes)}
+        return replace(self, attributes=tuple(every.values()))
 
 
 def checked_unit(attribute: Attribute) -> str:
@@ -236,7 +241,7 @@ def checked_unit(attribute: Attribute) -> str:
 class Relation:
     """A relation between components; a component has one or several roles in it."""
 
-    id: int
+    id: int  # Until `build_model` has checked them: this and the others as the file has them.
     type: str
     refs: tuple[tuple[str, int], ...]
     order: int | None = None
@@ -283,8 +288,7 @@ class Model:
         """The model with the attributes that a load case changes."""
         components = dict(self.components)
         for number, changed in self.load_cases[load_case].items():
-            own = components[number]
-            components[number] = replace(own, attributes={**own.attributes, **changed.attributes})
+            components[number] = components[number].changed(changed.attributes)
         return replace(self, components=components)
 
 
@@ -296,34 +300,16 @@ _SHOWN = 20  # Problems of one file that are told.
 _ID = re.compile(r"[0-9]{1,9}")
 
 
-class RawComponent(NamedTuple):
-    """A component with its id as written."""
-
-    id: Any
-    type: str
-    name: str
-    attributes: tuple[Attribute, ...]
-
-
-class RawRelation(NamedTuple):
-    """A relation with ids as written."""
-
-    id: Any
-    type: str
-    order: Any
-    refs: tuple[tuple[str, Any], ...]
-
-
 class Content(Protocol):
     """A file in one of its forms; what it does not understand stays as it is."""
 
     def version(self) -> str: ...
 
-    def components(self) -> Iterable[RawComponent]: ...
+    def components(self) -> Iterable[Component]: ...
 
-    def relations(self) -> Iterable[RawRelation]: ...
+    def relations(self) -> Iterable[Relation]: ...
 
-    def load_cases(self) -> Iterable[tuple[Any, Iterable[RawComponent]]]: ...
+    def load_cases(self) -> Iterable[tuple[Any, Iterable[Component]]]: ...
 
     def set_attribute(self, component: int, attribute: Attribute) -> None:
         """Give a component an attribute, in place of one with the same id."""
@@ -369,23 +355,23 @@ def _version(text: str) -> str:
     return version
 
 
-def _components(raw: Iterable[RawComponent], problems: list[Problem]) -> dict[int, Component]:
+def _components(raw: Iterable[Component], problems: list[Problem]) -> dict[int, Component]:
     components: dict[int, Component] = {}
     for item in raw:
         number = _id(item.id, "component", components, problems)
-        attributes: dict[str, Attribute] = {}
+        ids: set[str] = set()
         for attribute in item.attributes:
-            if attribute.id in attributes:
+            if attribute.id in ids:
                 what = f"has the attribute {one_line(attribute.id)} twice."
                 problems.append(_problem(f"component {one_line(str(item.id))}", what))
-            attributes[attribute.id] = attribute
+            ids.add(attribute.id)
         if number is not None:
-            components[number] = Component(number, item.type, item.name, attributes)
+            components[number] = replace(item, id=number)
     return components
 
 
 def _relations(
-    raw: Iterable[RawRelation], components: Mapping[int, Component], problems: list[Problem]
+    raw: Iterable[Relation], components: Mapping[int, Component], problems: list[Problem]
 ) -> Iterator[Relation]:
     seen: dict[int, None] = {}
     for item in raw:
@@ -400,7 +386,7 @@ def _relations(
                 problems.append(_problem(f"relation {one_line(str(item.id))}", what))
         if number is not None:
             seen[number] = None
-            yield Relation(number, item.type, tuple(refs), _whole(item.order))
+            yield replace(item, id=number, refs=tuple(refs), order=_whole(item.order))
 
 
 def _id(given: Any, noun: str, known: Mapping[int, Any], problems: list[Problem]) -> int | None:

@@ -54,6 +54,16 @@ class Pair:
         return self.mesh.stage
 
     @property
+    def gears(self) -> dict[str, Component]:
+        """The gears by their names in a case."""
+        return {"pinion": self.pinion, "gear": self.gear}
+
+    @property
+    def meshes_by_key(self) -> dict[str, tuple[Mesh, ...]]:
+        """The mesh by its name in a case."""
+        return {"mesh": (self.mesh,)}
+
+    @property
     def meshes(self) -> tuple[Mesh, ...]:
         """Every mesh."""
         return (self.mesh,)
@@ -70,6 +80,16 @@ class PlanetaryParts:
     sun_meshes: tuple[Mesh, ...]  # One for each planet.
     ring_meshes: tuple[Mesh, ...]  # One for each planet.
     shafts: dict[str, tuple[Component, ...]]  # Shafts of sun, ring, carrier, planet and pin.
+
+    @property
+    def gears(self) -> dict[str, Component]:
+        """The gears by their names in a case; of the planets, which are alike, the first."""
+        return {"sun": self.sun, "planet": self.planets[0], "ring": self.ring}
+
+    @property
+    def meshes_by_key(self) -> dict[str, tuple[Mesh, ...]]:
+        """The meshes of every planet by their names in a case."""
+        return {"sun_mesh": self.sun_meshes, "ring_mesh": self.ring_meshes}
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:

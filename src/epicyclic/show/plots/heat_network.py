@@ -33,9 +33,9 @@ FLOW, PAPER = "#5b7fa6", "#ffffff"
 HEAT_COLOURS = "YlOrRd"
 DARKEST = 0.62  # Darkest shade of the colour scale on which words stay readable. [1]
 LEFT, RIGHT = 0.15, SLIDE[0] - 0.15
-SLOT, BROADEST = 1.45, 2.6  # Room for each way out of the oil; of a column at most.
+SLOT, BROADEST = 1.45, 2.6  # Room for each path out of the oil; of a column at most.
 BAY, ONLY_BAY = 1.2, 2.4
-"""Room for the way from the oil to the housing; where that is the only one."""
+"""Room for the path from the oil to the housing; where that is the only one."""
 SHAFTS, OUTSIDE = 6.1, 0.55  # Middles of the rows of shafts and of what is outside.
 WITH_SHAFTS, WITHOUT = (4.5, 2.75, 1.65), (5.4, 3.3, 1.85)
 """Middles of the rows of parts, oil, and housing."""
@@ -174,7 +174,7 @@ def _layout(heat: HeatBalance) -> _Layout:
         if node.endswith(SHAFT)
     }
     parts = [node for node in heat.temperatures if node not in (OIL, HOUSING, *shafts)]
-    outlets = dict.fromkeys(way.into for way in heat.outlets if way.hot == OIL)
+    outlets = dict.fromkeys(path.into for path in heat.outlets if path.hot == OIL)
     slots = RIGHT - SLOT * len(outlets)
     bay = 0.0 if HOUSING not in heat.temperatures else BAY if outlets else ONLY_BAY
     edge, first = slots - bay, LEFT + 0.2
@@ -198,10 +198,10 @@ def _layout(heat: HeatBalance) -> _Layout:
 
 
 def _all_flows(heat: HeatBalance) -> Iterator[_Flow]:
-    """All ways between two nodes as one."""
+    """All paths between two nodes as one."""
     sums: dict[tuple[str, str], float] = {}
-    for way in heat.ways:
-        sums[way.hot, way.into] = sums.get((way.hot, way.into), 0.0) + way.watts
+    for path in heat.ways:
+        sums[path.hot, path.into] = sums.get((path.hot, path.into), 0.0) + path.watts
     for (hot, into), watts in sums.items():
         yield _Flow(hot, into, watts) if watts >= 0 else _Flow(into, hot, -watts)
 
@@ -223,7 +223,7 @@ def _ordered(
 def _outside(layout: _Layout) -> dict[str, tuple[float, float]]:
     """Places of all that is not part of the gearbox."""
     places = {node: (x, OUTSIDE) for node, x in layout.outlets.items()}
-    around = {way.into for way in layout.heat.outlets if way.hot == HOUSING}
+    around = {path.into for path in layout.heat.outlets if path.hot == HOUSING}
     return places | dict.fromkeys(around, (sum(layout.shell) / 2, OUTSIDE - 0.1))
 
 
@@ -281,7 +281,7 @@ def _rail(ax: Axes, layout: _Layout, node: str, ends: tuple[float, float], y: fl
     watts = layout.heat.brought.get(node, 0.0)
     losses = f"   + {_power(watts)}" if watts >= SMALLEST else ""
     text = f"{in_words(node)}   {value:.1f} {unit_text(CELSIUS.display)}{losses}"
-    # ways to the housing lead through the rail of the oil
+    # paths to the housing lead through the rail of the oil
     start = layout.edge if node == OIL and layout.has_housing else left
     size = _fit(text, right - start - 0.2, 12)
     _write(ax, start + 0.1, y, text, size, fontweight="bold", zorder=7)

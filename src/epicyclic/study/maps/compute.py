@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.build.machine import build, layout_of
-from epicyclic.case.case import Case, PlanetaryCase, TrainCase
+from epicyclic.build.machine import build, layout_of, operation_of
+from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.fields import did_you_mean, written
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
@@ -421,7 +421,7 @@ def map_plan(
     # torque innermost: flows through pockets, which cost most, do not depend on its magnitude
     given |= {AXES["speed"]: speed, AXES["torque"]: torque}
     plan = make_plan(case, {**further, **given})
-    turns_alone = not _drives_others(case)
+    turns_alone = not operation_of(case).driven
     return MapPlan(case, tuple(_prepared(axis, turns_alone) for axis in plan.axes))
 
 
@@ -502,18 +502,10 @@ def held_shaft(case: Case) -> str:
     The member that stands still, or the housing of a pair or train; empty if a further shaft is
     driven.
     """
-    if isinstance(case, PlanetaryCase):
-        return case.operation.fixed or ""
-    if isinstance(case, TrainCase) and (case.operation.speeds or case.operation.torques):
+    operation = operation_of(case)
+    if operation.driven or operation.torques:
         return ""
-    return HOUSING
-
-
-def _drives_others(case: Case) -> bool:
-    """True if a further shaft turns while the reference shaft stands still."""
-    if isinstance(case, TrainCase):
-        return bool(case.operation.speeds)
-    return isinstance(case, PlanetaryCase) and case.operation.second_input is not None
+    return HOUSING if isinstance(case, TrainCase) else next(iter(operation.held), HOUSING)
 
 
 def _prepared(axis: Axis, turns_alone: bool) -> Axis:
@@ -547,12 +539,12 @@ def to_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
     to_rpm, _ = RPM.scale_and_offset()
     torque_loss = data["total"] / (abs(data["speed"]) / to_rpm).where(data["speed"] != 0)
     torque_loss.attrs = {
-        "long_name": f"torque loss at the {_ends(plan.case)[0]}",
+        "long_name": f"torque loss at the {operation_of(plan.case).input}",
         "units": NEWTON_METRE.display,
     }
     data = data.assign(torque_loss=torque_loss.transpose(*data["total"].dims))
     data = _at_rest(data)
-    if "ratio" in data and not _drives_others(plan.case):
+    if "ratio" in data and not operation_of(plan.case).driven:
         data["ratio"] = _one_ratio(data["ratio"])
     for axis in plan.axes:
         data[axis_name(axis.key)].attrs["case_key"] = axis.key
@@ -589,29 +581,14 @@ def _at_rest(data: xr.Dataset) -> xr.Dataset:
     return data.assign_coords(speed=rest)
 
 
-def _ends(case: Case) -> tuple[str, str]:
-    """The reference shaft and the output shaft."""
-    if isinstance(case, TrainCase):
-        ends = (case.operation.input, case.operation.output)
-        reference, output = (case.shape.shaft_of(name) or "" for name in ends)
-        return reference, output
-    if not isinstance(case, PlanetaryCase):
-        return "pinion", "gear"
-    operation = case.operation
-    (output,) = set(layout_of(case).members) - {
-        operation.input,
-        operation.fixed or operation.second_input,
-    }
-    return operation.input, output
-
-
 def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
-    reference, output = _ends(plan.case)
+    operation = operation_of(plan.case)
+    reference = operation.input
     text = {
         "title": given["title"],
         "source": given["source"],
         "reference_shaft": reference,
-        "output_shaft": output,
+        "output_shaft": operation.output,
         "held_shaft": held_shaft(plan.case),
         "sign_convention": f"speed and torque are those of the {reference}; speeds are positive in "
         "one common sense of rotation, torques act on the gear set from outside; torque times "
@@ -630,7 +607,7 @@ def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
         "versions": given["versions"],
         "case": given["case"],
     }
-    if _drives_others(plan.case):
+    if operation.driven:
         text["zero_speed"] = f"no torque loss: a second member is driven while the {reference} "
         text["zero_speed"] += "stands still"
     chosen = {axis_name(axis.key): axis.coordinate for axis in plan.axes}.get(STATE, ())
@@ -697,7 +674,7 @@ def lumped(case: Case) -> dict[str, float]:
     capacity = sum(model.capacities().values())
     heat = solve(warm).heat
     assert heat is not None
-    leaving = [(heat.given[way.into], way.watts) for way in heat.ways if way.into in heat.given]
+    leaving = [(heat.given[path.into], path.watts) for path in heat.ways if path.into in heat.given]
     whole = sum(watts for _, watts in leaving)
     if not whole > 0:
         allowed = "loses no power at its operating point, which tells the way of the heat."

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Losses and ways of the heat of some operating points over temperature, to integrate over time.
+# Losses and paths of the heat of some operating points over temperature, to integrate over time.
 #
 # The machine is solved with all of its parts equally hot, at a few temperatures. Over time each
 # loss is then read at the temperature of its own parts.
@@ -68,7 +68,7 @@ class HeatSample:
     """What one solution tells, with all parts equally hot."""
 
     heat: Mapping[Source, float]  # [W]
-    # Ways of the heat by their keys, at temperatures from this one to the next.
+    # Paths of the heat by their keys, at temperatures from this one to the next.
     links: tuple[Mapping[str, Link], ...]
     given: Mapping[str, float]  # Temperatures that are given. [K]
 
@@ -133,7 +133,7 @@ def _heat(machine: Machine, solution: Solution, nodes: Sequence[str]) -> dict[So
 
 
 class HeatTables:
-    """Curves over temperature of the heat and the ways of every operating point. Theory (W36).
+    """Curves over temperature of the heat and the paths of every operating point. Theory (W36).
 
     Parameters
     ----------
@@ -153,22 +153,22 @@ class HeatTables:
         self.given = {node: value for sample in every for node, value in sample.given.items()}
         self.knots = np.array(knots)
         self.sources = tuple(dict.fromkeys(source for sample in every for source in sample.heat))
-        links = {key: it for sample in every for ways in sample.links for key, it in ways.items()}
+        links = {key: it for sample in every for paths in sample.links for key, it in paths.items()}
         self.links = tuple(links.values())
         self.terms = tuple(dict.fromkeys(source.term for source in self.sources))
         heat = [[[one.heat.get(it, 0.0) for it in self.sources] for one in row] for row in samples]
-        ways = [
+        conductances = [
             [[_conductance(one.links[step], key) for key in links] for one in row]
             for row in samples
             for step in range(WAYS)
         ]
         self._between = _between(knots)
         self._heat = _coefficients(self.knots, heat)
-        self._ways = _coefficients(self._between, ways)
+        self._conductances = _coefficients(self._between, conductances)
         self._heat_at = self._weights([source.at for source in self.sources])
-        # what leaves the housing depends on its temperature, all other ways on the oil's
+        # what leaves the housing depends on its temperature, all other paths on the oil's
         own = [(link.hot,) if link.cold == AMBIENT else (OIL,) for link in self.links]
-        self._ways_at = self._weights(own)
+        self._conductances_at = self._weights(own)
 
     def transient(
         self,
@@ -178,7 +178,7 @@ class HeatTables:
         """The gearbox at a mixture of the points."""
         return Transient(
             self.capacities, self.given, self.sources, self.heat(heating), self.links,
-            Curves(self._between, self._ways @ flowing, self._ways_at), self.taken,
+            Curves(self._between, self._conductances @ flowing, self._conductances_at), self.taken,
         )  # fmt: skip
 
     def heat(self, heating: Array) -> Curves:
