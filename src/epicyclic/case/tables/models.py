@@ -435,6 +435,16 @@ class GearPairModels(Table):
     )
 
 
+OF_ROUGH_FLANKS = ("running_in_factor", "hurst_exponent")
+"""Uncertain keys of the friction mixed-lubrication."""
+
+
+def has_rough_flanks(models: GearPairModels) -> bool:
+    """Whether the friction is mixed-lubrication."""
+    general = models.friction == "auto" and models.preset == "general"
+    return general or models.friction == "mixed-lubrication"
+
+
 class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 

@@ -25,6 +25,7 @@ from epicyclic.case.fields import (
 )
 from epicyclic.case.read import owner_without_keys, value_at
 from epicyclic.case.tables.base import Table, option
+from epicyclic.case.tables.models import OF_ROUGH_FLANKS, has_rough_flanks
 from epicyclic.case.tables.operation import FACTOR_KEY, SHARE_KEY
 from epicyclic.errors import Problem
 from epicyclic.units import CELSIUS, Number, Quantity, format_number
@@ -160,7 +161,12 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
 
 
 def has_effect(case: CaseTable, key: str) -> bool:
-    """False for keys of the oil around gears that others decide, or that a set shares."""
+    """False for keys of models that are not used, and of oil that others decide or a set shares."""
+    table, _, name = key.rpartition(".")
+    if name in OF_ROUGH_FLANKS:
+        models = value_of(case, table)
+        run_in = name != "running_in_factor" or models.running_in == "run-in"
+        return run_in and has_rough_flanks(models)
     if key == SHARE_KEY:
         return case.lubrication is None
     owner, found, _ = key.rpartition("lubrication.")
