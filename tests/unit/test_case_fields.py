@@ -13,21 +13,17 @@ from epicyclic.case.fields import (
     all_keys,
     choices_of,
     describe,
-    did_you_mean,
-    dotted,
     find_field,
     is_whole_number,
     locate,
-    misspelt,
-    path_of,
     quantity_of,
     table_of,
     tables_in,
     to_inputs,
-    written,
 )
 from epicyclic.case.read import parse_value
 from epicyclic.library import builtin_case
+from epicyclic.messages import did_you_mean, dotted, misspelt, path_of, written
 from epicyclic.oil.oil import DensitySlope, GoldLaw, RoelandsLaw
 from epicyclic.units import Number, Quantity
 

@@ -14,17 +14,7 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from epicyclic import library
 from epicyclic.case.expand import expand, gearing_of
-from epicyclic.case.fields import (
-    did_you_mean,
-    find_field,
-    key_parts,
-    locate,
-    misspelt,
-    one_line,
-    path_of,
-    to_inputs,
-    written,
-)
+from epicyclic.case.fields import find_field, locate, to_inputs
 from epicyclic.case.gear_tables import (
     Gears,
     GearTable,
@@ -34,14 +24,12 @@ from epicyclic.case.gear_tables import (
     SetMesh,
     SharedGears,
 )
-from epicyclic.case.gearing import Gearing
 from epicyclic.case.read import (
     case_html,
     case_line,
     owner_without_keys,
     plain,
     read_file,
-    value_at,
     with_value,
     without,
 )
@@ -49,11 +37,10 @@ from epicyclic.case.rules import (
     bearing_force_problems,
     check_listed_bearings,
     cross_check,
+    listed_problems,
     operation_problems,
 )
-from epicyclic.case.set_rules import listed_problems, rack_problems, set_problems
-from epicyclic.case.sizing import Found, complete, converted_roughness, negative_teeth, told_oil
-from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.base import Table, roughness_told, short_oil_told
 from epicyclic.case.tables.elements import (
     ELEMENT_CHECKS,
     Carrier,
@@ -82,7 +69,6 @@ from epicyclic.case.tables.operation import (
     ThermalTable,
 )
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, check_uncertainty
-from epicyclic.case.train_shape import TrainShape, shape_of_train
 from epicyclic.case.train_tables import (
     ComputedSet,
     GivenListedSet,
@@ -100,6 +86,19 @@ from epicyclic.case.train_tables import (
 )
 from epicyclic.case.validation import AnyCase, Validation, tables_of, unknown_key, validate
 from epicyclic.errors import InputError, Problem
+from epicyclic.gears.assembly import rack_problems, set_problems
+from epicyclic.gears.gearing import Gearing
+from epicyclic.gears.sizing import Found, complete
+from epicyclic.machine.train_shape import TrainShape, shape_of_train
+from epicyclic.messages import (
+    did_you_mean,
+    key_parts,
+    misspelt,
+    one_line,
+    path_of,
+    value_at,
+    written,
+)
 
 if TYPE_CHECKING:
     from epicyclic.case.tables.operation import LubricationTable, Surroundings
@@ -280,12 +279,45 @@ def with_sizes(
         del sections["gears"]
         return Validation(None, sections, [*validation.problems, *problems]), told, None
     assert whole.shared is not None
-    now: dict[str, Table] = {"gears": whole.shared, **whole.tables}
+    now: dict[str, Any] = {"gears": whole.shared, **whole.tables}
     changed = {key: table for key, table in now.items() if table is not sections[key]}
     case = validation.case
     if case is not None and changed:
         case = case.model_copy(update=changed)
     return Validation(case, sections | changed, validation.problems), told + found, whole
+
+
+def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
+    """How negative numbers of teeth are understood."""
+    tables = dict(raw)
+    members = tables.pop("members", {})
+    tables |= {f"gears.{name}": table for name, table in members.items()}
+    for name, table in tables.items():
+        teeth = table.get("teeth") if isinstance(table, dict) else None
+        if isinstance(teeth, int) and teeth < 0:
+            yield Found(
+                f"{name}.teeth",
+                str(-teeth),
+                "a ring, because the number is negative; its profile shift is that of ISO 21771 "
+                "and DIN 3960, positive where it thickens the teeth.",
+            )
+
+
+def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Found]:
+    """How roughness that is stated as Ra or Rz is converted."""
+    for key, value in raw.items():
+        name = f"{place}{key}"
+        if isinstance(value, dict):
+            yield from converted_roughness(value, f"{name}.")
+        elif key.endswith("roughness") and (told := roughness_told(value)) is not None:
+            yield Found(name, f"{1e6 * told[0]:.4g} um", told[1])
+
+
+def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
+    """What an oil stands for that is stated by its grade or two viscosities."""
+    told = short_oil_told(value_at(dict(raw), ("lubricant", "oil")))
+    if told is not None:
+        yield Found("lubricant.oil", *told)
 
 
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:

@@ -15,9 +15,10 @@ from unicodedata import category
 import numpy as np
 from pydantic import BaseModel
 
-from epicyclic.case.fields import dotted, key_parts, one_line, to_inputs, written
+from epicyclic.case.fields import to_inputs
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, refuse
+from epicyclic.messages import dotted, key_parts, one_line, value_at, written
 from epicyclic.units import format_number, from_pint, unit_text
 
 _DEEPEST = 20  # Tables of a case are nested a few levels deep; deeper ones are something else.
@@ -89,18 +90,6 @@ def flattened(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str
             yield from flattened(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value
-
-
-def value_at(tables: Any, path: Sequence[str | int]) -> Any:
-    """The value at `path` below `tables`; None if there is none."""
-    for part in path:
-        if isinstance(tables, Mapping):
-            tables = tables.get(part)
-        elif isinstance(tables, tuple) and isinstance(part, int) and part < len(tables):
-            tables = tables[part]
-        else:
-            return None
-    return tables
 
 
 def changed_at(tables: Any, path: Sequence[str | int], change: Callable[[Any], Any]) -> Any:

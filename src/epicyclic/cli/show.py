@@ -43,7 +43,7 @@ def cases() -> None:
 def oils(name: str | None) -> None:
     """List the built-in oils, or show one with the source of every value."""
     from epicyclic import library
-    from epicyclic.case.fields import did_you_mean
+    from epicyclic.messages import did_you_mean
     from epicyclic.show.data_sheet import oil_sheet, oil_table
     from epicyclic.show.terminal import terminal
 

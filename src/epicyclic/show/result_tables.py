@@ -8,12 +8,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import sentence
 from epicyclic.case.read import flattened
 from epicyclic.case.template import toml_value
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.element import Figure, figures
 from epicyclic.machine.gear_mesh import MeshFigures
+from epicyclic.messages import sentence
 from epicyclic.result.result import HeatBalance, MemberState, Result, Train, in_words, set_of
 from epicyclic.show.page import (
     MISSING,

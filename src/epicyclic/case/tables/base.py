@@ -22,11 +22,12 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.fields import Named, did_you_mean, to_inputs
+from epicyclic.case.fields import Named, to_inputs
 from epicyclic.case.read import plain
 from epicyclic.errors import Problem
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
 from epicyclic.gears.measures import named_fit
+from epicyclic.messages import did_you_mean
 from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil, OilDensity
 from epicyclic.units import (
     MILLIMETRE,

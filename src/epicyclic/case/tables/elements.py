@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, Tag
 
-from epicyclic.case.fields import did_you_mean, millimetres, written
 from epicyclic.case.tables.base import (
     VALUES_OR_ROWS,
     NamedMaterial,
@@ -21,6 +20,7 @@ from epicyclic.case.tables.base import (
 )
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.gears.gear import HOUSING
+from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, Tag, model_validator
 
-from epicyclic.case.read import value_at
 from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table, option
 from epicyclic.errors import Problem
+from epicyclic.messages import value_at
 from epicyclic.oil.oil import Conductivity, HeatCapacity
 from epicyclic.oil.rheology import (
     DEFAULT,

@@ -7,9 +7,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.fields import did_you_mean
 from epicyclic.case.tables.base import Condition, NamedOil, Table, broken_conditions, option
 from epicyclic.errors import Problem
+from epicyclic.messages import did_you_mean
 from epicyclic.units import (
     CELSIUS,
     LITRE,

@@ -11,22 +11,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.fields import (
-    Parameter,
-    did_you_mean,
-    dotted,
-    field_at,
-    parameter_of,
-    path_of,
-    quantity_of,
-    refused,
-    value_of,
-    written,
-)
-from epicyclic.case.read import owner_without_keys, value_at
+from epicyclic.case.fields import Parameter, field_at, parameter_of, quantity_of, value_of
+from epicyclic.case.read import owner_without_keys
 from epicyclic.case.tables.base import Table, option
 from epicyclic.case.tables.operation import FACTOR_KEY, SHARE_KEY
 from epicyclic.errors import Problem
+from epicyclic.messages import did_you_mean, dotted, path_of, refused, value_at, written
 from epicyclic.units import CELSIUS, Number, Quantity, format_number
 
 if TYPE_CHECKING:

@@ -13,7 +13,6 @@ from typing import Any
 
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase, read_case
 from epicyclic.case.expand import expand
-from epicyclic.case.fields import one_line
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.tables.base import Material
 from epicyclic.case.tables.elements import PlanetBearing, ShaftBearingTable
@@ -24,6 +23,7 @@ from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import HOUSING, Gear
 from epicyclic.machine.element import Figure
 from epicyclic.machine.shaft_parts import ShaftBearingFigures
+from epicyclic.messages import one_line
 from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.plugins.rexs.draft import DIGITS
 from epicyclic.plugins.rexs.files import Document, new_document, read_document

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
-from epicyclic.case.fields import one_line
 from epicyclic.case.template import case_text
 from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
     Draft,

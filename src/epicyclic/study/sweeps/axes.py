@@ -22,7 +22,6 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.fields import (
     all_keys,
-    did_you_mean,
     field_at,
     is_array,
     is_continuous,
@@ -30,18 +29,14 @@ from epicyclic.case.fields import (
     is_text,
     is_whole_number,
     known_keys,
-    one_line,
-    path_of,
     quantity_of,
-    refused,
-    sentence,
     table_of,
     value_of,
-    written,
 )
-from epicyclic.case.read import parse_value, plain, value_at
+from epicyclic.case.read import parse_value, plain
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import read_text, refuse
+from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
 from epicyclic.units import Quantity, format_number, in_unit, one_of, pure_number, with_unit
 
 if TYPE_CHECKING:

@@ -5,16 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from epicyclic.case.fields import did_you_mean, written
-from epicyclic.case.gearing import Gearing
-from epicyclic.case.train_tables import StateTable
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING
+from epicyclic.gears.gearing import Gearing
+from epicyclic.messages import did_you_mean, written
 
-if TYPE_CHECKING:  # only trains need a machine
+if TYPE_CHECKING:  # cases that are only read need no machine
     from epicyclic.machine.machine import Coupling, Machine, MeshRow
+
+
+class Joined(Protocol):
+    """What brakes and clutches make of a train, by the names of its shafts."""
+
+    @property
+    def fixed(self) -> tuple[str, ...]: ...
+    @property
+    def joined(self) -> tuple[tuple[str, ...], ...]: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +59,7 @@ class TrainShape:
             found[member] = shaft
         return found
 
-    def machine(self, state: StateTable) -> Machine:
+    def machine(self, state: Joined) -> Machine:
         """The constraints of all meshes and closed clutches, without anything that loses power."""
         from epicyclic.machine.machine import Machine
 
@@ -62,7 +70,7 @@ class TrainShape:
         resting = tuple(shaft for shaft in self.shafts if shaft not in (*turning, HOUSING))
         return Machine((*turning, *planets), rows, (), couplings, resting=resting)
 
-    def turning(self, state: StateTable) -> tuple[str, ...]:
+    def turning(self, state: Joined) -> tuple[str, ...]:
         """Shafts of a state but the housing.
 
         A shaft that only clutches join to others is none while these are open.
@@ -78,7 +86,7 @@ class TrainShape:
         """The constraints of the meshes of a set."""
         return mesh_rows(name, self.sets[name], self.bodies_of(name))
 
-    def held(self, state: StateTable) -> tuple[str, ...]:
+    def held(self, state: Joined) -> tuple[str, ...]:
         """Shafts that stand still, by brakes or by clutches to the housing."""
         names = [*state.fixed]
         for group in state.joined:
@@ -88,7 +96,7 @@ class TrainShape:
         turning = self.turning(state)
         return tuple(dict.fromkeys(shaft for shaft in shafts if shaft in turning))
 
-    def _couplings(self, state: StateTable) -> Iterator[Coupling]:
+    def _couplings(self, state: Joined) -> Iterator[Coupling]:
         from epicyclic.machine.machine import Coupling
 
         for group in state.joined:

@@ -10,13 +10,12 @@ import math
 from collections.abc import Iterator, Mapping
 from itertools import combinations, combinations_with_replacement, product
 
-from epicyclic.case.fields import did_you_mean, millimetres
-from epicyclic.case.gear_rules import check_mesh, sound_gears
-from epicyclic.case.gearing import RACK_KEYS, Gearing, GearPairing, Pin
-from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import Problem
-from epicyclic.gears.gear import CARRIER, HOUSING, Gear
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.gearing import RACK_KEYS, Gearing, GearPairing, Pin
 from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places, profile_shift_sum
+from epicyclic.gears.rules import check_mesh, sound_gears
+from epicyclic.messages import millimetres
 
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
@@ -39,78 +38,6 @@ def set_problems(gearing: Gearing) -> list[Problem]:
     if gearing.planets and gearing.count is not None:
         problems += _assembly_problems(gearing, sound, placed=not distances)
     return list(dict.fromkeys(problems))  # a planet that cannot be cut is found in both meshes
-
-
-def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
-    """Problems of the tables that a listed set has beside its gears."""
-    known = gearing.terms
-    losses = [
-        Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
-        for name in table.losses
-        if name not in known
-        for remedy in [did_you_mean(name, known) or f"Known are: {', '.join(known)}."]
-    ]
-    planets = _planet_problems(table, gearing)
-    return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
-
-
-def _name_problems(gearing: Gearing) -> Iterator[Problem]:
-    """Names that would give two losses or members the same name."""
-    for name in (CARRIER, HOUSING) if gearing.planets else (HOUSING,):
-        if name in gearing.bodies or name in gearing.bodies.values():
-            allowed = f"cannot be the name of a gear or body: every set has a {name}."
-            yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
-    for name in gearing.bodies:
-        if "." in name:
-            allowed = "is not a valid name for a gear: a dot stands between set and gear."
-            yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
-
-
-def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
-    """Planets without a number, and a carrier or bearings without planets."""
-    if gearing.planets and table.planets is None:
-        names = ", ".join(gearing.planets)
-        allowed = f"is missing, and the set has planets ({names})."
-        remedy = "Add planets = 3, or as many as there are."
-        yield Problem("planets", "", allowed, remedy)
-    if not gearing.planets:
-        remedy = "Leave it out, or write planet = true at the gears on a carrier."
-        if table.planets is not None:
-            allowed = "is given, but no gear stands on a carrier."
-            yield Problem("planets", str(table.planets), allowed, remedy)
-        for name in ("planet_bearing", "carrier"):
-            if getattr(table, name) is not None:
-                yield Problem(name, "", "belongs to planets, and the set has none.", remedy)
-    for name in table.planet_bearings:
-        if name not in gearing.planets:
-            remedy = did_you_mean(name, gearing.planets)
-            remedy = remedy or f"Known are: {', '.join(gearing.planets) or 'none'}."
-            key = f"planet_bearings.{name}"
-            yield Problem(key, "", "is no body of a planet of this set.", remedy)
-    placed = {gearing.planet_of(mesh) for mesh in gearing.meshes}
-    for body in gearing.planets:
-        if body not in placed:
-            gear = gearing.gears_of(body)[0]
-            allowed = "meshes with planets only, so that nothing determines where its pin stands."
-            remedy = "Let it mesh with a central gear too."
-            yield Problem(f"gears.{gear}", "", allowed, remedy)
-    in_pairs = any(gearing.planet_pair(mesh) for mesh in gearing.meshes)
-    if table.models.planet_tilt == "coupled" and in_pairs:
-        allowed = "is not for planets that mesh with each other."
-        remedy = 'Write planet_tilt = "left-out".'
-        yield Problem("models.planet_tilt", '"coupled"', allowed, remedy)
-
-
-def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
-    sharing, planets = table.load_sharing, table.planets or 1
-    if sharing.method not in ("equal", "mesh-load-factor"):
-        allowed = "is for one sun, one ring and planets between them."
-        remedy = 'Write method = "equal" or "mesh-load-factor".'
-        yield Problem("load_sharing.method", f'"{sharing.method}"', allowed, remedy)
-    if sharing.mesh_load_factor > planets:
-        shown = f"{sharing.mesh_load_factor:g}"
-        reason = f"must be at most planets, {planets}: then one planet has all the load."
-        yield Problem("load_sharing.mesh_load_factor", shown, reason, "Take a smaller factor.")
 
 
 # --- gears ----------------------------------------------------------------------------------------
