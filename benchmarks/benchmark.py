@@ -30,8 +30,8 @@ import numpy as np
 import pandas as pd
 
 import epicyclic as ep
-from epicyclic.case.template import case_text
 from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
+from epicyclic.show.template import case_text
 from epicyclic.study.sweeps.runner import Runner
 
 REPEATS = 5

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from html import escape
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, cast
@@ -14,7 +15,6 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from epicyclic import library
 from epicyclic.case.expand import expand, gearing_of
-from epicyclic.case.fields import find_field, locate, to_inputs
 from epicyclic.case.gear_tables import (
     Gears,
     GearTable,
@@ -24,15 +24,7 @@ from epicyclic.case.gear_tables import (
     SetMesh,
     SharedGears,
 )
-from epicyclic.case.read import (
-    case_html,
-    case_line,
-    owner_without_keys,
-    plain,
-    read_file,
-    with_value,
-    without,
-)
+from epicyclic.case.keys import owner_without_keys
 from epicyclic.case.rules import (
     bearing_force_problems,
     check_listed_bearings,
@@ -40,7 +32,7 @@ from epicyclic.case.rules import (
     listed_problems,
     operation_problems,
 )
-from epicyclic.case.tables.base import Table, roughness_told, short_oil_told
+from epicyclic.case.tables.base import roughness_told, short_oil_told
 from epicyclic.case.tables.elements import (
     ELEMENT_CHECKS,
     Carrier,
@@ -84,7 +76,6 @@ from epicyclic.case.train_tables import (
     StateTable,
     TrainOperation,
 )
-from epicyclic.case.validation import AnyCase, Validation, tables_of, unknown_key, validate
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.assembly import rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
@@ -99,6 +90,11 @@ from epicyclic.messages import (
     value_at,
     written,
 )
+from epicyclic.schema.fields import find_field, locate, to_inputs
+from epicyclic.schema.read import flattened, plain, read_file, with_value, without
+from epicyclic.schema.table import Table
+from epicyclic.schema.validation import AnyCase, Validation, tables_of, unknown_key, validate
+from epicyclic.units import unit_text
 
 if TYPE_CHECKING:
     from epicyclic.case.tables.operation import LubricationTable, Surroundings
@@ -236,12 +232,28 @@ class CaseTable(Table):
         return inputs
 
     def __repr__(self) -> str:
-        return case_line(type(self).__name__, self.given())
+        given = self.given()
+        words = [f"title={given['title']!r}"] if given.get("title") else []
+        words += [f"{key}={value!r}" for key, value in given.get("operation", {}).items()]
+        return f"{type(self).__name__}({', '.join(words)})"
 
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
-        return case_html(type(self).__name__, self.given())
+        """The keys that were given, table by table, in the units of case files."""
+        given = self.given()
+        alone = {key: value for key, value in given.items() if not isinstance(value, Mapping)}
+        tables = {"": alone} | {key: it for key, it in given.items() if isinstance(it, Mapping)}
+        cell = '<td style="text-align: left">'
+        rows = "".join(
+            f"<tr>{cell}<strong>{escape(key if number == 0 else '')}</strong></td>"
+            f"{cell}{escape(name)}</td>"
+            f"{cell}{escape(unit_text(value) if isinstance(value, str) else str(value))}</td></tr>"
+            for key, table in tables.items()
+            for number, (name, value) in enumerate(flattened(table))
+        )
+        title = escape(str(given.get("title") or type(self).__name__))
+        return f"<table><caption><strong>{title}</strong></caption><tbody>{rows}</tbody></table>"
 
     def __eq__(self, other: object) -> bool:
         """Equal if every key has the same value, wherever the cases were read."""

@@ -6,16 +6,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from epicyclic.case.tables.base import (
-    NamedMaterial,
-    Roughness,
-    ShortLength,
-    Table,
-    ThicknessFit,
-    option,
-)
+from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength, ThicknessFit
 from epicyclic.gears.flanks import ReliefShape
 from epicyclic.gears.stated import THICKNESS
+from epicyclic.schema.table import Table, option
 from epicyclic.units import (
     Angle,
     Deviation,

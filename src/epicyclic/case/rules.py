@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epicyclic.case.expand import expand
-from epicyclic.case.tables.base import Table
 from epicyclic.case.tables.elements import PlanetBearing, ShaftBearingTable
 from epicyclic.case.tables.models import (
     ContactSolver,
@@ -45,6 +44,7 @@ from epicyclic.gears.rules import gears_by_name
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.machine.train_shape import TrainShape
 from epicyclic.messages import did_you_mean, millimetres, written
+from epicyclic.schema.table import Table
 from epicyclic.units import BAR
 
 if TYPE_CHECKING:

@@ -20,7 +20,6 @@ from epicyclic.case.gear_tables import (
     internal_if_negative,
     with_positive_teeth,
 )
-from epicyclic.case.tables.base import Table, option
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
 from epicyclic.case.tables.models import (
     GearPairLosses,
@@ -32,6 +31,7 @@ from epicyclic.case.tables.models import (
     PlanetaryModels,
 )
 from epicyclic.case.tables.operation import LUBRICATION, LubricationTable
+from epicyclic.schema.table import Table, option
 from epicyclic.units import (
     Angle,
     HelixAngle,

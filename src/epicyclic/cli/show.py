@@ -64,7 +64,7 @@ def oils(name: str | None) -> None:
 def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
     """Write a commented case FILE (default case.toml) to start from."""
     from epicyclic import library
-    from epicyclic.case.template import case_template, text_like
+    from epicyclic.show.template import case_template, text_like
 
     if like is not None and (minimal or kind is not None):
         given = "--minimal" if minimal else "--kind"

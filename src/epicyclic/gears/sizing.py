@@ -41,7 +41,7 @@ FINEST_LENGTH = 0.5e-6  # The same of lengths: 39 mm means 39.000 mm. [m]
 AGREES = 0.5e-6
 """A stated backlash that differs less from that of the teeth is that of the teeth. [m]"""
 ROUNDING = 0.5e-9
-"""Teeth that are too thick by less than this pass as they are; see `gear_rules.ROUNDING`. [m]"""
+"""Teeth that are too thick by less than this pass as they are; see `rules.ROUNDING`. [m]"""
 _ALIKE = 1e-9  # Modules and angles that differ by less are equal, relatively.
 LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0  # What a case may state.
 

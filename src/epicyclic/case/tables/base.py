@@ -7,28 +7,21 @@ and the commented template. Values are SI after validation.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, Literal
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Discriminator,
-    Field,
-    GetJsonSchemaHandler,
-)
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.fields import Named, to_inputs
-from epicyclic.case.read import plain
-from epicyclic.errors import Problem
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
 from epicyclic.gears.measures import named_fit
 from epicyclic.messages import did_you_mean
 from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil, OilDensity
+from epicyclic.schema.fields import Named
+from epicyclic.schema.read import plain
+from epicyclic.schema.table import Table, option
 from epicyclic.units import (
     MILLIMETRE,
     Density,
@@ -38,12 +31,6 @@ from epicyclic.units import (
     Quantity,
     as_stated,
 )
-
-
-def option(description: str, default: Any = None, **limits: Any) -> Any:
-    """The field of a key with a default, which is stated as a file has it, with its unit."""
-    return Field(default=default, description=description, **limits)
-
 
 # An oil by its ISO viscosity grade or by two viscosities.
 #
@@ -173,74 +160,6 @@ def short_oil_told(table: object) -> tuple[str, str] | None:
             "measured on this oil"
         )
     return f"an oil of the kind {table['kind']}", f"{'; '.join(told) or 'all stated'}."
-
-
-class Table(BaseModel):
-    """Base of all tables: immutable, no unknown keys.
-
-    ``EXACTLY_ONE`` lists groups of alternatives of which a file gives exactly one; an alternative
-    of several keys, joined by ``+``, needs all of them. Of the groups in ``AT_MOST_ONE`` a file may
-    give none.
-
-    ``STAND_INS`` are keys on which no check across tables depends. If such a key cannot be used,
-    the checks go on with the value given here (None: with the default).
-    """
-
-    model_config = ConfigDict(
-        frozen=True,
-        extra="forbid",
-        validate_default=True,
-        allow_inf_nan=False,
-        defer_build=True,  # a case of one kind builds no tables of the others
-    )
-    EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
-    AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
-    STAND_INS: ClassVar[dict[str, object]] = {}
-
-    def __repr_args__(self) -> Iterable[tuple[str, Any]]:
-        """Keys with their values as a file has them, with units."""
-        return to_inputs(self).items()
-
-    def __dir__(self) -> list[str]:
-        """Keys, and what this package adds to them: not what Pydantic does."""
-        own = {name for name in super().__dir__() if not name.startswith("_") and name.islower()}
-        return sorted(own - set(dir(BaseModel)) | set(type(self).model_fields))
-
-
-class PointsTable(Table):
-    """Base of tables with values over some of the ``AXES``."""
-
-    AXES: ClassVar[tuple[str, ...]]
-
-    def axes(self) -> dict[str, tuple[float, ...]]:
-        """The axes given, by name."""
-        given = {name: getattr(self, name) for name in self.AXES}
-        return {name: points for name, points in given.items() if points is not None}
-
-
-class Condition(NamedTuple):
-    """What a table, or several, must not state: a row of a list of checks."""
-
-    key: str  # The keys that it is about, whole, joined by ``", "``.
-    broken: Callable[..., bool]  # Whether the tables break it.
-    allowed: str
-    remedy: str
-
-
-def broken_conditions(conditions: Iterable[Condition], *tables: Table) -> list[Problem]:
-    """The problems of the conditions that `tables` break."""
-    return [
-        Problem(one.key, "", one.allowed, one.remedy) for one in conditions if one.broken(*tables)
-    ]
-
-
-def _values_or_rows(value: object) -> str:
-    """Which of its two forms a list of numbers has."""
-    rows = isinstance(value, list | tuple) and any(isinstance(row, list | tuple) for row in value)
-    return "rows" if rows else "values"
-
-
-VALUES_OR_ROWS = Discriminator(_values_or_rows)
 
 
 def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> PydanticCustomError:

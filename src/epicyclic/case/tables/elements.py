@@ -9,18 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, Tag
 
-from epicyclic.case.tables.base import (
-    VALUES_OR_ROWS,
-    NamedMaterial,
-    PointsTable,
-    Roughness,
-    ShortLength,
-    Table,
-    option,
-)
+from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import did_you_mean, millimetres, written
+from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
 from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, Tag, model_validator
 
-from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table, option
+from epicyclic.case.tables.base import Stress
 from epicyclic.errors import Problem
 from epicyclic.messages import value_at
 from epicyclic.oil.oil import Conductivity, HeatCapacity
@@ -24,6 +24,7 @@ from epicyclic.oil.rheology import (
     ReeEyring,
     ShearLaw,
 )
+from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
 from epicyclic.units import (
     Deviation,
     HertzPressure,

@@ -7,9 +7,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from epicyclic.case.tables.base import Condition, NamedOil, Table, broken_conditions, option
+from epicyclic.case.tables.base import NamedOil
 from epicyclic.errors import Problem
 from epicyclic.messages import did_you_mean
+from epicyclic.schema.table import Condition, Table, broken_conditions, option
 from epicyclic.units import (
     CELSIUS,
     LITRE,

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.fields import Parameter, field_at, parameter_of, quantity_of, value_of
-from epicyclic.case.read import owner_without_keys
-from epicyclic.case.tables.base import Table, option
+from epicyclic.case.keys import Parameter, field_at, owner_without_keys, parameter_of, value_of
 from epicyclic.case.tables.operation import FACTOR_KEY, SHARE_KEY
 from epicyclic.errors import Problem
 from epicyclic.messages import did_you_mean, dotted, path_of, refused, value_at, written
+from epicyclic.schema.fields import quantity_of
+from epicyclic.schema.table import Table, option
 from epicyclic.units import CELSIUS, Number, Quantity, format_number
 
 if TYPE_CHECKING:

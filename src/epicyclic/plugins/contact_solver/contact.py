@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from epicyclic.build.models import contact_modulus, solid_of
-from epicyclic.case.read import plain, read_file, with_value
-from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness, Table
+from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness
 from epicyclic.case.tables.models import (
     HEATING,
     PRESET,
@@ -29,7 +28,6 @@ from epicyclic.case.tables.models import (
     law_problems,
     oil_laws,
 )
-from epicyclic.case.validation import validate
 from epicyclic.errors import InputError, Problem, Status
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges, range_left
@@ -67,6 +65,9 @@ from epicyclic.plugins.contact_solver.surfaces import (
     read_profile,
 )
 from epicyclic.result.result import versions
+from epicyclic.schema.read import plain, read_file, with_value
+from epicyclic.schema.table import Table
+from epicyclic.schema.validation import validate
 from epicyclic.units import (
     MICROMETRE,
     MILLIMETRE,

@@ -9,8 +9,8 @@ from typing import Any
 
 from epicyclic import library
 from epicyclic.case.case import CaseTable
-from epicyclic.case.fields import Parameter, known_keys, parameter_of, value_of
 from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.keys import Parameter, known_keys, parameter_of, value_of
 from epicyclic.case.tables.operation import FACTOR_KEY
 from epicyclic.case.tables.uncertainty import (
     MODEL_FORM,

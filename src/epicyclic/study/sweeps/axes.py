@@ -20,23 +20,21 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import (
+from epicyclic.case.keys import field_at, known_keys, value_of
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.files import read_text, refuse
+from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
+from epicyclic.schema.fields import (
     all_keys,
-    field_at,
     is_array,
     is_continuous,
     is_named,
     is_text,
     is_whole_number,
-    known_keys,
     quantity_of,
     table_of,
-    value_of,
 )
-from epicyclic.case.read import parse_value, plain
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
-from epicyclic.files import read_text, refuse
-from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
+from epicyclic.schema.read import parse_value, plain
 from epicyclic.units import Quantity, format_number, in_unit, one_of, pure_number, with_unit
 
 if TYPE_CHECKING:
