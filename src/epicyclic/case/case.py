@@ -534,7 +534,7 @@ class TrainCase(_TrainHead):
         complete = complete and not wrong
         found += wrong
         found += _element_problems(train)
-        found += operation_problems(train, train.shape, complete)
+        found += operation_problems(train, complete)
         found += bearing_force_problems(train, complete)
         return cls._made(cast(Self, train), tables, source, found)
 

@@ -34,7 +34,7 @@ from epicyclic.case.tables.operation import (
     check_ways_out,
     check_wetting,
 )
-from epicyclic.case.train_tables import ListedSet, StateTable
+from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import InputError, Problem, rising_problems
 from epicyclic.gears.assembly import set_problems
 from epicyclic.gears.gear import CARRIER, HOUSING
@@ -42,7 +42,7 @@ from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.gears.rules import gears_by_name
 from epicyclic.losses.ranges import FITTED_QUANTITIES
-from epicyclic.machine.train_shape import TrainShape
+from epicyclic.machine.train_shape import motion_problems, named_problems
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.table import Table
 from epicyclic.units import BAR
@@ -50,7 +50,6 @@ from epicyclic.units import BAR
 if TYPE_CHECKING:
     from epicyclic.case.case import TrainCase
     from epicyclic.contact.fitted_models import OilModel
-    from epicyclic.machine.machine import Machine
 
 
 # Checks across keys and tables.
@@ -532,34 +531,22 @@ def _gears(train: TrainCase, shaft: str) -> Iterator[str]:
                 yield f"{name}.{gear}"
 
 
-def operation_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
+def operation_problems(train: TrainCase, complete: bool) -> list[Problem]:
     """What cannot be about the states and the operation of a train.
 
-    Of a `shape` that is not `complete`, because some members or meshes are wrong, only that is told
+    Of a shape that is not `complete`, because some members or meshes are wrong, only that is told
     which these cannot change: a train that is blocked without them is blocked with them.
     """
-    named: list[Problem] = []
-    for name, state in train.states.items():
-        named += state_problems(f"states.{name}", state, shape)
-    named += _state_choice(train)
-    operation = train.operation
-    for key in ("input", "output"):
-        named += _shaft_problems(f"operation.{key}", getattr(operation, key), shape)
-    for key in ("speeds", "torques"):
-        for name in getattr(operation, key):
-            named += _shaft_problems(f"operation.{key}.{name}", name, shape)
+    named = named_problems(train)
     problems = [
         *named,
-        *check_outlet(train.thermal, operation.oil_inlet_temperature),
+        *check_outlet(train.thermal, train.operation.oil_inlet_temperature),
         *_temperature_problems(train),
         *_oil_model_problems(train),
     ]
     if complete:
-        problems += [*_position_problems(train, shape), *lubrication_problems(train)]
-    if named:
-        return problems
-    ends = list(_ends_problems(train, shape, complete))
-    return [*problems, *(ends or _freedom_problems(train, shape, complete))]
+        problems += [*_position_problems(train), *lubrication_problems(train)]
+    return problems if named else [*problems, *motion_problems(train, complete)]
 
 
 def _temperature_problems(train: TrainCase) -> list[Problem]:
@@ -592,205 +579,16 @@ def _oil_model_problems(train: TrainCase) -> list[Problem]:
     ]
 
 
-def state_problems(key: str, state: StateTable, shape: TrainShape) -> list[Problem]:
-    """Brakes and clutches on shafts that are not there, or on one shaft."""
-    problems = []
-    for number, name in enumerate(state.fixed):
-        problems += _shaft_problems(f"{key}.fixed[{number}]", name, shape)
-    for number, group in enumerate(state.joined):
-        where, shown = f"{key}.joined[{number}]", written(list(group))
-        found = [problem for name in group for problem in _shaft_problems(where, name, shape)]
-        problems += found
-        if len(group) < 2:
-            allowed = "must be two or more shafts."
-            problems.append(Problem(where, shown, allowed, "Name the shafts that a clutch joins."))
-        elif not found:
-            shafts = [shape.shaft_of(name) for name in group]
-            if len(set(shafts)) < len(shafts):
-                twice = next(one for one in shafts if shafts.count(one) > 1)
-                allowed = f"joins the shaft {twice} to itself."
-                problems.append(Problem(where, shown, allowed, "Name two different shafts."))
-    return problems
-
-
-def _position_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
+def _position_problems(train: TrainCase) -> Iterator[Problem]:
     """Positions of gears that there are, and that stand on a shaft."""
     known = [
         f"{name}.{gear}"
-        for name, own in shape.sets.items()
+        for name, own in train.shape.sets.items()
         for gear, body in own.bodies.items()
         if body not in own.planets
     ]
-    members = [member for names in shape.shafts.values() for member in names]
+    members = [member for names in train.shape.shafts.values() for member in names]
     for gear in train.positions:
         if gear not in known and gear not in members:
             remedy = did_you_mean(gear, known) or f"Known are: {', '.join(known)}."
             yield Problem(f'positions."{gear}"', "", "is not a gear on a shaft.", remedy)
-
-
-def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:
-    if shape.shaft_of(name) is not None:
-        return []
-    known = [shaft for shaft in shape.shafts if shaft != HOUSING]
-    members = [member for names in shape.shafts.values() for member in names]
-    remedy = did_you_mean(name, dict.fromkeys([*known, *members]))
-    remedy = remedy or f"Known are: {', '.join(known)}."
-    return [Problem(key, written(name), "is no shaft and no member of a set.", remedy)]
-
-
-def _state_choice(train: TrainCase) -> list[Problem]:
-    name, known = train.operation.state, list(train.states)
-    key = "operation.state"
-    if name is None and known:
-        allowed = f"is missing; it must be one of {', '.join(known)}."
-        return [Problem(key, "", allowed, f'Write state = "{known[0]}".')]
-    if name is not None and name not in known:
-        if not known:
-            allowed = "is no state: the train has none."
-            return [Problem(key, written(name), allowed, "Leave it out, or add [states.NAME].")]
-        remedy = did_you_mean(name, known) or f"Known are: {', '.join(known)}."
-        return [Problem(key, written(name), "is no state of the train.", remedy)]
-    return []
-
-
-def _ends_problems(train: TrainCase, shape: TrainShape, complete: bool) -> Iterator[Problem]:
-    """Input and output must be two shafts that can turn."""
-    operation = train.operation
-    ends = {key: shape.shaft_of(getattr(operation, key)) for key in ("input", "output")}
-    groups = [{shape.shaft_of(name) for name in group} for group in train.state.joined]
-    if ends["input"] == ends["output"]:
-        allowed = "is the input shaft too."
-        remedy = "Name another shaft; a train passes power from one shaft to another."
-        yield Problem("operation.output", written(operation.output), allowed, remedy)
-    held = shape.held(train.state)
-    turning = {*shape.turning(train.state), HOUSING}
-    for key, shaft in ends.items():
-        if complete and shaft not in turning:
-            allowed = f"is joined to nothing in {_state_words(train)}: it has no members, and no "
-            allowed += "clutch that joins it is closed."
-            shown = written(getattr(operation, key))
-            yield Problem(f"operation.{key}", shown, allowed, "Close a clutch, or name another.")
-            continue
-        by_clutch = any(shaft in group and group & set(held) for group in groups)
-        if shaft == HOUSING or shaft in held or by_clutch:
-            allowed = "stands still, as the housing does."
-            if shaft != HOUSING:
-                allowed = f"is held by a brake in {_state_words(train)}."
-            advice = "Name a shaft that turns, or release it."
-            yield Problem(f"operation.{key}", written(getattr(operation, key)), allowed, advice)
-    if complete:
-        yield from _given_problems(train, shape, ends)
-
-
-def _given_problems(
-    train: TrainCase, shape: TrainShape, ends: Mapping[str, str | None]
-) -> Iterator[Problem]:
-    """Further speeds and torques: of shafts that turn, each once, and only one of the two."""
-    operation = train.operation
-    turning = shape.turning(train.state)
-    held: dict[str | None, str] = dict.fromkeys((*shape.held(train.state), HOUSING), "held")
-    driven = {shape.shaft_of(name): "given a speed" for name in operation.speeds}
-    inputs: dict[str | None, str] = {ends["input"]: "the input"}
-    output: dict[str | None, str] = {ends["output"]: "the output"}
-    kinds = {
-        "speeds": (operation.speeds, held | inputs),
-        "torques": (operation.torques, held | driven | output | inputs),
-    }
-    for key, (values, taken) in kinds.items():
-        seen: dict[str | None, str] = {}
-        for name in values:
-            shaft, allowed = shape.shaft_of(name), ""
-            if shaft in taken:
-                allowed = f"cannot be given: this shaft is {taken[shaft]}."
-            elif shaft not in turning:
-                allowed = f"cannot be given: nothing is joined to it in {_state_words(train)}."
-            elif shaft in seen:
-                allowed = f"is given twice: {seen[shaft]} is the same shaft."
-            seen[shaft] = name
-            if allowed:
-                yield Problem(f"operation.{key}.{name}", "", allowed, "Leave it out.")
-
-
-def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
-    """The given speeds must determine all others, and the input must be able to turn."""
-    from epicyclic.machine.balance import freedom, implied  # only trains need a machine
-
-    machine = shape.machine(train.state)
-    driven = shape.shaft_of(train.operation.input) or ""
-    held = shape.held(train.state)
-    others = [*held, *(shape.shaft_of(name) or "" for name in train.operation.speeds)]
-    if not complete:  # without its members a shaft is no body
-        others = [shaft for shaft in others if shaft in machine.bodies]
-        if driven not in machine.bodies:
-            return []
-    found = freedom(machine, driven, others)
-    key = "operation.state" if train.states else "shafts"
-    shown = written(train.operation.state) if train.states else ""
-    problems = []
-    if found.blocked:
-        means = _means(train.state, held, train.operation.speeds)
-        reason = f"blocks the train: the input shaft {driven} cannot turn" + (
-            f" with {means}." if means else "."
-        )
-        remedy = "Release one of these." if means else "Check the shafts: they join too much."
-        problems.append(Problem(key, shown, reason, remedy))
-    if not complete:
-        return problems
-    if found.loose:
-        names = ", ".join(body for body in found.loose if body in shape.shafts)
-        freedoms = found.freedoms
-        word = "one" if freedoms == 1 else str(freedoms)
-        problems.append(
-            Problem(
-                key,
-                shown,
-                f"leaves {word} degree{'s' if freedoms > 1 else ''} of freedom open: the speed of "
-                f"{names} is not determined.",
-                f"Brake or couple {word} of these shafts more (fixed, joined), or give "
-                f"{word} of them a speed in [operation.speeds].",
-            )
-        )
-    further = {shape.shaft_of(name) or "": name for name in train.operation.speeds}
-    if not found.loose:
-        for shaft in implied(machine, [driven, *held], list(further)):
-            allowed = "cannot be given: this speed follows from those of the other shafts."
-            key = f"operation.speeds.{further[shaft]}"
-            problems.append(Problem(key, "", allowed, "Leave it out."))
-    if problems or shape.shaft_of(train.operation.output) in further:
-        return problems
-    return _standing_output(train, shape, machine, driven, others)
-
-
-def _standing_output(
-    train: TrainCase, shape: TrainShape, machine: Machine, driven: str, others: Sequence[str]
-) -> list[Problem]:
-    """An output that the input does not turn can balance no torque of it."""
-    from epicyclic.machine.balance import speeds_of
-
-    output = train.operation.output
-    speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
-    if speeds[shape.shaft_of(output) or ""] != 0:
-        return []
-    allowed = f"stands still whatever the input shaft {driven} does in {_state_words(train)}, so "
-    allowed += "that no power reaches it."
-    turning = [shaft for shaft in shape.shafts if speeds[shaft] != 0 and shaft != driven]
-    remedy = f"Name a shaft that turns with the input: {', '.join(turning)}."
-    if not turning:
-        remedy = "Join it to the input."
-    return [Problem("operation.output", written(output), allowed, remedy)]
-
-
-def _state_words(train: TrainCase) -> str:
-    name = train.operation.state
-    return "this train" if name is None else f"state {name}"
-
-
-def _means(state: StateTable, held: Sequence[str], speeds: Mapping[str, float]) -> str:
-    parts = []
-    if held:
-        parts.append(f"{', '.join(held)} held")
-    if state.joined:
-        parts.append(f"{', '.join('+'.join(group) for group in state.joined)} joined")
-    if speeds:
-        parts.append(f"the speed of {', '.join(speeds)} given")
-    return " and ".join(parts)

@@ -1,4 +1,4 @@
-"""The shape of a train: which gears stand on which bodies, which bodies are one shaft."""
+"""The shape of a train: which bodies are one shaft; and whether it can move as stated."""
 
 from __future__ import annotations
 
@@ -178,3 +178,244 @@ def _no_member(key: str, name: str, members: Sequence[str], sets: Mapping[str, G
         return Problem(key, written(name), allowed, f"Join {owner}.{CARRIER}, or another member.")
     remedy = did_you_mean(name, members) or f"Known are: {', '.join(members)}."
     return Problem(key, written(name), "is not a member of a set.", remedy)
+
+
+# --- operation ------------------------------------------------------------------------------------
+
+
+class Operation(Protocol):
+    """How a train runs, by the names of its shafts."""
+
+    @property
+    def state(self) -> str | None: ...
+    @property
+    def input(self) -> str: ...
+    @property
+    def output(self) -> str: ...
+    @property
+    def speeds(self) -> Mapping[str, float]: ...
+    @property
+    def torques(self) -> Mapping[str, float]: ...
+
+
+class Train(Protocol):
+    """A train with its states, one of which is chosen."""
+
+    @property
+    def shape(self) -> TrainShape: ...
+    @property
+    def operation(self) -> Operation: ...
+    @property
+    def states(self) -> Mapping[str, Joined]: ...
+    @property
+    def state(self) -> Joined: ...
+
+
+def named_problems(train: Train) -> list[Problem]:
+    """States and shafts that are named and are not there."""
+    operation, problems = train.operation, []
+    for name, state in train.states.items():
+        problems += state_problems(f"states.{name}", state, train.shape)
+    problems += _state_choice(train)
+    for key in ("input", "output"):
+        problems += _shaft_problems(f"operation.{key}", getattr(operation, key), train.shape)
+    for key in ("speeds", "torques"):
+        for name in getattr(operation, key):
+            problems += _shaft_problems(f"operation.{key}.{name}", name, train.shape)
+    return problems
+
+
+def motion_problems(train: Train, complete: bool) -> list[Problem]:
+    """Why a train cannot move as stated, whose names are all known; `complete` as for cases."""
+    return list(_ends_problems(train, complete)) or _freedom_problems(train, complete)
+
+
+def state_problems(key: str, state: Joined, shape: TrainShape) -> list[Problem]:
+    """Brakes and clutches on shafts that are not there, or on one shaft."""
+    problems = []
+    for number, name in enumerate(state.fixed):
+        problems += _shaft_problems(f"{key}.fixed[{number}]", name, shape)
+    for number, group in enumerate(state.joined):
+        where, shown = f"{key}.joined[{number}]", written(list(group))
+        found = [problem for name in group for problem in _shaft_problems(where, name, shape)]
+        problems += found
+        if len(group) < 2:
+            allowed = "must be two or more shafts."
+            problems.append(Problem(where, shown, allowed, "Name the shafts that a clutch joins."))
+        elif not found:
+            shafts = [shape.shaft_of(name) for name in group]
+            if len(set(shafts)) < len(shafts):
+                twice = next(one for one in shafts if shafts.count(one) > 1)
+                allowed = f"joins the shaft {twice} to itself."
+                problems.append(Problem(where, shown, allowed, "Name two different shafts."))
+    return problems
+
+
+def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:
+    if shape.shaft_of(name) is not None:
+        return []
+    known = [shaft for shaft in shape.shafts if shaft != HOUSING]
+    members = [member for names in shape.shafts.values() for member in names]
+    remedy = did_you_mean(name, dict.fromkeys([*known, *members]))
+    remedy = remedy or f"Known are: {', '.join(known)}."
+    return [Problem(key, written(name), "is no shaft and no member of a set.", remedy)]
+
+
+def _state_choice(train: Train) -> list[Problem]:
+    name, known = train.operation.state, list(train.states)
+    key = "operation.state"
+    if name is None and known:
+        allowed = f"is missing; it must be one of {', '.join(known)}."
+        return [Problem(key, "", allowed, f'Write state = "{known[0]}".')]
+    if name is not None and name not in known:
+        if not known:
+            allowed = "is no state: the train has none."
+            return [Problem(key, written(name), allowed, "Leave it out, or add [states.NAME].")]
+        remedy = did_you_mean(name, known) or f"Known are: {', '.join(known)}."
+        return [Problem(key, written(name), "is no state of the train.", remedy)]
+    return []
+
+
+def _ends_problems(train: Train, complete: bool) -> Iterator[Problem]:
+    """Input and output must be two shafts that can turn."""
+    shape = train.shape
+    operation = train.operation
+    ends = {key: shape.shaft_of(getattr(operation, key)) for key in ("input", "output")}
+    groups = [{shape.shaft_of(name) for name in group} for group in train.state.joined]
+    if ends["input"] == ends["output"]:
+        allowed = "is the input shaft too."
+        remedy = "Name another shaft; a train passes power from one shaft to another."
+        yield Problem("operation.output", written(operation.output), allowed, remedy)
+    held = shape.held(train.state)
+    turning = {*shape.turning(train.state), HOUSING}
+    for key, shaft in ends.items():
+        if complete and shaft not in turning:
+            allowed = f"is joined to nothing in {_state_words(train)}: it has no members, and no "
+            allowed += "clutch that joins it is closed."
+            shown = written(getattr(operation, key))
+            yield Problem(f"operation.{key}", shown, allowed, "Close a clutch, or name another.")
+            continue
+        by_clutch = any(shaft in group and group & set(held) for group in groups)
+        if shaft == HOUSING or shaft in held or by_clutch:
+            allowed = "stands still, as the housing does."
+            if shaft != HOUSING:
+                allowed = f"is held by a brake in {_state_words(train)}."
+            advice = "Name a shaft that turns, or release it."
+            yield Problem(f"operation.{key}", written(getattr(operation, key)), allowed, advice)
+    if complete:
+        yield from _given_problems(train, ends)
+
+
+def _given_problems(train: Train, ends: Mapping[str, str | None]) -> Iterator[Problem]:
+    """Further speeds and torques: of shafts that turn, each once, and only one of the two."""
+    shape = train.shape
+    operation = train.operation
+    turning = shape.turning(train.state)
+    held: dict[str | None, str] = dict.fromkeys((*shape.held(train.state), HOUSING), "held")
+    driven = {shape.shaft_of(name): "given a speed" for name in operation.speeds}
+    inputs: dict[str | None, str] = {ends["input"]: "the input"}
+    output: dict[str | None, str] = {ends["output"]: "the output"}
+    kinds = {
+        "speeds": (operation.speeds, held | inputs),
+        "torques": (operation.torques, held | driven | output | inputs),
+    }
+    for key, (values, taken) in kinds.items():
+        seen: dict[str | None, str] = {}
+        for name in values:
+            shaft, allowed = shape.shaft_of(name), ""
+            if shaft in taken:
+                allowed = f"cannot be given: this shaft is {taken[shaft]}."
+            elif shaft not in turning:
+                allowed = f"cannot be given: nothing is joined to it in {_state_words(train)}."
+            elif shaft in seen:
+                allowed = f"is given twice: {seen[shaft]} is the same shaft."
+            seen[shaft] = name
+            if allowed:
+                yield Problem(f"operation.{key}.{name}", "", allowed, "Leave it out.")
+
+
+def _freedom_problems(train: Train, complete: bool) -> list[Problem]:
+    """The given speeds must determine all others, and the input must be able to turn."""
+    shape = train.shape
+    from epicyclic.machine.balance import freedom, implied
+
+    machine = shape.machine(train.state)
+    driven = shape.shaft_of(train.operation.input) or ""
+    held = shape.held(train.state)
+    others = [*held, *(shape.shaft_of(name) or "" for name in train.operation.speeds)]
+    if not complete:  # without its members a shaft is no body
+        others = [shaft for shaft in others if shaft in machine.bodies]
+        if driven not in machine.bodies:
+            return []
+    found = freedom(machine, driven, others)
+    key = "operation.state" if train.states else "shafts"
+    shown = written(train.operation.state) if train.states else ""
+    problems = []
+    if found.blocked:
+        means = _means(train.state, held, train.operation.speeds)
+        reason = f"blocks the train: the input shaft {driven} cannot turn" + (
+            f" with {means}." if means else "."
+        )
+        remedy = "Release one of these." if means else "Check the shafts: they join too much."
+        problems.append(Problem(key, shown, reason, remedy))
+    if not complete:
+        return problems
+    if found.loose:
+        names = ", ".join(body for body in found.loose if body in shape.shafts)
+        freedoms = found.freedoms
+        word = "one" if freedoms == 1 else str(freedoms)
+        problems.append(
+            Problem(
+                key,
+                shown,
+                f"leaves {word} degree{'s' if freedoms > 1 else ''} of freedom open: the speed of "
+                f"{names} is not determined.",
+                f"Brake or couple {word} of these shafts more (fixed, joined), or give "
+                f"{word} of them a speed in [operation.speeds].",
+            )
+        )
+    further = {shape.shaft_of(name) or "": name for name in train.operation.speeds}
+    if not found.loose:
+        for shaft in implied(machine, [driven, *held], list(further)):
+            allowed = "cannot be given: this speed follows from those of the other shafts."
+            key = f"operation.speeds.{further[shaft]}"
+            problems.append(Problem(key, "", allowed, "Leave it out."))
+    if problems or shape.shaft_of(train.operation.output) in further:
+        return problems
+    return _standing_output(train, machine, driven, others)
+
+
+def _standing_output(
+    train: Train, machine: Machine, driven: str, others: Sequence[str]
+) -> list[Problem]:
+    """An output that the input does not turn can balance no torque of it."""
+    shape = train.shape
+    from epicyclic.machine.balance import speeds_of
+
+    output = train.operation.output
+    speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
+    if speeds[shape.shaft_of(output) or ""] != 0:
+        return []
+    allowed = f"stands still whatever the input shaft {driven} does in {_state_words(train)}, so "
+    allowed += "that no power reaches it."
+    turning = [shaft for shaft in shape.shafts if speeds[shaft] != 0 and shaft != driven]
+    remedy = f"Name a shaft that turns with the input: {', '.join(turning)}."
+    if not turning:
+        remedy = "Join it to the input."
+    return [Problem("operation.output", written(output), allowed, remedy)]
+
+
+def _state_words(train: Train) -> str:
+    name = train.operation.state
+    return "this train" if name is None else f"state {name}"
+
+
+def _means(state: Joined, held: Sequence[str], speeds: Mapping[str, float]) -> str:
+    parts = []
+    if held:
+        parts.append(f"{', '.join(held)} held")
+    if state.joined:
+        parts.append(f"{', '.join('+'.join(group) for group in state.joined)} joined")
+    if speeds:
+        parts.append(f"the speed of {', '.join(speeds)} given")
+    return " and ".join(parts)

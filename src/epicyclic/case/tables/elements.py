@@ -156,19 +156,6 @@ class BearingSealTable(Table):
 class ShaftBearingTable(Table):
     """A rolling bearing of a shaft."""
 
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "position": None,
-        "width": None,
-        "viscous_factor": None,
-        "palmgren_coefficient": None,
-        "flange_coefficient": None,
-        "oil_level": None,
-        "drag_variable": None,
-        "sliding_friction": None,
-        "minimum_load_factor": None,
-        "reference_speed": None,
-    }
-
     shaft: str = Field(description="The shaft in its bore.")
     against: str = option("The body that holds its outer ring.", "housing")
     type: Literal["deep-groove", "cylindrical", "tapered", "needle"]

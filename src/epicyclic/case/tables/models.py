@@ -292,30 +292,6 @@ TemperatureModel = Literal["inlet", "flank", "network"]
 class GearPairModels(Table):
     """Which method computes what."""
 
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "constant_friction": None,
-        "boundary_friction": None,
-        "fluid_friction": None,
-        "application_factor": None,
-        "mesh_load_factor": None,
-        "rolling": None,
-        "oil_model": None,
-        "fitted_form": None,
-        "load_distribution": None,
-        "mesh_loads": None,
-        "load_dependent": None,
-        "mesh": None,
-        "pocketing": None,
-        "pocket_void_pressure": None,
-        "pocketing_table": None,
-        "pocket_end_length": None,
-        "drag": None,
-        "temperatures": None,
-        "oil_beyond_range": None,
-        "bearing_viscous": None,
-        "planet_tilt": None,
-    }
-
     friction: FrictionName = option(
         "auto: mixed-ehl for the fluid it was made for, fitted-or-schlenk for an oil with fitted "
         "models, else schlenk; ehl-direct: the contacts of the mesh solved.",
@@ -416,6 +392,12 @@ class PlanetaryModels(GearPairModels):
     planet_tilt: Literal["left-out", "coupled"] = option(
         "coupled: the planet tilts in its bearing and misaligns its meshes.", "left-out"
     )
+
+
+# no check across tables depends on any other of these keys
+GearPairModels.STAND_INS = PlanetaryModels.STAND_INS = dict.fromkeys(
+    PlanetaryModels.model_fields.keys() - {"friction", "bearing"}
+)
 
 
 class Numerics(Table):
