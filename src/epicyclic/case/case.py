@@ -737,7 +737,7 @@ def _element_problems(train: TrainCase) -> list[Problem]:
             allowed = f"has the name of another part, {taken[name]}.{name}."
             problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
         taken[name] = kind
-        found = ELEMENT_CHECKS[kind](table)
+        found = list(ELEMENT_CHECKS[kind](table))
         if not found and train.lubricant is not None:
             found = placing_problems(table, train.shape.names, train.folder)
         problems += [_below(key, problem) for problem in found]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -101,15 +101,12 @@ def cross_check(
     return problems
 
 
-def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> list[Problem]:
-    if not isinstance(operation, PlanetaryOperation):
-        return []
-    allowed = f'must be another member than operation.input, "{operation.input}".'
-    return [
-        Problem(f"operation.{key}", operation.input, allowed, "Name one of the other two.")
-        for key in ("fixed", "second_input")
-        if getattr(operation, key) == operation.input
-    ]
+def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> Iterator[Problem]:
+    if isinstance(operation, PlanetaryOperation):
+        allowed = f'must be another member than operation.input, "{operation.input}".'
+        for key in ("fixed", "second_input"):
+            if getattr(operation, key) == operation.input:
+                yield Problem(f"operation.{key}", "", allowed, "Name one of the other two.")
 
 
 def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> list[Problem]:
@@ -233,9 +230,7 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
         remedy = 'Write method = "equal" or "mesh-load-factor".'
         yield Problem("load_sharing.method", f'"{sharing.method}"', allowed, remedy)
     if sharing.mesh_load_factor > planets:
-        shown = f"{sharing.mesh_load_factor:g}"
-        reason = f"must be at most planets, {planets}: then one planet has all the load."
-        yield Problem("load_sharing.mesh_load_factor", shown, reason, "Take a smaller factor.")
+        yield _most_loaded(sharing, "planets", planets)
 
 
 def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]:
@@ -247,56 +242,44 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     return [Problem("models.bearing", '"mixed-ehl"', allowed, 'Write bearing = "palmgren".')]
 
 
-def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
-    problems, count = [], gearing.count or 1
+def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> Iterator[Problem]:
+    count, key, method = gearing.count or 1, "load_sharing.method", sharing.method
     if sharing.mesh_load_factor > count:
-        shown = f"{sharing.mesh_load_factor:g}"
-        allowed = f"must be at most planet.count, {count}: then one planet has all the load."
-        remedy = "Take a smaller factor."
-        problems.append(Problem("load_sharing.mesh_load_factor", shown, allowed, remedy))
+        yield _most_loaded(sharing, gearing.count_key, count)
     if len(sharing.position_errors or ()) not in (0, count):
-        shown = f"{len(sharing.position_errors or ())} values"
         allowed = f"must have one value for each of the {count} planets."
         remedy = "Give as many values as there are planets."
-        problems.append(Problem("load_sharing.position_errors", shown, allowed, remedy))
-    if sharing.method == "closed-form":
-        problems += _check_closed_form(sharing, gearing)
-    if sharing.method == "direct" and count == 1 and sharing.floating_member != "none":
+        yield Problem("load_sharing.position_errors", "", allowed, remedy)
+    if method == "closed-form":
+        floats = sharing.floating_member == "none" or sharing.support_stiffness == 0
+        needs = {
+            "three or more planets": count >= 3,
+            "equally spaced planets": are_evenly_spaced(gearing.planet_angles),
+            "a member that floats freely or none": floats,
+        }
+        for need, met in needs.items():
+            if not met:
+                yield Problem(key, "", f"needs {need}.", 'Write method = "direct".')
+    if method == "direct" and count == 1 and sharing.floating_member != "none":
         shown = f'"{sharing.floating_member}"'
         allowed = "must be supported: one planet cannot hold it in place."
         remedy = 'Write floating_member = "none".'
-        problems.append(Problem("load_sharing.floating_member", shown, allowed, remedy))
-    return problems
+        yield Problem("load_sharing.floating_member", shown, allowed, remedy)
 
 
-def _check_closed_form(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
-    reasons = []
-    if (gearing.count or 1) < 3:
-        reasons.append("three or more planets")
-    if not are_evenly_spaced(gearing.planet_angles):
-        reasons.append("equally spaced planets")
-    if sharing.floating_member != "none" and sharing.support_stiffness > 0:
-        reasons.append("a member that floats freely or none")
-    return [
-        Problem(
-            "load_sharing.method", '"closed-form"', f"needs {reason}.", 'Write method = "direct".'
-        )
-        for reason in reasons
-    ]
+def _most_loaded(sharing: LoadSharing, key: str, planets: int) -> Problem:
+    """One planet cannot have more than all the load; `key` says how many there are."""
+    shown = f"{sharing.mesh_load_factor:g}"
+    allowed = f"must be at most {key}, {planets}: then one planet has all the load."
+    return Problem("load_sharing.mesh_load_factor", shown, allowed, "Take a smaller factor.")
 
 
-def _check_planet_tilt(models: PlanetaryModels, given: Collection[str]) -> list[Problem]:
-    if models.planet_tilt == "left-out":
-        return []
-    reasons = {
-        "needs [planet_bearing], in which the planet tilts.": "planet_bearing" not in given,
-        'needs load_distribution = "compliance".': models.load_distribution != "compliance",
-    }
-    return [
-        Problem("models.planet_tilt", '"coupled"', reason, 'Or write planet_tilt = "left-out".')
-        for reason, holds in reasons.items()
-        if holds
-    ]
+def _check_planet_tilt(models: PlanetaryModels, given: Collection[str]) -> Iterator[Problem]:
+    key, remedy = "models.planet_tilt", 'Or write planet_tilt = "left-out".'
+    if models.planet_tilt == "coupled" and "planet_bearing" not in given:
+        yield Problem(key, "", "needs [planet_bearing], in which the planet tilts.", remedy)
+    if models.planet_tilt == "coupled" and models.load_distribution != "compliance":
+        yield Problem(key, "", 'needs load_distribution = "compliance".', remedy)
 
 
 def _check_friction_table(table: FrictionTable) -> list[Problem]:
@@ -392,19 +375,14 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
     positions, segments = numerics.mesh_positions, numerics.contact_segments
     if models.load_distribution != "compliance" or positions * segments**2 <= MOST_COEFFICIENTS:
         return []
+    allowed = f"with {positions} mesh positions the influence coefficients of "
+    allowed += 'models.load_distribution = "compliance" would not fit into memory.'
     fitting = max(2, math.isqrt(MOST_COEFFICIENTS // positions))
-    return [
-        Problem(
-            "numerics.contact_segments",
-            str(segments),
-            f"with {positions} mesh positions the influence coefficients of "
-            'models.load_distribution = "compliance" would not fit into memory.',
-            f"Take {fitting} or fewer; 30 are enough for 0.1 %.",
-        )
-    ]
+    remedy = f"Take {fitting} or fewer; 30 are enough for 0.1 %."
+    return [Problem("numerics.contact_segments", "", allowed, remedy)]
 
 
-_CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
+_CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_rollers, ("planet_bearing",)),
     (check_cage, ("planet_bearing", "models")),

@@ -75,17 +75,17 @@ def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         alike = hands[mesh.first] == hands[mesh.second]
         if not helical or alike == mesh.internal:
             continue
-        stated = [
-            it for it in (mesh.first, mesh.second) if getattr(gearing.tables[it], "hand", None)
-        ]
-        gears = stated or [mesh.first, mesh.second]
+        own = {it: getattr(gearing.tables[it], "hand", None) for it in (mesh.first, mesh.second)}
+        stated = [gear for gear, hand in own.items() if hand]
         words = "the same hand" if mesh.internal else "opposite hands"
-        shown = ", ".join(f'"{getattr(gearing.tables[it], "hand", None)}"' for it in stated)
+        shown = ", ".join(f'"{own[gear]}"' for gear in stated)
         allowed = f"{mesh.first} and {mesh.second} must have {words} of helix to mesh" + (
             "." if len(stated) == 2 else ", and the other hands given forbid it."
         )
         remedy = "Correct or leave out hand."
-        yield Problem(", ".join(f"gears.{gear}.hand" for gear in gears), shown, allowed, remedy)
+        yield Problem(
+            ", ".join(f"gears.{gear}.hand" for gear in stated or own), shown, allowed, remedy
+        )
 
 
 # --- meshes ---------------------------------------------------------------------------------------
@@ -101,19 +101,17 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
             remedy = f"Give gears.center_distance, or {own}."
             yield Problem(own, "", "is missing.", remedy)
     for body in gearing.planets:
-        yield from _pin_radius_problems(gearing, body, distances)
+        yield from _pin_radius_problems(gearing, body)
     if None not in distances.values():
-        yield from _triangle_problems(gearing, distances)
+        yield from _triangle_problems(gearing)
 
 
-def _pin_radius_problems(
-    gearing: Gearing, body: str, distances: Mapping[str, float | None]
-) -> Iterator[Problem]:
+def _pin_radius_problems(gearing: Gearing, body: str) -> Iterator[Problem]:
     """All meshes of a planet with central gears must put its pin at one radius."""
     own = [
         (mesh, distance)
         for mesh in gearing.meshes
-        if gearing.planet_of(mesh) == body and (distance := distances[mesh.key]) is not None
+        if gearing.planet_of(mesh) == body and (distance := gearing.distances[mesh.key]) is not None
     ]
     if not own or max(a for _, a in own) - min(a for _, a in own) <= SAME_PLACE:
         return
@@ -145,10 +143,9 @@ def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
     )
 
 
-def _triangle_problems(
-    gearing: Gearing, distances: Mapping[str, float | None]
-) -> Iterator[Problem]:
+def _triangle_problems(gearing: Gearing) -> Iterator[Problem]:
     """Two planets that mesh must stand at their centre distance from each other."""
+    distances = gearing.distances
     radii = gearing.pin_radii(distances)
     pairs = [(mesh, pair) for mesh in gearing.meshes if (pair := gearing.planet_pair(mesh))]
     wide = False
@@ -289,18 +286,18 @@ def _axial_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Pro
 
 def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
     """Planets must not touch each other."""
-    positions, pins, angles = gearing.positions, gearing.pins, gearing.planet_angles
+    angles = gearing.planet_angles
     close = [
         (one, two)
         for one, two in combinations_with_replacement(
-            [gear for gear in gearing.bodies if gearing.bodies[gear] in pins], 2
+            [gear for gear in gearing.bodies if gearing.bodies[gear] in gearing.pins], 2
         )
-        if _side_by_side(gearing, sound, positions, one, two)
+        if _side_by_side(gearing, sound, one, two)
     ]
     seen: set[tuple[str, str]] = set()
     for one, two in close:
         bodies = (gearing.bodies[one], gearing.bodies[two])
-        gap = _gap(gearing, sound, pins, angles, one, two)
+        gap = _gap(gearing, sound, angles, one, two)
         if gap > 0 or bodies in seen:
             continue
         seen.add(bodies)
@@ -313,22 +310,17 @@ def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
         )
         key = gearing.count_key if gearing.stated_angles is None else "planet.angles"
         allowed = f"{which} {millimetres(-gap)}."
-        yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, pins, close, apart))
+        yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, close, apart))
 
 
 def _gap(
-    gearing: Gearing,
-    sound: Mapping[str, Gear],
-    pins: Mapping[str, Pin],
-    angles: tuple[float, ...],
-    one: str,
-    two: str,
+    gearing: Gearing, sound: Mapping[str, Gear], angles: tuple[float, ...], one: str, two: str
 ) -> float:
     """Smallest distance of the tip circles of two gears on any arms that do not mesh. [m]
 
     Theory (K8).
     """
-    first, second = pins[gearing.bodies[one]], pins[gearing.bodies[two]]
+    first, second = (gearing.pins[gearing.bodies[gear]] for gear in (one, two))
     mates = any({mesh.first, mesh.second} == {one, two} for mesh in gearing.meshes)
     tips = sound[one].tip_radius + sound[two].tip_radius
     gap = math.inf
@@ -343,42 +335,37 @@ def _gap(
 def _fewer(
     gearing: Gearing,
     sound: Mapping[str, Gear],
-    pins: Mapping[str, Pin],
     close: list[tuple[str, str]],
     other: str,  # What else helps.
 ) -> str:
     """How many planets would not touch."""
     for count in range(MOST_PLANETS, 0, -1):
         places = nearest_places(count, 0)
-        if all(_gap(gearing, sound, pins, places, one, two) > 0 for one, two in close):
+        if all(_gap(gearing, sound, places, one, two) > 0 for one, two in close):
             return f"Take fewer planets (at most {count} fit equally spaced){other}."
     return "Shorten their teeth, or change the centre distances."
 
 
-def _side_by_side(
-    gearing: Gearing, sound: Mapping[str, Gear], positions: Mapping[str, float], one: str, two: str
-) -> bool:
+def _side_by_side(gearing: Gearing, sound: Mapping[str, Gear], one: str, two: str) -> bool:
     """True if the faces of two gears on planets are known to overlap along the axis."""
     bodies = gearing.bodies[one], gearing.bodies[two]
     if bodies[0] == bodies[1]:
         return one == two
-    offsets = _axial_offsets(gearing, positions, bodies[0])
+    offsets = _axial_offsets(gearing, bodies[0])
     if bodies[1] not in offsets:
         return False
+    positions = gearing.positions
     apart = abs(offsets[bodies[1]] + positions[two] - positions[one])
     return apart < (sound[one].face_width + sound[two].face_width) / 2 - SAME_PLACE
 
 
-def _axial_offsets(
-    gearing: Gearing, positions: Mapping[str, float], start: str
-) -> dict[str, float]:
+def _axial_offsets(gearing: Gearing, start: str) -> dict[str, float]:
     """Middle of each planet from that of `start`, as far as meshes tell: mates share a plane."""
     # a central gear stands for itself: how far apart two of them are on a shaft is not known here
     owners = {
         gear: body if body in gearing.planets else gear for gear, body in gearing.bodies.items()
     }
-    offsets = {start: 0.0}
-    left = [start]
+    offsets, left, positions = {start: 0.0}, [start], gearing.positions
     while left:
         known = left.pop()
         for mesh in gearing.meshes:

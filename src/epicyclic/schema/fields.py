@@ -93,11 +93,6 @@ def dict_value(annotation: Any) -> Any:
     return None
 
 
-def is_whole_number(annotation: Any) -> bool:
-    """True for keys that count."""
-    return annotation is int
-
-
 def is_text(annotation: Any) -> bool:
     """True for keys that hold any text, such as a name that the user chose."""
     members = [_without_metadata(member) for member in _members(annotation)]
@@ -106,8 +101,7 @@ def is_text(annotation: Any) -> bool:
 
 def is_array(annotation: Any) -> bool:
     """True for keys that hold several values."""
-    members = map(_without_metadata, _members(annotation))
-    return any(typing.get_origin(member) is tuple for member in members)
+    return entry_of(annotation) is not None
 
 
 def is_named(metadata: Sequence[Any]) -> bool:
@@ -283,6 +277,6 @@ def _to_input(value: Any, quantity: Quantity | None) -> Any:
 def is_continuous(field: tuple[Any, tuple[Any, ...]], quantity: Quantity | None) -> bool:
     """True for keys that hold a number which does not count."""
     annotation = field[0]
-    if is_array(annotation) or is_whole_number(annotation) or table_of(annotation) is not None:
+    if is_array(annotation) or annotation is int or table_of(annotation) is not None:
         return False
     return quantity is not None or any(kind is float for kind, _ in _leaves(annotation))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -252,152 +253,131 @@ class SealTable(Table):
 _DRAG_AXES = ("speed", "temperature")  # Axes of the tables of parts that carry no load.
 
 
-def bearing_problems(table: ShaftBearingTable) -> list[Problem]:
+def bearing_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     """What contradicts itself, or is missing, in the table of a bearing."""
-    from epicyclic.losses.shaft_bearing import bearing_types  # cases without bearings need it not
+    # cases without bearings need it not
+    from epicyclic.losses.shaft_bearing import DEFAULT_VISCOUS_FACTORS, bearing_types
 
-    problems = _size_problems(table) + _force_problems(table)
-    if table.type not in bearing_types(table.model):
-        reason = f"has no constants for {table.type} roller bearings."
-        remedy = 'Choose model = "palmgren" or "table".'
-        return [*problems, Problem("model", written(table.model), reason, remedy)]
-    if table.model == "table":
-        return problems + _own_table_problems(table, LossTableTable.AXES)
-    problems += _own_table_problems(table, LossTableTable.AXES)
-    if table.model == "skf-2018":
-        problems += _skf_problems(table)
-    if (
-        table.type == "deep-groove"
-        and table.model in ("harris", "skf-2018")
-        and table.static_load_rating is None
-    ):
-        reason = f"is missing; the model {table.model} needs it for ball bearings."
-        problems.append(Problem("static_load_rating", "", reason, "Add C0 from the catalogue."))
-    return problems
-
-
-def _size_problems(table: ShaftBearingTable) -> list[Problem]:
-    from epicyclic.losses.shaft_bearing import DEFAULT_VISCOUS_FACTORS
-
-    problems = []
+    kind, model = table.type, table.model
     if table.bore >= table.outside_diameter:
         reason = f"must be less than outside_diameter, {millimetres(table.outside_diameter)}."
-        problems.append(Problem("bore", millimetres(table.bore), reason, "Correct one of the two."))
-    if (table.type, table.cage) not in DEFAULT_VISCOUS_FACTORS:
-        reason = f"is not made as a {table.type} bearing."
+        yield Problem("bore", millimetres(table.bore), reason, "Correct one of the two.")
+    if (kind, table.cage) not in DEFAULT_VISCOUS_FACTORS:
         remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
-        problems.append(Problem("cage", written(table.cage), reason, remedy))
+        yield Problem("cage", written(table.cage), f"is not made as a {kind} bearing.", remedy)
+    yield from _angle_problems(table)
+    yield from _same_body_problems({"shaft": table.shaft, "against": table.against})
+    yield from _force_problems(table)
+    if kind not in bearing_types(model):
+        reason = f"has no constants for {kind} roller bearings."
+        yield Problem("model", written(model), reason, 'Choose model = "palmgren" or "table".')
+        return
+    yield from _own_table_problems(table, LossTableTable.AXES)
+    if model == "skf-2018":
+        yield from _skf_problems(table)
+    if kind == "deep-groove" and model in ("harris", "skf-2018") and not table.static_load_rating:
+        reason = f"is missing; the model {model} needs it for ball bearings."
+        yield Problem("static_load_rating", "", reason, "Add C0 from the catalogue.")
+
+
+def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
+    """The contact angle of tapered rollers, stated once."""
     angles = [key for key in ("axial_factor", "contact_angle") if getattr(table, key) is not None]
-    if table.type == "tapered" and table.model != "table" and len(angles) != 1:
-        reason = "is missing; needed is axial_factor or contact_angle."
-        if angles:
-            reason = "is given beside contact_angle; either follows from the other."
-        remedy = "Delete one." if angles else "Add Y from the catalogue, or the contact angle."
-        problems.append(Problem("axial_factor", "", reason, remedy))
     if table.type != "tapered":
-        problems += [
-            Problem(key, "", "belongs to tapered roller bearings.", "Delete it.") for key in angles
-        ]
-    return problems
+        for key in angles:
+            yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
+    elif table.model != "table" and not angles:
+        reason = "is missing; needed is axial_factor or contact_angle."
+        remedy = "Add Y from the catalogue, or the contact angle."
+        yield Problem("axial_factor", "", reason, remedy)
+    elif table.model != "table" and len(angles) == 2:
+        reason = "is given beside contact_angle; either follows from the other."
+        yield Problem("axial_factor", "", reason, "Delete one.")
 
 
-def _force_problems(table: ShaftBearingTable) -> list[Problem]:
-    problems = _same_body_problems({"shaft": table.shaft, "against": table.against})
+def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
-        problems.append(Problem("radial_force", "", "is missing; axial_force is given.", remedy))
+        yield Problem("radial_force", "", "is missing; axial_force is given.", remedy)
     if table.type == "needle":
         reason = "is asked of a needle roller bearing, which takes no axial force."
         remedy = "Let another bearing locate the shaft."
         if table.locating:
-            problems.append(Problem("locating", "true", reason, remedy))
+            yield Problem("locating", "true", reason, remedy)
         if table.axial_force:
-            problems.append(Problem("axial_force", f"{table.axial_force:g} N", reason, remedy))
-    return problems
+            yield Problem("axial_force", f"{table.axial_force:g} N", reason, remedy)
 
 
-def _skf_problems(table: ShaftBearingTable) -> list[Problem]:
+def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     from epicyclic.losses.shaft_bearing import skf_series
 
-    problems = []
     known = skf_series(table.type)
-    needs_series = table.cage == "caged"
     choice = ", ".join(known)
-    if needs_series and table.series is None:
-        remedy = f"Give one of {choice}."
-        problems.append(
-            Problem("series", "", f"is missing; SKF has a row for each: {choice}.", remedy)
-        )
-    elif needs_series and table.series not in known:
+    if table.cage == "caged" and table.series is None:
+        reason = f"is missing; SKF has a row for each: {choice}."
+        yield Problem("series", "", reason, f"Give one of {choice}.")
+    elif table.cage == "caged" and table.series not in known:
         remedy = did_you_mean(table.series or "", known) or 'Or choose model = "palmgren".'
         reason = f"is not in the table; known of {table.type} bearings are {choice}."
-        problems.append(Problem("series", written(table.series), reason, remedy))
+        yield Problem("series", written(table.series), reason, remedy)
     if table.oil_level > 0 and table.type != "deep-groove" and table.width is None:
         reason = "is missing; the drag of rollers in an oil bath needs it."
-        problems.append(Problem("width", "", reason, "Add B from the catalogue."))
-    return problems
+        yield Problem("width", "", reason, "Add B from the catalogue.")
 
 
-def seal_problems(table: SealTable) -> list[Problem]:
+def seal_problems(table: SealTable) -> Iterator[Problem]:
     """What contradicts itself, or is missing, in the table of a seal."""
-    bodies = {"shaft": table.shaft, "against": table.against}
-    return _same_body_problems(bodies) + _own_table_problems(table, _DRAG_AXES)
+    yield from _same_body_problems({"shaft": table.shaft, "against": table.against})
+    yield from _own_table_problems(table, _DRAG_AXES)
 
 
-def drag_problems(table: DragTable) -> list[Problem]:
+def drag_problems(table: DragTable) -> Iterator[Problem]:
     """What contradicts itself, or is missing, in the table of a drag."""
     first, second = table.between
-    problems = _same_body_problems({"between[0]": first, "between[1]": second})
-    return problems + loss_table_problems(table, _DRAG_AXES)
+    yield from _same_body_problems({"between[0]": first, "between[1]": second})
+    yield from loss_table_problems(table, _DRAG_AXES)
 
 
-def _same_body_problems(bodies: Mapping[str, str]) -> list[Problem]:
+def _same_body_problems(bodies: Mapping[str, str]) -> Iterator[Problem]:
     (_, first), (key, second) = bodies.items()
-    if first != second:
-        return []
-    reason = "is the same body twice: nothing moves between them."
-    return [Problem(key, written(second), reason, f'Name another shaft, or "{HOUSING}".')]
+    if first == second:
+        reason = "is the same body twice: nothing moves between them."
+        yield Problem(key, written(second), reason, f'Name another shaft, or "{HOUSING}".')
 
 
 def _own_table_problems(
     table: ShaftBearingTable | SealTable, axes: Collection[str]
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Problems of the loss table of an element, and of one that is missing or idle."""
-    if table.model != "table":
-        idle = Problem("table", "", 'belongs to model = "table".', "Delete it, or choose that.")
-        return [] if table.table is None else [idle]
-    if table.table is None:
+    if table.model == "table" and table.table is None:
         reason = "needs a table of friction torque or power."
-        return [Problem("model", '"table"', reason, "Add table, or choose another model.")]
-    return [
-        Problem(f"table.{found.key}".rstrip("."), found.value, found.allowed, found.remedy)
-        for found in loss_table_problems(table.table, axes)
-    ]
+        yield Problem("model", '"table"', reason, "Add table, or choose another model.")
+    elif table.model == "table" and table.table is not None:
+        for found in loss_table_problems(table.table, axes):
+            yield replace(found, key=f"table.{found.key}".rstrip("."))
+    elif table.table is not None:
+        yield Problem("table", "", 'belongs to model = "table".', "Delete it, or choose that.")
 
 
-def loss_table_problems(table: LossTableTable, axes: Collection[str]) -> list[Problem]:
+def loss_table_problems(table: LossTableTable, axes: Collection[str]) -> Iterator[Problem]:
     """What contradicts itself in a table of torque or power that may have `axes`."""
-    contents = [key for key in ("torque", "power", "file") if getattr(table, key) is not None]
-    if len(contents) != 1:
-        reason = "must have exactly one of torque, power and file."
-        given = " and ".join(contents)
-        return [Problem(contents[0] if contents else "", given, reason, "Give one of them.")]
-    given_axes = table.axes()
-    problems = [
-        Problem(name, "", "is no axis here: only bearings carry a load.", "Delete it.")
-        for name in given_axes
-        if name not in axes
-    ]
-    if contents == ["file"]:
-        problems += [
-            Problem(name, "", "is given beside file, which has its own axes.", "Delete it.")
-            for name in given_axes
-        ]
-        return problems
     from epicyclic.losses.loss_table import table_problems
 
-    values = getattr(table, table.quantity)
-    return problems or table_problems(table.quantity, given_axes, values)
+    contents = [key for key in ("torque", "power", "file") if getattr(table, key) is not None]
+    given = table.axes()
+    foreign = [name for name in given if name not in axes]
+    if len(contents) != 1:
+        reason = "must have exactly one of torque, power and file."
+        key = contents[0] if contents else ""
+        yield Problem(key, " and ".join(contents), reason, "Give one of them.")
+        return
+    for name in foreign:
+        yield Problem(name, "", "is no axis here: only bearings carry a load.", "Delete it.")
+    if contents == ["file"]:
+        for name in given:
+            yield Problem(name, "", "is given beside file, which has its own axes.", "Delete it.")
+    elif not foreign:
+        yield from table_problems(table.quantity, given, getattr(table, table.quantity))
 
 
 class ElementTables(Table):
@@ -408,7 +388,7 @@ class ElementTables(Table):
     drags: dict[str, DragTable] = Field(default={})
 
 
-ELEMENT_CHECKS: Mapping[str, Callable[[Any], list[Problem]]] = {
+ELEMENT_CHECKS: Mapping[str, Callable[[Any], Iterable[Problem]]] = {
     "bearings": bearing_problems,
     "seals": seal_problems,
     "drags": drag_problems,

@@ -30,7 +30,6 @@ from epicyclic.schema.fields import (
     is_continuous,
     is_named,
     is_text,
-    is_whole_number,
     quantity_of,
     table_of,
 )
@@ -566,7 +565,7 @@ class Point:
                 raise ValueError(error.message()) from None
             return text
         number = in_unit(value, "")
-        if not is_whole_number(annotation):
+        if annotation is not int:
             return number
         if abs(number - round(number)) > _WHOLE:
             shown = format_number(number, 6)
@@ -626,7 +625,7 @@ def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
 
 def _is_number(case: Case, key: str) -> bool:
     field = _field(case, key)
-    return is_whole_number(field[0]) or is_continuous(field, quantity_of(*field))
+    return field[0] is int or is_continuous(field, quantity_of(*field))
 
 
 def _is_found(case: Case, key: str) -> bool:
