@@ -39,7 +39,8 @@ from epicyclic.case.tables.elements import (
     ElementTables,
     PlanetBearing,
     ThrustBearing,
-    placing_problems,
+    between,
+    points_of,
 )
 from epicyclic.case.tables.models import (
     ContactSolver,
@@ -60,7 +61,7 @@ from epicyclic.case.tables.operation import (
     Surroundings,
     ThermalTable,
 )
-from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, check_uncertainty
+from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, stated_values
 from epicyclic.case.train_tables import (
     ComputedSet,
     GivenListedSet,
@@ -208,7 +209,7 @@ class CaseTable(Table):
         if case is not None:
             case._tables, case._source = tables, source
         if case is not None and getattr(case, "uncertainty", {}):
-            problems = [*problems, *check_uncertainty(case)]
+            problems = [*problems, *stated_values(case)[1]]
         if case is None or problems:
             ordered = sorted(problems, key=lambda problem: _position(cls, problem))
             raise InputError(ordered, source)
@@ -739,7 +740,11 @@ def _element_problems(train: TrainCase) -> list[Problem]:
         taken[name] = kind
         found = list(ELEMENT_CHECKS[kind](table))
         if not found and train.lubricant is not None:
-            found = placing_problems(table, train.shape.names, train.folder)
+            try:
+                between(table, train.shape.names)
+                points_of(table, train.folder)
+            except InputError as error:
+                found = list(error.problems)
         problems += [_below(key, problem) for problem in found]
     if not train.computed:
         return problems

@@ -72,7 +72,10 @@ def cross_check(
     problems: list[Problem] = []
     models = sections.get("models")
     if isinstance(models, GearPairModels):
-        problems += _check_friction_model(models, {*given, *sections})
+        if models.friction == "table" and "friction_table" not in {*given, *sections}:
+            remedy = "Add [friction_table], or choose another model."
+            allowed = "needs a table of coefficients."
+            problems.append(Problem("models.friction", "", allowed, remedy))
         if "lubricant" in sections or models.oil_model is not None:  # a train has that of its sets
             problems += check_oil_model(models, folder, sections.get("lubricant"))
         problems += _check_pocketing_table(models, folder)
@@ -81,8 +84,8 @@ def cross_check(
         problems += law_problems("contact_solver", solver)
     thermal, oil = sections.get("thermal"), sections.get("lubrication")
     if isinstance(models, GearPairModels) and isinstance(thermal, ThermalTable):
-        flow = oil.oil_flow if isinstance(oil, LubricationTable) else None
-        problems += check_ways_out(thermal, models.temperatures, flow)
+        own = oil if isinstance(oil, LubricationTable) else None
+        problems += check_ways_out(thermal, models.temperatures, own)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
     if gearing is not None:
@@ -93,8 +96,8 @@ def cross_check(
     sharing = sections.get("load_sharing")
     if isinstance(sharing, LoadSharing) and {"sun", "planet", "ring"} <= sections.keys():
         # tooth numbers are enough, whether the gears fit or not
-        own = gearing or expand({"gears": None, **sections})[0]
-        problems += _check_load_sharing(sharing, own)
+        toothed = gearing or expand({"gears": None, **sections})[0]
+        problems += _check_load_sharing(sharing, toothed)
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))
@@ -297,13 +300,6 @@ def _check_friction_table(table: FrictionTable) -> list[Problem]:
         remedy = "Give one value, or one row, for each value of the first axis."
         problems.append(Problem("friction_table.friction", shown, allowed, remedy))
     return problems
-
-
-def _check_friction_model(models: GearPairModels, given: Collection[str]) -> list[Problem]:
-    if models.friction != "table" or "friction_table" in given:
-        return []
-    remedy = "Add [friction_table], or choose another model."
-    return [Problem("models.friction", '"table"', "needs a table of coefficients.", remedy)]
 
 
 def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:

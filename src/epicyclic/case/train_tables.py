@@ -30,7 +30,7 @@ from epicyclic.case.tables.models import (
     PlanetaryLosses,
     PlanetaryModels,
 )
-from epicyclic.case.tables.operation import LUBRICATION, LubricationTable
+from epicyclic.case.tables.operation import ANY_OPERATION, LUBRICATION, LubricationTable
 from epicyclic.schema.table import Table, option
 from epicyclic.units import (
     Angle,
@@ -272,11 +272,7 @@ StateName = Annotated[str, BeforeValidator(_state_name)]
 class TrainOperation(Table):
     """How the train runs."""
 
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "torque": "0 N*m",
-        "speed": "0 rpm",
-        "oil_inlet_temperature": None,
-    }
+    STAND_INS: ClassVar[dict[str, object]] = ANY_OPERATION | {"oil_inlet_temperature": None}
 
     state: StateName | None = option("One of [states].")
     input: str = Field(description="The shaft to which torque and speed belong.")

@@ -183,7 +183,7 @@ def _no_member(key: str, name: str, members: Sequence[str], sets: Mapping[str, G
 # --- operation ------------------------------------------------------------------------------------
 
 
-class Operation(Protocol):
+class StatedOperation(Protocol):
     """How a train runs, by the names of its shafts."""
 
     @property
@@ -204,7 +204,7 @@ class Train(Protocol):
     @property
     def shape(self) -> TrainShape: ...
     @property
-    def operation(self) -> Operation: ...
+    def operation(self) -> StatedOperation: ...
     @property
     def states(self) -> Mapping[str, Joined]: ...
     @property

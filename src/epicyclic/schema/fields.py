@@ -143,18 +143,14 @@ def find_field(table: type[BaseModel], key: str) -> tuple[Any, tuple[Any, ...]] 
     return None if place.annotation is None else (place.annotation, place.metadata)
 
 
-def all_keys(table: type[BaseModel], prefix: str = "") -> Iterator[str]:
-    """Every dotted key below `table` that holds a value, in the order of the schema."""
-    return (f"{prefix}{key}" for key in _keys_below(table))
-
-
 @cache
-def _keys_below(table: type[BaseModel]) -> tuple[str, ...]:
+def all_keys(table: type[BaseModel]) -> tuple[str, ...]:
+    """Every dotted key below `table` that holds a value, in the order of the schema."""
     found: list[str] = []
     for name, field in table.model_fields.items():
         inner = table_of(field.annotation)
         named = "" if dict_value(field.annotation) is None else "NAME."
-        found += [name] if inner is None else all_keys(inner, f"{name}.{named}")
+        found += [name] if inner is None else [f"{name}.{named}{key}" for key in all_keys(inner)]
     return tuple(found)
 
 
@@ -207,11 +203,8 @@ def _members(annotation: Any) -> Iterator[Any]:
 
 
 def _without_metadata(annotation: Any) -> Any:
-    return typing.get_args(annotation)[0] if _is_annotated(annotation) else annotation
-
-
-def _is_annotated(annotation: Any) -> bool:
-    return typing.get_origin(annotation) is typing.Annotated
+    is_annotated = typing.get_origin(annotation) is typing.Annotated
+    return typing.get_args(annotation)[0] if is_annotated else annotation
 
 
 def _is_table(annotation: Any) -> bool:
@@ -230,7 +223,7 @@ def entry_of(annotation: Any, number: int = 0) -> Any:
 def _branch(annotation: Any, name: str | int) -> Any:
     """The member of a union that goes by `name` in an error's location; None if none does."""
     for member in _members(annotation):
-        items = typing.get_args(member)[1:] if _is_annotated(member) else ()
+        items = getattr(member, "__metadata__", ())  # of an annotated one
         if any(isinstance(item, Tag) and item.tag == name for item in items):
             return _without_metadata(member)
     tables = list(tables_in(annotation))

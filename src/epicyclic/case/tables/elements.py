@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, Tag
 
 from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
@@ -399,30 +399,14 @@ ELEMENT_CHECKS: Mapping[str, Callable[[Any], Iterable[Problem]]] = {
 # How they stand in a train.
 
 
-def bodies_of(table: Table) -> dict[str, str]:
-    """The two bodies that a part is between, by their keys."""
-    keys = dict(table)
-    if "between" in keys:
-        return {f"between[{number}]": body for number, body in enumerate(keys["between"])}
-    return {key: keys[key] for key in ("shaft", "against")}
-
-
-def placing_problems(table: Table, shafts: Mapping[str, str], folder: Path) -> list[Problem]:
-    """Why a part that is sound by itself cannot be in a train: unknown shafts, a bad file."""
-    try:
-        between(table, shafts)
-        points_of(table, folder)
-    except InputError as error:
-        return list(error.problems)
-    return []
-
-
 def between(
     table: Table,
     shafts: Mapping[str, str],  # The bodies beside the housing, by all their names.
 ) -> tuple[str, str]:
     """The bodies that a part is between; raises `InputError` for unknown ones."""
-    names = bodies_of(table)
+    keys = dict(table)
+    names: dict[str, str] = {key: keys[key] for key in ("shaft", "against") if key in keys}
+    names |= {f"between[{number}]": body for number, body in enumerate(keys.get("between", ()))}
     known = {**shafts, HOUSING: HOUSING}
     raise_any(
         Problem(
@@ -438,45 +422,31 @@ def between(
     if first == second:
         reason = f"is the same shaft, {first}, by another name: nothing moves between them."
         key, name = list(names.items())[1]
-        raise InputError([Problem(key, written(name), reason, "Name another shaft.")])
+        raise one_problem(key, written(name), reason, "Name another shaft.")
     return first, second
 
 
 def points_of(table: Table, folder: Path) -> LossTable | None:
     """The torque or power that a part states as a table; raises `InputError` for a bad file."""
-    if isinstance(table, DragTable):
-        return _loss_table(table, folder, "", _DRAG_AXES)
-    assert isinstance(table, ShaftBearingTable | SealTable)
-    if table.table is None:
+    own = table if isinstance(table, DragTable) else getattr(table, "table", None)
+    if not isinstance(own, LossTableTable):
         return None
-    is_bearing = isinstance(table, ShaftBearingTable)
-    axes = LossTableTable.AXES if is_bearing else _DRAG_AXES
-    return _loss_table(table.table, folder, "table.", axes)
-
-
-def _loss_table(
-    table: LossTableTable, folder: Path, prefix: str, axes: Collection[str]
-) -> LossTable:
     from epicyclic.losses.loss_table import LossTable, read_loss_table
 
-    if table.file is None:
-        points = {name: np.asarray(given) for name, given in table.axes().items()}
-        values = np.asarray(getattr(table, table.quantity), dtype=float)
-        return LossTable(table.quantity, points, values)
+    if own.file is None:
+        points = {name: np.asarray(given) for name, given in own.axes().items()}
+        return LossTable(own.quantity, points, np.asarray(getattr(own, own.quantity), dtype=float))
+    key, shown = "file" if own is table else "table.file", written(own.file)
     try:
-        found = read_loss_table(folder / table.file)
+        found = read_loss_table(folder / own.file)
     except InputError as error:
-        raise InputError(
-            Problem(
-                f"{prefix}file",
-                written(table.file),
-                " ".join(part for part in (one.key, one.value, one.allowed) if part),
-                one.remedy,
-            )
+        whole = [
+            (" ".join(part for part in (one.key, one.value, one.allowed) if part), one.remedy)
             for one in error.problems
-        ) from None
+        ]
+        raise InputError(Problem(key, shown, *what) for what in whole) from None
+    axes = LossTableTable.AXES if isinstance(table, ShaftBearingTable) else _DRAG_AXES
     if not set(found.names) <= set(axes):
         reason = f"may have the axes {' and '.join(axes)} only."
-        remedy = "Delete the column radial_force."
-        raise InputError([Problem(f"{prefix}file", written(table.file), reason, remedy)])
+        raise one_problem(key, shown, reason, "Delete the column radial_force.")
     return found

@@ -34,7 +34,7 @@ from epicyclic.units import (
 
 Member = Literal["sun", "ring", "carrier"]
 
-_ANY_OPERATION: dict[str, object] = {
+ANY_OPERATION: dict[str, object] = {
     "torque": "0 N*m",
     "speed": "0 rpm",
     "oil_inlet_temperature": "40 degC",
@@ -44,7 +44,7 @@ _ANY_OPERATION: dict[str, object] = {
 class PlanetaryOperation(Table):
     """How the gear set runs."""
 
-    STAND_INS = _ANY_OPERATION
+    STAND_INS = ANY_OPERATION
     EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
 
     input: Member = Field(description="The member to which torque and speed belong.")
@@ -63,7 +63,7 @@ class PlanetaryOperation(Table):
 class GearPairOperation(Table):
     """How the gear pair runs."""
 
-    STAND_INS = _ANY_OPERATION
+    STAND_INS = ANY_OPERATION
 
     torque: Torque = Field(description="On the pinion; negative = coasting.")
     speed: RotationalSpeed = Field(description="Of the pinion.")
@@ -226,18 +226,12 @@ def check_outlet(thermal: ThermalTable, inlet: float | None) -> list[Problem]:
 
 
 def check_ways_out(
-    thermal: ThermalTable,
-    temperatures: str,
-    flow: float | None,  # Oil that [lubrication] brings to the gears. [m^3/s]
+    thermal: ThermalTable, temperatures: str, oil: LubricationTable | None
 ) -> list[Problem]:
     """A network needs a way for the heat to leave."""
-    ways = (
-        flow if thermal.oil_flow is None else thermal.oil_flow,
-        thermal.oil_outlet_temperature,
-        thermal.housing,
-        thermal.cooler_conductance,
-    )
-    if temperatures != "network" or any(ways):
+    flow = oil.oil_flow if thermal.oil_flow is None and oil else thermal.oil_flow
+    ways = (thermal.oil_outlet_temperature, thermal.housing, thermal.cooler_conductance)
+    if temperatures != "network" or flow or any(ways):
         return []
     allowed = 'leaves no way out for the heat, which models.temperatures = "network" follows.'
     remedy = "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] with its "

@@ -114,11 +114,6 @@ def model_forms() -> dict[str, tuple[float, str]]:
     }
 
 
-def check_uncertainty(case: CaseTable) -> list[Problem]:
-    """What is wrong with the table [uncertainty] of a case."""
-    return stated_values(case)[1]
-
-
 def stated_values(case: CaseTable) -> tuple[dict[str, UncertainValue | None], list[Problem]]:
     """What a case states itself, None for what is exact, and what is wrong with that."""
     found: dict[str, UncertainValue | None] = {}

@@ -211,9 +211,7 @@ def _unsuitable(key: str, annotation: Any, metadata: tuple[Any, ...]) -> Problem
     if table is None or is_named(metadata):
         return None
     allowed = "is a table; a sweep varies keys that hold one value."
-    return Problem(
-        key, "", allowed, f"Vary keys of it, such as {next(all_keys(table, f'{key}.'))}."
-    )
+    return Problem(key, "", allowed, f"Vary keys of it, such as {key}.{all_keys(table)[0]}.")
 
 
 def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
