@@ -32,7 +32,7 @@ from epicyclic.case.rules import (
     listed_problems,
     operation_problems,
 )
-from epicyclic.case.tables.base import roughness_told, short_oil_told
+from epicyclic.case.tables.base import builtin_oil, roughness_told
 from epicyclic.case.tables.elements import (
     ELEMENT_CHECKS,
     Carrier,
@@ -91,6 +91,7 @@ from epicyclic.messages import (
     value_at,
     written,
 )
+from epicyclic.oil.grades import short_oil_told
 from epicyclic.schema.fields import find_field, locate, to_inputs
 from epicyclic.schema.read import flattened, plain, read_file, with_value, without
 from epicyclic.schema.table import Table
@@ -328,7 +329,8 @@ def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Fou
 
 def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
     """What an oil stands for that is stated by its grade or two viscosities."""
-    told = short_oil_told(value_at(dict(raw), ("lubricant", "oil")))
+    oil = value_at(dict(raw), ("lubricant", "oil"))
+    told = short_oil_told(oil, builtin_oil(oil))
     if told is not None:
         yield Found("lubricant.oil", *told)
 
