@@ -59,7 +59,8 @@ def _refused_oil(what: str, remedy: str) -> PydanticCustomError:
 def whole_oil(table: dict[str, Any], preset: Mapping[str, Any] | None) -> dict[str, Any]:
     """The properties of an oil that its grade or two viscosities describe; others as they are.
 
-    `preset` has those of a built-in oil of this grade and kind, if there is one. Raises `PydanticCustomError` if the table does not tell the viscosity at two temperatures.
+    `preset` has those of a built-in oil of this grade and kind, if there is one. Raises
+    `PydanticCustomError` if the table does not tell the viscosity at two temperatures.
     """
     if not _is_short(table):
         return table

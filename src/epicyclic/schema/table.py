@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import Any, ClassVar, NamedTuple
+from collections.abc import Iterable
+from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field
 
-from epicyclic.errors import Problem
 from epicyclic.schema.fields import to_inputs
 
 
@@ -57,22 +56,6 @@ class PointsTable(Table):
         """The axes given, by name."""
         given = {name: getattr(self, name) for name in self.AXES}
         return {name: points for name, points in given.items() if points is not None}
-
-
-class Condition(NamedTuple):
-    """What a table, or several, must not state: a row of a list of checks."""
-
-    key: str  # The keys that it is about, whole, joined by ``", "``.
-    broken: Callable[..., bool]  # Whether the tables break it.
-    allowed: str
-    remedy: str
-
-
-def broken_conditions(conditions: Iterable[Condition], *tables: Table) -> list[Problem]:
-    """The problems of the conditions that `tables` break."""
-    return [
-        Problem(one.key, "", one.allowed, one.remedy) for one in conditions if one.broken(*tables)
-    ]
 
 
 def _values_or_rows(value: object) -> str:
