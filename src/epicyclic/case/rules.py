@@ -112,58 +112,47 @@ def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> Itera
                 yield Problem(f"operation.{key}", "", allowed, "Name one of the other two.")
 
 
-def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> list[Problem]:
+def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> Iterator[Problem]:
     """The rollers of the bearing at `key` must fit around its pin."""
     pitch_diameter = bearing.pin_diameter + bearing.roller_diameter + bearing.diametral_clearance
     room = math.pi / math.asin(min(1.0, bearing.roller_diameter / pitch_diameter))
-    if bearing.rollers_per_row <= room:
-        return []
-    allowed = f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit "
-    allowed += f"around the pin of {millimetres(bearing.pin_diameter)}."
-    remedy = "Take fewer or thinner rollers."
-    return [Problem(f"{key}.rollers_per_row", str(bearing.rollers_per_row), allowed, remedy)]
+    if bearing.rollers_per_row > room:
+        allowed = f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit "
+        allowed += f"around the pin of {millimetres(bearing.pin_diameter)}."
+        yield Problem(f"{key}.rollers_per_row", "", allowed, "Take fewer or thinner rollers.")
 
 
 def check_bores(
     gearing: Gearing,
     # By the key of a bearing: its table, and the planets that it carries.
     bearings: Mapping[str, tuple[PlanetBearing, Sequence[str]]],
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Bearings must fit into the root circles of their planets."""
     sound, _ = gears_by_name(gearing)  # others are reported with the gears
-    problems = []
     for key, (bearing, planets) in bearings.items():
         bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
         for body in planets:
             roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
-            if not roots or bore < 2 * min(roots):
-                continue
-            shown = millimetres(bearing.pin_diameter)
-            allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
-            allowed += f"{millimetres(2 * min(roots))}."
-            remedy = "Take a thinner pin or thinner rollers."
-            problems.append(Problem(f"{key}.pin_diameter", shown, allowed, remedy))
-    return problems
+            if roots and bore >= 2 * min(roots):
+                allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
+                allowed += f"{millimetres(2 * min(roots))}."
+                remedy = "Take a thinner pin or thinner rollers."
+                yield Problem(f"{key}.pin_diameter", "", allowed, remedy)
 
 
-def check_listed_bearings(table: ListedSet, gearing: Gearing) -> list[Problem]:
+def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
     """Problems of the bearings that a listed set has for each kind of planets."""
     own = table.planet_bearings
-    problems = [
-        problem
-        for name, bearing in own.items()
-        for problem in (
-            *check_rollers(bearing, f"planet_bearings.{name}"),
-            *check_cage(bearing, table.models),
-        )
-    ]
+    for name, bearing in own.items():
+        yield from check_rollers(bearing, f"planet_bearings.{name}")
+        yield from check_cage(bearing, table.models)
     found = {
         f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
     }
     if table.planet_bearing is not None:
         others = [body for body in gearing.planets if body not in own]
         found["planet_bearing"] = table.planet_bearing, others
-    return problems + check_bores(gearing, found)
+    yield from check_bores(gearing, found)
 
 
 def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
@@ -302,7 +291,9 @@ def _check_friction_table(table: FrictionTable) -> list[Problem]:
     return problems
 
 
-def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
+def check_oil_model(
+    models: GearPairModels, folder: Path, lubricant: Table | None
+) -> Iterator[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
     asked = {
         key: quantity
@@ -310,28 +301,24 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
         if getattr(models, key, "").startswith("fitted")
     }
     if not asked and models.oil_model is None:
-        return []
+        return
     try:
         model = _oil_model(models, folder, lubricant)
     except InputError as error:
-        return list(error.problems)
-    if not asked:
-        return []
-    if model is None:
-        remedy = "Give models.oil_model, a file of 'epicyclic oil characterise'."
-        why = "needs a file of fitted models: none is built in for this oil."
-        return [Problem(f"models.{key}", f'"{getattr(models, key)}"', why, remedy) for key in asked]
-    problems = []
+        yield from error.problems
+        return
     for key, quantity in asked.items():
-        forms = (
-            [fitted.form for fitted in model.fits[quantity].forms] if quantity in model.fits else []
-        )
-        if models.fitted_form not in forms:
+        if model is None:
+            remedy = "Give models.oil_model, a file of 'epicyclic oil characterise'."
+            allowed = "needs a file of fitted models: none is built in for this oil."
+            yield Problem(f"models.{key}", f'"{getattr(models, key)}"', allowed, remedy)
+            continue
+        forms = model.fits[quantity].forms if quantity in model.fits else ()
+        if models.fitted_form not in [fitted.form for fitted in forms]:
             given = models.oil_model or f"that of {model.oil.name}"
             allowed = f"has no {quantity.replace('_', ' ')} of the form {models.fitted_form}."
             remedy = f"Choose another models.{key} or models.fitted_form."
-            problems.append(Problem("models.oil_model", given, allowed, remedy))
-    return problems
+            yield Problem("models.oil_model", given, allowed, remedy)
 
 
 def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> OilModel | None:
@@ -345,7 +332,7 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
     return builtin_model(lubricant.oil)
 
 
-def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:
+def _check_pocketing_table(models: GearPairModels, folder: Path) -> Iterator[Problem]:
     """That the file is one; whether it is for these pockets shows when they are known."""
     if models.pocketing_table is not None:
         from epicyclic.losses.pocket_tables import read_stored  # needs kernels
@@ -353,17 +340,15 @@ def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem
         try:
             read_stored(folder / models.pocketing_table)
         except InputError as error:
-            return list(error.problems)
-    return []
+            yield from error.problems
 
 
-def _check_void(models: GearPairModels, surroundings: Surroundings) -> list[Problem]:
+def _check_void(models: GearPairModels, surroundings: Surroundings) -> Iterator[Problem]:
     """A void has less pressure than the surroundings."""
-    if models.pocket_void_pressure < surroundings.pressure:
-        return []
-    shown = BAR.text(models.pocket_void_pressure)
-    allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
-    return [Problem("models.pocket_void_pressure", shown, allowed, "Take 0.01 bar.")]
+    if models.pocket_void_pressure >= surroundings.pressure:
+        shown = BAR.text(models.pocket_void_pressure)
+        allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
+        yield Problem("models.pocket_void_pressure", shown, allowed, "Take 0.01 bar.")
 
 
 def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:
@@ -400,13 +385,12 @@ _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = 
 # Every function returns the problems it finds; none stops at the first.
 
 
-def lubrication_problems(train: TrainCase) -> list[Problem]:
+def lubrication_problems(train: TrainCase) -> Iterator[Problem]:
     """What cannot be about the lubrication of the sets; a shared table is checked by itself."""
-    problems: list[Problem] = []
     if train.lubrication is not None and train.lubrication.immersion:
         allowed = "is stated of each set, whose gears it names."
         remedy = "Write [sets.NAME.lubrication], or give oil_level."
-        problems.append(Problem("lubrication.immersion", "", allowed, remedy))
+        yield Problem("lubrication.immersion", "", allowed, remedy)
     for name, table in train.computed_sets:
         own = table.lubrication
         if own is None or own == train.lubrication:
@@ -414,13 +398,12 @@ def lubrication_problems(train: TrainCase) -> list[Problem]:
         if train.lubrication is None:
             # the oil around everything that is in no set follows from the train's own table
             allowed = "needs [lubrication] of the train, which it then replaces for this set."
-            remedy = "Add it, for all other parts."
-            problems.append(Problem(f"sets.{name}.lubrication", "", allowed, remedy))
+            yield Problem(f"sets.{name}.lubrication", "", allowed, "Add it, for all other parts.")
         found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
         if train.shape.sets[name].listed:
             found += check_immersion(own, train.shape.sets[name].members)
-        problems += [replace(problem, key=_key(name, problem.key)) for problem in found]
-    return problems
+        for problem in found:
+            yield replace(problem, key=_key(name, problem.key))
 
 
 def _key(name: str, keys: str) -> str:
