@@ -30,8 +30,8 @@ import numpy as np
 import pandas as pd
 
 import epicyclic as ep
-from epicyclic.case.template import case_text
 from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
+from epicyclic.show.template import case_text
 from epicyclic.study.sweeps.runner import Runner
 
 REPEATS = 5
@@ -215,10 +215,10 @@ def duty_seconds() -> tuple[float, float]:
 
 def clear_caches() -> None:
     from epicyclic.build import gear_sets
-    from epicyclic.case import gear_tables as flanks
-    from epicyclic.case import gearing
     from epicyclic.contact import elastic_teeth
     from epicyclic.gears import flanks as contact_lines
+    from epicyclic.gears import gearing
+    from epicyclic.gears import stated as flanks
     from epicyclic.losses import contact as load_distribution
     from epicyclic.losses import planet_bearing
     from epicyclic.losses import pocket_flow as fluid

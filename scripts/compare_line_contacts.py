@@ -20,12 +20,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from epicyclic.case.read import parse_value
 from epicyclic.contact.fitted_models import regression_groups
 from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.kernels.mixed_ehl import sliding_friction
 from epicyclic.oil.oil import oil_state
 from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
+from epicyclic.schema.read import parse_value
 
 LEVELS = {
     "temperature": (25.0, 50.0, 75.0, 100.0),

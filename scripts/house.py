@@ -21,7 +21,7 @@ SOURCE = Path(__file__).parents[1] / "src" / "epicyclic"
 CEILINGS = {
     "lines": 72_000,
     "lines of the core": 56_000,
-    "lines of case": 8_490,  # aim: 4,500
+    "lines of case": 4_301,
     "files": 280,
     "longest chain of imports": 25,
     "modules loaded by epicyclic.case.case": 45,

@@ -23,9 +23,9 @@ from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 from epicyclic.case.case import GearPairCase, PlanetaryCase
-from epicyclic.case.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.tables.elements import ElementTables
+from epicyclic.schema.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 from epicyclic.units import Quantity
 
 PAGE, PAGE_OF_TRAINS = "how-to/case-file.md", "how-to/trains.md"

@@ -275,7 +275,7 @@ def test_check_shows_a_data_sheet(epicyclic):
 
 
 def test_init_names_every_key(epicyclic, tmp_path):
-    from epicyclic.case.fields import all_keys
+    from epicyclic.schema.fields import all_keys
 
     file = tmp_path / "mine.toml"
     epicyclic("init", str(file))

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epicyclic.case.validation import tables_of
 from epicyclic.errors import InputError
 from epicyclic.plugins.contact_solver.contact import ContactCase, contact_model, load_contact_case
+from epicyclic.schema.validation import tables_of
 
 SMOOTH = (
     "contact", "--radius", "10 mm", "--pressure", "1 GPa", "--speed", "10 m/s", "--slip", "0.2",

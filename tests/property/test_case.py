@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 
 import epicyclic
 from epicyclic.case.case import read_case
-from epicyclic.case.read import changed_at, plain, value_at
 from epicyclic.errors import InputError
+from epicyclic.messages import value_at
+from epicyclic.schema.read import changed_at, plain
 from limits import is_soon
 
 EXAMPLES = 150

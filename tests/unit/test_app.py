@@ -15,7 +15,6 @@ from nicegui import ui
 
 import app_tasks
 from epicyclic.case.case import build_case
-from epicyclic.case.fields import all_keys
 from epicyclic.errors import InputError
 from epicyclic.library import minimal_case
 from epicyclic.plugins.app import worker as tasks
@@ -23,6 +22,7 @@ from epicyclic.plugins.app.case_form import Desk, Shelves, built_in, form_of, op
 from epicyclic.plugins.app.page import LARGEST_BODY, Guard, names_of
 from epicyclic.plugins.app.views import _values
 from epicyclic.plugins.app.worker import Ended, Latest, Worker, WorkError
+from epicyclic.schema.fields import all_keys
 from epicyclic.study.operating import OPERATING
 from listed_trains import ravigneaux
 

@@ -16,7 +16,6 @@ from rich.console import Console
 import epicyclic as ep
 from epicyclic import library
 from epicyclic.build.models import resolve_models, set_cases, standing_of
-from epicyclic.case.read import plain
 from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
 from epicyclic.contact.line_contact import contacts_at
 from epicyclic.files import sealed, unsealed
@@ -24,6 +23,7 @@ from epicyclic.losses.friction import FRICTION_MODELS, SIMULATED
 from epicyclic.losses.reliability import RELIABILITY, reliability
 from epicyclic.losses.rolling import REACH, ROLLING_MODELS, weight_of_fit
 from epicyclic.plugins.contact_solver.fit import fit_quantity
+from epicyclic.schema.read import plain
 from epicyclic.show.result_tables import standing_items
 from epicyclic.show.terminal import result_tables
 from epicyclic.study.friction import compare_friction, recommended

@@ -15,7 +15,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.case.case import build_case
-from epicyclic.case.fields import Parameter
+from epicyclic.case.keys import Parameter
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.samples import make_samples
 from epicyclic.study.measured.compare import make_parameters
@@ -526,7 +526,7 @@ def test_a_fit_of_an_e_axle_ends_in_time(tmp_path, count, keys, seconds):
 
 
 def test_case_files_of_trains_keep_what_is_known_of_values():
-    from epicyclic.case.template import case_text
+    from epicyclic.show.template import case_text
 
     case = ep.load_case("train-eaxle").updated(
         {

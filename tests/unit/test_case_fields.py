@@ -9,26 +9,22 @@ import pytest
 from pydantic import BaseModel
 
 from epicyclic.case.case import GearPairCase, PlanetaryCase, case_schema, read_case
-from epicyclic.case.fields import (
+from epicyclic.library import builtin_case
+from epicyclic.messages import did_you_mean, dotted, misspelt, path_of, written
+from epicyclic.oil.oil import DensitySlope, GoldLaw, RoelandsLaw
+from epicyclic.schema.fields import (
     all_keys,
     choices_of,
     describe,
-    did_you_mean,
-    dotted,
     find_field,
     is_whole_number,
     locate,
-    misspelt,
-    path_of,
     quantity_of,
     table_of,
     tables_in,
     to_inputs,
-    written,
 )
-from epicyclic.case.read import parse_value
-from epicyclic.library import builtin_case
-from epicyclic.oil.oil import DensitySlope, GoldLaw, RoelandsLaw
+from epicyclic.schema.read import parse_value
 from epicyclic.units import Number, Quantity
 
 CASES = (PlanetaryCase, GearPairCase)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 import epicyclic as ep
-from epicyclic.case.fields import field_at, is_text, known_keys, value_of
+from epicyclic.case.keys import field_at, known_keys, value_of
+from epicyclic.schema.fields import is_text
 from problems import only, problems_of
 from trains import stepped
 

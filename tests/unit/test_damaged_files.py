@@ -17,7 +17,6 @@ import pytest
 import x3pio
 
 import epicyclic as ep
-from epicyclic.case.template import case_text
 from epicyclic.contact.fitted_models import read_oil_model
 from epicyclic.library import oil_model_file
 from epicyclic.losses.loss_table import read_loss_table
@@ -27,6 +26,7 @@ from epicyclic.plugins.contact_solver.surfaces import read_profile
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.importing import read_rexs
 from epicyclic.show.record import open_map
+from epicyclic.show.template import case_text
 from epicyclic.study.maps.cycle import open_cycle
 from epicyclic.study.measured.table import parse_measurements, read_grid
 from epicyclic.study.sweeps.run import write_dataset

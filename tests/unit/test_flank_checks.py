@@ -7,8 +7,8 @@ import pytest
 import epicyclic as ep
 from epicyclic.build.models import set_cases
 from epicyclic.build.result import load_notes
-from epicyclic.case import gear_tables as flanks
-from epicyclic.case.gearing import outside_radius
+from epicyclic.gears import stated as flanks
+from epicyclic.gears.gearing import outside_radius
 
 TIP = {"tip_relief": "20 um", "tip_relief_roll_length": "2 mm"}
 TABLE = {

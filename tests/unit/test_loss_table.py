@@ -245,7 +245,7 @@ def test_keys_reach_the_element(oil, tmp_path, state):
         temperature=["40 degC", "90 degC"],
         torque=[["1 N*m", "0.5 N*m"], ["3 N*m", "1.5 N*m"]],
     )
-    assert table.problems() == []
+    assert list(table.problems()) == []
     drag = build_element("drags", "brake_a", table, shafts={"a": "a"}, oil=oil, folder=tmp_path)
     assert drag.key == "brake_a"
     assert drag.between == ("a", HOUSING)
@@ -255,7 +255,7 @@ def test_keys_reach_the_element(oil, tmp_path, state):
 
 def test_a_pump_over_its_speed(oil, tmp_path, state):
     table = drag_table(speed=["0 rpm", "2000 rpm"], power=["0 W", "400 W"])
-    assert table.problems() == []
+    assert list(table.problems()) == []
     pump = build_element("drags", "pump", table, shafts={"a": "a"}, oil=oil, folder=tmp_path)
     assert pump.evaluate(state(-1000 * RPM, 0.0)).losses["drag"].watts == pytest.approx(200.0)
 

@@ -12,8 +12,8 @@ from click.testing import CliRunner
 import asymmetric
 import epicyclic as ep
 import listed_trains
-from epicyclic.case.gearing import outside_radius
 from epicyclic.cli.main import cli
+from epicyclic.gears.gearing import outside_radius
 from epicyclic.library import lubrication_methods
 from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
 from epicyclic.oil.oil import mixture_state, oil_state

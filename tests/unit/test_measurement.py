@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import curve_fit
 
 import epicyclic as ep
-from epicyclic.case.fields import Parameter
+from epicyclic.case.keys import Parameter
 from epicyclic.study.measured.fit import fit_parameters
 from epicyclic.study.measured.residuals import MeasuredPoints
 from epicyclic.study.measured.table import Measurements, parse_measurements, read_frame

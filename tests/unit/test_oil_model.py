@@ -10,7 +10,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from epicyclic.case.read import plain
 from epicyclic.contact import fitted_models as regressions
 from epicyclic.contact import fitted_models as structured
 from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
@@ -22,6 +21,7 @@ from epicyclic.library import oil_model_file
 from epicyclic.losses.ranges import ModelUse, check_ranges
 from epicyclic.losses.rolling import domain_ranges
 from epicyclic.plugins.contact_solver.fit import fit_quantity
+from epicyclic.schema.read import plain
 
 STEEL = 227.47e9
 # Tables 5.2(a), 5.2(b) and 3.2 of Talbot (2012), in the order of the columns

@@ -9,9 +9,9 @@ import tomllib
 import pytest
 
 import epicyclic as ep
-from epicyclic.case.template import case_template
 from epicyclic.show.page import error_text, shown
 from epicyclic.show.result_tables import mesh_tables
+from epicyclic.show.template import case_template
 from epicyclic.units import unit_text
 
 

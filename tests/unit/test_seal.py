@@ -135,7 +135,7 @@ def test_only_the_speed_difference_counts(state):
 
 def build(oil, folder, **keys):
     table = SealTable.model_validate({"shaft": "input", "diameter": "40 mm"} | keys)
-    assert table.problems() == []
+    assert list(table.problems()) == []
     return build_element(
         "seals", "input.seal", table, shafts={"input": "input"}, oil=oil, folder=folder
     )

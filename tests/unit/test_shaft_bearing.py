@@ -464,7 +464,7 @@ SHAFTS = {"input": "input", "output": "output"}
 
 
 def build(table, oil, tmp_path, shafts=SHAFTS):
-    assert table.problems() == []
+    assert list(table.problems()) == []
     return build_element("bearings", "input.front", table, shafts=shafts, oil=oil, folder=tmp_path)
 
 
@@ -583,7 +583,7 @@ def test_contradictions_are_found(changes, key):
 
 def test_full_complement_rollers_need_no_series():
     table = bearing_table(type="cylindrical", cage="full-complement", model="skf-2018")
-    assert table.problems() == []
+    assert list(table.problems()) == []
 
 
 def test_unknown_shafts_are_found(oil, tmp_path):

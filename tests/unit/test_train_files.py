@@ -11,8 +11,8 @@ import pytest
 import epicyclic as ep
 import listed_trains
 from epicyclic.case.case import build_case, case_schema
-from epicyclic.case.fields import find_field, quantity_of
-from epicyclic.case.template import case_text
+from epicyclic.schema.fields import find_field, quantity_of
+from epicyclic.show.template import case_text
 from trains import published, wolfrom
 
 SAME = 1e-12

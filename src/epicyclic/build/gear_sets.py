@@ -16,17 +16,17 @@ from epicyclic.build.models import (
     oil_share,
     solid_of,
 )
-from epicyclic.case import gear_tables as flanks
-from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.gearing import Gearing, outside_radius, outward_of, rim_thickness
 from epicyclic.case.tables.elements import PlanetBearing as BearingTable
 from epicyclic.case.tables.models import Numerics
 from epicyclic.case.tables.operation import LubricationTable
 from epicyclic.contact.elastic_teeth import GearBody, Rim
 from epicyclic.contact.line_contact import Flanks
+from epicyclic.gears import stated as flanks
 from epicyclic.gears.cutting import Tool, cutting_tool, fitted_tool
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear
+from epicyclic.gears.gearing import Gearing, outside_radius, outward_of, rim_thickness
 from epicyclic.gears.mesh import Mesh
+from epicyclic.gears.stated import StatedGear
 from epicyclic.losses.drag import Dipped
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.losses.pocket_tables import FlowTables
@@ -40,7 +40,7 @@ from epicyclic.machine.planets import LoadSharing, PlanetBearing
 # How the oil of a case meets the bodies that turn in it.
 
 
-def gear_disc(case: SetCase, body: str, gear: Gear, table: GearTable) -> Disc:
+def gear_disc(case: SetCase, body: str, gear: Gear, table: StatedGear) -> Disc:
     """A central gear as it turns in the mixture, dips or meets jets.
 
     A ring dips as a body without teeth: those of its inside are left out.
@@ -180,14 +180,14 @@ def _meshes(
 
 @lru_cache(maxsize=256)
 def gear_bodies(
-    mesh: Mesh, tables: tuple[GearTable, GearTable], planets: int = 1
+    mesh: Mesh, tables: tuple[StatedGear, StatedGear], planets: int = 1
 ) -> tuple[GearBody, GearBody]:
     """Materials, root fillets and rims of both members of a mesh, `planets` of which are alike."""
     one, two = tables
     return _body(mesh.gear1, one, 1), _body(mesh.gear2, two, planets)
 
 
-def _body(gear: Gear, table: GearTable, loads: int) -> GearBody:
+def _body(gear: Gear, table: StatedGear, loads: int) -> GearBody:
     thickness = rim_thickness(table)
     return GearBody(
         table.material.elastic_modulus,
@@ -254,7 +254,7 @@ def _planet_meshes(gearing: Gearing, planet: str) -> Iterator[PlanetMesh]:
             )
 
 
-def planet_mass(gears: Iterable[tuple[Gear, GearTable]], bearing: BearingTable | None) -> float:
+def planet_mass(gears: Iterable[tuple[Gear, StatedGear]], bearing: BearingTable | None) -> float:
     """Mass of a planet with its rollers, from its sizes: discs to the reference circles. [kg]
 
     Theory (B19).

@@ -20,7 +20,6 @@ from epicyclic.case.tables.operation import (
     PlanetaryOperation,
     ThermalTable,
 )
-from epicyclic.case.train_shape import mesh_rows
 from epicyclic.contact.temperatures import LUBRICATION_FACTORS
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
@@ -54,6 +53,7 @@ from epicyclic.machine.machine import GearSeat, Machine, Operation, ShaftLayout,
 from epicyclic.machine.planets import PlanetLoad
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import lossless_state, solve_machine
+from epicyclic.machine.train_shape import mesh_rows
 from epicyclic.oil.oil import Oil, mixture_state, oil_state
 from epicyclic.result.result import Layout, in_words
 

@@ -9,8 +9,6 @@ from typing import Protocol
 
 from epicyclic import library
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
-from epicyclic.case.gearing import Gearing
-from epicyclic.case.tables.base import Material
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
 from epicyclic.case.tables.models import (
     ContactSolver,
@@ -33,6 +31,8 @@ from epicyclic.case.train_tables import ComputedSet, ListedSet
 from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
 from epicyclic.contact.temperatures import Solid
 from epicyclic.errors import InputError, Problem
+from epicyclic.gears.gearing import Gearing
+from epicyclic.gears.stated import StatedMaterial
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.friction import (
     FRICTION_MODELS,
@@ -318,7 +318,7 @@ def friction_of(case: SetCase) -> FrictionModel:
     return model
 
 
-def contact_modulus(one: Material, other: Material) -> float:
+def contact_modulus(one: StatedMaterial, other: StatedMaterial) -> float:
     """Equivalent modulus E_eq of a contact of two materials. [Pa]"""
     return equivalent_modulus(
         one.elastic_modulus, one.poisson_ratio, other.elastic_modulus, other.poisson_ratio
@@ -326,7 +326,7 @@ def contact_modulus(one: Material, other: Material) -> float:
 
 
 def solid_of(
-    material: Material,
+    material: StatedMaterial,
     conductivity: float | None = None,  # Instead of its own. [W/(m K)]
     heat_capacity: float | None = None,  # Instead of its own. [J/(kg K)]
 ) -> Solid:

@@ -20,15 +20,15 @@ from epicyclic.build.models import (
     set_cases,
     standing_of,
 )
-from epicyclic.case import gear_tables as flanks
 from epicyclic.case.case import Case, TrainCase
-from epicyclic.case.gear_rules import backlash_notes
-from epicyclic.case.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
 from epicyclic.contact.fitted_models import changed_properties
+from epicyclic.gears import stated as flanks
 from epicyclic.gears.gear import HOUSING
+from epicyclic.gears.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
 from epicyclic.gears.mesh import are_evenly_spaced
+from epicyclic.gears.rules import backlash_notes
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.friction import TALBOT_FLUID
 from epicyclic.losses.ranges import SomeFlags, ValidityFlag

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from html import escape
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, cast
@@ -14,17 +15,6 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from epicyclic import library
 from epicyclic.case.expand import expand, gearing_of
-from epicyclic.case.fields import (
-    did_you_mean,
-    find_field,
-    key_parts,
-    locate,
-    misspelt,
-    one_line,
-    path_of,
-    to_inputs,
-    written,
-)
 from epicyclic.case.gear_tables import (
     Gears,
     GearTable,
@@ -34,33 +24,22 @@ from epicyclic.case.gear_tables import (
     SetMesh,
     SharedGears,
 )
-from epicyclic.case.gearing import Gearing
-from epicyclic.case.read import (
-    case_html,
-    case_line,
-    owner_without_keys,
-    plain,
-    read_file,
-    value_at,
-    with_value,
-    without,
-)
+from epicyclic.case.keys import owner_without_keys
 from epicyclic.case.rules import (
     bearing_force_problems,
     check_listed_bearings,
     cross_check,
+    listed_problems,
     operation_problems,
 )
-from epicyclic.case.set_rules import listed_problems, rack_problems, set_problems
-from epicyclic.case.sizing import Found, complete, converted_roughness, negative_teeth, told_oil
-from epicyclic.case.tables.base import Table
+from epicyclic.case.tables.base import builtin_oil, roughness_told
 from epicyclic.case.tables.elements import (
     Carrier,
     ElementTable,
     ElementTables,
     PlanetBearing,
     ThrustBearing,
-    placing_problems,
+    between,
 )
 from epicyclic.case.tables.models import (
     ContactSolver,
@@ -81,8 +60,7 @@ from epicyclic.case.tables.operation import (
     Surroundings,
     ThermalTable,
 )
-from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, check_uncertainty
-from epicyclic.case.train_shape import TrainShape, shape_of_train
+from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, stated_values
 from epicyclic.case.train_tables import (
     ComputedSet,
     GivenListedSet,
@@ -98,8 +76,26 @@ from epicyclic.case.train_tables import (
     StateTable,
     TrainOperation,
 )
-from epicyclic.case.validation import AnyCase, Validation, tables_of, unknown_key, validate
 from epicyclic.errors import InputError, Problem
+from epicyclic.gears.assembly import rack_problems, set_problems
+from epicyclic.gears.gearing import Gearing
+from epicyclic.gears.sizing import Found, complete
+from epicyclic.machine.train_shape import TrainShape, shape_of_train
+from epicyclic.messages import (
+    did_you_mean,
+    key_parts,
+    misspelt,
+    one_line,
+    path_of,
+    value_at,
+    written,
+)
+from epicyclic.oil.grades import short_oil_told
+from epicyclic.schema.fields import find_field, locate, to_inputs
+from epicyclic.schema.read import flattened, plain, read_file, with_value, without
+from epicyclic.schema.table import Table
+from epicyclic.schema.validation import AnyCase, Validation, tables_of, unknown_key, validate
+from epicyclic.units import unit_text
 
 if TYPE_CHECKING:
     from epicyclic.case.tables.operation import LubricationTable, Surroundings
@@ -213,7 +209,7 @@ class CaseTable(Table):
         if case is not None:
             case._tables, case._source = tables, source
         if case is not None and getattr(case, "uncertainty", {}):
-            problems = [*problems, *check_uncertainty(case)]
+            problems = [*problems, *stated_values(case)[1]]
         if case is None or problems:
             ordered = sorted(problems, key=lambda problem: _position(cls, problem))
             raise InputError(ordered, source)
@@ -237,12 +233,28 @@ class CaseTable(Table):
         return inputs
 
     def __repr__(self) -> str:
-        return case_line(type(self).__name__, self.given())
+        given = self.given()
+        words = [f"title={given['title']!r}"] if given.get("title") else []
+        words += [f"{key}={value!r}" for key, value in given.get("operation", {}).items()]
+        return f"{type(self).__name__}({', '.join(words)})"
 
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
-        return case_html(type(self).__name__, self.given())
+        """The keys that were given, table by table, in the units of case files."""
+        given = self.given()
+        alone = {key: value for key, value in given.items() if not isinstance(value, Mapping)}
+        tables = {"": alone} | {key: it for key, it in given.items() if isinstance(it, Mapping)}
+        cell = '<td style="text-align: left">'
+        rows = "".join(
+            f"<tr>{cell}<strong>{escape(key if number == 0 else '')}</strong></td>"
+            f"{cell}{escape(name)}</td>"
+            f"{cell}{escape(unit_text(value) if isinstance(value, str) else str(value))}</td></tr>"
+            for key, table in tables.items()
+            for number, (name, value) in enumerate(flattened(table))
+        )
+        title = escape(str(given.get("title") or type(self).__name__))
+        return f"<table><caption><strong>{title}</strong></caption><tbody>{rows}</tbody></table>"
 
     def __eq__(self, other: object) -> bool:
         """Equal if every key has the same value, wherever the cases were read."""
@@ -280,12 +292,46 @@ def with_sizes(
         del sections["gears"]
         return Validation(None, sections, [*validation.problems, *problems]), told, None
     assert whole.shared is not None
-    now: dict[str, Table] = {"gears": whole.shared, **whole.tables}
+    now: dict[str, Any] = {"gears": whole.shared, **whole.tables}
     changed = {key: table for key, table in now.items() if table is not sections[key]}
     case = validation.case
     if case is not None and changed:
         case = case.model_copy(update=changed)
     return Validation(case, sections | changed, validation.problems), told + found, whole
+
+
+def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
+    """How negative numbers of teeth are understood."""
+    tables = dict(raw)
+    members = tables.pop("members", {})
+    tables |= {f"gears.{name}": table for name, table in members.items()}
+    for name, table in tables.items():
+        teeth = table.get("teeth") if isinstance(table, dict) else None
+        if isinstance(teeth, int) and teeth < 0:
+            yield Found(
+                f"{name}.teeth",
+                str(-teeth),
+                "a ring, because the number is negative; its profile shift is that of ISO 21771 "
+                "and DIN 3960, positive where it thickens the teeth.",
+            )
+
+
+def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Found]:
+    """How roughness that is stated as Ra or Rz is converted."""
+    for key, value in raw.items():
+        name = f"{place}{key}"
+        if isinstance(value, dict):
+            yield from converted_roughness(value, f"{name}.")
+        elif key.endswith("roughness") and (told := roughness_told(value)) is not None:
+            yield Found(name, f"{1e6 * told[0]:.4g} um", told[1])
+
+
+def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
+    """What an oil stands for that is stated by its grade or two viscosities."""
+    oil = value_at(dict(raw), ("lubricant", "oil"))
+    told = short_oil_told(oil, builtin_oil(oil))
+    if told is not None:
+        yield Found("lubricant.oil", *told)
 
 
 def as_given(problem: Problem, tables: dict[str, Any]) -> Problem:
@@ -490,7 +536,7 @@ class TrainCase(_TrainHead):
         complete = complete and not wrong
         found += wrong
         found += _element_problems(train)
-        found += operation_problems(train, train.shape, complete)
+        found += operation_problems(train, complete)
         found += bearing_force_problems(train, complete)
         return cls._made(cast(Self, train), tables, source, found)
 
@@ -693,9 +739,13 @@ def _element_problems(train: TrainCase) -> list[Problem]:
             allowed = f"has the name of another part, {taken[name]}.{name}."
             problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
         taken[name] = kind
-        found = table.problems()
+        found = list(table.problems())
         if not found and train.lubricant is not None:
-            found = placing_problems(table, train.shape.names, train.folder)
+            try:
+                between(table, train.shape.names)
+                table.points(train.folder)
+            except InputError as error:
+                found = list(error.problems)
         problems += [_below(key, problem) for problem in found]
     if not train.computed:
         return problems

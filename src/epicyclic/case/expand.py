@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from epicyclic.case.fields import did_you_mean, written
 from epicyclic.case.gear_tables import SetMesh
-from epicyclic.case.gearing import Gearing, GearPairing
 from epicyclic.case.train_tables import ListedMesh
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER
+from epicyclic.gears.gearing import Gearing, GearPairing
+from epicyclic.messages import did_you_mean, written
 
 Parts = Mapping[str, Any]  # The tables of a set by their keys, as ``dict(table)`` gives them.
 
@@ -108,11 +108,11 @@ def _pairing(
         *gears,
         teeth,
         internal,
+        parts.get(key) or SetMesh(),
         efficiency,
         pair=gears,
         title=key.replace("_", " "),
         table_key=key,
-        table=parts.get(key) or SetMesh(),
         direction=parts.get("direction") or 0.0,
     )
 
@@ -183,11 +183,11 @@ def _listed_pairing(parts: Parts, one: str, two: str) -> GearPairing:
         second,
         (gears[first].teeth, gears[second].teeth),
         gears[second].internal,
+        own if isinstance(own, ListedMesh) else SetMesh(),
         efficiency if own is None else getattr(own, "efficiency", efficiency),
         pair=(one, two),
         title=f"{one}-{two} mesh",
         table_key=f"mesh.{name}",
-        table=own if isinstance(own, ListedMesh) else SetMesh(),
         own_distance=getattr(own, "center_distance", None),
         direction=getattr(own, "direction", 0.0),
     )

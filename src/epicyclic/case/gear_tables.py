@@ -1,40 +1,15 @@
-"""Tables of a case file on gears, their flanks and meshes, and what these state of teeth."""
+"""Tables of a case file on gears, their flanks and meshes."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
-from functools import lru_cache
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from epicyclic.case.fields import millimetres
-from epicyclic.case.tables.base import (
-    NamedMaterial,
-    Roughness,
-    ShortLength,
-    Table,
-    ThicknessFit,
-    option,
-)
-from epicyclic.errors import Problem
-from epicyclic.gears import measures
-from epicyclic.gears.flanks import (
-    FlankDeviations,
-    MicroGeometry,
-    Relief,
-    Topography,
-    active_profile,
-)
-from epicyclic.gears.gear import (
-    BasicRack,
-    Gear,
-    half_angle_from_profile_shift,
-    half_angle_from_thickness,
-)
-from epicyclic.gears.measures import LARGEST_FIT, FlankTolerances, fit_allowances, flank_tolerances
-from epicyclic.gears.mesh import Mesh
+from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength, ThicknessFit
+from epicyclic.gears.flanks import ReliefShape
+from epicyclic.gears.stated import THICKNESS
+from epicyclic.schema.table import Table, option
 from epicyclic.units import (
     Angle,
     Deviation,
@@ -88,12 +63,9 @@ class Gears(SharedGears):
 
     @property
     def distance(self) -> float:
-        """The centre distance, as given or found; see `epicyclic.case.sizing`. [m]"""
+        """The centre distance, as given or found; see `epicyclic.gears.sizing`. [m]"""
         assert self.center_distance is not None
         return self.center_distance
-
-
-ReliefShape = Literal["linear", "parabolic"]
 
 
 class TopographyTable(Table):
@@ -160,12 +132,6 @@ class GearTable(Table):
         "tool_tip_radius": None,
         "micro_geometry": None,
     }
-    THICKNESS: ClassVar[tuple[str, ...]] = (
-        "tooth_thickness+thickness_diameter",
-        "span_measurement+teeth_in_span",
-        "dimension_over_pins+measuring_pin_diameter",
-        "profile_shift_coefficient",
-    )
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
         THICKNESS,
         ("tooth_thickness_allowance", "tooth_thickness_fit"),
@@ -221,8 +187,13 @@ class GearTable(Table):
     @property
     def states_thickness(self) -> bool:
         """True if it says how thick its teeth are."""
-        first = (choice.split("+")[0] for choice in GearTable.THICKNESS)
+        first = (choice.split("+")[0] for choice in THICKNESS)
         return any(getattr(self, key) is not None for key in first)
+
+    @property
+    def is_ring(self) -> bool:
+        """True for a gear with internal teeth."""
+        return False
 
 
 def with_positive_teeth(table: Any) -> Any:
@@ -267,6 +238,11 @@ class PairGear(GearTable):
     internal: bool = option("true: a ring gear around the pinion.", False)
     rim_thickness: _RimThickness = None
 
+    @property
+    def is_ring(self) -> bool:
+        """As stated."""
+        return self.internal
+
 
 class Planet(GearTable):
     """The planets, all alike."""
@@ -300,6 +276,11 @@ class Ring(GearTable):
     teeth: int = RING_TEETH
     rim_thickness: _RimThickness = None
 
+    @property
+    def is_ring(self) -> bool:
+        """Always."""
+        return True
+
 
 class MeshTable(Table):
     """What belongs to a mesh and to none of its gears."""
@@ -319,218 +300,4 @@ class SetMesh(MeshTable):
     normal_backlash: ShortLength | None = option(
         "j_bn, for what is left out: a profile shift or the centre distance. Default: none, as "
         "the profile shifts of ISO 21771."
-    )
-
-
-# How thick the teeth of a gear are, in each of the ways in which a case can state it.
-
-DIGITS = 4  # Decimals of the profile shifts that messages propose: 0.1 um at a module of 1.5 mm.
-
-
-def half_angle(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
-    """Half angle at the reference circle of the teeth that a table states.
-
-    Raises `ValueError` if the thickness is stated inside the base circle.
-    """
-    teeth = table.teeth
-    half = _stated(table, rack, internal=internal)
-    excess = 2 * allowance_shift(table, rack) * rack.normal_module
-    return half + excess * math.tan(rack.transverse_pressure_angle) / (
-        teeth * rack.transverse_module
-    )
-
-
-def _stated(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
-    teeth = table.teeth
-    if table.profile_shift_coefficient is not None:
-        return half_angle_from_profile_shift(rack, teeth, table.profile_shift_coefficient)
-    if table.span_measurement is not None:
-        assert table.teeth_in_span is not None
-        return measures.half_angle_from_span(
-            rack, teeth, internal, table.span_measurement, table.teeth_in_span
-        )
-    if table.dimension_over_pins is not None:
-        assert table.measuring_pin_diameter is not None
-        return measures.half_angle_from_pins(
-            rack, teeth, internal, table.dimension_over_pins, table.measuring_pin_diameter
-        )
-    assert table.tooth_thickness is not None
-    assert table.thickness_diameter is not None
-    return half_angle_from_thickness(
-        rack, teeth, internal, table.tooth_thickness, table.thickness_diameter / 2
-    )
-
-
-def allowances(table: GearTable, rack: BasicRack) -> tuple[float, float] | None:
-    """Upper and lower allowance of the tooth thickness, A_sne and A_sni. [m]"""
-    if table.tooth_thickness_fit is not None:
-        diameter = min(table.teeth * rack.transverse_module, LARGEST_FIT)
-        return fit_allowances(table.tooth_thickness_fit, diameter)
-    if table.tooth_thickness_allowance is None:
-        return None
-    upper, lower = table.tooth_thickness_allowance
-    return upper, lower
-
-
-def allowance_shift(table: GearTable, rack: BasicRack) -> float:
-    """Profile shift of the mean tooth-thickness allowance. DIN 3960. Theory (G52). [1]"""
-    stated = allowances(table, rack)
-    return (
-        0.0
-        if stated is None
-        else sum(stated) / (4 * rack.normal_module * math.tan(rack.normal_pressure_angle))
-    )
-
-
-def thickness_key(key: str, table: GearTable) -> str:
-    """The key that states how thick the teeth are, of the gear whose table stands at `key`."""
-    keys = ("span_measurement", "dimension_over_pins", "tooth_thickness")
-    stated = (key for key in keys if getattr(table, key) is not None)
-    return f"{key}.{next(stated, 'profile_shift_coefficient')}"
-
-
-def fitting(gear: Gear, key: str, table: GearTable, over: float) -> str:
-    """What a table states of teeth that are thinner by the profile shift `over`, rounded down."""
-    rack, key = gear.rack, thickness_key(key, table)
-    arc = 2 * over * rack.normal_module * math.tan(rack.transverse_pressure_angle)
-    if table.span_measurement is not None:
-        normal = math.sin(rack.normal_pressure_angle)
-        change = 2 * over * rack.normal_module * normal * (-1 if gear.internal else 1)
-        return _length(key, table.span_measurement - change, up=gear.internal)
-    if table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
-        half = gear.thickness_half_angle - arc / (2 * gear.reference_radius)
-        thin = replace(gear, thickness_half_angle=half)
-        change = measures.dimension_over_pins(thin, table.measuring_pin_diameter)
-        change -= measures.dimension_over_pins(gear, table.measuring_pin_diameter)
-        return _length(key, table.dimension_over_pins + change, up=gear.internal)
-    if table.tooth_thickness is not None and table.thickness_diameter is not None:
-        thinner = arc * table.thickness_diameter / (2 * gear.reference_radius)
-        return _length(key, table.tooth_thickness - thinner, up=False)
-    step = 10.0**-DIGITS
-    nominal = gear.profile_shift_coefficient - allowance_shift(table, rack)
-    return f"{key} = {math.floor((nominal - over) / step) * step:.{DIGITS}f}"
-
-
-def _length(key: str, value: float, *, up: bool) -> str:
-    """A key with its length, rounded to a micrometre towards thinner teeth."""
-    step = math.ceil if up else math.floor
-    return f'{key} = "{step(value * 1e6) / 1e3:.3f} mm"'
-
-
-def tolerances_of(gear: Gear, table: GearTable) -> FlankTolerances | None:
-    """Tolerances of the flanks of a gear by its class."""
-    if table.accuracy_class is None:
-        return None
-    return flank_tolerances(
-        table.accuracy_class, gear.rack.normal_module, 2 * gear.reference_radius, gear.face_width
-    )
-
-
-def check_fit(gear: Gear, key: str, table: GearTable) -> Problem | None:
-    """DIN 3967 has no allowances for larger gears."""
-    if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
-        return None
-    allowed = f"is for reference diameters up to {millimetres(LARGEST_FIT)}, and this one has "
-    allowed += f"{millimetres(2 * gear.reference_radius)}."
-    remedy = "Give tooth_thickness_allowance."
-    return Problem(f"{key}.tooth_thickness_fit", f'"{table.tooth_thickness_fit}"', allowed, remedy)
-
-
-def check_measure(gear: Gear, key: str, table: GearTable) -> Problem | None:
-    """A span or balls must touch the flanks."""
-    if table.span_measurement is not None:
-        if gear.internal and gear.rack.helix_angle > 0:
-            place = f"{key}.span_measurement"
-            reason = "cannot be measured on a helical ring."
-            advice = "Give dimension_over_pins with measuring_pin_diameter."
-            return Problem(place, millimetres(table.span_measurement), reason, advice)
-        radius = measures.span_contact_radius(gear, table.span_measurement)
-        remedy = f"Over {measures.usual_span_teeth(gear)} teeth it would touch in the middle."
-        what = "span_measurement"
-    elif table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
-        radius = measures.pin_contact_radius(gear, table.measuring_pin_diameter)
-        usual = millimetres(measures.usual_pin(gear.rack))
-        remedy = f"A usual measuring_pin_diameter is {usual}."
-        what = "dimension_over_pins"
-    else:
-        return None
-    low, high = sorted((gear.root_radius, gear.tip_radius))
-    if low < radius < high:
-        return None
-    value = getattr(table, what)
-    shown = millimetres(value)
-    allowed = f"touches at diameter {millimetres(2 * radius)}, beyond the flanks, which reach from "
-    allowed += f"{millimetres(2 * low)} to {millimetres(2 * high)}."
-    return Problem(f"{key}.{what}", shown, allowed, f"Check it, tooth number and module. {remedy}")
-
-
-# From the tables of a case to the deviations of its flanks.
-
-Tables = tuple[GearTable, GearTable]
-
-
-def micro_geometries(table: GearTable) -> tuple[MicroGeometryTable, ...]:
-    """The tables of micro-geometry that a gear has."""
-    ring_side = table.micro_geometry_ring_side if isinstance(table, Planet) else None
-    return tuple(one for one in (table.micro_geometry, ring_side) if one is not None)
-
-
-@lru_cache(maxsize=256)
-def flank_deviations(mesh: Mesh, tables: Tables, misalignment: float) -> FlankDeviations:
-    """The deviations of both working flanks of a mesh."""
-    one, two = (_of_member(mesh, member, tables[member - 1]) for member in (1, 2))
-    return FlankDeviations(one, two, misalignment)
-
-
-def working_flank(member: int, table: GearTable) -> MicroGeometryTable | None:
-    """The table of the flank of a member of a mesh that works in it.
-
-    A planet's other flank works against the ring, where the planet is member 1.
-    """
-    if member == 1 and isinstance(table, Planet) and table.micro_geometry_ring_side is not None:
-        return table.micro_geometry_ring_side
-    return table.micro_geometry
-
-
-def _of_member(mesh: Mesh, member: int, table: GearTable) -> MicroGeometry:
-    flank = working_flank(member, table)
-    if flank is None:
-        return MicroGeometry()
-    gear = (mesh.gear1, mesh.gear2)[member - 1]
-    root, tip = active_profile(mesh, member)
-    return MicroGeometry(
-        tip_relief=_profile_relief(gear, tip, flank, "tip_relief"),
-        root_relief=_profile_relief(gear, root, flank, "root_relief"),
-        end_relief=None
-        if flank.end_relief == 0 or flank.end_relief_length is None
-        else Relief(flank.end_relief, flank.end_relief_length, flank.end_relief_shape),
-        profile_crown=flank.profile_crown,
-        profile_slope=flank.profile_slope,
-        lead_crown=flank.lead_crown,
-        lead_slope=flank.lead_slope,
-        topography=None if flank.topography is None else _topography(gear, flank.topography),
-    )
-
-
-def _profile_relief(gear: Gear, end: float, flank: MicroGeometryTable, key: str) -> Relief | None:
-    amount: float = getattr(flank, key)
-    roll_length: float | None = getattr(flank, f"{key}_roll_length")
-    diameter: float | None = getattr(flank, f"{key}_diameter")
-    if diameter is not None:
-        roll_length = abs(roll_length_at(gear, diameter / 2) - end)
-    if amount == 0 or roll_length is None:
-        return None
-    return Relief(amount, roll_length, getattr(flank, f"{key}_shape"))
-
-
-def roll_length_at(gear: Gear, radius: float) -> float:
-    """Transverse radius of curvature of the involute at `radius`; 0 inside the base circle. [m]"""
-    return math.sqrt(max(0.0, radius**2 - gear.base_radius**2))
-
-
-def _topography(gear: Gear, table: TopographyTable) -> Topography:
-    return Topography(
-        tuple(roll_length_at(gear, diameter / 2) for diameter in table.diameter),
-        table.face_position,
-        table.deviation,
     )

@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epicyclic.case.expand import expand
-from epicyclic.case.fields import did_you_mean, millimetres, written
-from epicyclic.case.gear_rules import gears_by_name
-from epicyclic.case.gearing import Gearing
-from epicyclic.case.set_rules import set_problems
-from epicyclic.case.tables.base import Table
 from epicyclic.case.tables.elements import PlanetBearing, ShaftBearingTable
 from epicyclic.case.tables.models import (
     ContactSolver,
@@ -39,18 +34,22 @@ from epicyclic.case.tables.operation import (
     check_ways_out,
     check_wetting,
 )
-from epicyclic.case.train_shape import TrainShape
-from epicyclic.case.train_tables import ListedSet, StateTable
+from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import InputError, Problem, rising_problems
-from epicyclic.gears.gear import HOUSING
+from epicyclic.gears.assembly import set_problems
+from epicyclic.gears.gear import CARRIER, HOUSING
+from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.mesh import are_evenly_spaced
+from epicyclic.gears.rules import gears_by_name
 from epicyclic.losses.ranges import FITTED_QUANTITIES
+from epicyclic.machine.train_shape import motion_problems, named_problems
+from epicyclic.messages import did_you_mean, millimetres, written
+from epicyclic.schema.table import Table
 from epicyclic.units import BAR
 
 if TYPE_CHECKING:
     from epicyclic.case.case import TrainCase
     from epicyclic.contact.fitted_models import OilModel
-    from epicyclic.machine.machine import Machine
 
 
 # Checks across keys and tables.
@@ -73,7 +72,10 @@ def cross_check(
     problems: list[Problem] = []
     models = sections.get("models")
     if isinstance(models, GearPairModels):
-        problems += _check_friction_model(models, {*given, *sections})
+        if models.friction == "table" and "friction_table" not in {*given, *sections}:
+            remedy = "Add [friction_table], or choose another model."
+            allowed = "needs a table of coefficients."
+            problems.append(Problem("models.friction", "", allowed, remedy))
         if "lubricant" in sections or models.oil_model is not None:  # a train has that of its sets
             problems += check_oil_model(models, folder, sections.get("lubricant"))
         problems += _check_pocketing_table(models, folder)
@@ -82,8 +84,8 @@ def cross_check(
         problems += law_problems("contact_solver", solver)
     thermal, oil = sections.get("thermal"), sections.get("lubrication")
     if isinstance(models, GearPairModels) and isinstance(thermal, ThermalTable):
-        flow = oil.oil_flow if isinstance(oil, LubricationTable) else None
-        problems += check_ways_out(thermal, models.temperatures, flow)
+        own = oil if isinstance(oil, LubricationTable) else None
+        problems += check_ways_out(thermal, models.temperatures, own)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
     if gearing is not None:
@@ -94,77 +96,133 @@ def cross_check(
     sharing = sections.get("load_sharing")
     if isinstance(sharing, LoadSharing) and {"sun", "planet", "ring"} <= sections.keys():
         # tooth numbers are enough, whether the gears fit or not
-        own = gearing or expand({"gears": None, **sections})[0]
-        problems += _check_load_sharing(sharing, own)
+        toothed = gearing or expand({"gears": None, **sections})[0]
+        problems += _check_load_sharing(sharing, toothed)
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))
     return problems
 
 
-def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> list[Problem]:
-    if not isinstance(operation, PlanetaryOperation):
-        return []
-    allowed = f'must be another member than operation.input, "{operation.input}".'
-    return [
-        Problem(f"operation.{key}", operation.input, allowed, "Name one of the other two.")
-        for key in ("fixed", "second_input")
-        if getattr(operation, key) == operation.input
-    ]
+def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> Iterator[Problem]:
+    if isinstance(operation, PlanetaryOperation):
+        allowed = f'must be another member than operation.input, "{operation.input}".'
+        for key in ("fixed", "second_input"):
+            if getattr(operation, key) == operation.input:
+                yield Problem(f"operation.{key}", "", allowed, "Name one of the other two.")
 
 
-def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> list[Problem]:
+def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> Iterator[Problem]:
     """The rollers of the bearing at `key` must fit around its pin."""
     pitch_diameter = bearing.pin_diameter + bearing.roller_diameter + bearing.diametral_clearance
     room = math.pi / math.asin(min(1.0, bearing.roller_diameter / pitch_diameter))
-    if bearing.rollers_per_row <= room:
-        return []
-    allowed = f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit "
-    allowed += f"around the pin of {millimetres(bearing.pin_diameter)}."
-    remedy = "Take fewer or thinner rollers."
-    return [Problem(f"{key}.rollers_per_row", str(bearing.rollers_per_row), allowed, remedy)]
+    if bearing.rollers_per_row > room:
+        allowed = f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit "
+        allowed += f"around the pin of {millimetres(bearing.pin_diameter)}."
+        yield Problem(f"{key}.rollers_per_row", "", allowed, "Take fewer or thinner rollers.")
 
 
 def check_bores(
     gearing: Gearing,
     # By the key of a bearing: its table, and the planets that it carries.
     bearings: Mapping[str, tuple[PlanetBearing, Sequence[str]]],
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Bearings must fit into the root circles of their planets."""
     sound, _ = gears_by_name(gearing)  # others are reported with the gears
-    problems = []
     for key, (bearing, planets) in bearings.items():
         bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
         for body in planets:
             roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
-            if not roots or bore < 2 * min(roots):
-                continue
-            shown = millimetres(bearing.pin_diameter)
-            allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
-            allowed += f"{millimetres(2 * min(roots))}."
-            remedy = "Take a thinner pin or thinner rollers."
-            problems.append(Problem(f"{key}.pin_diameter", shown, allowed, remedy))
-    return problems
+            if roots and bore >= 2 * min(roots):
+                allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
+                allowed += f"{millimetres(2 * min(roots))}."
+                remedy = "Take a thinner pin or thinner rollers."
+                yield Problem(f"{key}.pin_diameter", "", allowed, remedy)
 
 
-def check_listed_bearings(table: ListedSet, gearing: Gearing) -> list[Problem]:
+def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
     """Problems of the bearings that a listed set has for each kind of planets."""
     own = table.planet_bearings
-    problems = [
-        problem
-        for name, bearing in own.items()
-        for problem in (
-            *check_rollers(bearing, f"planet_bearings.{name}"),
-            *check_cage(bearing, table.models),
-        )
-    ]
+    for name, bearing in own.items():
+        yield from check_rollers(bearing, f"planet_bearings.{name}")
+        yield from check_cage(bearing, table.models)
     found = {
         f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
     }
     if table.planet_bearing is not None:
         others = [body for body in gearing.planets if body not in own]
         found["planet_bearing"] = table.planet_bearing, others
-    return problems + check_bores(gearing, found)
+    yield from check_bores(gearing, found)
+
+
+def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
+    """Problems of the tables that a listed set has beside its gears."""
+    known = gearing.terms
+    losses = [
+        Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
+        for name in table.losses
+        if name not in known
+        for remedy in [did_you_mean(name, known) or f"Known are: {', '.join(known)}."]
+    ]
+    planets = _planet_problems(table, gearing)
+    return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
+
+
+def _name_problems(gearing: Gearing) -> Iterator[Problem]:
+    """Names that would give two losses or members the same name."""
+    for name in (CARRIER, HOUSING) if gearing.planets else (HOUSING,):
+        if name in gearing.bodies or name in gearing.bodies.values():
+            allowed = f"cannot be the name of a gear or body: every set has a {name}."
+            yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
+    for name in gearing.bodies:
+        if "." in name:
+            allowed = "is not a valid name for a gear: a dot stands between set and gear."
+            yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
+
+
+def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
+    """Planets without a number, and a carrier or bearings without planets."""
+    if gearing.planets and table.planets is None:
+        names = ", ".join(gearing.planets)
+        allowed = f"is missing, and the set has planets ({names})."
+        remedy = "Add planets = 3, or as many as there are."
+        yield Problem("planets", "", allowed, remedy)
+    if not gearing.planets:
+        remedy = "Leave it out, or write planet = true at the gears on a carrier."
+        if table.planets is not None:
+            allowed = "is given, but no gear stands on a carrier."
+            yield Problem("planets", str(table.planets), allowed, remedy)
+        for name in ("planet_bearing", "carrier"):
+            if getattr(table, name) is not None:
+                yield Problem(name, "", "belongs to planets, and the set has none.", remedy)
+    for name in table.planet_bearings:
+        if name not in gearing.planets:
+            remedy = did_you_mean(name, gearing.planets)
+            remedy = remedy or f"Known are: {', '.join(gearing.planets) or 'none'}."
+            key = f"planet_bearings.{name}"
+            yield Problem(key, "", "is no body of a planet of this set.", remedy)
+    placed = {gearing.planet_of(mesh) for mesh in gearing.meshes}
+    for body in gearing.planets:
+        if body not in placed:
+            gear = gearing.gears_of(body)[0]
+            allowed = "meshes with planets only, so that nothing determines where its pin stands."
+            remedy = "Let it mesh with a central gear too."
+            yield Problem(f"gears.{gear}", "", allowed, remedy)
+    in_pairs = any(gearing.planet_pair(mesh) for mesh in gearing.meshes)
+    if table.models.planet_tilt == "coupled" and in_pairs:
+        allowed = "is not for planets that mesh with each other."
+        remedy = 'Write planet_tilt = "left-out".'
+        yield Problem("models.planet_tilt", '"coupled"', allowed, remedy)
+
+
+def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
+    sharing, planets = table.load_sharing, table.planets or 1
+    if sharing.method not in ("equal", "mesh-load-factor"):
+        allowed = "is for one sun, one ring and planets between them."
+        remedy = 'Write method = "equal" or "mesh-load-factor".'
+        yield Problem("load_sharing.method", f'"{sharing.method}"', allowed, remedy)
+    if sharing.mesh_load_factor > planets:
+        yield _most_loaded(sharing, "planets", planets)
 
 
 def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]:
@@ -176,56 +234,44 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     return [Problem("models.bearing", '"mixed-ehl"', allowed, 'Write bearing = "palmgren".')]
 
 
-def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
-    problems, count = [], gearing.count or 1
+def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> Iterator[Problem]:
+    count, key, method = gearing.count or 1, "load_sharing.method", sharing.method
     if sharing.mesh_load_factor > count:
-        shown = f"{sharing.mesh_load_factor:g}"
-        allowed = f"must be at most planet.count, {count}: then one planet has all the load."
-        remedy = "Take a smaller factor."
-        problems.append(Problem("load_sharing.mesh_load_factor", shown, allowed, remedy))
+        yield _most_loaded(sharing, gearing.count_key, count)
     if len(sharing.position_errors or ()) not in (0, count):
-        shown = f"{len(sharing.position_errors or ())} values"
         allowed = f"must have one value for each of the {count} planets."
         remedy = "Give as many values as there are planets."
-        problems.append(Problem("load_sharing.position_errors", shown, allowed, remedy))
-    if sharing.method == "closed-form":
-        problems += _check_closed_form(sharing, gearing)
-    if sharing.method == "direct" and count == 1 and sharing.floating_member != "none":
+        yield Problem("load_sharing.position_errors", "", allowed, remedy)
+    if method == "closed-form":
+        floats = sharing.floating_member == "none" or sharing.support_stiffness == 0
+        needs = {
+            "three or more planets": count >= 3,
+            "equally spaced planets": are_evenly_spaced(gearing.planet_angles),
+            "a member that floats freely or none": floats,
+        }
+        for need, met in needs.items():
+            if not met:
+                yield Problem(key, "", f"needs {need}.", 'Write method = "direct".')
+    if method == "direct" and count == 1 and sharing.floating_member != "none":
         shown = f'"{sharing.floating_member}"'
         allowed = "must be supported: one planet cannot hold it in place."
         remedy = 'Write floating_member = "none".'
-        problems.append(Problem("load_sharing.floating_member", shown, allowed, remedy))
-    return problems
+        yield Problem("load_sharing.floating_member", shown, allowed, remedy)
 
 
-def _check_closed_form(sharing: LoadSharing, gearing: Gearing) -> list[Problem]:
-    reasons = []
-    if (gearing.count or 1) < 3:
-        reasons.append("three or more planets")
-    if not are_evenly_spaced(gearing.planet_angles):
-        reasons.append("equally spaced planets")
-    if sharing.floating_member != "none" and sharing.support_stiffness > 0:
-        reasons.append("a member that floats freely or none")
-    return [
-        Problem(
-            "load_sharing.method", '"closed-form"', f"needs {reason}.", 'Write method = "direct".'
-        )
-        for reason in reasons
-    ]
+def _most_loaded(sharing: LoadSharing, key: str, planets: int) -> Problem:
+    """One planet cannot have more than all the load; `key` says how many there are."""
+    shown = f"{sharing.mesh_load_factor:g}"
+    allowed = f"must be at most {key}, {planets}: then one planet has all the load."
+    return Problem("load_sharing.mesh_load_factor", shown, allowed, "Take a smaller factor.")
 
 
-def _check_planet_tilt(models: PlanetaryModels, given: Collection[str]) -> list[Problem]:
-    if models.planet_tilt == "left-out":
-        return []
-    reasons = {
-        "needs [planet_bearing], in which the planet tilts.": "planet_bearing" not in given,
-        'needs load_distribution = "compliance".': models.load_distribution != "compliance",
-    }
-    return [
-        Problem("models.planet_tilt", '"coupled"', reason, 'Or write planet_tilt = "left-out".')
-        for reason, holds in reasons.items()
-        if holds
-    ]
+def _check_planet_tilt(models: PlanetaryModels, given: Collection[str]) -> Iterator[Problem]:
+    key, remedy = "models.planet_tilt", 'Or write planet_tilt = "left-out".'
+    if models.planet_tilt == "coupled" and "planet_bearing" not in given:
+        yield Problem(key, "", "needs [planet_bearing], in which the planet tilts.", remedy)
+    if models.planet_tilt == "coupled" and models.load_distribution != "compliance":
+        yield Problem(key, "", 'needs load_distribution = "compliance".', remedy)
 
 
 def _check_friction_table(table: FrictionTable) -> list[Problem]:
@@ -245,14 +291,9 @@ def _check_friction_table(table: FrictionTable) -> list[Problem]:
     return problems
 
 
-def _check_friction_model(models: GearPairModels, given: Collection[str]) -> list[Problem]:
-    if models.friction != "table" or "friction_table" in given:
-        return []
-    remedy = "Add [friction_table], or choose another model."
-    return [Problem("models.friction", '"table"', "needs a table of coefficients.", remedy)]
-
-
-def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> list[Problem]:
+def check_oil_model(
+    models: GearPairModels, folder: Path, lubricant: Table | None
+) -> Iterator[Problem]:
     """A fitted model needs its file or one built in for the oil, and in it what is asked of it."""
     asked = {
         key: quantity
@@ -260,28 +301,24 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
         if getattr(models, key, "").startswith("fitted")
     }
     if not asked and models.oil_model is None:
-        return []
+        return
     try:
         model = _oil_model(models, folder, lubricant)
     except InputError as error:
-        return list(error.problems)
-    if not asked:
-        return []
-    if model is None:
-        remedy = "Give models.oil_model, a file of 'epicyclic oil characterise'."
-        why = "needs a file of fitted models: none is built in for this oil."
-        return [Problem(f"models.{key}", f'"{getattr(models, key)}"', why, remedy) for key in asked]
-    problems = []
+        yield from error.problems
+        return
     for key, quantity in asked.items():
-        forms = (
-            [fitted.form for fitted in model.fits[quantity].forms] if quantity in model.fits else []
-        )
-        if models.fitted_form not in forms:
+        if model is None:
+            remedy = "Give models.oil_model, a file of 'epicyclic oil characterise'."
+            allowed = "needs a file of fitted models: none is built in for this oil."
+            yield Problem(f"models.{key}", f'"{getattr(models, key)}"', allowed, remedy)
+            continue
+        forms = model.fits[quantity].forms if quantity in model.fits else ()
+        if models.fitted_form not in [fitted.form for fitted in forms]:
             given = models.oil_model or f"that of {model.oil.name}"
             allowed = f"has no {quantity.replace('_', ' ')} of the form {models.fitted_form}."
             remedy = f"Choose another models.{key} or models.fitted_form."
-            problems.append(Problem("models.oil_model", given, allowed, remedy))
-    return problems
+            yield Problem("models.oil_model", given, allowed, remedy)
 
 
 def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> OilModel | None:
@@ -295,7 +332,7 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
     return builtin_model(lubricant.oil)
 
 
-def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem]:
+def _check_pocketing_table(models: GearPairModels, folder: Path) -> Iterator[Problem]:
     """That the file is one; whether it is for these pockets shows when they are known."""
     if models.pocketing_table is not None:
         from epicyclic.losses.pocket_tables import read_stored  # needs kernels
@@ -303,17 +340,15 @@ def _check_pocketing_table(models: GearPairModels, folder: Path) -> list[Problem
         try:
             read_stored(folder / models.pocketing_table)
         except InputError as error:
-            return list(error.problems)
-    return []
+            yield from error.problems
 
 
-def _check_void(models: GearPairModels, surroundings: Surroundings) -> list[Problem]:
+def _check_void(models: GearPairModels, surroundings: Surroundings) -> Iterator[Problem]:
     """A void has less pressure than the surroundings."""
-    if models.pocket_void_pressure < surroundings.pressure:
-        return []
-    shown = BAR.text(models.pocket_void_pressure)
-    allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
-    return [Problem("models.pocket_void_pressure", shown, allowed, "Take 0.01 bar.")]
+    if models.pocket_void_pressure >= surroundings.pressure:
+        shown = BAR.text(models.pocket_void_pressure)
+        allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
+        yield Problem("models.pocket_void_pressure", shown, allowed, "Take 0.01 bar.")
 
 
 def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:
@@ -321,19 +356,14 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
     positions, segments = numerics.mesh_positions, numerics.contact_segments
     if models.load_distribution != "compliance" or positions * segments**2 <= MOST_COEFFICIENTS:
         return []
+    allowed = f"with {positions} mesh positions the influence coefficients of "
+    allowed += 'models.load_distribution = "compliance" would not fit into memory.'
     fitting = max(2, math.isqrt(MOST_COEFFICIENTS // positions))
-    return [
-        Problem(
-            "numerics.contact_segments",
-            str(segments),
-            f"with {positions} mesh positions the influence coefficients of "
-            'models.load_distribution = "compliance" would not fit into memory.',
-            f"Take {fitting} or fewer; 30 are enough for 0.1 %.",
-        )
-    ]
+    remedy = f"Take {fitting} or fewer; 30 are enough for 0.1 %."
+    return [Problem("numerics.contact_segments", "", allowed, remedy)]
 
 
-_CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
+_CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_rollers, ("planet_bearing",)),
     (check_cage, ("planet_bearing", "models")),
@@ -355,13 +385,12 @@ _CHECKS: tuple[tuple[Callable[..., list[Problem]], tuple[str, ...]], ...] = (
 # Every function returns the problems it finds; none stops at the first.
 
 
-def lubrication_problems(train: TrainCase) -> list[Problem]:
+def lubrication_problems(train: TrainCase) -> Iterator[Problem]:
     """What cannot be about the lubrication of the sets; a shared table is checked by itself."""
-    problems: list[Problem] = []
     if train.lubrication is not None and train.lubrication.immersion:
         allowed = "is stated of each set, whose gears it names."
         remedy = "Write [sets.NAME.lubrication], or give oil_level."
-        problems.append(Problem("lubrication.immersion", "", allowed, remedy))
+        yield Problem("lubrication.immersion", "", allowed, remedy)
     for name, table in train.computed_sets:
         own = table.lubrication
         if own is None or own == train.lubrication:
@@ -369,13 +398,12 @@ def lubrication_problems(train: TrainCase) -> list[Problem]:
         if train.lubrication is None:
             # the oil around everything that is in no set follows from the train's own table
             allowed = "needs [lubrication] of the train, which it then replaces for this set."
-            remedy = "Add it, for all other parts."
-            problems.append(Problem(f"sets.{name}.lubrication", "", allowed, remedy))
+            yield Problem(f"sets.{name}.lubrication", "", allowed, "Add it, for all other parts.")
         found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
         if train.shape.sets[name].listed:
             found += check_immersion(own, train.shape.sets[name].members)
-        problems += [replace(problem, key=_key(name, problem.key)) for problem in found]
-    return problems
+        for problem in found:
+            yield replace(problem, key=_key(name, problem.key))
 
 
 def _key(name: str, keys: str) -> str:
@@ -460,34 +488,22 @@ def _gears(train: TrainCase, shaft: str) -> Iterator[str]:
                 yield f"{name}.{gear}"
 
 
-def operation_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
+def operation_problems(train: TrainCase, complete: bool) -> list[Problem]:
     """What cannot be about the states and the operation of a train.
 
-    Of a `shape` that is not `complete`, because some members or meshes are wrong, only that is told
+    Of a shape that is not `complete`, because some members or meshes are wrong, only that is told
     which these cannot change: a train that is blocked without them is blocked with them.
     """
-    named: list[Problem] = []
-    for name, state in train.states.items():
-        named += state_problems(f"states.{name}", state, shape)
-    named += _state_choice(train)
-    operation = train.operation
-    for key in ("input", "output"):
-        named += _shaft_problems(f"operation.{key}", getattr(operation, key), shape)
-    for key in ("speeds", "torques"):
-        for name in getattr(operation, key):
-            named += _shaft_problems(f"operation.{key}.{name}", name, shape)
+    named = named_problems(train)
     problems = [
         *named,
-        *check_outlet(train.thermal, operation.oil_inlet_temperature),
+        *check_outlet(train.thermal, train.operation.oil_inlet_temperature),
         *_temperature_problems(train),
         *_oil_model_problems(train),
     ]
     if complete:
-        problems += [*_position_problems(train, shape), *lubrication_problems(train)]
-    if named:
-        return problems
-    ends = list(_ends_problems(train, shape, complete))
-    return [*problems, *(ends or _freedom_problems(train, shape, complete))]
+        problems += [*_position_problems(train), *lubrication_problems(train)]
+    return problems if named else [*problems, *motion_problems(train, complete)]
 
 
 def _temperature_problems(train: TrainCase) -> list[Problem]:
@@ -520,205 +536,16 @@ def _oil_model_problems(train: TrainCase) -> list[Problem]:
     ]
 
 
-def state_problems(key: str, state: StateTable, shape: TrainShape) -> list[Problem]:
-    """Brakes and clutches on shafts that are not there, or on one shaft."""
-    problems = []
-    for number, name in enumerate(state.fixed):
-        problems += _shaft_problems(f"{key}.fixed[{number}]", name, shape)
-    for number, group in enumerate(state.joined):
-        where, shown = f"{key}.joined[{number}]", written(list(group))
-        found = [problem for name in group for problem in _shaft_problems(where, name, shape)]
-        problems += found
-        if len(group) < 2:
-            allowed = "must be two or more shafts."
-            problems.append(Problem(where, shown, allowed, "Name the shafts that a clutch joins."))
-        elif not found:
-            shafts = [shape.shaft_of(name) for name in group]
-            if len(set(shafts)) < len(shafts):
-                twice = next(one for one in shafts if shafts.count(one) > 1)
-                allowed = f"joins the shaft {twice} to itself."
-                problems.append(Problem(where, shown, allowed, "Name two different shafts."))
-    return problems
-
-
-def _position_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]:
+def _position_problems(train: TrainCase) -> Iterator[Problem]:
     """Positions of gears that there are, and that stand on a shaft."""
     known = [
         f"{name}.{gear}"
-        for name, own in shape.sets.items()
+        for name, own in train.shape.sets.items()
         for gear, body in own.bodies.items()
         if body not in own.planets
     ]
-    members = [member for names in shape.shafts.values() for member in names]
+    members = [member for names in train.shape.shafts.values() for member in names]
     for gear in train.positions:
         if gear not in known and gear not in members:
             remedy = did_you_mean(gear, known) or f"Known are: {', '.join(known)}."
             yield Problem(f'positions."{gear}"', "", "is not a gear on a shaft.", remedy)
-
-
-def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:
-    if shape.shaft_of(name) is not None:
-        return []
-    known = [shaft for shaft in shape.shafts if shaft != HOUSING]
-    members = [member for names in shape.shafts.values() for member in names]
-    remedy = did_you_mean(name, dict.fromkeys([*known, *members]))
-    remedy = remedy or f"Known are: {', '.join(known)}."
-    return [Problem(key, written(name), "is no shaft and no member of a set.", remedy)]
-
-
-def _state_choice(train: TrainCase) -> list[Problem]:
-    name, known = train.operation.state, list(train.states)
-    key = "operation.state"
-    if name is None and known:
-        allowed = f"is missing; it must be one of {', '.join(known)}."
-        return [Problem(key, "", allowed, f'Write state = "{known[0]}".')]
-    if name is not None and name not in known:
-        if not known:
-            allowed = "is no state: the train has none."
-            return [Problem(key, written(name), allowed, "Leave it out, or add [states.NAME].")]
-        remedy = did_you_mean(name, known) or f"Known are: {', '.join(known)}."
-        return [Problem(key, written(name), "is no state of the train.", remedy)]
-    return []
-
-
-def _ends_problems(train: TrainCase, shape: TrainShape, complete: bool) -> Iterator[Problem]:
-    """Input and output must be two shafts that can turn."""
-    operation = train.operation
-    ends = {key: shape.shaft_of(getattr(operation, key)) for key in ("input", "output")}
-    groups = [{shape.shaft_of(name) for name in group} for group in train.state.joined]
-    if ends["input"] == ends["output"]:
-        allowed = "is the input shaft too."
-        remedy = "Name another shaft; a train passes power from one shaft to another."
-        yield Problem("operation.output", written(operation.output), allowed, remedy)
-    held = shape.held(train.state)
-    turning = {*shape.turning(train.state), HOUSING}
-    for key, shaft in ends.items():
-        if complete and shaft not in turning:
-            allowed = f"is joined to nothing in {_state_words(train)}: it has no members, and no "
-            allowed += "clutch that joins it is closed."
-            shown = written(getattr(operation, key))
-            yield Problem(f"operation.{key}", shown, allowed, "Close a clutch, or name another.")
-            continue
-        by_clutch = any(shaft in group and group & set(held) for group in groups)
-        if shaft == HOUSING or shaft in held or by_clutch:
-            allowed = "stands still, as the housing does."
-            if shaft != HOUSING:
-                allowed = f"is held by a brake in {_state_words(train)}."
-            advice = "Name a shaft that turns, or release it."
-            yield Problem(f"operation.{key}", written(getattr(operation, key)), allowed, advice)
-    if complete:
-        yield from _given_problems(train, shape, ends)
-
-
-def _given_problems(
-    train: TrainCase, shape: TrainShape, ends: Mapping[str, str | None]
-) -> Iterator[Problem]:
-    """Further speeds and torques: of shafts that turn, each once, and only one of the two."""
-    operation = train.operation
-    turning = shape.turning(train.state)
-    held: dict[str | None, str] = dict.fromkeys((*shape.held(train.state), HOUSING), "held")
-    driven = {shape.shaft_of(name): "given a speed" for name in operation.speeds}
-    inputs: dict[str | None, str] = {ends["input"]: "the input"}
-    output: dict[str | None, str] = {ends["output"]: "the output"}
-    kinds = {
-        "speeds": (operation.speeds, held | inputs),
-        "torques": (operation.torques, held | driven | output | inputs),
-    }
-    for key, (values, taken) in kinds.items():
-        seen: dict[str | None, str] = {}
-        for name in values:
-            shaft, allowed = shape.shaft_of(name), ""
-            if shaft in taken:
-                allowed = f"cannot be given: this shaft is {taken[shaft]}."
-            elif shaft not in turning:
-                allowed = f"cannot be given: nothing is joined to it in {_state_words(train)}."
-            elif shaft in seen:
-                allowed = f"is given twice: {seen[shaft]} is the same shaft."
-            seen[shaft] = name
-            if allowed:
-                yield Problem(f"operation.{key}.{name}", "", allowed, "Leave it out.")
-
-
-def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> list[Problem]:
-    """The given speeds must determine all others, and the input must be able to turn."""
-    from epicyclic.machine.balance import freedom, implied  # only trains need a machine
-
-    machine = shape.machine(train.state)
-    driven = shape.shaft_of(train.operation.input) or ""
-    held = shape.held(train.state)
-    others = [*held, *(shape.shaft_of(name) or "" for name in train.operation.speeds)]
-    if not complete:  # without its members a shaft is no body
-        others = [shaft for shaft in others if shaft in machine.bodies]
-        if driven not in machine.bodies:
-            return []
-    found = freedom(machine, driven, others)
-    key = "operation.state" if train.states else "shafts"
-    shown = written(train.operation.state) if train.states else ""
-    problems = []
-    if found.blocked:
-        means = _means(train.state, held, train.operation.speeds)
-        reason = f"blocks the train: the input shaft {driven} cannot turn" + (
-            f" with {means}." if means else "."
-        )
-        remedy = "Release one of these." if means else "Check the shafts: they join too much."
-        problems.append(Problem(key, shown, reason, remedy))
-    if not complete:
-        return problems
-    if found.loose:
-        names = ", ".join(body for body in found.loose if body in shape.shafts)
-        freedoms = found.freedoms
-        word = "one" if freedoms == 1 else str(freedoms)
-        problems.append(
-            Problem(
-                key,
-                shown,
-                f"leaves {word} degree{'s' if freedoms > 1 else ''} of freedom open: the speed of "
-                f"{names} is not determined.",
-                f"Brake or couple {word} of these shafts more (fixed, joined), or give "
-                f"{word} of them a speed in [operation.speeds].",
-            )
-        )
-    further = {shape.shaft_of(name) or "": name for name in train.operation.speeds}
-    if not found.loose:
-        for shaft in implied(machine, [driven, *held], list(further)):
-            allowed = "cannot be given: this speed follows from those of the other shafts."
-            key = f"operation.speeds.{further[shaft]}"
-            problems.append(Problem(key, "", allowed, "Leave it out."))
-    if problems or shape.shaft_of(train.operation.output) in further:
-        return problems
-    return _standing_output(train, shape, machine, driven, others)
-
-
-def _standing_output(
-    train: TrainCase, shape: TrainShape, machine: Machine, driven: str, others: Sequence[str]
-) -> list[Problem]:
-    """An output that the input does not turn can balance no torque of it."""
-    from epicyclic.machine.balance import speeds_of
-
-    output = train.operation.output
-    speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
-    if speeds[shape.shaft_of(output) or ""] != 0:
-        return []
-    allowed = f"stands still whatever the input shaft {driven} does in {_state_words(train)}, so "
-    allowed += "that no power reaches it."
-    turning = [shaft for shaft in shape.shafts if speeds[shaft] != 0 and shaft != driven]
-    remedy = f"Name a shaft that turns with the input: {', '.join(turning)}."
-    if not turning:
-        remedy = "Join it to the input."
-    return [Problem("operation.output", written(output), allowed, remedy)]
-
-
-def _state_words(train: TrainCase) -> str:
-    name = train.operation.state
-    return "this train" if name is None else f"state {name}"
-
-
-def _means(state: StateTable, held: Sequence[str], speeds: Mapping[str, float]) -> str:
-    parts = []
-    if held:
-        parts.append(f"{', '.join(held)} held")
-    if state.joined:
-        parts.append(f"{', '.join('+'.join(group) for group in state.joined)} joined")
-    if speeds:
-        parts.append(f"the speed of {', '.join(speeds)} given")
-    return " and ".join(parts)

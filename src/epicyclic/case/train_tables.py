@@ -20,7 +20,6 @@ from epicyclic.case.gear_tables import (
     internal_if_negative,
     with_positive_teeth,
 )
-from epicyclic.case.tables.base import Table, option
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
 from epicyclic.case.tables.models import (
     GearPairLosses,
@@ -31,7 +30,8 @@ from epicyclic.case.tables.models import (
     PlanetaryLosses,
     PlanetaryModels,
 )
-from epicyclic.case.tables.operation import LUBRICATION, LubricationTable
+from epicyclic.case.tables.operation import ANY_OPERATION, LUBRICATION, LubricationTable
+from epicyclic.schema.table import Table, option
 from epicyclic.units import (
     Angle,
     HelixAngle,
@@ -46,6 +46,8 @@ from epicyclic.units import (
 
 Efficiency = Annotated[Number, Field(gt=0, le=1)]
 Position = Annotated[float, Quantity("a position", "m", "mm", low=-1e5, high=1e5)]
+_BODY: Any = option("Gears with the same body turn together. Default: its own.")
+_PLANET: Any = option("true: it stands on the carrier. Default: as the meshes and shafts suggest.")
 
 
 class Teeth(Table):
@@ -82,10 +84,8 @@ class GivenGear(Teeth):
 class GivenListedGear(GivenGear):
     """A gear of a listed set of given efficiency."""
 
-    body: str | None = option("Gears with the same body turn together. Default: its own.")
-    planet: bool | None = option(
-        "true: it stands on the carrier. Default: as the meshes and shafts suggest."
-    )
+    body: str | None = _BODY
+    planet: bool | None = _PLANET
 
 
 class PlanetarySet(Table):
@@ -153,10 +153,8 @@ class GivenPair(Table):
 class ListedGear(PairGear):
     """A gear of a listed set whose losses are computed."""
 
-    body: str | None = option("Gears with the same body turn together. Default: its own.")
-    planet: bool | None = option(
-        "true: it stands on the carrier. Default: as the meshes and shafts suggest."
-    )
+    body: str | None = _BODY
+    planet: bool | None = _PLANET
     normal_module: Length | None = option("Default: of [gears].")
     transverse_module: Length | None = option("Default: of [gears].")
     normal_pressure_angle: PressureAngle | None = option("Default: of [gears].")
@@ -272,11 +270,7 @@ StateName = Annotated[str, BeforeValidator(_state_name)]
 class TrainOperation(Table):
     """How the train runs."""
 
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "torque": "0 N*m",
-        "speed": "0 rpm",
-        "oil_inlet_temperature": None,
-    }
+    STAND_INS: ClassVar[dict[str, object]] = ANY_OPERATION | {"oil_inlet_temperature": None}
 
     state: StateName | None = option("One of [states].")
     input: str = Field(description="The shaft to which torque and speed belong.")

@@ -374,7 +374,7 @@ def case_with_remarks(found: ForeignCase, changes: dict[str, Any]) -> Case:
 
 
 def parse_changes(options: Sequence[str]) -> dict[str, Any]:
-    from epicyclic.case.read import parse_value
+    from epicyclic.schema.read import parse_value
 
     changes: dict[str, Any] = {}
     problems = []

@@ -195,8 +195,8 @@ def _check_output(output: Path | None, keys: list[str]) -> None:
 
 def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
-    from epicyclic.case.template import case_text
     from epicyclic.show.studies import fitted_comment
+    from epicyclic.show.template import case_text
     from epicyclic.study.measured.comparison import CALIBRATED
 
     calibrated, fit = comparison.calibrated_case, comparison.fit

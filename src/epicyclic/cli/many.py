@@ -350,7 +350,7 @@ def finish(plan: Plan, rows: Rows, write: Write, journal: Journal | None = None)
 
 def _print_thin_teeth(rows: Rows) -> None:
     """Say at how many points the gears have gross backlash, which losses do not show."""
-    from epicyclic.case.gear_rules import TOO_THIN
+    from epicyclic.gears.rules import TOO_THIN
 
     thin = sum(TOO_THIN in text for text in rows.warnings)
     if thin:

@@ -43,7 +43,7 @@ def cases() -> None:
 def oils(name: str | None) -> None:
     """List the built-in oils, or show one with the source of every value."""
     from epicyclic import library
-    from epicyclic.case.fields import did_you_mean
+    from epicyclic.messages import did_you_mean
     from epicyclic.show.data_sheet import oil_sheet, oil_table
     from epicyclic.show.terminal import terminal
 
@@ -64,7 +64,7 @@ def oils(name: str | None) -> None:
 def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
     """Write a commented case FILE (default case.toml) to start from."""
     from epicyclic import library
-    from epicyclic.case.template import case_template, text_like
+    from epicyclic.show.template import case_template, text_like
 
     if like is not None and (minimal or kind is not None):
         given = "--minimal" if minimal else "--kind"

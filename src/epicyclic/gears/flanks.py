@@ -26,6 +26,8 @@ FloatArray = NDArray[np.float64]
 # A line leaning less than this over the whole face, in base pitches, counts as straight (spur).
 _SPUR_OVERLAP = 1e-9
 
+ReliefShape = Literal["linear", "parabolic"]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContactLines:
@@ -127,7 +129,7 @@ class Relief:
     amount: float  # At the end. [m]
     length: float  # From the end to where the relief starts. [m]
     # ``"linear"`` or ``"parabolic"``, tangent to the flank where it starts.
-    shape: Literal["linear", "parabolic"] = "linear"
+    shape: ReliefShape = "linear"
 
     def at(self, distance: FloatArray) -> FloatArray:
         """Deviation at a `distance` from the end. Theory (G37). [m]"""

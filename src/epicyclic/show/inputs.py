@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 from epicyclic.case.case import KINDS, form_of_set
-from epicyclic.case.fields import Place, dict_value, locate, quantity_of
 from epicyclic.case.tables.elements import ElementTables
+from epicyclic.schema.fields import Place, dict_value, locate, quantity_of
 from epicyclic.show.page import Cell, Table
 from epicyclic.units import format_number, unit_text
 

@@ -15,10 +15,10 @@ from pydantic_core import from_json
 
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
-from epicyclic.case.fields import one_line
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.losses.planet_bearing import RollerBearing
+from epicyclic.messages import one_line
 from epicyclic.netcdf_file import read_groups
 from epicyclic.result.result import Result, set_of
 from epicyclic.result.stored import read_result

@@ -8,13 +8,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import sentence
-from epicyclic.case.read import flattened
-from epicyclic.case.template import toml_value
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.element import Figure, figures
 from epicyclic.machine.gear_mesh import MeshFigures
+from epicyclic.messages import sentence
 from epicyclic.result.result import HeatBalance, MemberState, Result, Train, in_words, set_of
+from epicyclic.schema.read import flattened
 from epicyclic.show.page import (
     MISSING,
     Cell,
@@ -28,6 +27,7 @@ from epicyclic.show.page import (
     tenths,
 )
 from epicyclic.show.power_flow import power_flow
+from epicyclic.show.template import toml_value
 from epicyclic.study.heat import (
     BeyondRange,
     Found,

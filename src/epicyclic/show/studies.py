@@ -14,7 +14,7 @@ from rich.console import Group, JustifyMethod, RenderableType
 from rich.table import Column, Table
 from rich.text import Text
 
-from epicyclic.case.fields import one_line
+from epicyclic.messages import one_line
 from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.page import MISSING, error_text, shown
 from epicyclic.show.terminal import number_table, plain_table, spaced, titled

@@ -14,8 +14,8 @@ from rich.padding import Padding
 from rich.table import Column, Table
 from rich.text import Text
 
-from epicyclic.case.fields import sentence
 from epicyclic.losses.ranges import share_text
+from epicyclic.messages import sentence
 from epicyclic.result.result import Result
 from epicyclic.show import page
 from epicyclic.show import result_tables as tables

@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 from rich.console import RenderableType
 
-from epicyclic.case.fields import one_line
 from epicyclic.case.tables.uncertainty import MODEL_FORM
+from epicyclic.messages import one_line
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import (
     MISSING,

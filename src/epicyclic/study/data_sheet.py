@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass
 
 from epicyclic.case.case import Case
-from epicyclic.case.gear_tables import GearTable, allowance_shift, allowances, tolerances_of
-from epicyclic.case.gearing import Gearing
 from epicyclic.gears import measures
 from epicyclic.gears.gear import Gear
+from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.measures import FlankTolerances
 from epicyclic.gears.mesh import Mesh, recommended_backlash
+from epicyclic.gears.stated import StatedGear, allowance_shift, allowances, tolerances_of
 from epicyclic.oil.oil import OilState, oil_state
 
 
@@ -70,7 +70,7 @@ def _sheet(gearing: Gearing) -> DataSheet:
     )
 
 
-def _gear_sheet(gear: Gear, table: GearTable) -> GearSheet:
+def _gear_sheet(gear: Gear, table: StatedGear) -> GearSheet:
     rack = gear.rack
     thickness = 2 * gear.reference_radius * gear.thickness_half_angle
     return GearSheet(
@@ -90,7 +90,7 @@ def _on_flank(gear: Gear, radius: float) -> bool:
     return low < radius < high
 
 
-def _span(gear: Gear, table: GearTable) -> tuple[int, float] | None:
+def _span(gear: Gear, table: StatedGear) -> tuple[int, float] | None:
     """As stated, or over the number of teeth whose span touches in the middle."""
     if gear.internal and gear.rack.helix_angle > 0:
         return None
@@ -99,7 +99,7 @@ def _span(gear: Gear, table: GearTable) -> tuple[int, float] | None:
     return (count, value) if _on_flank(gear, measures.span_contact_radius(gear, value)) else None
 
 
-def _pins(gear: Gear, table: GearTable) -> tuple[float, float] | None:
+def _pins(gear: Gear, table: StatedGear) -> tuple[float, float] | None:
     pin = table.measuring_pin_diameter or measures.usual_pin(gear.rack)
     try:
         radius, value = (

@@ -10,11 +10,12 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.build.machine import oil_medium
 from epicyclic.case.case import Case
-from epicyclic.case.fields import quantity_of, refused, written
 from epicyclic.errors import ConvergenceError, InputError, one_problem
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.heat import COLDEST, HOTTEST
+from epicyclic.messages import refused, written
 from epicyclic.result.result import HeatBalance, Result, in_words
+from epicyclic.schema.fields import quantity_of
 from epicyclic.study.solve import solve
 from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
 

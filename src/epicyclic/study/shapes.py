@@ -11,11 +11,11 @@ import numpy as np
 
 from epicyclic.build.machine import build as build_machine
 from epicyclic.case.case import Case
-from epicyclic.case.gear_tables import GearTable
-from epicyclic.case.gearing import Gearing, outside_radius
 from epicyclic.gears.cutting import Tool, tooth_outline
 from epicyclic.gears.gear import Gear
+from epicyclic.gears.gearing import Gearing, outside_radius
 from epicyclic.gears.mesh import Mesh
+from epicyclic.gears.stated import StatedGear
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.study.meshes import variable
@@ -37,7 +37,7 @@ HALF = 0.5  # Part of a pitch by which a tooth is away from the space beside it.
 class SetPlaces:
     """What is to be drawn of a set."""
 
-    tables: Mapping[str, GearTable]  # Tables of its gears, by name.
+    tables: Mapping[str, StatedGear]  # Tables of its gears, by name.
     # Where each gear stands; several times on the planets. [m]
     centers: Mapping[str, tuple[Point, ...]]
     bodies: Mapping[str, str]  # The body of each gear: gears of one body turn together.
@@ -250,7 +250,7 @@ def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.
 # --- datasets -------------------------------------------------------------------------------------
 
 
-def _shape(gear: Gear, tool: Tool, table: GearTable, places: list[Place]) -> xr.Dataset:
+def _shape(gear: Gear, tool: Tool, table: StatedGear, places: list[Place]) -> xr.Dataset:
     import xarray as xr
 
     x, y, direction = np.array(places).T

@@ -15,8 +15,6 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, build_case, read_case
-from epicyclic.case.fields import did_you_mean, refused, written
-from epicyclic.case.read import plain
 from epicyclic.errors import Problem, Status, one_problem, raise_any
 from epicyclic.gears.cutting import mated_tools
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_thickness
@@ -25,8 +23,10 @@ from epicyclic.losses.pocket_flow import NETWORK_MODELS, PocketFlow
 from epicyclic.losses.pocket_tables import FLOW_NUMBERS, flow_figures
 from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.pocket_flow import flow_request, oil_in_mesh
+from epicyclic.messages import did_you_mean, refused, written
 from epicyclic.oil.oil import mixture_state
 from epicyclic.result.result import origin
+from epicyclic.schema.read import plain
 from epicyclic.study.meshes import variable
 from epicyclic.study.pockets import mesh_duties
 from epicyclic.study.sweeps.runner import HERE, Plan, Progress, Row, Rows, Runner

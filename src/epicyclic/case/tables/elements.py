@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, Tag
 
-from epicyclic.case.fields import did_you_mean, millimetres, written
-from epicyclic.case.tables.base import (
-    VALUES_OR_ROWS,
-    NamedMaterial,
-    PointsTable,
-    Roughness,
-    ShortLength,
-    Table,
-    option,
-)
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
+from epicyclic.messages import did_you_mean, millimetres, written
+from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
 from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature
 
 if TYPE_CHECKING:
@@ -151,13 +145,12 @@ class ElementTable(Table):
         """The two bodies that it is between, by their keys."""
         return {key: getattr(self, key) for key in ("shaft", "against")}
 
-    def problems(self) -> list[Problem]:
+    def problems(self) -> Iterator[Problem]:
         """What contradicts itself, or is missing; keys are relative to the table."""
         (_, first), (key, second) = self.bodies.items()
-        if first != second:
-            return []
-        reason = "is the same body twice: nothing moves between them."
-        return [Problem(key, written(second), reason, f'Name another shaft, or "{HOUSING}".')]
+        if first == second:
+            reason = "is the same body twice: nothing moves between them."
+            yield Problem(key, written(second), reason, f'Name another shaft, or "{HOUSING}".')
 
     def points(self, folder: Path) -> LossTable | None:
         """Its torque or power if it states a table; raises `InputError` for a bad file."""
@@ -178,8 +171,9 @@ class DragTable(ElementTable, LossTableTable):
     def bodies(self) -> dict[str, str]:
         return {f"between[{number}]": body for number, body in enumerate(self.between)}
 
-    def problems(self) -> list[Problem]:
-        return super().problems() + loss_table_problems(self, _DRAG_AXES)
+    def problems(self) -> Iterator[Problem]:
+        yield from super().problems()
+        yield from loss_table_problems(self, _DRAG_AXES)
 
     def points(self, folder: Path) -> LossTable:
         return _loss_table(self, folder, "", _DRAG_AXES)
@@ -196,19 +190,6 @@ class BearingSealTable(Table):
 
 class ShaftBearingTable(ElementTable):
     """A rolling bearing of a shaft."""
-
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "position": None,
-        "width": None,
-        "viscous_factor": None,
-        "palmgren_coefficient": None,
-        "flange_coefficient": None,
-        "oil_level": None,
-        "drag_variable": None,
-        "sliding_friction": None,
-        "minimum_load_factor": None,
-        "reference_speed": None,
-    }
 
     shaft: str = Field(description="The shaft in its bore.")
     against: str = option("The body that holds its outer ring.", "housing")
@@ -286,25 +267,31 @@ class ShaftBearingTable(ElementTable):
     reference_speed: ReferenceSpeed | None = option("Of cylindrical rollers, for the minimum load.")
     table: LossTableTable | None = option("For model = table.")
 
-    def problems(self) -> list[Problem]:
-        from epicyclic.losses.shaft_bearing import bearing_types  # cases without bearings need not
+    def problems(self) -> Iterator[Problem]:
+        # cases without bearings need it not
+        from epicyclic.losses.shaft_bearing import DEFAULT_VISCOUS_FACTORS, bearing_types
 
-        problems = _size_problems(self) + super().problems() + _force_problems(self)
-        if self.type not in bearing_types(self.model):
-            reason = f"has no constants for {self.type} roller bearings."
-            remedy = 'Choose model = "palmgren" or "table".'
-            return [*problems, Problem("model", written(self.model), reason, remedy)]
-        problems += _own_table_problems(self, LossTableTable.AXES)
-        if self.model == "skf-2018":
-            problems += _skf_problems(self)
-        if (
-            self.type == "deep-groove"
-            and self.model in ("harris", "skf-2018")
-            and self.static_load_rating is None
-        ):
-            reason = f"is missing; the model {self.model} needs it for ball bearings."
-            problems.append(Problem("static_load_rating", "", reason, "Add C0 from the catalogue."))
-        return problems
+        kind, model = self.type, self.model
+        if self.bore >= self.outside_diameter:
+            reason = f"must be less than outside_diameter, {millimetres(self.outside_diameter)}."
+            yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
+        if (kind, self.cage) not in DEFAULT_VISCOUS_FACTORS:
+            remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
+            yield Problem("cage", written(self.cage), f"is not made as a {kind} bearing.", remedy)
+        yield from _angle_problems(self)
+        yield from super().problems()
+        yield from _force_problems(self)
+        if kind not in bearing_types(model):
+            reason = f"has no constants for {kind} roller bearings."
+            yield Problem("model", written(model), reason, 'Choose model = "palmgren" or "table".')
+            return
+        yield from _own_table_problems(self, LossTableTable.AXES)
+        if model == "skf-2018":
+            yield from _skf_problems(self)
+        needs_rating = kind == "deep-groove" and model in ("harris", "skf-2018")
+        if needs_rating and not self.static_load_rating:
+            reason = f"is missing; the model {model} needs it for ball bearings."
+            yield Problem("static_load_rating", "", reason, "Add C0 from the catalogue.")
 
     def points(self, folder: Path) -> LossTable | None:
         axes = LossTableTable.AXES
@@ -324,8 +311,9 @@ class SealTable(ElementTable):
     )
     table: LossTableTable | None = option("For model = table.")
 
-    def problems(self) -> list[Problem]:
-        return super().problems() + _own_table_problems(self, _DRAG_AXES)
+    def problems(self) -> Iterator[Problem]:
+        yield from super().problems()
+        yield from _own_table_problems(self, _DRAG_AXES)
 
     def points(self, folder: Path) -> LossTable | None:
         return None if self.table is None else _loss_table(self.table, folder, "table.", _DRAG_AXES)
@@ -334,107 +322,84 @@ class SealTable(ElementTable):
 # What contradicts itself, or is missing, in one of these tables; keys are relative to the table.
 
 
-def _size_problems(table: ShaftBearingTable) -> list[Problem]:
-    from epicyclic.losses.shaft_bearing import DEFAULT_VISCOUS_FACTORS
-
-    problems = []
-    if table.bore >= table.outside_diameter:
-        reason = f"must be less than outside_diameter, {millimetres(table.outside_diameter)}."
-        problems.append(Problem("bore", millimetres(table.bore), reason, "Correct one of the two."))
-    if (table.type, table.cage) not in DEFAULT_VISCOUS_FACTORS:
-        reason = f"is not made as a {table.type} bearing."
-        remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
-        problems.append(Problem("cage", written(table.cage), reason, remedy))
+def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
+    """The contact angle of tapered rollers, stated once."""
     angles = [key for key in ("axial_factor", "contact_angle") if getattr(table, key) is not None]
-    if table.type == "tapered" and table.model != "table" and len(angles) != 1:
-        reason = "is missing; needed is axial_factor or contact_angle."
-        if angles:
-            reason = "is given beside contact_angle; either follows from the other."
-        remedy = "Delete one." if angles else "Add Y from the catalogue, or the contact angle."
-        problems.append(Problem("axial_factor", "", reason, remedy))
     if table.type != "tapered":
-        problems += [
-            Problem(key, "", "belongs to tapered roller bearings.", "Delete it.") for key in angles
-        ]
-    return problems
+        for key in angles:
+            yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
+    elif table.model != "table" and not angles:
+        reason = "is missing; needed is axial_factor or contact_angle."
+        remedy = "Add Y from the catalogue, or the contact angle."
+        yield Problem("axial_factor", "", reason, remedy)
+    elif table.model != "table" and len(angles) == 2:
+        reason = "is given beside contact_angle; either follows from the other."
+        yield Problem("axial_factor", "", reason, "Delete one.")
 
 
-def _force_problems(table: ShaftBearingTable) -> list[Problem]:
-    problems = []
+def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
-        problems.append(Problem("radial_force", "", "is missing; axial_force is given.", remedy))
+        yield Problem("radial_force", "", "is missing; axial_force is given.", remedy)
     if table.type == "needle":
         reason = "is asked of a needle roller bearing, which takes no axial force."
         remedy = "Let another bearing locate the shaft."
         if table.locating:
-            problems.append(Problem("locating", "true", reason, remedy))
+            yield Problem("locating", "true", reason, remedy)
         if table.axial_force:
-            problems.append(Problem("axial_force", f"{table.axial_force:g} N", reason, remedy))
-    return problems
+            yield Problem("axial_force", f"{table.axial_force:g} N", reason, remedy)
 
 
-def _skf_problems(table: ShaftBearingTable) -> list[Problem]:
+def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     from epicyclic.losses.shaft_bearing import skf_series
 
-    problems = []
     known = skf_series(table.type)
-    needs_series = table.cage == "caged"
     choice = ", ".join(known)
-    if needs_series and table.series is None:
-        remedy = f"Give one of {choice}."
-        problems.append(
-            Problem("series", "", f"is missing; SKF has a row for each: {choice}.", remedy)
-        )
-    elif needs_series and table.series not in known:
+    if table.cage == "caged" and table.series is None:
+        reason = f"is missing; SKF has a row for each: {choice}."
+        yield Problem("series", "", reason, f"Give one of {choice}.")
+    elif table.cage == "caged" and table.series not in known:
         remedy = did_you_mean(table.series or "", known) or 'Or choose model = "palmgren".'
         reason = f"is not in the table; known of {table.type} bearings are {choice}."
-        problems.append(Problem("series", written(table.series), reason, remedy))
+        yield Problem("series", written(table.series), reason, remedy)
     if table.oil_level > 0 and table.type != "deep-groove" and table.width is None:
         reason = "is missing; the drag of rollers in an oil bath needs it."
-        problems.append(Problem("width", "", reason, "Add B from the catalogue."))
-    return problems
+        yield Problem("width", "", reason, "Add B from the catalogue.")
 
 
 def _own_table_problems(
     table: ShaftBearingTable | SealTable, axes: Collection[str]
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Problems of the loss table of an element, and of one that is missing or idle."""
-    if table.model != "table":
-        idle = Problem("table", "", 'belongs to model = "table".', "Delete it, or choose that.")
-        return [] if table.table is None else [idle]
-    if table.table is None:
+    if table.model == "table" and table.table is None:
         reason = "needs a table of friction torque or power."
-        return [Problem("model", '"table"', reason, "Add table, or choose another model.")]
-    return [
-        Problem(f"table.{found.key}".rstrip("."), found.value, found.allowed, found.remedy)
-        for found in loss_table_problems(table.table, axes)
-    ]
+        yield Problem("model", '"table"', reason, "Add table, or choose another model.")
+    elif table.model == "table" and table.table is not None:
+        for found in loss_table_problems(table.table, axes):
+            yield replace(found, key=f"table.{found.key}".rstrip("."))
+    elif table.table is not None:
+        yield Problem("table", "", 'belongs to model = "table".', "Delete it, or choose that.")
 
 
-def loss_table_problems(table: LossTableTable, axes: Collection[str]) -> list[Problem]:
+def loss_table_problems(table: LossTableTable, axes: Collection[str]) -> Iterator[Problem]:
     """What contradicts itself in a table of torque or power that may have `axes`."""
-    contents = [key for key in ("torque", "power", "file") if getattr(table, key) is not None]
-    if len(contents) != 1:
-        reason = "must have exactly one of torque, power and file."
-        given = " and ".join(contents)
-        return [Problem(contents[0] if contents else "", given, reason, "Give one of them.")]
-    given_axes = table.axes()
-    problems = [
-        Problem(name, "", "is no axis here: only bearings carry a load.", "Delete it.")
-        for name in given_axes
-        if name not in axes
-    ]
-    if contents == ["file"]:
-        problems += [
-            Problem(name, "", "is given beside file, which has its own axes.", "Delete it.")
-            for name in given_axes
-        ]
-        return problems
     from epicyclic.losses.loss_table import table_problems
 
-    values = getattr(table, table.quantity)
-    return problems or table_problems(table.quantity, given_axes, values)
+    contents = [key for key in ("torque", "power", "file") if getattr(table, key) is not None]
+    given = table.axes()
+    foreign = [name for name in given if name not in axes]
+    if len(contents) != 1:
+        reason = "must have exactly one of torque, power and file."
+        key = contents[0] if contents else ""
+        yield Problem(key, " and ".join(contents), reason, "Give one of them.")
+        return
+    for name in foreign:
+        yield Problem(name, "", "is no axis here: only bearings carry a load.", "Delete it.")
+    if contents == ["file"]:
+        for name in given:
+            yield Problem(name, "", "is given beside file, which has its own axes.", "Delete it.")
+    elif not foreign:
+        yield from table_problems(table.quantity, given, getattr(table, table.quantity))
 
 
 class ElementTables(Table):
@@ -446,16 +411,6 @@ class ElementTables(Table):
 
 
 # How they stand in a train.
-
-
-def placing_problems(table: ElementTable, shafts: Mapping[str, str], folder: Path) -> list[Problem]:
-    """Why a part that is sound by itself cannot be in a train: unknown shafts, a bad file."""
-    try:
-        between(table, shafts)
-        table.points(folder)
-    except InputError as error:
-        return list(error.problems)
-    return []
 
 
 def between(
@@ -479,33 +434,26 @@ def between(
     if first == second:
         reason = f"is the same shaft, {first}, by another name: nothing moves between them."
         key, name = list(names.items())[1]
-        raise InputError([Problem(key, written(name), reason, "Name another shaft.")])
+        raise one_problem(key, written(name), reason, "Name another shaft.")
     return first, second
 
 
-def _loss_table(
-    table: LossTableTable, folder: Path, prefix: str, axes: Collection[str]
-) -> LossTable:
+def _loss_table(own: LossTableTable, folder: Path, prefix: str, axes: Collection[str]) -> LossTable:
     from epicyclic.losses.loss_table import LossTable, read_loss_table
 
-    if table.file is None:
-        points = {name: np.asarray(given) for name, given in table.axes().items()}
-        values = np.asarray(getattr(table, table.quantity), dtype=float)
-        return LossTable(table.quantity, points, values)
+    if own.file is None:
+        points = {name: np.asarray(given) for name, given in own.axes().items()}
+        return LossTable(own.quantity, points, np.asarray(getattr(own, own.quantity), dtype=float))
+    key, shown = f"{prefix}file", written(own.file)
     try:
-        found = read_loss_table(folder / table.file)
+        found = read_loss_table(folder / own.file)
     except InputError as error:
-        raise InputError(
-            Problem(
-                f"{prefix}file",
-                written(table.file),
-                " ".join(part for part in (one.key, one.value, one.allowed) if part),
-                one.remedy,
-            )
+        whole = [
+            (" ".join(part for part in (one.key, one.value, one.allowed) if part), one.remedy)
             for one in error.problems
-        ) from None
+        ]
+        raise InputError(Problem(key, shown, *what) for what in whole) from None
     if not set(found.names) <= set(axes):
         reason = f"may have the axes {' and '.join(axes)} only."
-        remedy = "Delete the column radial_force."
-        raise InputError([Problem(f"{prefix}file", written(table.file), reason, remedy)])
+        raise one_problem(key, shown, reason, "Delete the column radial_force.")
     return found

@@ -7,10 +7,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, Tag, model_validator
 
-from epicyclic.case.read import value_at
-from epicyclic.case.tables.base import VALUES_OR_ROWS, PointsTable, Stress, Table, option
+from epicyclic.case.tables.base import Stress
 from epicyclic.errors import Problem
 from epicyclic.gears.flanks import FLANK_HARDNESS, HURST_EXPONENT, RUNNING_IN
+from epicyclic.messages import value_at
 from epicyclic.oil.oil import Conductivity, HeatCapacity
 from epicyclic.oil.rheology import (
     DEFAULT,
@@ -25,6 +25,7 @@ from epicyclic.oil.rheology import (
     ReeEyring,
     ShearLaw,
 )
+from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
 from epicyclic.units import (
     Deviation,
     HertzPressure,
@@ -293,36 +294,6 @@ TemperatureModel = Literal["inlet", "flank", "network"]
 class GearPairModels(Table):
     """Which method computes what."""
 
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "preset": None,
-        "running_in": None,
-        "running_in_factor": None,
-        "profile_cutoff": None,
-        "hurst_exponent": None,
-        "flank_hardness": None,
-        "constant_friction": None,
-        "boundary_friction": None,
-        "fluid_friction": None,
-        "application_factor": None,
-        "mesh_load_factor": None,
-        "rolling": None,
-        "oil_model": None,
-        "fitted_form": None,
-        "load_distribution": None,
-        "mesh_loads": None,
-        "load_dependent": None,
-        "mesh": None,
-        "pocketing": None,
-        "pocket_void_pressure": None,
-        "pocketing_table": None,
-        "pocket_end_length": None,
-        "drag": None,
-        "temperatures": None,
-        "oil_beyond_range": None,
-        "bearing_viscous": None,
-        "planet_tilt": None,
-    }
-
     preset: Literal["general", "talbot-2012"] = option(
         "What auto stands for: general: models for any oil; talbot-2012: the regressions of that "
         "study for its fluid, for others fits to simulated contacts where there are some, else "
@@ -457,6 +428,12 @@ class PlanetaryModels(GearPairModels):
     planet_tilt: Literal["left-out", "coupled"] = option(
         "coupled: the planet tilts in its bearing and misaligns its meshes.", "left-out"
     )
+
+
+# no check across tables depends on any other of these keys
+GearPairModels.STAND_INS = PlanetaryModels.STAND_INS = dict.fromkeys(
+    PlanetaryModels.model_fields.keys() - {"friction", "bearing"}
+)
 
 
 class Numerics(Table):

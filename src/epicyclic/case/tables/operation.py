@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Callable, Collection, Mapping
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import Field
 
-from epicyclic.case.fields import did_you_mean
-from epicyclic.case.tables.base import Condition, NamedOil, Table, broken_conditions, option
+from epicyclic.case.tables.base import NamedOil
 from epicyclic.errors import Problem
+from epicyclic.messages import did_you_mean
+from epicyclic.schema.table import Table, option
 from epicyclic.units import (
     CELSIUS,
     LITRE,
@@ -33,7 +34,7 @@ from epicyclic.units import (
 
 Member = Literal["sun", "ring", "carrier"]
 
-_ANY_OPERATION: dict[str, object] = {
+ANY_OPERATION: dict[str, object] = {
     "torque": "0 N*m",
     "speed": "0 rpm",
     "oil_inlet_temperature": "40 degC",
@@ -43,7 +44,7 @@ _ANY_OPERATION: dict[str, object] = {
 class PlanetaryOperation(Table):
     """How the gear set runs."""
 
-    STAND_INS = _ANY_OPERATION
+    STAND_INS = ANY_OPERATION
     EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
 
     input: Member = Field(description="The member to which torque and speed belong.")
@@ -62,7 +63,7 @@ class PlanetaryOperation(Table):
 class GearPairOperation(Table):
     """How the gear pair runs."""
 
-    STAND_INS = _ANY_OPERATION
+    STAND_INS = ANY_OPERATION
 
     torque: Torque = Field(description="On the pinion; negative = coasting.")
     speed: RotationalSpeed = Field(description="Of the pinion.")
@@ -225,18 +226,12 @@ def check_outlet(thermal: ThermalTable, inlet: float | None) -> list[Problem]:
 
 
 def check_ways_out(
-    thermal: ThermalTable,
-    temperatures: str,
-    flow: float | None,  # Oil that [lubrication] brings to the gears. [m^3/s]
+    thermal: ThermalTable, temperatures: str, oil: LubricationTable | None
 ) -> list[Problem]:
     """A network needs a way for the heat to leave."""
-    ways = (
-        flow if thermal.oil_flow is None else thermal.oil_flow,
-        thermal.oil_outlet_temperature,
-        thermal.housing,
-        thermal.cooler_conductance,
-    )
-    if temperatures != "network" or any(ways):
+    flow = oil.oil_flow if thermal.oil_flow is None and oil else thermal.oil_flow
+    ways = (thermal.oil_outlet_temperature, thermal.housing, thermal.cooler_conductance)
+    if temperatures != "network" or flow or any(ways):
         return []
     allowed = 'leaves no way out for the heat, which models.temperatures = "network" follows.'
     remedy = "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] with its "
@@ -319,27 +314,37 @@ _KEYS: Mapping[Method, Collection[str]] = {
 }
 """Keys that have an effect with each method."""
 
+
+class _Condition(NamedTuple):
+    """What [lubrication] must not state."""
+
+    key: str  # The keys that it is about, whole, joined by ``", "``.
+    broken: Callable[[LubricationTable], bool]  # Whether the table breaks it.
+    allowed: str
+    remedy: str
+
+
 _JETS = ("jet_speed", "nozzle_side")
 _CONDITIONS = (
-    Condition(
+    _Condition(
         "lubrication.oil_flow",
         lambda table: table.method == "flow" and table.oil_flow is None,
         'is missing, and method = "flow" needs it.',
         'Give it, as "2 l/min".',
     ),
-    Condition(
+    _Condition(
         "lubrication.oil_level",
         lambda table: table.method == "dip" and table.oil_level is None and not table.immersion,
         'is missing, and method = "dip" needs it, or immersion.',
         'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.',
     ),
-    Condition(
+    _Condition(
         "lubrication.oil_share, lubrication.oil_share_factor",
         lambda table: table.oil_share is not None and "oil_share_factor" in _stated(table),
         "exclude each other: the factor is of what follows from the method.",
         "Give one of them.",
     ),
-    Condition(
+    _Condition(
         "lubrication.oil_level, lubrication.immersion",
         lambda table: table.oil_level is not None and bool(table.immersion),
         "state the same thing twice.",
@@ -363,8 +368,9 @@ def check_lubrication(table: LubricationTable) -> list[Problem]:
         for key in sorted(given.intersection(_JETS))
         if method == "jet" and table.oil_flow is None
     ]
-    problems += broken_conditions(_CONDITIONS, table)
-    return problems
+    return problems + [
+        Problem(it.key, "", it.allowed, it.remedy) for it in _CONDITIONS if it.broken(table)
+    ]
 
 
 def _stated(table: LubricationTable) -> set[str]:

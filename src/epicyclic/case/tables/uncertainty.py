@@ -11,23 +11,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.fields import (
-    Parameter,
-    did_you_mean,
-    dotted,
-    field_at,
-    parameter_of,
-    path_of,
-    quantity_of,
-    refused,
-    value_of,
-    written,
-)
-from epicyclic.case.read import owner_without_keys, value_at
-from epicyclic.case.tables.base import Table, option
+from epicyclic.case.keys import Parameter, field_at, owner_without_keys, parameter_of, value_of
 from epicyclic.case.tables.models import OF_ROUGH_FLANKS, has_rough_flanks
 from epicyclic.case.tables.operation import FACTOR_KEY, SHARE_KEY
 from epicyclic.errors import Problem
+from epicyclic.messages import did_you_mean, dotted, path_of, refused, value_at, written
+from epicyclic.schema.fields import quantity_of
+from epicyclic.schema.table import Table, option
 from epicyclic.units import CELSIUS, Number, Quantity, format_number
 
 if TYPE_CHECKING:
@@ -123,11 +113,6 @@ def model_forms() -> dict[str, tuple[float, str]]:
         entry["kind"]: (entry["lognormal_factor"], entry["source"])
         for entry in library.uncertainty_table()["model_form"]
     }
-
-
-def check_uncertainty(case: CaseTable) -> list[Problem]:
-    """What is wrong with the table [uncertainty] of a case."""
-    return stated_values(case)[1]
 
 
 def stated_values(case: CaseTable) -> tuple[dict[str, UncertainValue | None], list[Problem]]:

@@ -18,25 +18,23 @@ from pydantic.fields import FieldInfo
 
 from epicyclic import library
 from epicyclic.case.case import FILE_KEYS, KINDS, Case, build_case, changed_tables, form_of_set
-from epicyclic.case.fields import (
+from epicyclic.case.train_tables import PlanetarySet
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.messages import dotted, key_parts, value_at, written
+from epicyclic.plugins.app.worker import Worker
+from epicyclic.plugins.rexs.files import is_rexs
+from epicyclic.schema.fields import (
     Named,
     choices_of,
     describe,
     dict_value,
-    dotted,
     entry_of,
     is_text,
-    key_parts,
     quantity_of,
     tables_in,
-    written,
 )
-from epicyclic.case.read import parse_value, read_file, value_at
-from epicyclic.case.template import case_text, toml_key, toml_value
-from epicyclic.case.train_tables import PlanetarySet
-from epicyclic.errors import InputError, Problem, raise_any
-from epicyclic.plugins.app.worker import Worker
-from epicyclic.plugins.rexs.files import is_rexs
+from epicyclic.schema.read import parse_value, read_file
+from epicyclic.show.template import case_text, toml_key, toml_value
 from epicyclic.study.load import load_case
 from epicyclic.units import Quantity, unit_text
 

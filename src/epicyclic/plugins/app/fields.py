@@ -8,8 +8,8 @@ from functools import partial
 from nicegui import ui
 from nicegui.element import Element
 
-from epicyclic.case.template import toml_key
 from epicyclic.plugins.app.case_form import Desk, Entry, Group, number_in, owner_of
+from epicyclic.show.template import toml_key
 
 # Asking for the name of what the user adds to a case, and for what it stands.
 

@@ -23,8 +23,8 @@ from nicegui import app as nicegui_app
 from nicegui import events, ui
 
 from epicyclic import library
-from epicyclic.case.fields import one_line
 from epicyclic.errors import EpicyclicError, InputError, Problem
+from epicyclic.messages import one_line
 from epicyclic.plugins.app import worker as tasks
 from epicyclic.plugins.app.case_form import ENDINGS, Desk, Shelf, Shelves, built_in, received
 from epicyclic.plugins.app.fields import Form

@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.fields import did_you_mean, find_field, one_line, quantity_of
-from epicyclic.case.read import flattened, plain, read_file, without
 from epicyclic.contact.elastic_teeth import one_thread
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import make_folder, read_bytes, read_text, write_file
+from epicyclic.messages import did_you_mean, one_line
 from epicyclic.plugins.contact_solver.conditions import SOLVER_BOX
 from epicyclic.plugins.contact_solver.contact import (
     ContactCase,
@@ -31,6 +30,8 @@ from epicyclic.plugins.contact_solver.contact import (
     solve_contact,
 )
 from epicyclic.plugins.contact_solver.rough import BRIEF
+from epicyclic.schema.fields import find_field, quantity_of
+from epicyclic.schema.read import flattened, plain, read_file, without
 from epicyclic.study.sweeps.runner import HERE, Journal, Plan, Row, Rows, Runner, fingerprint
 from epicyclic.units import MICROMETRE, NUMBER, Quantity, format_number
 

@@ -84,10 +84,10 @@ def contact(
     [heating] and [numerics]; options and --set change its keys. A solution that did not converge
     ends with exit code 3.
     """
-    from epicyclic.case.read import parse_value
     from epicyclic.cli.common import progress_bar
     from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
     from epicyclic.plugins.contact_solver.show import contact_tables
+    from epicyclic.schema.read import parse_value
 
     given = {
         CONTACT_OPTIONS[name][0]: parse_value(text)

@@ -14,9 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from epicyclic.build.models import contact_modulus, solid_of
-from epicyclic.case.fields import key_parts
-from epicyclic.case.read import plain, read_file, value_at, with_value
-from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness, Table
+from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness
 from epicyclic.case.tables.models import (
     HEATING,
     PRESET,
@@ -30,11 +28,11 @@ from epicyclic.case.tables.models import (
     law_problems,
     oil_laws,
 )
-from epicyclic.case.validation import validate
 from epicyclic.errors import InputError, Problem, Status
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges, range_left
 from epicyclic.machine.element import oil_flags
+from epicyclic.messages import key_parts, value_at
 from epicyclic.oil.oil import Conductivity, HeatCapacity, OilState, oil_state
 from epicyclic.oil.rheology import DEFAULT, PRESETS
 from epicyclic.plugins.contact_solver.conditions import (
@@ -67,6 +65,9 @@ from epicyclic.plugins.contact_solver.surfaces import (
     read_profile,
 )
 from epicyclic.result.result import versions
+from epicyclic.schema.read import plain, read_file, with_value
+from epicyclic.schema.table import Table
+from epicyclic.schema.validation import validate
 from epicyclic.units import (
     MICROMETRE,
     MILLIMETRE,

@@ -15,15 +15,15 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from epicyclic.case.fields import to_inputs
-from epicyclic.case.read import value_at
 from epicyclic.contact.fitted_models import FORMS, REGIMES, OilModel, QuantityFit
 from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.errors import Status
 from epicyclic.losses.rolling import domain_ranges
+from epicyclic.messages import value_at
 from epicyclic.plugins.contact_solver.contact import FRAMES, ContactFigure, ContactResult
 from epicyclic.plugins.contact_solver.rough import Frame
 from epicyclic.plugins.contact_solver.surfaces import Profile
+from epicyclic.schema.fields import to_inputs
 from epicyclic.show.page import shown
 from epicyclic.show.plots.style import (
     COLOURS,

@@ -148,7 +148,7 @@ def export(
 
 def _is_key(found: RexsImport, key: str) -> bool:
     from epicyclic.case.case import KINDS
-    from epicyclic.case.fields import find_field
+    from epicyclic.schema.fields import find_field
 
     return find_field(KINDS[found.kind], key) is not None
 

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from epicyclic.case.fields import key_parts, path_of
-from epicyclic.case.read import with_value
 from epicyclic.errors import Problem
+from epicyclic.messages import key_parts, path_of
 from epicyclic.plugins.rexs.model import Attribute, Component, Model, oil_kind, term
 from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, fixed_by, rigid_parts
+from epicyclic.schema.read import with_value
 from epicyclic.units import format_number
 
 # A case in the making: what a file gives, with its origin, and what it lacks.

@@ -13,16 +13,16 @@ from typing import Any
 from epicyclic.build.machine import operation_of
 from epicyclic.build.models import SetCase, set_cases
 from epicyclic.case.case import Case, TrainCase, read_case
-from epicyclic.case.fields import one_line
-from epicyclic.case.gearing import Gearing, GearPairing
-from epicyclic.case.tables.base import Material
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ShaftBearingTable
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import whole_file
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import CARRIER, HOUSING
+from epicyclic.gears.gearing import Gearing, GearPairing
+from epicyclic.gears.stated import StatedMaterial
 from epicyclic.machine.element import Figure
 from epicyclic.machine.shaft_parts import ShaftBearingFigures
+from epicyclic.messages import one_line
 from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.plugins.rexs.draft import DIGITS
 from epicyclic.plugins.rexs.files import Document, new_document, read_document
@@ -176,7 +176,7 @@ def _gear(builder: Builder, gearing: Gearing, gear: str, shaft: int, name: str) 
     return number
 
 
-def _material(builder: Builder, material: Material) -> int:
+def _material(builder: Builder, material: StatedMaterial) -> int:
     return builder.add(
         "material",
         material.title,

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 from lxml import etree
 from pydantic_core import from_json
 
-from epicyclic.case.fields import one_line
 from epicyclic.errors import InputError
 from epicyclic.files import read_bytes
+from epicyclic.messages import one_line
 from epicyclic.plugins.rexs.model import Attribute, Coded, Component, Relation, refuse
 
 if TYPE_CHECKING:

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
-from epicyclic.case.fields import one_line
-from epicyclic.case.template import case_text
 from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
     Draft,
@@ -25,6 +24,7 @@ from epicyclic.plugins.rexs.gears import set_tables
 from epicyclic.plugins.rexs.model import Model, build_model
 from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, choose, chosen_train
 from epicyclic.plugins.rexs.train import train_draft
+from epicyclic.show.template import case_text
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,8 +15,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from epicyclic.case.fields import one_line
 from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.messages import one_line
 from epicyclic.units import Quantity
 
 # Ids, units and versions of REXS, from the one file that has them.

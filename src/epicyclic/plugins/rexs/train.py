@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.case.fields import one_line
 from epicyclic.gears.gear import HOUSING
+from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
     Amount,

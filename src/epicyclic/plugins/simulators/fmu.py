@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.case.fields import one_line
 from epicyclic.errors import EpicyclicError, Problem
+from epicyclic.messages import one_line
 from epicyclic.study.maps.compute import CAPACITY, CONDUCTANCE, SURROUNDINGS
 from epicyclic.study.maps.formats import Format
 from epicyclic.study.maps.tables import Lookup, make_lookup, slack, stated

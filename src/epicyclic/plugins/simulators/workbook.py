@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.case.read import flattened
 from epicyclic.errors import Problem, Status
+from epicyclic.schema.read import flattened
 from epicyclic.study.maps.formats import Format
 from epicyclic.study.maps.tables import statements
 from epicyclic.study.operating import STATE

@@ -9,8 +9,8 @@ from typing import Any
 
 from epicyclic import library
 from epicyclic.case.case import CaseTable
-from epicyclic.case.fields import Parameter, dotted, key_parts, known_keys, parameter_of, value_of
-from epicyclic.case.gear_tables import GearTable, tolerances_of
+from epicyclic.case.gear_tables import GearTable
+from epicyclic.case.keys import Parameter, known_keys, parameter_of, value_of
 from epicyclic.case.tables.operation import FACTOR_KEY
 from epicyclic.case.tables.uncertainty import (
     MODEL_FORM,
@@ -22,6 +22,8 @@ from epicyclic.case.tables.uncertainty import (
     stated_values,
 )
 from epicyclic.errors import Problem
+from epicyclic.gears.stated import tolerances_of
+from epicyclic.messages import dotted, key_parts
 from epicyclic.units import MICROMETRE
 
 _MICROMETRE = 1e-6

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.case.read import plain
 from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
 from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.result.result import Result
+from epicyclic.schema.read import plain
 from epicyclic.study.bands.inputs import model_form_of, uncertain_values
 from epicyclic.study.bands.samples import Samples, groups_of, make_samples
 from epicyclic.study.solve import flows_around, solve, without_torque

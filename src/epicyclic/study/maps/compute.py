@@ -14,11 +14,11 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.build.machine import build, layout_of, operation_of
 from epicyclic.case.case import Case, TrainCase
-from epicyclic.case.fields import did_you_mean, written
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import OIL
 from epicyclic.machine.heat import NetworkModel
+from epicyclic.messages import did_you_mean, written
 from epicyclic.result.result import Layout, number_fields
 from epicyclic.study.maps.tables import Lookup, check_map, map_case, map_inputs
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name

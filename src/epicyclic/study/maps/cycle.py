@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.case.fields import one_line, sentence
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.messages import one_line, sentence
 from epicyclic.study.operating import OPERATING, STATE
 from epicyclic.units import SECOND, Quantity
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import did_you_mean, refused, written
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.messages import did_you_mean, refused, written
 from epicyclic.study.maps.compute import (
     Deviation,
     MapPlan,

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, read_case
-from epicyclic.case.fields import one_line
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.messages import one_line
 from epicyclic.study.operating import AXES, OPERATING, PLANE, STATE
 from epicyclic.study.sweeps.run import csv_safe, to_table
 from epicyclic.units import NEWTON_METRE, RPM, WATT

@@ -15,7 +15,6 @@ from scipy.interpolate import PchipInterpolator
 
 from epicyclic.build.machine import build, term_nodes
 from epicyclic.case.case import Case
-from epicyclic.case.fields import quantity_of, refused, written
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import OIL, joined_key
@@ -24,7 +23,9 @@ from epicyclic.machine.heat_flow import Course, Curves, Link, Source, Transient
 from epicyclic.machine.heat_paths import INLET
 from epicyclic.machine.machine import Machine
 from epicyclic.machine.solve import Solution, solve_machine
+from epicyclic.messages import refused, written
 from epicyclic.result.result import origin
+from epicyclic.schema.fields import quantity_of
 from epicyclic.study.maps.compute import held_shaft, map_plan, resolving_zero
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of

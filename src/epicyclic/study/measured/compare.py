@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, CaseTable, build_case
-from epicyclic.case.fields import Parameter, no_start, parameter_of
+from epicyclic.case.keys import Parameter, no_start, parameter_of
 from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.study.measured.comparison import (
     AS_GIVEN,

@@ -10,7 +10,7 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.case.fields import Parameter
+from epicyclic.case.keys import Parameter
 from epicyclic.errors import ConvergenceError, Problem, one_problem, raise_any
 from epicyclic.study.measured.intervals import (
     PROFILED,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import Parameter
+from epicyclic.case.keys import Parameter
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.measured.residuals import STEP, Residuals

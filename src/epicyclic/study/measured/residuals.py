@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import Parameter
+from epicyclic.case.keys import Parameter
 from epicyclic.errors import ConvergenceError, InputError
 from epicyclic.losses.pocket_flow import NETWORK_MODELS
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTable, FlowTables

@@ -16,20 +16,12 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.build.machine import layout_of
 from epicyclic.case.case import Case
-from epicyclic.case.fields import (
-    did_you_mean,
-    field_at,
-    is_array,
-    is_text,
-    known_keys,
-    misspelt,
-    one_line,
-    quantity_of,
-    sentence,
-)
-from epicyclic.case.read import parse_value
+from epicyclic.case.keys import field_at, known_keys
 from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.files import check_archive, csv_rows, decode, read_bytes, refuse
+from epicyclic.messages import did_you_mean, misspelt, one_line, sentence
+from epicyclic.schema.fields import is_array, is_text, quantity_of
+from epicyclic.schema.read import parse_value
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY
 from epicyclic.units import WATT, Quantity, format_number
 

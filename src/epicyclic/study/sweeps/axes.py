@@ -20,28 +20,20 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
-from epicyclic.case.fields import (
+from epicyclic.case.keys import field_at, known_keys, value_of
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.files import read_text, refuse
+from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
+from epicyclic.schema.fields import (
     all_keys,
-    did_you_mean,
-    field_at,
     is_array,
     is_continuous,
     is_named,
     is_text,
-    is_whole_number,
-    known_keys,
-    one_line,
-    path_of,
     quantity_of,
-    refused,
-    sentence,
     table_of,
-    value_of,
-    written,
 )
-from epicyclic.case.read import parse_value, plain, value_at
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
-from epicyclic.files import read_text, refuse
+from epicyclic.schema.read import parse_value, plain
 from epicyclic.units import Quantity, format_number, in_unit, one_of, pure_number, with_unit
 
 if TYPE_CHECKING:
@@ -219,9 +211,7 @@ def _unsuitable(key: str, annotation: Any, metadata: tuple[Any, ...]) -> Problem
     if table is None or is_named(metadata):
         return None
     allowed = "is a table; a sweep varies keys that hold one value."
-    return Problem(
-        key, "", allowed, f"Vary keys of it, such as {next(all_keys(table, f'{key}.'))}."
-    )
+    return Problem(key, "", allowed, f"Vary keys of it, such as {key}.{all_keys(table)[0]}.")
 
 
 def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
@@ -573,7 +563,7 @@ class Point:
                 raise ValueError(error.message()) from None
             return text
         number = in_unit(value, "")
-        if not is_whole_number(annotation):
+        if annotation is not int:
             return number
         if abs(number - round(number)) > _WHOLE:
             shown = format_number(number, 6)
@@ -633,7 +623,7 @@ def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
 
 def _is_number(case: Case, key: str) -> bool:
     field = _field(case, key)
-    return is_whole_number(field[0]) or is_continuous(field, quantity_of(*field))
+    return field[0] is int or is_continuous(field, quantity_of(*field))
 
 
 def _is_found(case: Case, key: str) -> bool:

@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 
 from epicyclic.build.machine import layout_of
 from epicyclic.case.case import FILE_KEYS, Case, TrainCase, build_case
-from epicyclic.case.fields import field_at, is_whole_number
-from epicyclic.case.read import parse_value, plain
+from epicyclic.case.keys import field_at
 from epicyclic.errors import InputError, Problem, Status, one_problem, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
+from epicyclic.schema.read import parse_value, plain
 from epicyclic.study.operating import AXES, STATE_KEY, axis_name
 from epicyclic.study.solve import pocket_flow_numbers, solve
 from epicyclic.study.sweeps.axes import (
@@ -438,7 +438,7 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
             raise ValueError(f"the units {' and '.join(sorted(units))} differ")
         unit = units.pop() if units else ""
         field = field_at(case, key)
-        whole = field is not None and is_whole_number(field[0])
+        whole = field is not None and field[0] is int
         for number in np.linspace(float(start[1]), float(stop[1]), count):
             if unit:
                 yield f"{format_number(float(number), 12)} {unit}"

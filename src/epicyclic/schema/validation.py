@@ -13,26 +13,22 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from epicyclic.case.fields import (
+from epicyclic.errors import Problem
+from epicyclic.messages import did_you_mean, dotted, misspelt, sentence, value_at, written
+from epicyclic.schema.fields import (
     Named,
     Place,
     bounds_of,
     choices_of,
     describe,
     dict_value,
-    did_you_mean,
-    dotted,
     locate,
-    misspelt,
     quantity_of,
-    sentence,
     table_of,
     tables_in,
-    written,
 )
-from epicyclic.case.read import changed_at, control_problems, value_at
-from epicyclic.case.tables.base import Table
-from epicyclic.errors import Problem
+from epicyclic.schema.read import changed_at, control_problems
+from epicyclic.schema.table import Table
 from epicyclic.units import format_number, range_remedy
 
 _PLAIN_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(%?)\s*")

@@ -10,24 +10,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from epicyclic.case.fields import micrometres, millimetres
-from epicyclic.case.gear_tables import (
-    DIGITS,
-    GearTable,
-    MicroGeometryTable,
-    TopographyTable,
-    check_fit,
-    check_measure,
-    fitting,
-    roll_length_at,
-    thickness_key,
-    working_flank,
-)
-from epicyclic.case.gearing import Gearing, rim_thickness
 from epicyclic.errors import Problem, rising_problems
+from epicyclic.gears import measures
 from epicyclic.gears.cutting import longest_involute
 from epicyclic.gears.flanks import active_profile
 from epicyclic.gears.gear import Gear
+from epicyclic.gears.gearing import Gearing, rim_thickness
+from epicyclic.gears.measures import LARGEST_FIT
 from epicyclic.gears.mesh import (
     Mesh,
     closed_center_distance,
@@ -35,6 +24,17 @@ from epicyclic.gears.mesh import (
     recommended_backlash,
     thinning,
 )
+from epicyclic.gears.stated import (
+    DIGITS,
+    StatedFlank,
+    StatedGear,
+    StatedTopography,
+    fitting,
+    roll_length_at,
+    thickness_key,
+    working_flank,
+)
+from epicyclic.messages import micrometres, millimetres
 
 THINNEST_RIM = 0.25  # A thinner rim is foil, and its teeth find no balance. [normal modules]
 
@@ -62,8 +62,8 @@ def sound_gears(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
         table, key = gearing.tables[name], gearing.key(name)
         found = (
             _check_tooth(gear, key, table)
-            or check_measure(gear, key, table)
-            or check_fit(gear, key, table)
+            or _check_measure(gear, key, table)
+            or _check_fit(gear, key, table)
         )
         if found is None:
             sound[name] = gear
@@ -73,7 +73,45 @@ def sound_gears(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
     return sound, problems
 
 
-def _check_rim(gear: Gear, owner: str, table: GearTable) -> list[Problem]:
+def _check_fit(gear: Gear, key: str, table: StatedGear) -> Problem | None:
+    """DIN 3967 has no allowances for larger gears."""
+    if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
+        return None
+    allowed = f"is for reference diameters up to {millimetres(LARGEST_FIT)}, and this one has "
+    allowed += f"{millimetres(2 * gear.reference_radius)}."
+    remedy = "Give tooth_thickness_allowance."
+    return Problem(f"{key}.tooth_thickness_fit", f'"{table.tooth_thickness_fit}"', allowed, remedy)
+
+
+def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:
+    """A span or balls must touch the flanks."""
+    if table.span_measurement is not None:
+        if gear.internal and gear.rack.helix_angle > 0:
+            place = f"{key}.span_measurement"
+            reason = "cannot be measured on a helical ring."
+            advice = "Give dimension_over_pins with measuring_pin_diameter."
+            return Problem(place, millimetres(table.span_measurement), reason, advice)
+        radius = measures.span_contact_radius(gear, table.span_measurement)
+        remedy = f"Over {measures.usual_span_teeth(gear)} teeth it would touch in the middle."
+        what = "span_measurement"
+    elif table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
+        radius = measures.pin_contact_radius(gear, table.measuring_pin_diameter)
+        usual = millimetres(measures.usual_pin(gear.rack))
+        remedy = f"A usual measuring_pin_diameter is {usual}."
+        what = "dimension_over_pins"
+    else:
+        return None
+    low, high = sorted((gear.root_radius, gear.tip_radius))
+    if low < radius < high:
+        return None
+    value = getattr(table, what)
+    shown = millimetres(value)
+    allowed = f"touches at diameter {millimetres(2 * radius)}, beyond the flanks, which reach from "
+    allowed += f"{millimetres(2 * low)} to {millimetres(2 * high)}."
+    return Problem(f"{key}.{what}", shown, allowed, f"Check it, tooth number and module. {remedy}")
+
+
+def _check_rim(gear: Gear, owner: str, table: StatedGear) -> list[Problem]:
     thickness, key = rim_thickness(table), f"{owner}.rim_thickness"
     if thickness is None:
         return []
@@ -104,7 +142,7 @@ def _no_involute_for_thickness(gearing: Gearing, name: str) -> Problem:
     return Problem(f"{key}.thickness_diameter", shown, allowed, remedy)
 
 
-def _check_tooth(gear: Gear, key: str, table: GearTable) -> Problem | None:
+def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     """The first reason why this tooth cannot be: each one makes the next meaningless."""
     tip, root = (f"{key}.{which}_diameter" for which in ("tip", "root"))
     tip_shown = _diameter(gear.tip_radius, table.tip_diameter)
@@ -412,7 +450,7 @@ class _Flank:
     gear: Gear
     mesh: Mesh
     member: int
-    table: MicroGeometryTable
+    table: StatedFlank
 
     @property
     def active(self) -> tuple[float, float]:
@@ -538,7 +576,7 @@ def _check_end_relief(flank: _Flank) -> list[Problem]:
     return [Problem(key, millimetres(length), allowed, remedy)]
 
 
-def _check_topography(flank: _Flank, table: TopographyTable) -> list[Problem]:
+def _check_topography(flank: _Flank, table: StatedTopography) -> list[Problem]:
     key = f"{flank.key}.topography"
     axes = {"diameter": table.diameter, "face_position": table.face_position}
     problems = rising_problems(axes, f"{key}.")
@@ -557,7 +595,7 @@ def _check_topography(flank: _Flank, table: TopographyTable) -> list[Problem]:
     return problems or _check_place(flank, table)
 
 
-def _check_place(flank: _Flank, table: TopographyTable) -> list[Problem]:
+def _check_place(flank: _Flank, table: StatedTopography) -> list[Problem]:
     """The points of a sound topography must lie where the flank works."""
     ends = sorted(_diameter_at(flank.gear, roll) for roll in flank.active)
     places = (

@@ -1,7 +1,7 @@
 """One gear set: its gears, meshes and planets, however its tables are written.
 
-`case.expand` makes a `Gearing` from every form that a case has for a set. Gears stand on bodies;
-those in `Gearing.planets` turn on pins of the carrier.
+The room of cases makes a `Gearing` from every form that a case has for a set. Gears stand on
+bodies; those in `Gearing.planets` turn on pins of the carrier.
 """
 
 from __future__ import annotations
@@ -11,17 +11,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
-from epicyclic.case.gear_tables import (
-    GearTable,
-    PairGear,
-    Ring,
-    SetMesh,
-    SharedGears,
-    allowance_shift,
-    half_angle,
-)
 from epicyclic.gears.gear import CARRIER, BasicRack, Gear
 from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle
+from epicyclic.gears.stated import StatedGear, StatedMesh, StatedShared, allowance_shift, half_angle
 
 DEFAULT_RIM_THICKNESS = 3.0
 """Rim of a ring gear from root to outside if the case states none (estimate). [normal modules]"""
@@ -42,11 +34,11 @@ class GearPairing:
     second: str
     teeth: tuple[float, float]  # [1]
     internal: bool
+    table: StatedMesh
     efficiency: float = 1.0  # As given; 1 if losses are computed. [1]
     pair: tuple[str, str] = ("", "")  # Both gears in the order in which the case lists them.
     title: str = ""  # In sentences: ``"sun mesh"``.
     table_key: str = ""  # Key of its table: ``"sun_mesh"``, ``"mesh.a-b"``.
-    table: SetMesh = field(default_factory=SetMesh)
     own_distance: float | None = None  # Centre distance that its own table states. [m]
     direction: float = 0.0  # From the axis of `pair[0]` to that of `pair[1]`, fixed axes. [rad]
 
@@ -85,8 +77,8 @@ class Gearing:
     planets: tuple[str, ...]  # Bodies that stand on the carrier; empty for fixed axes.
     meshes: tuple[GearPairing, ...]
     # The rest is known of sets with computed losses only.
-    tables: Mapping[str, GearTable] = field(default_factory=dict)
-    shared: SharedGears | None = None  # What all gears share.
+    tables: Mapping[str, StatedGear] = field(default_factory=dict)
+    shared: StatedShared | None = None  # What all gears share.
     listed: bool = False  # Gears have names of the user, their tables stand below ``gears``.
     count: int | None = None  # Planets of each kind; None if the case does not say.
     stated_angles: tuple[float, ...] | None = None  # Of the planets, as stated. [rad]
@@ -158,10 +150,10 @@ class Gearing:
         heights = (shared.addendum_coefficient, shared.dedendum_coefficient)
         return _gear(name, table, self.racks[name], *heights)
 
-    def rings(self) -> Iterator[tuple[str, GearTable, Gear]]:
+    def rings(self) -> Iterator[tuple[str, StatedGear, Gear]]:
         """Name, table and geometry of every internal gear."""
         for name, table in self.tables.items():
-            if is_internal(table):
+            if table.is_ring:
                 yield name, table, self.gear(name)
 
     def gears_of(self, body: str) -> list[str]:
@@ -364,8 +356,8 @@ class Gearing:
 
     def changed(
         self,
-        tables: Mapping[str, GearTable],
-        shared: SharedGears,
+        tables: Mapping[str, StatedGear],
+        shared: StatedShared,
         distances: Mapping[str, float],  # By the keys of meshes that have one of their own. [m]
     ) -> Gearing:
         """The gearing with other tables and centre distances."""
@@ -410,14 +402,9 @@ def basic_rack(
     return BasicRack(transverse_module, transverse_pressure_angle, helix_angle)
 
 
-def is_internal(table: GearTable) -> bool:
-    """True for a ring gear."""
-    return isinstance(table, Ring) or (isinstance(table, PairGear) and table.internal)
-
-
 @lru_cache(maxsize=512)
-def _gear(name: str, table: GearTable, rack: BasicRack, addendum: float, dedendum: float) -> Gear:
-    internal = is_internal(table)
+def _gear(name: str, table: StatedGear, rack: BasicRack, addendum: float, dedendum: float) -> Gear:
+    internal = table.is_ring
     half = half_angle(table, rack, internal=internal)
     # tip and root that the basic rack of ISO 53 would give (ISO 21771, Eq. 38 and 41)
     probe = Gear(name, rack, table.teeth, internal, half, 0.0, 0.0, table.face_width)
@@ -445,12 +432,13 @@ def _mesh(name: str, one: Gear, two: Gear, distance: float) -> Mesh:
     return Mesh(name, one, two, distance)
 
 
-def rim_thickness(table: GearTable) -> float | None:
+def rim_thickness(table: StatedGear) -> float | None:
     """Rim of a ring gear from root to outside; None if the case states none. [m]"""
-    return table.rim_thickness if isinstance(table, Ring | PairGear) else None
+    thickness: float | None = getattr(table, "rim_thickness", None)
+    return thickness
 
 
-def outside_radius(gear: Gear, table: GearTable) -> float:
+def outside_radius(gear: Gear, table: StatedGear) -> float:
     """Radius of the outside of a gear as a rotating body: tip circle, or back of the rim. [m]"""
     if not gear.internal:
         return gear.tip_radius

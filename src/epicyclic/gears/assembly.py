@@ -10,13 +10,12 @@ import math
 from collections.abc import Iterator, Mapping
 from itertools import combinations, combinations_with_replacement, product
 
-from epicyclic.case.fields import did_you_mean, millimetres
-from epicyclic.case.gear_rules import check_mesh, sound_gears
-from epicyclic.case.gearing import RACK_KEYS, Gearing, GearPairing, Pin
-from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import Problem
-from epicyclic.gears.gear import CARRIER, HOUSING, Gear
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.gearing import RACK_KEYS, Gearing, GearPairing, Pin
 from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places, profile_shift_sum
+from epicyclic.gears.rules import check_mesh, sound_gears
+from epicyclic.messages import millimetres
 
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
@@ -39,78 +38,6 @@ def set_problems(gearing: Gearing) -> list[Problem]:
     if gearing.planets and gearing.count is not None:
         problems += _assembly_problems(gearing, sound, placed=not distances)
     return list(dict.fromkeys(problems))  # a planet that cannot be cut is found in both meshes
-
-
-def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
-    """Problems of the tables that a listed set has beside its gears."""
-    known = gearing.terms
-    losses = [
-        Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
-        for name in table.losses
-        if name not in known
-        for remedy in [did_you_mean(name, known) or f"Known are: {', '.join(known)}."]
-    ]
-    planets = _planet_problems(table, gearing)
-    return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
-
-
-def _name_problems(gearing: Gearing) -> Iterator[Problem]:
-    """Names that would give two losses or members the same name."""
-    for name in (CARRIER, HOUSING) if gearing.planets else (HOUSING,):
-        if name in gearing.bodies or name in gearing.bodies.values():
-            allowed = f"cannot be the name of a gear or body: every set has a {name}."
-            yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
-    for name in gearing.bodies:
-        if "." in name:
-            allowed = "is not a valid name for a gear: a dot stands between set and gear."
-            yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
-
-
-def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
-    """Planets without a number, and a carrier or bearings without planets."""
-    if gearing.planets and table.planets is None:
-        names = ", ".join(gearing.planets)
-        allowed = f"is missing, and the set has planets ({names})."
-        remedy = "Add planets = 3, or as many as there are."
-        yield Problem("planets", "", allowed, remedy)
-    if not gearing.planets:
-        remedy = "Leave it out, or write planet = true at the gears on a carrier."
-        if table.planets is not None:
-            allowed = "is given, but no gear stands on a carrier."
-            yield Problem("planets", str(table.planets), allowed, remedy)
-        for name in ("planet_bearing", "carrier"):
-            if getattr(table, name) is not None:
-                yield Problem(name, "", "belongs to planets, and the set has none.", remedy)
-    for name in table.planet_bearings:
-        if name not in gearing.planets:
-            remedy = did_you_mean(name, gearing.planets)
-            remedy = remedy or f"Known are: {', '.join(gearing.planets) or 'none'}."
-            key = f"planet_bearings.{name}"
-            yield Problem(key, "", "is no body of a planet of this set.", remedy)
-    placed = {gearing.planet_of(mesh) for mesh in gearing.meshes}
-    for body in gearing.planets:
-        if body not in placed:
-            gear = gearing.gears_of(body)[0]
-            allowed = "meshes with planets only, so that nothing determines where its pin stands."
-            remedy = "Let it mesh with a central gear too."
-            yield Problem(f"gears.{gear}", "", allowed, remedy)
-    in_pairs = any(gearing.planet_pair(mesh) for mesh in gearing.meshes)
-    if table.models.planet_tilt == "coupled" and in_pairs:
-        allowed = "is not for planets that mesh with each other."
-        remedy = 'Write planet_tilt = "left-out".'
-        yield Problem("models.planet_tilt", '"coupled"', allowed, remedy)
-
-
-def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
-    sharing, planets = table.load_sharing, table.planets or 1
-    if sharing.method not in ("equal", "mesh-load-factor"):
-        allowed = "is for one sun, one ring and planets between them."
-        remedy = 'Write method = "equal" or "mesh-load-factor".'
-        yield Problem("load_sharing.method", f'"{sharing.method}"', allowed, remedy)
-    if sharing.mesh_load_factor > planets:
-        shown = f"{sharing.mesh_load_factor:g}"
-        reason = f"must be at most planets, {planets}: then one planet has all the load."
-        yield Problem("load_sharing.mesh_load_factor", shown, reason, "Take a smaller factor.")
 
 
 # --- gears ----------------------------------------------------------------------------------------
@@ -148,17 +75,17 @@ def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         alike = hands[mesh.first] == hands[mesh.second]
         if not helical or alike == mesh.internal:
             continue
-        stated = [
-            it for it in (mesh.first, mesh.second) if getattr(gearing.tables[it], "hand", None)
-        ]
-        gears = stated or [mesh.first, mesh.second]
+        own = {it: getattr(gearing.tables[it], "hand", None) for it in (mesh.first, mesh.second)}
+        stated = [gear for gear, hand in own.items() if hand]
         words = "the same hand" if mesh.internal else "opposite hands"
-        shown = ", ".join(f'"{getattr(gearing.tables[it], "hand", None)}"' for it in stated)
+        shown = ", ".join(f'"{own[gear]}"' for gear in stated)
         allowed = f"{mesh.first} and {mesh.second} must have {words} of helix to mesh" + (
             "." if len(stated) == 2 else ", and the other hands given forbid it."
         )
         remedy = "Correct or leave out hand."
-        yield Problem(", ".join(f"gears.{gear}.hand" for gear in gears), shown, allowed, remedy)
+        yield Problem(
+            ", ".join(f"gears.{gear}.hand" for gear in stated or own), shown, allowed, remedy
+        )
 
 
 # --- meshes ---------------------------------------------------------------------------------------
@@ -174,19 +101,17 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
             remedy = f"Give gears.center_distance, or {own}."
             yield Problem(own, "", "is missing.", remedy)
     for body in gearing.planets:
-        yield from _pin_radius_problems(gearing, body, distances)
+        yield from _pin_radius_problems(gearing, body)
     if None not in distances.values():
-        yield from _triangle_problems(gearing, distances)
+        yield from _triangle_problems(gearing)
 
 
-def _pin_radius_problems(
-    gearing: Gearing, body: str, distances: Mapping[str, float | None]
-) -> Iterator[Problem]:
+def _pin_radius_problems(gearing: Gearing, body: str) -> Iterator[Problem]:
     """All meshes of a planet with central gears must put its pin at one radius."""
     own = [
         (mesh, distance)
         for mesh in gearing.meshes
-        if gearing.planet_of(mesh) == body and (distance := distances[mesh.key]) is not None
+        if gearing.planet_of(mesh) == body and (distance := gearing.distances[mesh.key]) is not None
     ]
     if not own or max(a for _, a in own) - min(a for _, a in own) <= SAME_PLACE:
         return
@@ -218,10 +143,9 @@ def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
     )
 
 
-def _triangle_problems(
-    gearing: Gearing, distances: Mapping[str, float | None]
-) -> Iterator[Problem]:
+def _triangle_problems(gearing: Gearing) -> Iterator[Problem]:
     """Two planets that mesh must stand at their centre distance from each other."""
+    distances = gearing.distances
     radii = gearing.pin_radii(distances)
     pairs = [(mesh, pair) for mesh in gearing.meshes if (pair := gearing.planet_pair(mesh))]
     wide = False
@@ -362,18 +286,18 @@ def _axial_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Pro
 
 def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
     """Planets must not touch each other."""
-    positions, pins, angles = gearing.positions, gearing.pins, gearing.planet_angles
+    angles = gearing.planet_angles
     close = [
         (one, two)
         for one, two in combinations_with_replacement(
-            [gear for gear in gearing.bodies if gearing.bodies[gear] in pins], 2
+            [gear for gear in gearing.bodies if gearing.bodies[gear] in gearing.pins], 2
         )
-        if _side_by_side(gearing, sound, positions, one, two)
+        if _side_by_side(gearing, sound, one, two)
     ]
     seen: set[tuple[str, str]] = set()
     for one, two in close:
         bodies = (gearing.bodies[one], gearing.bodies[two])
-        gap = _gap(gearing, sound, pins, angles, one, two)
+        gap = _gap(gearing, sound, angles, one, two)
         if gap > 0 or bodies in seen:
             continue
         seen.add(bodies)
@@ -386,22 +310,17 @@ def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
         )
         key = gearing.count_key if gearing.stated_angles is None else "planet.angles"
         allowed = f"{which} {millimetres(-gap)}."
-        yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, pins, close, apart))
+        yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, close, apart))
 
 
 def _gap(
-    gearing: Gearing,
-    sound: Mapping[str, Gear],
-    pins: Mapping[str, Pin],
-    angles: tuple[float, ...],
-    one: str,
-    two: str,
+    gearing: Gearing, sound: Mapping[str, Gear], angles: tuple[float, ...], one: str, two: str
 ) -> float:
     """Smallest distance of the tip circles of two gears on any arms that do not mesh. [m]
 
     Theory (K8).
     """
-    first, second = pins[gearing.bodies[one]], pins[gearing.bodies[two]]
+    first, second = (gearing.pins[gearing.bodies[gear]] for gear in (one, two))
     mates = any({mesh.first, mesh.second} == {one, two} for mesh in gearing.meshes)
     tips = sound[one].tip_radius + sound[two].tip_radius
     gap = math.inf
@@ -416,42 +335,37 @@ def _gap(
 def _fewer(
     gearing: Gearing,
     sound: Mapping[str, Gear],
-    pins: Mapping[str, Pin],
     close: list[tuple[str, str]],
     other: str,  # What else helps.
 ) -> str:
     """How many planets would not touch."""
     for count in range(MOST_PLANETS, 0, -1):
         places = nearest_places(count, 0)
-        if all(_gap(gearing, sound, pins, places, one, two) > 0 for one, two in close):
+        if all(_gap(gearing, sound, places, one, two) > 0 for one, two in close):
             return f"Take fewer planets (at most {count} fit equally spaced){other}."
     return "Shorten their teeth, or change the centre distances."
 
 
-def _side_by_side(
-    gearing: Gearing, sound: Mapping[str, Gear], positions: Mapping[str, float], one: str, two: str
-) -> bool:
+def _side_by_side(gearing: Gearing, sound: Mapping[str, Gear], one: str, two: str) -> bool:
     """True if the faces of two gears on planets are known to overlap along the axis."""
     bodies = gearing.bodies[one], gearing.bodies[two]
     if bodies[0] == bodies[1]:
         return one == two
-    offsets = _axial_offsets(gearing, positions, bodies[0])
+    offsets = _axial_offsets(gearing, bodies[0])
     if bodies[1] not in offsets:
         return False
+    positions = gearing.positions
     apart = abs(offsets[bodies[1]] + positions[two] - positions[one])
     return apart < (sound[one].face_width + sound[two].face_width) / 2 - SAME_PLACE
 
 
-def _axial_offsets(
-    gearing: Gearing, positions: Mapping[str, float], start: str
-) -> dict[str, float]:
+def _axial_offsets(gearing: Gearing, start: str) -> dict[str, float]:
     """Middle of each planet from that of `start`, as far as meshes tell: mates share a plane."""
     # a central gear stands for itself: how far apart two of them are on a shaft is not known here
     owners = {
         gear: body if body in gearing.planets else gear for gear, body in gearing.bodies.items()
     }
-    offsets = {start: 0.0}
-    left = [start]
+    offsets, left, positions = {start: 0.0}, [start], gearing.positions
     while left:
         known = left.pop()
         for mesh in gearing.meshes:

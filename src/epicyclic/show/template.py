@@ -14,18 +14,11 @@ from pydantic_core import PydanticUndefined
 
 from epicyclic import library
 from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase, form_of_set, read_case
-from epicyclic.case.fields import (
-    choices_of,
-    dict_value,
-    dotted,
-    entry_of,
-    key_parts,
-    quantity_of,
-    table_of,
-)
 from epicyclic.case.gear_tables import SharedGears
 from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.train_tables import ListedSet, PlanetarySet
+from epicyclic.messages import dotted, key_parts
+from epicyclic.schema.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 
 _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
     "planetary": ("talbot-2012", PlanetaryCase),

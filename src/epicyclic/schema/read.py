@@ -7,7 +7,6 @@ import numbers
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 from unicodedata import category
@@ -15,10 +14,11 @@ from unicodedata import category
 import numpy as np
 from pydantic import BaseModel
 
-from epicyclic.case.fields import dotted, key_parts, one_line, to_inputs, written
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, refuse
-from epicyclic.units import format_number, from_pint, unit_text
+from epicyclic.messages import dotted, one_line, written
+from epicyclic.schema.fields import to_inputs
+from epicyclic.units import format_number, from_pint
 
 _DEEPEST = 20  # Tables of a case are nested a few levels deep; deeper ones are something else.
 
@@ -89,18 +89,6 @@ def flattened(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str
             yield from flattened(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value
-
-
-def value_at(tables: Any, path: Sequence[str | int]) -> Any:
-    """The value at `path` below `tables`; None if there is none."""
-    for part in path:
-        if isinstance(tables, Mapping):
-            tables = tables.get(part)
-        elif isinstance(tables, tuple) and isinstance(part, int) and part < len(tables):
-            tables = tables[part]
-        else:
-            return None
-    return tables
 
 
 def changed_at(tables: Any, path: Sequence[str | int], change: Callable[[Any], Any]) -> Any:
@@ -284,44 +272,3 @@ def parse_value(text: str) -> Any:
     except (ValueError, RecursionError):  # no TOML, numbers or lists beyond all measure
         return text
     return tables["value"] if len(tables) == 1 else text
-
-
-# How a case shows itself: in one line, and as a page of a notebook, in the units of case files.
-
-
-def case_line(
-    name: str,  # Name of its class.
-    given: Mapping[str, Any],  # Its tables, without defaults.
-) -> str:
-    """A case in one line: its title and operating point."""
-    words = [f"title={given['title']!r}"] if given.get("title") else []
-    words += [f"{key}={value!r}" for key, value in given.get("operation", {}).items()]
-    return f"{name}({', '.join(words)})"
-
-
-def case_html(name: str, given: Mapping[str, Any]) -> str:
-    """The keys of a case that were given, table by table; parameters as for `case_line`."""
-    alone = {key: value for key, value in given.items() if not isinstance(value, Mapping)}
-    tables = {"": alone} | {key: it for key, it in given.items() if isinstance(it, Mapping)}
-    cell = '<td style="text-align: left">'
-    rows = "".join(
-        f"<tr>{cell}<strong>{escape(key if number == 0 else '')}</strong></td>"
-        f"{cell}{escape(name)}</td>"
-        f"{cell}{escape(unit_text(value) if isinstance(value, str) else str(value))}</td></tr>"
-        for key, table in tables.items()
-        for number, (name, value) in enumerate(flattened(table))
-    )
-    title = escape(str(given.get("title") or name))
-    return f"<table><caption><strong>{title}</strong></caption><tbody>{rows}</tbody></table>"
-
-
-def owner_without_keys(tables: Mapping[str, Any], key: str) -> Problem | None:
-    """Why `tables` have no place for a key: what should hold it is not a table, but a name."""
-    path = key_parts(key)
-    for depth in range(1, len(path)):
-        owner = value_at(tables, path[:depth])
-        if owner is not None and not isinstance(owner, dict):
-            name = ".".join(path[:depth])
-            allowed = f"{name} is {written(owner)}, which has no keys."
-            return Problem(key, "", allowed, f"Change {name} to a table first.")
-    return None

@@ -13,21 +13,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass
 from typing import Any
 
-from epicyclic.case.fields import micrometres, millimetres
-from epicyclic.case.gear_rules import gears_by_name
-from epicyclic.case.gear_tables import GearTable, allowance_shift, thickness_key
-from epicyclic.case.gearing import Gearing, GearPairing, is_internal
-from epicyclic.case.read import value_at
-from epicyclic.case.set_rules import rack_problems
-from epicyclic.case.tables.base import roughness_told, short_oil_told
 from epicyclic.errors import InputError, Problem, one_problem
+from epicyclic.gears.assembly import rack_problems
 from epicyclic.gears.gear import BasicRack, Gear
+from epicyclic.gears.gearing import Gearing, GearPairing
 from epicyclic.gears.mesh import (
     closed_center_distance,
     profile_shift_sum,
     recommended_backlash,
     thinning,
 )
+from epicyclic.gears.rules import gears_by_name
+from epicyclic.gears.stated import THICKNESS, allowance_shift, thickness_key
+from epicyclic.messages import micrometres, millimetres, value_at
 from epicyclic.units import MILLIMETRE
 
 BASIC_RACKS = {
@@ -43,7 +41,7 @@ FINEST_LENGTH = 0.5e-6  # The same of lengths: 39 mm means 39.000 mm. [m]
 AGREES = 0.5e-6
 """A stated backlash that differs less from that of the teeth is that of the teeth. [m]"""
 ROUNDING = 0.5e-9
-"""Teeth that are too thick by less than this pass as they are; see `gear_rules.ROUNDING`. [m]"""
+"""Teeth that are too thick by less than this pass as they are; see `rules.ROUNDING`. [m]"""
 _ALIKE = 1e-9  # Modules and angles that differ by less are equal, relatively.
 LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0  # What a case may state.
 
@@ -97,39 +95,6 @@ class _Sized:
         return self.drawn.table.normal_backlash
 
 
-def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
-    """How negative numbers of teeth are understood."""
-    tables = dict(raw)
-    members = tables.pop("members", {})
-    tables |= {f"gears.{name}": table for name, table in members.items()}
-    for name, table in tables.items():
-        teeth = table.get("teeth") if isinstance(table, dict) else None
-        if isinstance(teeth, int) and teeth < 0:
-            yield Found(
-                f"{name}.teeth",
-                str(-teeth),
-                "a ring, because the number is negative; its profile shift is that of ISO 21771 "
-                "and DIN 3960, positive where it thickens the teeth.",
-            )
-
-
-def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Found]:
-    """How roughness that is stated as Ra or Rz is converted."""
-    for key, value in raw.items():
-        name = f"{place}{key}"
-        if isinstance(value, dict):
-            yield from converted_roughness(value, f"{name}.")
-        elif key.endswith("roughness") and (told := roughness_told(value)) is not None:
-            yield Found(name, f"{1e6 * told[0]:.4g} um", told[1])
-
-
-def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
-    """What an oil stands for that is stated by its grade or two viscosities."""
-    told = short_oil_told(value_at(dict(raw), ("lubricant", "oil")))
-    if told is not None:
-        yield Found("lubricant.oil", *told)
-
-
 def complete(
     gearing: Gearing, raw: Mapping[str, Any]
 ) -> tuple[Gearing, tuple[Found, ...], list[Problem]]:
@@ -167,7 +132,7 @@ def _with_named_rack(gearing: Gearing) -> tuple[Gearing, tuple[Found, ...]]:
     dedendum, rounding = BASIC_RACKS[name]
     tables = {}
     for gear, table in gearing.tables.items():
-        keeps = table.tool_tip_radius is not None or is_internal(table)
+        keeps = table.tool_tip_radius is not None or table.is_ring
         radius = rounding * gearing.racks[gear].normal_module
         tables[gear] = table if keeps else table.model_copy(update={"tool_tip_radius": radius})
     coefficients = {
@@ -340,7 +305,7 @@ class _Solver:
             remedy = f"Correct {'.'.join(mesh.place)}, the tooth numbers or the module."
             raise one_problem(self._shift_key(name), "", allowed, remedy)
         self.shifts[name] = shift
-        keys = {key: None for choice in GearTable.THICKNESS for key in choice.split("+")}
+        keys = {key: None for choice in THICKNESS for key in choice.split("+")}
         self.tables[name] = self.tables[name].model_copy(
             update=keys | {"profile_shift_coefficient": shift}
         )

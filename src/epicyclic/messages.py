@@ -1,0 +1,159 @@
+"""Texts of messages: keys and values as a case file has them, and names that were meant."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from pydantic_core import PydanticCustomError
+from rapidfuzz import fuzz, process
+from rapidfuzz.distance import OSA
+
+from epicyclic.errors import InputError, Problem, printable
+
+_LONGEST_SHOWN = 60  # Text that users wrote is cut to this many characters in messages.
+
+_DEEPEST = 20  # Dots of a key; tables of a case are nested a few levels deep.
+
+
+def dotted(path: Sequence[str | int]) -> str:
+    """A path as users write it: ``lubricant.oil.density[1].value``."""
+    text = ""
+    for part in path:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            bare = part.isascii() and part.replace("-", "").replace("_", "").isalnum()
+            text += ("." if text else "") + (part if bare else f'"{one_line(part)}"')
+    return text
+
+
+def path_of(key: str) -> tuple[str | int, ...]:
+    """The path of a key as `dotted` writes it."""
+    parts = re.findall(r'"[^"]*"|[^.\[\]]+', key)
+    return tuple(int(part) if part.isdecimal() else part.strip('"') for part in parts)
+
+
+def key_parts(key: str) -> list[str]:
+    """The names of a dotted key; one in quotes may have dots: ``positions."S1.pinion"``.
+
+    Raises `InputError` if it has more names than any key of a case.
+    """
+    if key.count(".") > _DEEPEST:
+        allowed = f"is not a key: it has more than {_DEEPEST} dots."
+        raise InputError([Problem(one_line(key), "", allowed, "Correct it.")])
+    if '"' not in key:
+        return key.split(".")
+    return [part.strip('"') for part in re.findall(r'"[^"]*"|[^.]+', key)]
+
+
+def value_at(tables: Any, path: Sequence[str | int]) -> Any:
+    """The value at `path` below `tables`; None if there is none."""
+    for part in path:
+        if isinstance(tables, Mapping):
+            tables = tables.get(part)
+        elif isinstance(tables, tuple) and isinstance(part, int) and part < len(tables):
+            tables = tables[part]
+        else:
+            return None
+    return tables
+
+
+def written(value: Any) -> str:
+    """`value` as a case file has it, cut to one short line."""
+    text = _written(value)
+    is_short = isinstance(value, str) or len(text) <= _LONGEST_SHOWN
+    return text if is_short else f"{text[:_LONGEST_SHOWN]}..."
+
+
+def one_line(text: str, longest: int = _LONGEST_SHOWN) -> str:
+    """`text` on one line, without control characters, cut to the `longest` that is shown."""
+    shown = printable(" ".join(text[: 2 * longest].split()))
+    is_cut = len(shown) > longest or len(text) > 2 * longest
+    return f"{shown[:longest]}..." if is_cut else shown
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, str):
+        return f'"{one_line(value)}"'
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int) and abs(value) >= 10**_LONGEST_SHOWN:
+        return "a whole number of many digits"
+    if isinstance(value, Mapping):
+        return (
+            f"{{{_joined(f'{one_line(key)} = {_written(item)}' for key, item in value.items())}}}"
+        )
+    if isinstance(value, tuple | list):
+        return f"[{_joined(map(_written, value))}]"
+    return one_line(str(value))
+
+
+def _joined(parts: Iterator[str]) -> str:
+    """The parts, as many as a message shows."""
+    text = ""
+    for part in parts:
+        text += f", {part}" if text else part
+        if len(text) > _LONGEST_SHOWN:
+            break
+    return text
+
+
+def sentence(text: str, *, capital: bool = True) -> str:
+    """`text` with a full stop, and with a capital letter at its start unless told otherwise."""
+    start = text[:1].upper() if capital else text[:1]
+    return f"{start}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
+
+
+def refused(error: PydanticCustomError, key: str, given: str) -> Problem:
+    """The problem of a value that its quantity refuses."""
+    remedy = str((error.context or {}).get("remedy", ""))
+    return Problem(key, given, sentence(error.message(), capital=False), sentence(remedy))
+
+
+def millimetres(value: float) -> str:
+    """A length in metres as text for a message."""
+    return f"{value * 1e3:.5g} mm"
+
+
+def micrometres(value: float) -> str:
+    """A small length in metres as text for a message."""
+    return f"{value * 1e6:.3g} um"
+
+
+# Suggestions for misspelt names.
+
+_LIKENESS = 60.0  # Smallest likeness, in percent, at which a name is worth suggesting.
+
+_MOST_SLIPS = 2  # Letters left out, added, changed or swapped in a name that is still clear.
+
+_LONGEST = 60  # No name is longer, and longer text is not compared. [characters]
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """``"Did you mean 'sun'?"``, or nothing if no known name is near."""
+    if len(name) > _LONGEST:
+        return ""
+    found = process.extractOne(name, list(known), scorer=_likeness, score_cutoff=_LIKENESS)
+    return f"Did you mean {found[0]!r}?" if found else ""
+
+
+def misspelt(name: str, known: Iterable[str]) -> str:
+    """The known name that `name` can only be a misspelling of; empty if there is none."""
+    slips = {
+        other: OSA.distance(name.casefold(), other.casefold(), score_cutoff=_MOST_SLIPS)
+        for other in known
+        if len(name) <= _LONGEST
+    }
+    nearest = min(slips, key=slips.__getitem__, default="")
+    clear = nearest and slips[nearest] <= min(_MOST_SLIPS, len(name) // 3)
+    return nearest if clear else ""
+
+
+def _likeness(name: str, known: str, *, score_cutoff: float | None = None) -> float:
+    """In percent; a name that is part of another one is somewhat like it."""
+    one, two = name.casefold(), known.casefold()
+    score = fuzz.ratio(one, two, score_cutoff=score_cutoff)
+    partly = min(len(one), len(two)) > 3 and (one in two or two in one)
+    return max(score, _LIKENESS + 10) if partly else score
