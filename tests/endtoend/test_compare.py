@@ -83,6 +83,7 @@ def test_a_calibration_is_called_so_everywhere(call, measured, tmp_path):
     assert set(fitted.given()["uncertainty"]) == set(fit["uncertainty"])
 
 
+@pytest.mark.slow
 def test_a_fit_tells_how_it_gets_on_and_carries_its_uncertainty(call, tmp_path, monkeypatch):
     """Sliding and oil share of a set, from losses of the model itself with 1 % off and on."""
     path, case = tmp_path / "measured.csv", tmp_path / "fitted.toml"

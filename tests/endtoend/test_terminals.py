@@ -28,8 +28,10 @@ def shell(command, folder, **environment):
     )
 
 
-@pytest.mark.parametrize("encoding", ["cp1252", "ascii", "latin-1"])
-@pytest.mark.parametrize("command", ["run talbot-2012-pair", "oils", "cases"])
+@pytest.mark.parametrize(
+    ("encoding", "command"),
+    [("cp1252", "run talbot-2012-pair"), ("ascii", "oils"), ("latin-1", "cases")],
+)
 def test_signs_that_a_terminal_does_not_know_are_replaced(tmp_path, encoding, command):
     done = shell(f"{RUN} {command}", tmp_path, PYTHONIOENCODING=encoding)
     assert done.returncode == 0, done.stderr
@@ -37,7 +39,15 @@ def test_signs_that_a_terminal_does_not_know_are_replaced(tmp_path, encoding, co
     assert len(shown.splitlines()) > 5
 
 
-@pytest.mark.parametrize("command", ["run talbot-2012-pair", "schema", "--help", "run --json"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "schema",
+        "run --json",
+        pytest.param("run talbot-2012-pair", marks=pytest.mark.slow),
+        pytest.param("--help", marks=pytest.mark.slow),
+    ],
+)
 def test_a_full_disk_behind_the_output_is_told(tmp_path, command):
     command = command.replace("--json", "talbot-2012-pair --json")
     done = shell(f"{RUN} {command} > /dev/full", tmp_path)

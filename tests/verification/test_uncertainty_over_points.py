@@ -121,6 +121,7 @@ def test_what_limits_the_trust_in_a_map_is_told_where_it_is_largest(over_map):
     assert 1 <= len(advice.items) <= 3
 
 
+@pytest.mark.slow
 def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path):
     write_dataset(over_map, tmp_path / "band.nc")
     read = ep.open_result(tmp_path / "band.nc")
@@ -138,6 +139,7 @@ def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path)
     assert "95 % band of the total loss" not in report_html(plain_map)
 
 
+@pytest.mark.slow
 def test_energies_are_sums_of_the_same_samples_at_all_points(case, over_cycle):
     kilo = np.zeros(64)
     entering = 0.0
@@ -182,7 +184,9 @@ def test_some_points_stand_for_a_long_cycle(case):
     assert float(some["curves_explain"]) > 0.98
 
 
-@pytest.mark.parametrize("cycle", [None, CYCLE])
+@pytest.mark.parametrize(
+    "cycle", [pytest.param(None, id="map", marks=pytest.mark.slow), pytest.param(CYCLE, id="cycle")]
+)
 def test_workers_give_the_same_file(case, plain_map, cycle, tmp_path):
     source = plain_map.isel(temperature=[1]) if cycle is None else case
     for jobs in (1, 2):
@@ -192,6 +196,7 @@ def test_workers_give_the_same_file(case, plain_map, cycle, tmp_path):
     assert one.identical(two)
 
 
+@pytest.mark.slow
 def test_groups_are_those_of_a_test_rig_where_the_case_says_so(case):
     """What torque adds is less, and known better, than the sum of what depends on the load."""
     tested = at(case, 2100, 120).updated({"models.load_dependent": "as-tested"})
@@ -283,6 +288,7 @@ def test_what_cannot_be_sampled_is_told(case, plain_map):
             ep.uncertainty(source, **options)
 
 
+@pytest.mark.slow
 def test_the_command_on_a_map(plain_map, over_map, tmp_path):
     ep.write_map(plain_map, tmp_path / "map.nc")
     output, picture = tmp_path / "band.nc", tmp_path / "band.png"
