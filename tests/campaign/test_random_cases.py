@@ -1,4 +1,4 @@
-"""The campaign of random valid cases: a quick share by default, a longer one marked slow."""
+"""The campaign of random valid cases: a quick share by default, longer ones on demand."""
 
 from __future__ import annotations
 
@@ -113,10 +113,16 @@ def test_losses_beyond_all_bounds_end_as_such(number):
     assert outcome_of(drawn_case(number)).name == "losses grow with the torques that they cause"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("first", [200_000, 201_000])
-def test_a_longer_share_ends_in_results_or_outcomes(first):
-    check(solved(range(first, first + 1000)))
+@pytest.mark.parametrize(
+    ("first", "count"),
+    [
+        pytest.param(202_000, 100, marks=pytest.mark.slow),
+        pytest.param(200_000, 1000, marks=pytest.mark.campaign),
+        pytest.param(201_000, 1000, marks=pytest.mark.campaign),
+    ],
+)
+def test_a_longer_share_ends_in_results_or_outcomes(first, count):
+    check(solved(range(first, first + count)))
 
 
 def test_points_of_a_design_differ_in_operation_only():
