@@ -63,7 +63,12 @@ def blocks_of(page):
 
 PAGES = sorted(str(path.relative_to(DOCS)) for path in DOCS.rglob("*.md"))
 RUN = [page for page in PAGES if any(not block.file for block in blocks_of(page))]
-LONG = ("tutorial/index.md", "how-to/uncertainty.md", "how-to/loss-map.md")
+LONG = (
+    "tutorial/index.md",
+    "how-to/uncertainty.md",
+    "how-to/loss-map.md",
+    "how-to/look-at-a-mesh.md",
+)
 """Pages that take longer than the default suite allows, even without their slow blocks."""
 SLOW = [
     page for page in RUN if page in LONG or any(block.note == "slow" for block in blocks_of(page))

@@ -94,6 +94,7 @@ def test_compiled_code_is_left_at_once(tmp_path, arguments):
     assert not list(tmp_path.rglob(f"{PREFIX}*"))
 
 
+@pytest.mark.slow
 def test_a_terminal_shows_that_pockets_are_being_solved(tmp_path):
     ours, theirs = os.openpty()
     process = subprocess.Popen(

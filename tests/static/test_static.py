@@ -27,7 +27,7 @@ def run(*command: str) -> subprocess.CompletedProcess[str]:
     "command",
     [
         ("lint-imports",),
-        ("mypy",),
+        pytest.param(("mypy",), marks=pytest.mark.slow),
         ("ruff", "check", "src", "tests", "benchmarks", "scripts", "docs", "examples"),
         ("ruff", "format", "--check", "src", "tests", "benchmarks", "scripts", "docs", "examples"),
     ],

@@ -116,12 +116,12 @@ def cut(path):
 @pytest.mark.parametrize(
     ("kind", "damage"),
     [
-        ("*.nbi", cut),
         ("*.nbc", with_a_wrong_byte),
         *(
             pytest.param(kind, damage, marks=pytest.mark.slow)
             for kind, damage in (
-                ("*.nbi", emptied), ("*.nbi", with_a_wrong_byte), ("*.nbc", emptied), ("*.nbc", cut)
+                ("*.nbi", emptied), ("*.nbi", with_a_wrong_byte), ("*.nbi", cut),
+                ("*.nbc", emptied), ("*.nbc", cut),
             )
         ),
     ],

@@ -245,6 +245,7 @@ def test_a_damaged_uncertainty_is_refused(study, tmp_path, name, reason):
         ep.open_result(tmp_path / "damaged.nc")
 
 
+@pytest.mark.slow
 def test_correlated_inputs_share_their_part_of_the_variance(case):
     together = {
         "pinion.roughness": {"normal": "0.06 um"},
