@@ -85,15 +85,15 @@ def test_json_without_a_file_goes_to_standard_output(epicyclic, rest):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs named pipes and links")
-def test_json_goes_through_pipes_and_links(started, tmp_path):
+def test_json_goes_through_pipes_and_links(epicyclic, tmp_path):
     file, link, pipe = tmp_path / "r.json", tmp_path / "link.json", tmp_path / "pipe.json"
     link.symlink_to(file)
-    assert started("run", "talbot-2012", "--json", str(link)).returncode == 0
+    assert epicyclic("run", "talbot-2012", "--json", str(link)).returncode == 0
     assert link.is_symlink()
     os.mkfifo(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     try:
-        assert started("run", "talbot-2012", "--json", str(pipe)).returncode == 0
+        assert epicyclic("run", "talbot-2012", "--json", str(pipe)).returncode == 0
         assert pipe.is_fifo()
         assert os.read(reader, 10**6).decode() == file.read_text()
     finally:

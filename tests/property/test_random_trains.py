@@ -138,7 +138,7 @@ def count(seeds: range) -> Counter[str]:
 @pytest.mark.parametrize(
     ("first", "block"),
     [
-        (0, 400),
+        (400, 400),  # two of them are self-locking
         *(pytest.param(first, BLOCK, marks=pytest.mark.slow) for first in range(0, ALL, BLOCK)),
     ],
 )
