@@ -75,7 +75,16 @@ def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
     assert len(solved) == len(set(solved)) == 18
 
 
-@pytest.mark.parametrize("number", [826, 829, 1104, 1881, 1884, 5248, 11481, 19179, 56103])
+@pytest.mark.parametrize(
+    "number",
+    [
+        *(826, 1884, 56103),
+        *(
+            pytest.param(number, marks=pytest.mark.slow)
+            for number in (829, 1104, 1881, 5248, 11481, 19179)
+        ),
+    ],
+)
 def test_losses_that_alone_load_a_mesh_agree_with_its_load(number):
     """No torque from outside: the least loss of a mesh changes its load by a multiple.
 

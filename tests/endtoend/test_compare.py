@@ -57,6 +57,7 @@ def test_tables_are_printed(call, measured):
     assert "Not included: thrust_bearing_viscous" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_calibration_is_called_so_everywhere(call, measured, tmp_path):
     case, picture, data = (tmp_path / name for name in ("fitted.toml", "fit.svg", "fit.json"))
     key = "losses.carrier_drag.factor"

@@ -215,6 +215,7 @@ def test_texts_of_the_picture_are_apart_and_within_it(name):
         assert apart, (one, other)
 
 
+@pytest.mark.slow
 def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
     record = ep.record(pair(EVERYTHING))
     ep.save_result(record, tmp_path / "warm.nc")

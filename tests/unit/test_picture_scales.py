@@ -286,7 +286,10 @@ def test_labels_of_figures_in_pages_are_broken_where_they_are_longer_than_the_ax
     assert "normal force on the tooth pair" not in svg
 
 
-@pytest.mark.parametrize(("sheet", "group"), [(mesh_figure, "meshes"), (pocket_figure, "pockets")])
+@pytest.mark.parametrize(
+    ("sheet", "group"),
+    [pytest.param(mesh_figure, "meshes", marks=pytest.mark.slow), (pocket_figure, "pockets")],
+)
 def test_letters_of_sheets_have_ten_points_on_a_slide(talbot_record, sheet, group):
     figure = sheet(talbot_record.group(group)["sun_mesh"])
     figure.draw_without_rendering()

@@ -137,9 +137,12 @@ def test_an_unknown_plot_names_those_that_there_are(talbot_record, pair_map):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"operation.torque": "0 N*m"},
+        pytest.param({"operation.torque": "0 N*m"}, marks=pytest.mark.slow),
         {"operation.speed": "0 rpm"},
-        {"planet_bearing": None, "losses.sun_mesh_pocketing.include": False},
+        pytest.param(
+            {"planet_bearing": None, "losses.sun_mesh_pocketing.include": False},
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=["no-torque", "no-speed", "parts-left-out"],
 )
