@@ -1,4 +1,4 @@
-"""The campaign of random valid cases: a quick share by default, a longer one marked slow."""
+"""The campaign of random valid cases: a quick share by default, longer ones on demand."""
 
 from __future__ import annotations
 
@@ -75,7 +75,16 @@ def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
     assert len(solved) == len(set(solved)) == 18
 
 
-@pytest.mark.parametrize("number", [826, 829, 1104, 1881, 1884, 5248, 11481, 19179, 56103])
+@pytest.mark.parametrize(
+    "number",
+    [
+        *(826, 1884, 56103),
+        *(
+            pytest.param(number, marks=pytest.mark.slow)
+            for number in (829, 1104, 1881, 5248, 11481, 19179)
+        ),
+    ],
+)
 def test_losses_that_alone_load_a_mesh_agree_with_its_load(number):
     """No torque from outside: the least loss of a mesh changes its load by a multiple.
 
@@ -113,10 +122,16 @@ def test_losses_beyond_all_bounds_end_as_such(number):
     assert outcome_of(drawn_case(number)).name == "losses grow with the torques that they cause"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("first", [200_000, 201_000])
-def test_a_longer_share_ends_in_results_or_outcomes(first):
-    check(solved(range(first, first + 1000)))
+@pytest.mark.parametrize(
+    ("first", "count"),
+    [
+        pytest.param(202_000, 100, marks=pytest.mark.slow),
+        pytest.param(200_000, 1000, marks=pytest.mark.campaign),
+        pytest.param(201_000, 1000, marks=pytest.mark.campaign),
+    ],
+)
+def test_a_longer_share_ends_in_results_or_outcomes(first, count):
+    check(solved(range(first, first + count)))
 
 
 def test_points_of_a_design_differ_in_operation_only():

@@ -57,6 +57,7 @@ def test_tables_are_printed(call, measured):
     assert "Not included: thrust_bearing_viscous" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_calibration_is_called_so_everywhere(call, measured, tmp_path):
     case, picture, data = (tmp_path / name for name in ("fitted.toml", "fit.svg", "fit.json"))
     key = "losses.carrier_drag.factor"
@@ -83,6 +84,7 @@ def test_a_calibration_is_called_so_everywhere(call, measured, tmp_path):
     assert set(fitted.given()["uncertainty"]) == set(fit["uncertainty"])
 
 
+@pytest.mark.slow
 def test_a_fit_tells_how_it_gets_on_and_carries_its_uncertainty(call, tmp_path, monkeypatch):
     """Sliding and oil share of a set, from losses of the model itself with 1 % off and on."""
     path, case = tmp_path / "measured.csv", tmp_path / "fitted.toml"

@@ -63,7 +63,16 @@ def blocks_of(page):
 
 PAGES = sorted(str(path.relative_to(DOCS)) for path in DOCS.rglob("*.md"))
 RUN = [page for page in PAGES if any(not block.file for block in blocks_of(page))]
-SLOW = [page for page in RUN if any(block.note == "slow" for block in blocks_of(page))]
+LONG = (
+    "tutorial/index.md",
+    "how-to/uncertainty.md",
+    "how-to/loss-map.md",
+    "how-to/look-at-a-mesh.md",
+)
+"""Pages that take longer than the default suite allows, even without their slow blocks."""
+SLOW = [
+    page for page in RUN if page in LONG or any(block.note == "slow" for block in blocks_of(page))
+]
 
 
 def run_block(block, names, monkeypatch):
@@ -91,7 +100,7 @@ def run_page(page, folder, monkeypatch, left_out):
             run_block(block, names, monkeypatch)
 
 
-@pytest.mark.parametrize("page", RUN)
+@pytest.mark.parametrize("page", [page for page in RUN if page not in LONG])
 def test_blocks_of_a_page_run(page, tmp_path, monkeypatch):
     run_page(page, tmp_path, monkeypatch, ("slow", "skip"))
 

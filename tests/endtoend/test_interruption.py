@@ -72,8 +72,8 @@ def slow(*arguments):
     "arguments",
     [
         ("run", "talbot-2012", *FINE, "--save", "r.nc"),
-        ("sweep", "talbot-2012", *FINE, "--vary", "operation.speed=1:4000:9 rpm", "--jobs", "2",
-         "-o", "s.nc"),
+        slow("sweep", "talbot-2012", *FINE, "--vary", "operation.speed=1:4000:9 rpm", "--jobs", "2",
+             "-o", "s.nc"),
         slow("pockets", "talbot-2012", *FINE, "--plot", "p.png"),
         slow("pockets-table", "talbot-2012", *FINE, "--speed", "500:5000:10 rpm", "-o", "t.nc"),
         slow("oil", "characterise", "atf-talbot-2012", "--size", "64", "--jobs", "2", "-o", "atf"),
@@ -94,6 +94,7 @@ def test_compiled_code_is_left_at_once(tmp_path, arguments):
     assert not list(tmp_path.rglob(f"{PREFIX}*"))
 
 
+@pytest.mark.slow
 def test_a_terminal_shows_that_pockets_are_being_solved(tmp_path):
     ours, theirs = os.openpty()
     process = subprocess.Popen(

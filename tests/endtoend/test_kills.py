@@ -14,7 +14,7 @@ from test_shards import COMMANDS, FAILS, content
 from epicyclic.files import PREFIX
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.campaign,
     pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals"),
 ]
 

@@ -56,6 +56,7 @@ def workers_of(session):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 def test_workers_of_a_killed_command_end_quietly(tmp_path):
     with (tmp_path / "errors").open("w") as errors:

@@ -98,9 +98,8 @@ def disturbed(folder, kills, seed):
     return done.stdout
 
 
-@pytest.mark.parametrize(
-    "kills", [pytest.param(1, id="once"), pytest.param(10, id="ten times", marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("kills", [1, 10])
 def test_a_killed_campaign_ends_with_the_same_bits(finished, tmp_path, kills):
     printed = disturbed(tmp_path / "atf", kills, seed=kills)
     assert content(tmp_path / "atf") == content(finished)
@@ -122,6 +121,7 @@ def test_a_cluster_gives_the_same_bits(finished, tmp_path):
     assert counts[-1][:2] == (SIZE, SIZE)
 
 
+@pytest.mark.slow
 def test_a_full_disk_loses_nothing(finished, tmp_path):
     folder = tmp_path / "atf"
 

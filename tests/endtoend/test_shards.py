@@ -54,6 +54,7 @@ COMMANDS = {
 """A command of each kind by its output, with points that fail and tables that points share."""
 FOLDERS = {"study": "study", "oil": "simulations"}
 FAILS = ("sweep.csv", "study")
+QUICK = ("sweep.csv", "table.nc")
 
 
 @pytest.fixture
@@ -95,7 +96,13 @@ def files_of(folder, output):
     return sorted(beside.parent.glob(f"{beside.name}.shard-*"))
 
 
-@pytest.mark.parametrize("output", COMMANDS)
+@pytest.mark.parametrize(
+    "output",
+    [
+        pytest.param(output, marks=() if output in QUICK else pytest.mark.slow)
+        for output in COMMANDS
+    ],
+)
 def test_workers_a_cluster_and_shards_give_the_same_file(call, cluster, tmp_path, output):
     command, wanted = COMMANDS[output], 4 if output in FAILS else 0
     folders = {name: tmp_path / name for name in ("one", "two", "dask", "shards")}
@@ -187,6 +194,7 @@ def test_a_shard_that_cannot_be_is_one_error(call, tmp_path, shard):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_a_killed_shard_goes_on(call, tmp_path):
     case = ("talbot-2012-pair", "--vary", "operation.torque=1:100:400 N*m")
@@ -323,7 +331,7 @@ def in_shards(call, command, option, output, count, merged):
     return printed
 
 
-@pytest.mark.parametrize("how", ["computed", "as-tested"])
+@pytest.mark.parametrize("how", ["computed", pytest.param("as-tested", marks=pytest.mark.slow)])
 def test_shards_of_a_comparison_are_that_of_one_run(call, tmp_path, monkeypatch, how):
     monkeypatch.chdir(tmp_path)
     Path("measured.csv").write_text(MEASURED)
@@ -370,7 +378,14 @@ def test_a_comparison_with_points_that_fail_is_the_same_in_shards(call, tmp_path
     assert Path("merged.json").read_bytes() == Path("one.json").read_bytes()
 
 
-@pytest.mark.parametrize(("ending", "option"), [(".nc", "-o"), (".csv", "-o"), (".json", "--json")])
+@pytest.mark.parametrize(
+    ("ending", "option"),
+    [
+        pytest.param(".nc", "-o", marks=pytest.mark.slow),
+        (".csv", "-o"),
+        pytest.param(".json", "--json", marks=pytest.mark.slow),
+    ],
+)
 def test_shards_of_a_duty_cycle_are_that_of_one_run(call, tmp_path, monkeypatch, ending, option):
     monkeypatch.chdir(tmp_path)
     Path("cycle.csv").write_text(CYCLE)

@@ -317,6 +317,7 @@ def points_in(folder):
     return sum(path.read_bytes().count(b'"row":') for path in folder.iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_interrupted_command_resumes(tmp_path, coarse_options):
     def command(*vary):

@@ -28,8 +28,10 @@ def shell(command, folder, **environment):
     )
 
 
-@pytest.mark.parametrize("encoding", ["cp1252", "ascii", "latin-1"])
-@pytest.mark.parametrize("command", ["run talbot-2012-pair", "oils", "cases"])
+@pytest.mark.parametrize(
+    ("encoding", "command"),
+    [("cp1252", "run talbot-2012-pair"), ("ascii", "oils"), ("latin-1", "cases")],
+)
 def test_signs_that_a_terminal_does_not_know_are_replaced(tmp_path, encoding, command):
     done = shell(f"{RUN} {command}", tmp_path, PYTHONIOENCODING=encoding)
     assert done.returncode == 0, done.stderr
@@ -37,7 +39,15 @@ def test_signs_that_a_terminal_does_not_know_are_replaced(tmp_path, encoding, co
     assert len(shown.splitlines()) > 5
 
 
-@pytest.mark.parametrize("command", ["run talbot-2012-pair", "schema", "--help", "run --json"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "schema",
+        "run --json",
+        pytest.param("run talbot-2012-pair", marks=pytest.mark.slow),
+        pytest.param("--help", marks=pytest.mark.slow),
+    ],
+)
 def test_a_full_disk_behind_the_output_is_told(tmp_path, command):
     command = command.replace("--json", "talbot-2012-pair --json")
     done = shell(f"{RUN} {command} > /dev/full", tmp_path)
@@ -51,14 +61,23 @@ def test_a_pipe_that_is_closed_early_is_no_error(tmp_path):
     assert done.stderr == b""
 
 
-def test_a_deleted_folder_is_told(tmp_path):
-    start = f"mkdir gone; cd gone; rmdir ../gone; {RUN}"
-    assert shell(f"{start} run talbot-2012-pair", tmp_path).returncode == 0
-    for command in ("run case.toml", "init", "run talbot-2012-pair --save r.nc", "map talbot-2012"
-                    " --speed 1:9:3rpm --torque 1:9:3N*m -o m.nc"):  # fmt: skip
-        done = shell(f"{start} {command}", tmp_path)
-        assert done.returncode == 2, done.stderr
-        assert b"Error of the program" not in done.stderr
+@pytest.mark.parametrize(
+    ("command", "code"),
+    [
+        ("run talbot-2012-pair --save r.nc", 2),
+        *(
+            pytest.param(command, code, marks=pytest.mark.slow)
+            for command, code in (
+                ("run talbot-2012-pair", 0), ("run case.toml", 2), ("init", 2),
+                ("map talbot-2012 --speed 1:9:3rpm --torque 1:9:3N*m -o m.nc", 2),
+            )
+        ),
+    ],
+)  # fmt: skip
+def test_a_deleted_folder_is_told(tmp_path, command, code):
+    done = shell(f"mkdir gone; cd gone; rmdir ../gone; {RUN} {command}", tmp_path)
+    assert done.returncode == code, done.stderr
+    assert b"Error of the program" not in done.stderr
 
 
 COMMANDS = (

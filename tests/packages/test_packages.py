@@ -1,13 +1,11 @@
 """The packages that users install: what is in them, and that they run outside the tree.
 
-Tests that install take minutes and need a package index. They run where ``CI`` is set, as it is
-when ``.ci/run`` runs; ``CI=true pytest tests/packages`` does the same.
+Tests that install take minutes and need a package index: they are slow.
 """
 
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import tarfile
@@ -29,10 +27,6 @@ CORE = (
     "tests/unit/test_sweep_plots.py",
 )
 """What passes through all the libraries: results, files, pictures, reports."""
-
-in_ci = pytest.mark.skipif(
-    not os.environ.get("CI"), reason="takes minutes and a package index; set CI=true to run it"
-)
 
 
 def run(*command: object, folder: Path) -> str:
@@ -101,7 +95,7 @@ def test_the_sdist_holds_what_its_tests_and_its_manual_need(sdist):
     assert wanted <= names
 
 
-@in_ci
+@pytest.mark.slow
 @pytest.mark.parametrize("package", ["wheel", "sdist"])
 def test_a_package_runs_in_an_environment_of_its_own(package, request, tmp_path, talbot):
     programs = environment_with(tmp_path, request.getfixturevalue(package))
@@ -113,7 +107,7 @@ def test_a_package_runs_in_an_environment_of_its_own(package, request, tmp_path,
     assert printed["total"] == pytest.approx(ep.solve(talbot).total, rel=1e-12)
 
 
-@in_ci
+@pytest.mark.slow
 @pytest.mark.skipif(sys.version_info >= (3, 12), reason="the oldest wheels are of Python 3.11")
 def test_the_lowest_declared_versions_do(wheel, tmp_path):
     """Warnings of old libraries about each other are no errors here."""

@@ -187,14 +187,30 @@ LENGTHS = ("pin_diameter", "roller_diameter", "roller_length")
 LENGTH = Length.__metadata__[0]
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
+@given(changes=PLANETARY, drive=DRIVES, size=SIZES)
+def test_many_planetary_results_make_sense(changes, drive, size):
+    case = sized("talbot-2012", size)
+    assert_sensible(ep.solve(case.updated({**scaled_torque(changes, size), **drive})))
+
+
+@pytest.mark.slow
+@settings(max_examples=150)
+@given(changes=PAIR, size=SIZES)
+def test_many_pair_results_make_sense(changes, size):
+    pair = sized("talbot-2012-pair", size)
+    assert_sensible(ep.solve(pair.updated(scaled_torque(changes, size))))
+
+
+@settings(max_examples=40)
 @given(changes=PLANETARY, drive=DRIVES, size=SIZES)
 def test_planetary_results_make_sense(changes, drive, size):
     case = sized("talbot-2012", size)
     assert_sensible(ep.solve(case.updated({**scaled_torque(changes, size), **drive})))
 
 
-@settings(max_examples=150)
+@settings(max_examples=40)
 @given(changes=PAIR, size=SIZES)
 def test_pair_results_make_sense(changes, size):
     pair = sized("talbot-2012-pair", size)

@@ -135,8 +135,14 @@ def count(seeds: range) -> Counter[str]:
     return counts
 
 
-@pytest.mark.parametrize("first", range(0, ALL, BLOCK))
-def test_random_trains_are_solved_or_refused_by_name(first):
-    counts = count(range(first, first + BLOCK))
-    assert counts["solved"] > BLOCK // 10
+@pytest.mark.parametrize(
+    ("first", "block"),
+    [
+        (400, 400),  # two of them are self-locking
+        *(pytest.param(first, BLOCK, marks=pytest.mark.slow) for first in range(0, ALL, BLOCK)),
+    ],
+)
+def test_random_trains_are_solved_or_refused_by_name(first, block):
+    counts = count(range(first, first + block))
+    assert counts["solved"] > block // 10
     assert counts["self-locking"] > 0

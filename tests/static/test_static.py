@@ -15,7 +15,6 @@ import pytest
 from limits import is_soon
 
 ROOT = Path(__file__).parents[2]
-IN_CI = bool(os.environ.get("CI"))
 LONGEST_BUILD = 180
 """Of the documentation with its gallery executed, processor time. [s]"""
 
@@ -28,7 +27,7 @@ def run(*command: str) -> subprocess.CompletedProcess[str]:
     "command",
     [
         ("lint-imports",),
-        ("mypy",),
+        pytest.param(("mypy",), marks=pytest.mark.slow),
         ("ruff", "check", "src", "tests", "benchmarks", "scripts", "docs", "examples"),
         ("ruff", "format", "--check", "src", "tests", "benchmarks", "scripts", "docs", "examples"),
     ],
@@ -89,13 +88,20 @@ def test_rules_name_every_package():
     assert sorted(listed.split()) == sorted(packages)
 
 
-def test_documentation_builds_without_warnings(tmp_path):
-    """With the examples of the gallery executed where ``CI`` is set: that takes a minute."""
+@pytest.mark.parametrize(
+    "gallery",
+    [
+        pytest.param("plot_gallery=0", id="without its gallery"),
+        pytest.param(
+            "sphinx_gallery_conf.run_stale_examples=1", id="gallery", marks=pytest.mark.slow
+        ),
+    ],
+)
+def test_documentation_builds_without_warnings(tmp_path, gallery):
     build = Path(sys.executable).with_name("sphinx-build")
-    gallery = ("sphinx_gallery_conf.run_stale_examples=1",) if IN_CI else ("plot_gallery=0",)
     before = processor_seconds()
     result = run(
-        str(build), "-W", "-n", "-q", "-b", "html", "-D", *gallery, "docs", str(tmp_path / "html")
+        str(build), "-W", "-n", "-q", "-b", "html", "-D", gallery, "docs", str(tmp_path / "html")
     )
     assert result.returncode == 0, result.stdout + result.stderr
     assert is_soon(processor_seconds() - before, LONGEST_BUILD)

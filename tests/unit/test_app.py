@@ -535,7 +535,10 @@ def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(s
     simulate(desk, script)
 
 
-@pytest.mark.parametrize("typed", ["nan", "inf", "-1e308", "3 kg"])
+@pytest.mark.parametrize(
+    "typed",
+    ["nan", "3 kg", *(pytest.param(text, marks=pytest.mark.slow) for text in ("inf", "-1e308"))],
+)
 def test_the_slider_of_what_is_no_number_begins_at_zero(simulate, typed):
     desk = opened("talbot-2012-pair")
     desk.change("losses.mesh_pocketing.include", False)
@@ -708,7 +711,9 @@ def test_the_worker_tells_progress_and_errors_and_can_be_ended():
     asyncio.run(run())
 
 
-@pytest.mark.parametrize("task", [app_tasks.endless, app_tasks.doubled])
+@pytest.mark.parametrize(
+    "task", [app_tasks.doubled, pytest.param(app_tasks.endless, marks=pytest.mark.slow)]
+)
 def test_a_worker_that_is_closed_between_two_answers_ends_its_work(task):
     async def run():
         worker = Worker()

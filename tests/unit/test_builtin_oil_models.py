@@ -250,6 +250,7 @@ def test_the_result_says_how_well_its_models_are_known(case):
     assert set(quick.standing) == {"friction", "bearing"}
 
 
+@pytest.mark.slow
 def test_tables_and_reports_begin_with_the_models(case):
     result = ep.solve(case)
     console = Console(width=400, record=True, file=io.StringIO())

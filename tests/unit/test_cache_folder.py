@@ -113,8 +113,19 @@ def cut(path):
     path.write_bytes(path.read_bytes()[:-30])
 
 
-@pytest.mark.parametrize("damage", [emptied, with_a_wrong_byte, cut])
-@pytest.mark.parametrize("kind", ["*.nbi", "*.nbc"])
+@pytest.mark.parametrize(
+    ("kind", "damage"),
+    [
+        ("*.nbc", with_a_wrong_byte),
+        *(
+            pytest.param(kind, damage, marks=pytest.mark.slow)
+            for kind, damage in (
+                ("*.nbi", emptied), ("*.nbi", with_a_wrong_byte), ("*.nbi", cut),
+                ("*.nbc", emptied), ("*.nbc", cut),
+            )
+        ),
+    ],
+)  # fmt: skip
 def test_damaged_code_is_compiled_again(tmp_path, kind, damage):
     assert outcome(tmp_path) == []
     files = list((tmp_path / "cache").rglob(kind))

@@ -72,6 +72,7 @@ def every(points):
     return np.ones(len(points.measured), dtype=bool)
 
 
+@pytest.mark.slow
 def test_intervals_and_bands_of_calibrated_cases_cover_the_truth(case):
     """400 repetitions, through the functions of the command; a fit of 40 points to 2 inputs."""
     parameters = make_parameters(case, KEYS, ())

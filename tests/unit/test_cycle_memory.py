@@ -43,6 +43,7 @@ def memory_of(path, rows):
     return peak
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 def test_a_single_row_group_of_any_size_is_read_in_pieces(tmp_path):
     write(tmp_path / "few.parquet", FEW)

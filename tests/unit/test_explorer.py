@@ -168,6 +168,7 @@ def enlarged(data, speeds, torques):
     return large
 
 
+@pytest.mark.slow
 def test_the_page_of_a_large_sweep_is_bounded_and_says_what_it_leaves_out(data):
     large, larger = enlarged(data, 70, 60), enlarged(data, 230, 110)
     pages = [ep.report_html(sweep) for sweep in (large, larger)]
@@ -295,6 +296,7 @@ def test_a_browser_shows_computed_and_interpolated_values(data, page, tmp_path):
     assert computed["map"] > 100
 
 
+@pytest.mark.slow
 def test_a_map_of_many_temperatures_shows_some_of_them_and_says_so(pair_map):
     """Each has pictures and tables of its own: a hundred took minutes and megabytes."""
     celsius = np.linspace(-20.0, 130.0, 31)

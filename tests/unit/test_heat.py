@@ -215,6 +215,7 @@ def test_texts_of_the_picture_are_apart_and_within_it(name):
         assert apart, (one, other)
 
 
+@pytest.mark.slow
 def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
     record = ep.record(pair(EVERYTHING))
     ep.save_result(record, tmp_path / "warm.nc")
@@ -227,6 +228,7 @@ def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
     assert "The oil has its inlet temperature at all contacts." not in page
 
 
+@pytest.mark.slow
 def test_without_a_network_there_is_no_picture_of_it():
     record = ep.record(pair({"models.temperatures": "flank"}))
     assert "heat-network" not in available(record)

@@ -191,8 +191,11 @@ def test_the_app_refuses_such_an_upload(tmp_path, name, content):
 
 @pytest.mark.parametrize(
     "address",
-    ["", " ", "a", "tcp:/", "tcp://", "tcp://h:x", "http://h", "9" * 400, "tcp://127.0.0.1:1"],
-)
+    [
+        "", " ", "a", "tcp:/", "tcp://", "tcp://h:x", "http://h", "9" * 400,
+        pytest.param("tcp://127.0.0.1:1", marks=pytest.mark.slow),  # ten seconds of attempts
+    ],
+)  # fmt: skip
 def test_no_address_of_a_cluster_is_refused(address):
     pytest.importorskip("distributed")
     refusal(lambda text: Runner(dask=text).check(), address)

@@ -237,6 +237,7 @@ def test_calibrated_and_held_out_points_are_kept_apart(case, tests):
     assert "CALIBRATED [W]" in comparison.table().columns
 
 
+@pytest.mark.slow
 def test_a_random_share_is_that_of_the_seed(case, tests):
     one, again, other = (
         ep.compare_measured(case, tests, fit=KEYS, hold_out=0.25, seed=seed).held_out
@@ -247,6 +248,7 @@ def test_a_random_share_is_that_of_the_seed(case, tests):
     assert (one != other).any()
 
 
+@pytest.mark.slow
 def test_what_cannot_be_told_apart_is_said(case, tests):
     keys = ["losses.drag.factor", "surroundings.oil_air_ratio", "losses.mesh_sliding.factor"]
     fit = ep.compare_measured(case, noisy(tests, 7), fit=keys).fit

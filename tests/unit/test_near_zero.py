@@ -27,7 +27,7 @@ def test_torques_crowd_on_each_side_that_reaches_zero():
     assert resolving_zero([0.0]) == [0.0]
 
 
-@pytest.mark.parametrize("rpm", [190.0, 2300.0])
+@pytest.mark.parametrize("rpm", [2300.0, pytest.param(190.0, marks=pytest.mark.slow)])
 def test_interpolation_is_off_by_less_than_two_per_cent_at_any_torque(case, rpm):
     """Even torques alone are off by more than twice as much."""
     asked = {"speed": [f"{rpm} rpm"], "torque": [f"{t} N*m" for t in np.linspace(-900, 900, 13)]}

@@ -70,12 +70,18 @@ def test_every_plot_of_a_map_has_labels_within_the_picture(pair_map, name):
     assert "40 °C" in figure.axes[0].get_title(loc="left")
 
 
+@pytest.fixture(scope="module")
+def banded(pair_map):
+    return ep.uncertainty(pair_map.isel(temperature=[0]), samples=16, jobs=1)
+
+
 @pytest.mark.parametrize("name", OF_BANDS)
-def test_every_plot_of_a_map_with_its_uncertainty_has_labels_within_the_picture(pair_map, name):
-    part = pair_map.isel(temperature=[0])
-    banded = ep.uncertainty(part, samples=16, jobs=1)
+def test_every_plot_of_a_map_with_its_uncertainty_has_labels_within_the_picture(banded, name):
     check_figure(figure_of(banded, name))
-    assert not set(available(part)).intersection(OF_BANDS)
+
+
+def test_a_map_without_its_uncertainty_has_no_plots_of_it(pair_map):
+    assert not set(available(pair_map.isel(temperature=[0]))).intersection(OF_BANDS)
 
 
 def test_bars_are_the_losses_and_their_sum_is_the_total(talbot_record):
@@ -131,9 +137,12 @@ def test_an_unknown_plot_names_those_that_there_are(talbot_record, pair_map):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"operation.torque": "0 N*m"},
+        pytest.param({"operation.torque": "0 N*m"}, marks=pytest.mark.slow),
         {"operation.speed": "0 rpm"},
-        {"planet_bearing": None, "losses.sun_mesh_pocketing.include": False},
+        pytest.param(
+            {"planet_bearing": None, "losses.sun_mesh_pocketing.include": False},
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=["no-torque", "no-speed", "parts-left-out"],
 )

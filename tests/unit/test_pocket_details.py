@@ -165,6 +165,7 @@ def test_pockets_fit_between_the_teeth_of_a_picture(meshes, mesh, end):
             assert max(away) < 4e-3
 
 
+@pytest.mark.slow
 def test_animation_shows_one_period_and_moves(pair):
     mesh = ep.pocket_details(pair.updated({"numerics.pocket_steps": 8}))["mesh"]
     done = []

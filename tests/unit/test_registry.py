@@ -46,7 +46,14 @@ def test_every_folder_of_plug_ins_is_found():
     assert {name.rpartition(".")[2] for name in plug_ins()} == folders | {"validation"}
 
 
-@pytest.mark.parametrize("gone", ["plugins/app", "plugins", "validation"])
+@pytest.mark.parametrize(
+    "gone",
+    [
+        "plugins",
+        pytest.param("plugins/app", marks=pytest.mark.slow),
+        pytest.param("validation", marks=pytest.mark.slow),
+    ],
+)
 def test_the_rest_works_without_a_plug_in(gone, tmp_path):
     copy = tmp_path / "epicyclic"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))

@@ -102,6 +102,7 @@ def test_the_chapters_hold_what_an_engineer_asks_for(page, map_page):
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_stored_file_gives_the_same_page(talbot_record, page, tmp_path):
     ep.save_result(talbot_record, tmp_path / "result.nc")
     assert ep.report_html(ep.open_result(tmp_path / "result.nc")) == page

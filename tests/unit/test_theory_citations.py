@@ -10,6 +10,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -62,6 +63,7 @@ def _docstrings(node: ast.AST, name: str) -> Iterator[tuple[str, str]]:
             yield from _docstrings(child, f"{name}.{child.name}")
 
 
+@cache
 def citing() -> set[tuple[str, str]]:
     """Pairs of tag and dotted name of the class or function that cites it."""
     return {(tag, name) for name, text in docstrings() for tag in citations_of(text)}

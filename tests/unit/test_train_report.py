@@ -195,6 +195,7 @@ def test_a_stored_train_with_unknown_shafts_is_refused(gearbox):
     assert read_result(content)[1] == [("", "Value error, members lacks nowhere")]
 
 
+@pytest.mark.slow
 def test_the_page_of_a_train_has_its_chapters(axle, gearbox):
     page = ep.report_html(axle)
     for title in ("Shafts", "Meshes of planets", "Gears of pair", "Shaft bearings", "Seals",

@@ -6,6 +6,8 @@ import pytest
 
 from epicyclic.validation.compare import CLOSURES, closure_figures
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def rows():

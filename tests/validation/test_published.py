@@ -186,6 +186,7 @@ def test_command_prints_the_table(monkeypatch, rows, capsys):
     assert "figures agree: " in output
 
 
+@pytest.mark.slow
 def test_command_writes_a_page(monkeypatch, rows, tmp_path):
     from click.testing import CliRunner
 

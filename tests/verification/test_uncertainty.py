@@ -93,6 +93,7 @@ def test_sums_of_jcgm_101(values, end):
     assert found.shortest_high - found.shortest_low == pytest.approx(2 * end, abs=0.06)
 
 
+@pytest.mark.slow
 def test_bands_hold_the_truth_as_often_as_they_say():
     """Of 1000 truths that are off as stated, 93 to 97 % lie within their bands."""
     rng = np.random.default_rng(20)
@@ -136,6 +137,7 @@ def test_small_uncertainties_add_up_as_in_the_gum(case):
     assert float(total["mean"]) == pytest.approx(float(total["nominal"]), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_workers_give_the_same_file(case, tmp_path):
     one = ep.uncertainty(case, samples=16, jobs=1)
     two = ep.uncertainty(case, samples=16, jobs=2, journal=tmp_path / "kept")
@@ -210,6 +212,7 @@ def test_flows_through_pockets_stay_where_they_are_nearly_the_same(monkeypatch):
         assert end != result.losses["mesh_pocketing"]
 
 
+@pytest.mark.slow
 def test_a_report_shows_the_band_of_a_stored_result_and_of_samples(case, study, tmp_path):
     kept = ep.record(case)
     ep.save_result(kept, tmp_path / "result.nc")
@@ -242,6 +245,7 @@ def test_a_damaged_uncertainty_is_refused(study, tmp_path, name, reason):
         ep.open_result(tmp_path / "damaged.nc")
 
 
+@pytest.mark.slow
 def test_correlated_inputs_share_their_part_of_the_variance(case):
     together = {
         "pinion.roughness": {"normal": "0.06 um"},

@@ -159,6 +159,7 @@ def test_a_cycle_that_never_changes_is_a_constant_operating_point():
         assert float(end[name]) == pytest.approx(float(constant[name][-1]), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_histogram_settles_where_a_fast_time_series_does():
     case = ep.load_case("talbot-2012-pair").updated(CASES["talbot-2012-pair"])
     rows = {"speed [rpm]": [2000.0, 500.0, 2000.0], "torque [N*m]": [50.0, -30.0, 50.0]}
