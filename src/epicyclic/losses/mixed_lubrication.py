@@ -18,6 +18,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.contact.line_contact import LineContacts
 from epicyclic.contact.temperatures import flash_temperature
 from epicyclic.gears.flanks import (
     FLANK_HARDNESS,
@@ -29,7 +30,6 @@ from epicyclic.gears.flanks import (
 )
 from epicyclic.kernels.line_contact import pan_hamrock_central_film
 from epicyclic.kernels.mixed_lubrication import film_stress
-from epicyclic.losses.contact import MeshContact
 from epicyclic.oil.oil import OilState
 
 FloatArray = NDArray[np.float64]
@@ -55,7 +55,7 @@ class Surfaces:
 RUN_IN = Surfaces()
 
 
-def acting_roughness(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
+def acting_roughness(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
     """sigma^2 = sum of (f Rq (2 b/l_c)^H)^2 of both flanks, 2 b/l_c at most 1. Theory (Y3). [m]
 
     A self-affine profile has an rms height that grows with the length L that is looked at as L^H;
@@ -87,14 +87,14 @@ def usual_cutoff(
     return PROFILE_CUTOFF * math.sqrt(RA_OVER_RQ * roughness / MIDDLE_OF_CLASS)
 
 
-def inlet_heating(contact: MeshContact) -> FloatArray:
+def inlet_heating(contact: LineContacts) -> FloatArray:
     """phi_T, film over that without heat at its inlet. Theory (Y1). [1]
 
     Gupta, Cheng, Zhu, Forster, Schrand, J. Tribol. 114 (1992) 55, second hand:
     (1 - 13.2 (p_h/E) L^0.42)/(1 + 0.213 (1 + 2.23 S^0.83) L^0.64) with L = mu beta u_r^2/k and
     the slide-to-roll ratio S.
     """
-    oil = contact.oil
+    oil = _state(contact)
     heat = (
         oil.dynamic_viscosity
         * oil.thermoviscosity
@@ -109,7 +109,7 @@ def inlet_heating(contact: MeshContact) -> FloatArray:
     return factor
 
 
-def central_film(contact: MeshContact) -> FloatArray:
+def central_film(contact: LineContacts) -> FloatArray:
     """Film of the smooth contact, thinned by heat at its inlet. Theory (Y2). [m]"""
     film = pan_hamrock_central_film(
         contact.speed_number, contact.material_number, contact.load_number
@@ -118,7 +118,7 @@ def central_film(contact: MeshContact) -> FloatArray:
     return thinned
 
 
-def asperity_share(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
+def asperity_share(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
     """Share xi of the load that asperities carry, 0 to 1. Theory (Y5). [1]
 
     Masjedi and Khonsari, J. Tribol. 134 (2012) 011503, second hand: a fit to solutions of the
@@ -139,12 +139,12 @@ def asperity_share(contact: MeshContact, surfaces: Surfaces) -> FloatArray:
 
 
 def mixed_friction(
-    contact: MeshContact,
+    contact: LineContacts,
     surfaces: Surfaces,
     boundary: float | None = None,  # mu_b; None: that of the oil. [1]
 ) -> FloatArray:
     """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]"""
-    oil = contact.oil
+    oil = _state(contact)
     boundary = oil.boundary_friction if boundary is None else boundary
     share = asperity_share(contact, surfaces)
     film = central_film(contact)
@@ -170,6 +170,11 @@ def mixed_friction(
     )
     mu: FloatArray = share * boundary + (1 - share) * stress / pressure
     return mu
+
+
+def _state(contact: LineContacts) -> OilState:
+    assert isinstance(contact.oil, OilState)  # of fits to simulated contacts it is not known
+    return contact.oil
 
 
 @lru_cache(maxsize=64)
