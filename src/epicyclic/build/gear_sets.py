@@ -6,16 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
-from epicyclic.build.models import (
-    SetCase,
-    bearing_model,
-    contact_modulus,
-    fitted_rolling,
-    loss_choices,
-    mesh_models,
-    oil_share,
-    solid_of,
-)
+from epicyclic.build.models import SetCase, contact_modulus, mesh_models, oil_share, solid_of
 from epicyclic.case import gear_tables as flanks
 from epicyclic.case.gear_tables import GearTable
 from epicyclic.case.gearing import Gearing, outside_radius, outward_of, rim_thickness
@@ -33,8 +24,8 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.machine.disc import Disc, Jets, Sump, ThrustBearing
 from epicyclic.machine.element import joined_key
-from epicyclic.machine.gear_mesh import GearMesh
-from epicyclic.machine.gear_set import GearSet, Planet, PlanetMesh, Reference
+from epicyclic.machine.gear_mesh import GearMesh, MeshModels
+from epicyclic.machine.gear_set import GearSet, LossChoice, Planet, PlanetMesh, Reference
 from epicyclic.machine.planets import LoadSharing, PlanetBearing
 
 # How the oil of a case meets the bodies that turn in it.
@@ -124,16 +115,27 @@ def gear_set(
     """The losses of a set."""
     gearing = case.gearing
     discs = dict(_discs(case, bodies))
+    choices = {
+        name: LossChoice(option.include, option.factor) for name, option in case.losses.items()
+    }
+    lacking = {
+        "carrier_drag": (case.carrier, "[carrier]"),
+        "thrust_bearing_viscous": (case.thrust_bearing, "[thrust_bearing]"),
+    }
     return GearSet(
         key=key,
         carrier=bodies[CARRIER] if gearing.planets else HOUSING,
-        meshes=tuple(_meshes(key, case, bodies, flow_tables)),
+        meshes=tuple(_meshes(key, case, bodies, mesh_models(case, choices, flow_tables))),
         planets=tuple(_planet(key, case, body, bodies[body]) for body in gearing.planets),
         sharing=_sharing(case),
         discs=discs,
-        missing=_missing(case),
+        missing={
+            name: f"the case has no {table}"
+            for name, (part, table) in lacking.items()
+            if part is None and name in choices
+        },
         thrust=_thrust_bearing(case, bodies),
-        choices=loss_choices(case),
+        choices=choices,
         reference=_reference(case, bodies, order),
     )
 
@@ -150,10 +152,10 @@ def _reference(case: SetCase, bodies: Mapping[str, str], order: Sequence[str]) -
 
 
 def _meshes(
-    key: str, case: SetCase, bodies: Mapping[str, str], flow_tables: FlowTables
+    key: str, case: SetCase, bodies: Mapping[str, str], models: Mapping[str, MeshModels]
 ) -> Iterator[GearMesh]:
     gearing = case.gearing
-    models, tools = mesh_models(case, flow_tables), _tools(gearing)
+    tools = _tools(gearing)
     for drawn, mesh in zip(gearing.meshes, gearing.geometries, strict=True):
         gears = drawn.first, drawn.second
         one, two = tables = gearing.tables[drawn.first], gearing.tables[drawn.second]
@@ -224,7 +226,7 @@ def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
         meshes=tuple(_planet_meshes(gearing, planet)),
         mass=sum(stated) if stated else planet_mass(made, bearing),
         mass_estimated=not stated,
-        bearing=planet_bearing(case, bearing),
+        bearing=None if bearing is None else planet_bearing(case, bearing, planet),
         no_bearing=f"the case has no {no_bearing}",
         tilts=case.models.planet_tilt == "coupled",
         nodes=(joined_key(key, planet), joined_key(key, pin)),
@@ -285,16 +287,14 @@ def _sharing(case: SetCase) -> LoadSharing | None:
     )
 
 
-def planet_bearing(case: SetCase, table: BearingTable | None) -> PlanetBearing | None:
-    """The planet bearing that `table` describes, with the models of the case."""
-    if table is None:
-        return None
-    name = bearing_model(case, table)
+def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBearing:
+    """The bearing of a planet, with the models of the case."""
+    name = case.bearing_model(planet)
     is_fitted = name in (FittedRolling.name, FITTED_OR_PALMGREN)
     factor = table.viscous_factor
     return PlanetBearing(
         bearing=roller_bearing(table, case.numerics),
-        model=fitted_rolling(case, "bearing_rolling_loss") if is_fitted else name,
+        model=case.fitted_rolling("bearing_rolling_loss") if is_fitted else name,
         palmgren_coefficient=palmgren_coefficient(table),
         viscous_factor=VISCOUS_FACTOR_PER_ROW * table.rows if factor is None else factor,
         conductivity=table.material.thermal_conductivity,
@@ -344,19 +344,6 @@ def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tupl
         size = (case.carrier.outer_diameter, case.carrier.width)
         mate = gearing.gear(next(gears[0] for gears in gearing.drags.values()))
         yield "carrier_drag", (carrier_disc(case, bodies[CARRIER], *size, mate),)
-
-
-def _missing(case: SetCase) -> dict[str, str]:
-    """Losses that are not computed, because the case has no table for them."""
-    parts = {
-        "carrier_drag": (case.carrier, "[carrier]"),
-        "thrust_bearing_viscous": (case.thrust_bearing, "[thrust_bearing]"),
-    }
-    return {
-        name: f"the case has no {table}"
-        for name, (part, table) in parts.items()
-        if part is None and name in case.losses
-    }
 
 
 def _thrust_bearing(case: SetCase, bodies: Mapping[str, str]) -> ThrustBearing | None:

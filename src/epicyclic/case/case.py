@@ -195,16 +195,16 @@ class CaseTable(Table):
         Raises `InputError` with `problems` and every other one.
         """
         valid = validate(cls, tables, {} if before is None else before._unchanged(tables))
-        same_gears = (
-            before is not None
-            and before._gearings
-            and all(
-                key in _BESIDE_GEARS or tables.get(key) is before._tables.get(key)
+        kept = None  # gears that were found and checked before
+        if before is not None and before._gearings:
+            changed = {
+                key
                 for key in tables.keys() | before._tables.keys()
-            )
-        )
-        known = (before._gearings[""], before._found) if before is not None and same_gears else None
-        validation, told, gearing = with_sizes(valid, tables, known)
+                if tables.get(key) is not before._tables.get(key)
+            }
+            if changed <= _BESIDE_GEARS:
+                kept = before._gearings[""], before._found
+        validation, told, gearing = with_sizes(valid, tables, kept)
         folder = Path(source).parent
         known = {problem.key for problem in problems}
         found = [
@@ -213,7 +213,7 @@ class CaseTable(Table):
             *(
                 as_given(problem, tables)
                 for problem in cross_check(
-                    validation.sections, tables, folder, gearing, checked=known is not None
+                    validation.sections, tables, folder, gearing, checked=kept is not None
                 )
             ),
         ]

@@ -233,7 +233,7 @@ def _solve(request: FlowRequest) -> MeshFlow:
         return MeshFlow(left_out=f"no tooth outline: {error}")
 
 
-def pocketing_method(model: PocketModel, figures: FlowFigures | None) -> str:
+def pocketing_method(model: str, figures: FlowFigures | None) -> str:
     """How the loss was found, in words."""
     method = POCKETING_MODELS[model]
     if figures is None or not figures.nodes:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.build.models import set_cases
 from epicyclic.build.result import load_notes
 from epicyclic.case.case import Case
 from epicyclic.errors import one_problem
@@ -103,7 +102,7 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
             case.source,
         )
     built = build_computed(case)
-    notes = {name: load_notes(own) for name, own in set_cases(case, built.sets)}
+    notes = {name: tuple(load_notes(own)) for name, own in built.set_cases.items()}
     state = built.loaded_state()
     return {
         key: _details(case.title, key, duty, state.fluids, notes[name])
