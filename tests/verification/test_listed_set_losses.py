@@ -365,7 +365,7 @@ def test_steps_of_opposite_sense_and_one_hand_push_the_planet_less_along_its_axi
         tables["sets"]["S"]["gears"]["sun"]["hand"] = "right"
         built = build(ep.load_case(tables))
         (planet,) = built.sets["S"].planets
-        duties = {duty.key: duty for duty in built.sets["S"].mean_duties(built.state())}
+        duties = {duty.gears.key: duty for duty in built.sets["S"].mean_duties(built.state())}
         sums.append(
             abs(
                 sum(

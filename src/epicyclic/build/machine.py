@@ -329,7 +329,7 @@ class Built:
     def loaded_duties(self, state: State) -> dict[str, MeshDuty]:
         """The meshes of the planet that carries most, of every set, by their keys."""
         return {
-            joined_key(name, duty.key): duty
+            joined_key(name, duty.gears.key): duty
             for name, own in self.sets.items()
             for duty in own.loaded_duties(state)
         }
@@ -338,7 +338,7 @@ class Built:
         """The meshes of a planet that carries its mean share, of every set, by their keys."""
         state = self.state()
         return {
-            joined_key(name, duty.key): duty
+            joined_key(name, duty.gears.key): duty
             for name, own in self.sets.items()
             for duty in own.mean_duties(state)
         }

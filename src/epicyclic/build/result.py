@@ -63,7 +63,7 @@ def oil_supplies(
         supply = OilSupply(method, share.share, *share.band, share.grade, share.source)
         if sets is not None and state is not None:
             discs = [disc for discs in sets[key].discs.values() for disc in discs]
-            meshes = {duty.key: oil_in_mesh(duty) for duty in sets[key].mean_duties(state)}
+            meshes = {duty.gears.key: oil_in_mesh(duty) for duty in sets[key].mean_duties(state)}
             supply = replace(supply, churning=churned(discs, state), meshes=meshes)
         yield key, supply
 

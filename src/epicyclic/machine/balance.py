@@ -126,7 +126,9 @@ def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
                 row[place[body]] += coefficient
         length = math.hypot(*row)
         rows.append(row / length if length else row)
-    rows += [_unit(machine.bodies, body) for body in given]
+    for body in given:
+        rows.append(np.zeros(len(place)))
+        rows[-1][place[body]] = 1.0
     return np.array(rows).reshape(len(rows), len(place))
 
 

@@ -125,8 +125,8 @@ def planet_shares(
         sun_mesh, ring_mesh = duties
         directions = branch_directions(
             branches.angles,
-            sun_mesh.mesh.operating_pressure_angle,
-            ring_mesh.mesh.operating_pressure_angle,
+            sun_mesh.gears.mesh.operating_pressure_angle,
+            ring_mesh.gears.mesh.operating_pressure_angle,
         )
         supports: dict[str, float] = (
             {sharing.floating_member: sharing.support_stiffness} if floats else {}
@@ -141,7 +141,7 @@ def _branches(
     """The branches of all planets. Theory (S6)."""
     sun_mesh = duties[0]
     # the branch force reaches the pin through both meshes
-    through_pin = sum(math.cos(duty.mesh.operating_pressure_angle) for duty in duties)
+    through_pin = sum(math.cos(duty.gears.mesh.operating_pressure_angle) for duty in duties)
     pin_force = through_pin * sun_mesh.force
     pin_compliance = 0.0 if bearing is None else 1 / radial_stiffness(bearing, pin_force)
     if sharing.pin_stiffness is not None:
@@ -215,20 +215,20 @@ class PlanetContact:
     @property
     def planet_radius(self) -> float:
         """Operating radius of the planet in this mesh. [m]"""
-        mesh = self.duty.mesh
+        mesh = self.duty.gears.mesh
         return mesh.operating_radius1 if self.member == 1 else mesh.operating_radius2
 
     @property
     def direction(self) -> complex:
         """Unit vector of the transverse force on the planet, t + i r."""
-        angle = self.duty.mesh.operating_pressure_angle
+        angle = self.duty.gears.mesh.operating_pressure_angle
         # its arm is -outward, and z x is i times
         return complex(*self.outward) * complex(math.sin(angle), -self.sense * math.cos(angle))
 
     @property
     def axial_force(self) -> float:
         """Axial force of the mesh on the planet, along y. [N]"""
-        mesh = self.duty.mesh
+        mesh = self.duty.gears.mesh
         tangential = abs(self.duty.torque1) / mesh.operating_radius1
         return self.hand * self.sense * tangential * mesh.operating_helix_tangent
 
@@ -417,7 +417,7 @@ def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
             contact,
             duty=contact.duty.misaligned(
                 contact.face_sense
-                * contact.duty.mesh.face_width
+                * contact.duty.gears.mesh.face_width
                 * float(tilt @ (contact.direction.real, contact.direction.imag))
             ),
         )
@@ -438,9 +438,9 @@ def _mesh_moment(duty: MeshDuty) -> float:
     if duty.torque1 == 0:
         return 0.0
     loaded = elastic_loads(duty)
-    height = loaded.lines.face_position - duty.mesh.face_width / 2
+    height = loaded.lines.face_position - duty.gears.mesh.face_width / 2
     moments = (loaded.line_load * loaded.lines.length * height).sum(axis=(1, 2))
-    return loaded.mean(moments) * math.cos(duty.mesh.gear1.rack.base_helix_angle)
+    return loaded.mean(moments) * math.cos(duty.gears.mesh.gear1.rack.base_helix_angle)
 
 
 def _tilt_under(
@@ -591,6 +591,21 @@ def _bearing_figures(
     row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
     hardest = float(loads.intensity.max()), bearing.inner_radius, bearing.equivalent_modulus
     resisted = float(rollers.sum()) * bearing.pitch_diameter / 2 * abs(speed)
+    inner, outer = (
+        hertz_half_width(
+            loads.intensity, np.full_like(loads.intensity, radius), bearing.equivalent_modulus
+        )
+        for radius in (bearing.inner_radius, bearing.outer_radius)
+    )
+    conductance = roller_conductance(  # through the loaded rollers
+        inner,
+        outer,
+        bearing.slice_width,
+        bearing.roller_diameter,
+        math.pi * bearing.inner_diameter / bearing.rollers_per_row,
+        math.pi * bearing.outer_diameter / bearing.rollers_per_row,
+        own.conductivity,
+    )
     return BearingFigures(
         radial_force=load.force,
         moment=math.hypot(load.moment_x, load.moment_y),
@@ -602,26 +617,6 @@ def _bearing_figures(
         flattening=hertz_half_width(*hardest) / bearing.inner_radius,
         resistance=loss / resisted if resisted else 0.0,
         contact_temperature=oil.temperature,
-        heat_conductance=_heat_conductance(own, loads),
+        heat_conductance=conductance,
         loads=loads,
-    )
-
-
-def _heat_conductance(own: PlanetBearing, loads: RollerLoads) -> float:
-    """Heat from race to race through the loaded rollers. [W/K]"""
-    bearing = own.bearing
-    inner, outer = (
-        hertz_half_width(
-            loads.intensity, np.full_like(loads.intensity, radius), bearing.equivalent_modulus
-        )
-        for radius in (bearing.inner_radius, bearing.outer_radius)
-    )
-    return roller_conductance(
-        inner,
-        outer,
-        bearing.slice_width,
-        bearing.roller_diameter,
-        math.pi * bearing.inner_diameter / bearing.rollers_per_row,
-        math.pi * bearing.outer_diameter / bearing.rollers_per_row,
-        own.conductivity,
     )
