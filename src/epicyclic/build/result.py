@@ -14,7 +14,7 @@ from epicyclic.build.models import SetCase, oil_share, standing_of
 from epicyclic.case import gear_tables as flanks
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.gear_rules import backlash_notes
-from epicyclic.case.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
+from epicyclic.case.gearing import DEFAULT_RIM_THICKNESS, rim_thickness
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
 from epicyclic.contact.fitted_models import changed_properties
@@ -103,7 +103,12 @@ def case_notes(
         *case.found,
         *_arrangement_notes(case),
         *(() if sharing is None else _share_notes(sharing, found.shares)),
-        *_ring_notes(case.gearing, turning),
+        *(
+            f"{case.gearing.key(name)}.rim_thickness is not given: the drag of the turning ring is "
+            f"that of a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
+            for name, table, _ in case.gearing.rings()
+            if name in turning and rim_thickness(table) is None
+        ),
     )
 
 
@@ -309,15 +314,6 @@ def _arrangement_notes(case: SetCase) -> Iterator[str]:
         )
 
 
-def _ring_notes(gearing: Gearing, turning: Collection[str]) -> Iterator[str]:
-    for name, table, _ in gearing.rings():
-        if name in turning and rim_thickness(table) is None:
-            yield (
-                f"{gearing.key(name)}.rim_thickness is not given: the drag of the turning ring is "
-                f"that of a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
-            )
-
-
 # From the solution of a machine to the result that the user sees.
 
 
@@ -373,9 +369,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         flags=(*flags, *_flags(solution)),
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
-            *_train_notes(case, solution),
-            *_floating_notes(solution),
-            *_heat_notes(settled),
+            *_solution_notes(case, settled),
             *_set_notes(built, solution),
         ),
         load_methods={key: title for key, (title, _) in methods.items()},
@@ -481,43 +475,37 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
             yield from result.notes
 
 
-def _train_notes(case: Case, solution: Solution) -> Iterator[str]:
-    if not isinstance(case, TrainCase):
-        return
-    if solution.jammed:
+def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
+    """Trains that lock themselves, parallel ways, teeth that float, and heat that scatters."""
+    solution = settled.solution
+    if solution.jammed and isinstance(case, TrainCase):
         yield (
             "Self-locking: whatever the torque on the output, friction in the meshes does not let "
             "the train turn under this torque on the input; it stands still, and nothing is lost."
         )
-    elif solution.self_locking:
+    elif solution.self_locking and isinstance(case, TrainCase):
         output = case.shape.shaft_of(case.operation.output) or ""
         yield (
             "Self-locking: no power passes from the input to the output; the output "
             f"{case.operation.output} must be driven too, with "
             f"{solution.torques[output]:.6g} N*m."
         )
-    if not solution.unique:
+    if not solution.unique and isinstance(case, TrainCase):
         yield (
             "Some members share their load in more than one possible way (brakes, clutches or "
             "meshes in parallel): of all torques in balance, the smallest are shown."
         )
-
-
-def _heat_notes(settled: Settled) -> Iterator[str]:
-    if settled.change > AGREEMENT:
-        yield (
-            f"Temperatures and losses agree to {settled.change:.1g} K only: a loss scatters from "
-            "one evaluation to the next, as that of a flow through pockets that does not repeat."
-        )
-
-
-def _floating_notes(solution: Solution) -> Iterator[str]:
     for key in sorted(solution.floating):
         yield (
             f"{in_words(key.removeprefix('.'))}: next to no torque passes, and the teeth float in "
             "their backlash: with the losses on either flank they would be pressed to the other "
             "one. The losses are those on one flank; on the other the flow through the pockets "
             "loses another amount, so that the loss jumps over a small range of torque."
+        )
+    if settled.change > AGREEMENT:
+        yield (
+            f"Temperatures and losses agree to {settled.change:.1g} K only: a loss scatters from "
+            "one evaluation to the next, as that of a flow through pockets that does not repeat."
         )
 
 

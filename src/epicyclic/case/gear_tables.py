@@ -333,31 +333,27 @@ def half_angle(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
     Raises `ValueError` if the thickness is stated inside the base circle.
     """
     teeth = table.teeth
-    half = _stated(table, rack, internal=internal)
+    if table.profile_shift_coefficient is not None:
+        half = half_angle_from_profile_shift(rack, teeth, table.profile_shift_coefficient)
+    elif table.span_measurement is not None:
+        assert table.teeth_in_span is not None
+        half = measures.half_angle_from_span(
+            rack, teeth, internal, table.span_measurement, table.teeth_in_span
+        )
+    elif table.dimension_over_pins is not None:
+        assert table.measuring_pin_diameter is not None
+        half = measures.half_angle_from_pins(
+            rack, teeth, internal, table.dimension_over_pins, table.measuring_pin_diameter
+        )
+    else:
+        assert table.tooth_thickness is not None
+        assert table.thickness_diameter is not None
+        half = half_angle_from_thickness(
+            rack, teeth, internal, table.tooth_thickness, table.thickness_diameter / 2
+        )
     excess = 2 * allowance_shift(table, rack) * rack.normal_module
     return half + excess * math.tan(rack.transverse_pressure_angle) / (
         teeth * rack.transverse_module
-    )
-
-
-def _stated(table: GearTable, rack: BasicRack, *, internal: bool) -> float:
-    teeth = table.teeth
-    if table.profile_shift_coefficient is not None:
-        return half_angle_from_profile_shift(rack, teeth, table.profile_shift_coefficient)
-    if table.span_measurement is not None:
-        assert table.teeth_in_span is not None
-        return measures.half_angle_from_span(
-            rack, teeth, internal, table.span_measurement, table.teeth_in_span
-        )
-    if table.dimension_over_pins is not None:
-        assert table.measuring_pin_diameter is not None
-        return measures.half_angle_from_pins(
-            rack, teeth, internal, table.dimension_over_pins, table.measuring_pin_diameter
-        )
-    assert table.tooth_thickness is not None
-    assert table.thickness_diameter is not None
-    return half_angle_from_thickness(
-        rack, teeth, internal, table.tooth_thickness, table.thickness_diameter / 2
     )
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from epicyclic.case.fields import micrometres, millimetres
@@ -74,6 +74,8 @@ class _Sized:
     """A mesh whose centre distance or profile shifts may have to be found."""
 
     drawn: GearPairing
+    gears: tuple[str, str]  # A ring is the second.
+    backlash: float | None  # j_bn, as stated. [m]
     teeth: int  # z1 + z2, those of a ring negative.
     rack: BasicRack  # Rack of both gears.
     place: tuple[str, ...]  # Path of its centre distance.
@@ -82,19 +84,9 @@ class _Sized:
     group: str  # Meshes of one group have one centre distance.
 
     @property
-    def gears(self) -> tuple[str, str]:
-        """Names of its gears; a ring is the second."""
-        return self.drawn.first, self.drawn.second
-
-    @property
     def backlash_key(self) -> str:
         """Where its backlash is stated."""
         return f"{self.drawn.table_key}.normal_backlash"
-
-    @property
-    def backlash(self) -> float | None:
-        """j_bn. [m]"""
-        return self.drawn.table.normal_backlash
 
 
 def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
@@ -188,13 +180,19 @@ def _sized(gearing: Gearing) -> Iterator[_Sized]:
     for mesh in gearing.meshes:
         one, two = (gearing.racks[gear] for gear in (mesh.first, mesh.second))
         least = _ALIKE * one.normal_module
-        pairs = zip(astuple(one), astuple(two), strict=True)
+        pairs = (
+            (one.transverse_module, two.transverse_module),
+            (one.transverse_pressure_angle, two.transverse_pressure_angle),
+            (one.helix_angle, two.helix_angle),
+        )
         if not all(math.isclose(a, b, rel_tol=_ALIKE, abs_tol=least) for a, b in pairs):
             continue
         teeth = [gearing.tables[gear].teeth for gear in (mesh.first, mesh.second)]
         central = gearing.central_gear(mesh)
         yield _Sized(
             mesh,
+            (mesh.first, mesh.second),
+            mesh.table.normal_backlash,
             teeth[0] + (-1 if mesh.internal else 1) * teeth[1],
             one,
             tuple(gearing.distance_key(mesh).split(".")),

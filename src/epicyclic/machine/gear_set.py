@@ -426,7 +426,7 @@ class GearSet:
         notes += tuple(note for mesh in meshes for note in mesh.notes)
         losses: dict[str, Loss] = {}
         figures: dict[str, Callable[[], Any]] = {}
-        flags: SomeFlags = ()
+        flags = Flags()
         for planet, bearing in zip(self.planets, bearings, strict=True):
             losses |= {
                 name: self._in_bearing(loss, planet) for name, loss in bearing.losses.items()
