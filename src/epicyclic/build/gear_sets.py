@@ -15,7 +15,7 @@ from epicyclic.case.tables.elements import PlanetBearing as BearingTable
 from epicyclic.case.tables.models import Numerics
 from epicyclic.contact.elastic_teeth import GearBody, Rim
 from epicyclic.contact.line_contact import Flanks
-from epicyclic.gears.cutting import Tool, cutting_tool, fitted_tool
+from epicyclic.gears.cutting import cutting_tool, fitted_tool
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.drag import Dipped
@@ -152,7 +152,17 @@ def _meshes(
     key: str, case: SetCase, bodies: Mapping[str, str], models: Mapping[str, MeshModels]
 ) -> Iterator[GearMesh]:
     gearing = case.gearing
-    tools = _tools(gearing)
+    # the tool of each gear serves the mate that reaches deepest
+    needed: dict[str, float] = {}
+    for mesh in gearing.geometries:
+        ends = ((mesh.gear1, mesh.radius1_at_start), (mesh.gear2, mesh.radius2_at_end))
+        for gear, radius in ends:
+            deeper = max if gear.internal else min
+            needed[gear.name] = deeper(radius, needed.get(gear.name, radius))
+    tools = {
+        name: fitted_tool(gearing.gear(name), table.tool_tip_radius, needed[name])
+        for name, table in gearing.tables.items()
+    }
     for drawn, mesh in zip(gearing.meshes, gearing.geometries, strict=True):
         gears = drawn.first, drawn.second
         one, two = tables = gearing.tables[drawn.first], gearing.tables[drawn.second]
@@ -187,20 +197,6 @@ def gear_bodies(
         rim = None if thickness is None else Rim(thickness, loads)
         made.append(GearBody(material.elastic_modulus, material.poisson_ratio, tool, rim))
     return made[0], made[1]
-
-
-def _tools(gearing: Gearing) -> dict[str, Tool]:
-    """The tool of each gear, which serves the mate that reaches deepest."""
-    needed: dict[str, float] = {}
-    for mesh in gearing.geometries:
-        ends = ((mesh.gear1, mesh.radius1_at_start), (mesh.gear2, mesh.radius2_at_end))
-        for gear, radius in ends:
-            deeper = max if gear.internal else min
-            needed[gear.name] = deeper(radius, needed.get(gear.name, radius))
-    return {
-        name: fitted_tool(gearing.gear(name), table.tool_tip_radius, needed[name])
-        for name, table in gearing.tables.items()
-    }
 
 
 def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:

@@ -536,7 +536,15 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
     cases = set_cases(case)
     own = cases[""]
     gearing = own.gearing
-    operation = _set_operation(case)
+    table = case.operation
+    if isinstance(table, PlanetaryOperation):
+        held = table.fixed or table.second_input
+        assert held is not None
+        (output,) = {"sun", "ring", CARRIER} - {table.input, held}
+        speeds: dict[str, float] = {table.input: table.speed, held: table.second_speed or 0.0}
+        operation = Operation(table.input, output, table.torque, speeds)
+    else:
+        operation = Operation("pinion", "gear", table.torque, {"pinion": table.speed})
     members = gearing.members
     others = [member for member in members if member not in (operation.input, operation.output)]
     bodies = {body: body for body in (*members, *gearing.planets)}
@@ -555,19 +563,6 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
             tuple(f"{planet}_bearing" for planet in gearing.planets),
             shares=bool(gearing.planets),
         ),
-    )
-
-
-def _set_operation(case: PlanetaryCase | GearPairCase) -> Operation:
-    table = case.operation
-    if not isinstance(table, PlanetaryOperation):
-        return Operation("pinion", "gear", table.torque, {"pinion": table.speed})
-    held = table.fixed or table.second_input
-    assert held is not None
-    (output,) = {"sun", "ring", CARRIER} - {table.input, held}
-    held_speed = 0.0 if table.second_speed is None else table.second_speed
-    return Operation(
-        table.input, output, table.torque, {table.input: table.speed, held: held_speed}
     )
 
 

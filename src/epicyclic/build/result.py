@@ -87,13 +87,18 @@ def case_notes(
     turning: Collection[str],  # Central gears that turn.
 ) -> tuple[str, ...]:
     """What a user must know about a set: its oil, its load, its flows, its planets."""
-    meshes = {key: item for key, item in found.figures.items() if isinstance(item, MeshFigures)}
     notes = (
         *fluid_notes(case),
         *lubrication_notes(case),
         *load_notes(case),
         *backlash_notes(case.gearing),
-        *contact_notes(meshes),
+        *(
+            f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
+            f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed what the "
+            "teeth bend. Contact that begins or ends beyond the path of contact is not modelled."
+            for name, mesh in found.figures.items()
+            if isinstance(mesh, MeshFigures) and mesh.contact_share < LEAST_CONTACT
+        ),
         *pressure_notes(found.figures),
         *found.notes,
     )
@@ -168,17 +173,6 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
         left_out += ["inside rings"] if list(case.gearing.rings()) else []
         if left_out:
             yield f"Churning {' and '.join(left_out)} is not modelled."
-
-
-def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
-    """A note on every mesh of which much does not carry."""
-    return tuple(
-        f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
-        f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed what the teeth "
-        "bend. Contact that begins or ends beyond the path of contact is not modelled."
-        for name, mesh in meshes.items()
-        if mesh.contact_share < LEAST_CONTACT
-    )
 
 
 def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
@@ -293,7 +287,7 @@ def _arrangement_notes(case: SetCase) -> Iterator[str]:
     planets = gearing.count
     if planets is None or gearing.stated_angles is not None:
         return
-    found = gearing.arrangement()
+    found = gearing.arrangement
     if found.individual:
         bodies = list(gearing.bodies.values())
         stepped = ", ".join(body for body in gearing.planets if bodies.count(body) > 1)

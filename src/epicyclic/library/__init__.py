@@ -83,6 +83,7 @@ def case_files() -> tuple[str, ...]:
     return _stems("cases")
 
 
+@cache
 def case_variants() -> dict[str, list[dict[str, Any]]]:
     """For each built-in case, its groups of variants: word in the name -> keys it sets."""
     return _read(_ROOT.joinpath("variants.toml"))

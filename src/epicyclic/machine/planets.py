@@ -213,12 +213,6 @@ class PlanetContact:
         return self.hand * self.sense * (1 if self.member == 2 else -1)
 
     @property
-    def planet_radius(self) -> float:
-        """Operating radius of the planet in this mesh. [m]"""
-        mesh = self.duty.gears.mesh
-        return mesh.operating_radius1 if self.member == 1 else mesh.operating_radius2
-
-    @property
     def direction(self) -> complex:
         """Unit vector of the transverse force on the planet, t + i r."""
         angle = self.duty.gears.mesh.operating_pressure_angle
@@ -252,7 +246,9 @@ def planet_load(
     for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):
         lever = own + contact.position * contact.duty.force
         moment += lever * contact.direction
-        couple = contact.axial_force * contact.planet_radius
+        mesh = contact.duty.gears.mesh
+        radius = mesh.operating_radius1 if contact.member == 1 else mesh.operating_radius2
+        couple = contact.axial_force * radius  # operating radius of the planet in this mesh
         moment += couple * complex(*contact.outward)
     force = _radial_force(contacts, centrifugal)
     turned = moment * cmath.rect(1.0, -cmath.phase(force))

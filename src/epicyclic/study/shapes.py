@@ -77,7 +77,7 @@ def places_of(gearing: Gearing) -> SetPlaces | None:
 
 
 def _on_carrier(gearing: Gearing) -> dict[str, tuple[Point, ...]]:
-    arms = gearing.arrangement().angles
+    arms = gearing.arrangement.angles
     found: dict[str, tuple[Point, ...]] = {
         body: ((0.0, 0.0),) for body in gearing.bodies.values() if body not in gearing.planets
     }
