@@ -26,7 +26,7 @@ CEILINGS = {
     "longest chain of imports": 25,
     "modules loaded by epicyclic.case.case": 45,
     "kernels loaded by epicyclic.case.case": 0,
-    "functions of one solution": 690,  # aim: 500
+    "functions of one solution": 605,  # aim: 500
     "pairs of classes with the same fields": 10,  # aim: 5
     "tests of the kind of a set": 19,  # aim: 0; in plug-ins, validation and maps
 }

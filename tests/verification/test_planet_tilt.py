@@ -184,7 +184,7 @@ def test_tilt_is_found_in_drawn_sets_down_to_light_loads(number, share):
     signed = [contact.face_sense * m for contact, m in zip(contacts, moments, strict=True)]
     outward = planet.centrifugal(state.speeds["carrier"])
     balanced = planet_load(contacts, outward, signed)
-    scale = load.force * tilted[0].mesh.face_width
+    scale = load.force * tilted[0].gears.mesh.face_width
     assert load.moment_x == pytest.approx(balanced.moment_x, abs=1e-4 * scale)
     assert load.moment_y == pytest.approx(balanced.moment_y, abs=1e-4 * scale)
 

@@ -115,7 +115,7 @@ _DECIDED = (
 )
 """Keys in place of whose defaults a value follows from [lubrication]."""
 _BESIDE_GEARS = {
-    *("title", "operation", "lubrication", "surroundings", "thermal", "models", "numerics"),
+    *("kind", "title", "operation", "lubrication", "surroundings", "thermal", "models", "numerics"),
     *("losses", "friction_table", "contact_solver", "uncertainty"),
 }
 """Tables on which gears, their bearings and how they share the load do not depend."""
@@ -194,16 +194,15 @@ class CaseTable(Table):
 
         Raises `InputError` with `problems` and every other one.
         """
-        valid = validate(cls, tables, {} if before is None else before._unchanged(tables))
+        same = {} if before is None else before._unchanged(tables)
+        valid = validate(cls, tables, same)
         kept = None  # gears that were found and checked before
-        if before is not None and before._gearings:
-            changed = {
-                key
-                for key in tables.keys() | before._tables.keys()
-                if tables.get(key) is not before._tables.get(key)
-            }
-            if changed <= _BESIDE_GEARS:
-                kept = before._gearings[""], before._found
+        if (
+            before is not None
+            and before._gearings
+            and (tables.keys() | before._tables.keys() <= same.keys() | _BESIDE_GEARS)
+        ):
+            kept = before._gearings[""], before._found
         validation, told, gearing = with_sizes(valid, tables, kept)
         folder = Path(source).parent
         known = {problem.key for problem in problems}

@@ -83,11 +83,6 @@ class _Sized:
     gives_way: str  # The gear that is thinned where digits contradict each other.
     group: str  # Meshes of one group have one centre distance.
 
-    @property
-    def backlash_key(self) -> str:
-        """Where its backlash is stated."""
-        return f"{self.drawn.table_key}.normal_backlash"
-
 
 def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
     """How negative numbers of teeth are understood."""
@@ -180,11 +175,8 @@ def _sized(gearing: Gearing) -> Iterator[_Sized]:
     for mesh in gearing.meshes:
         one, two = (gearing.racks[gear] for gear in (mesh.first, mesh.second))
         least = _ALIKE * one.normal_module
-        pairs = (
-            (one.transverse_module, two.transverse_module),
-            (one.transverse_pressure_angle, two.transverse_pressure_angle),
-            (one.helix_angle, two.helix_angle),
-        )
+        keys = ("transverse_module", "transverse_pressure_angle", "helix_angle")
+        pairs = ((getattr(one, key), getattr(two, key)) for key in keys)
         if not all(math.isclose(a, b, rel_tol=_ALIKE, abs_tol=least) for a, b in pairs):
             continue
         teeth = [gearing.tables[gear].teeth for gear in (mesh.first, mesh.second)]
@@ -367,7 +359,12 @@ class _Solver:
             allowed = "contradicts the teeth and the centre distance, which leave "
             allowed += f"{micrometres(backlash + mesh.backlash)}."
             remedy = "Leave out normal_backlash, a profile shift or the centre distance."
-            raise one_problem(mesh.backlash_key, millimetres(mesh.backlash), allowed, remedy)
+            raise one_problem(
+                f"{mesh.drawn.table_key}.normal_backlash",
+                millimetres(mesh.backlash),
+                allowed,
+                remedy,
+            )
         if mesh.backlash is not None or backlash > -ROUNDING or over > self._printed(mesh):
             return
         name = mesh.gives_way
