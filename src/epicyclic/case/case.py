@@ -197,11 +197,8 @@ class CaseTable(Table):
         same = {} if before is None else before._unchanged(tables)
         valid = validate(cls, tables, same)
         kept = None  # gears that were found and checked before
-        if (
-            before is not None
-            and before._gearings
-            and (tables.keys() | before._tables.keys() <= same.keys() | _BESIDE_GEARS)
-        ):
+        keys = tables.keys() | (set() if before is None else before._tables.keys())
+        if before is not None and before._gearings and keys <= same.keys() | _BESIDE_GEARS:
             kept = before._gearings[""], before._found
         validation, told, gearing = with_sizes(valid, tables, kept)
         folder = Path(source).parent

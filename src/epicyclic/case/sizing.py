@@ -359,12 +359,8 @@ class _Solver:
             allowed = "contradicts the teeth and the centre distance, which leave "
             allowed += f"{micrometres(backlash + mesh.backlash)}."
             remedy = "Leave out normal_backlash, a profile shift or the centre distance."
-            raise one_problem(
-                f"{mesh.drawn.table_key}.normal_backlash",
-                millimetres(mesh.backlash),
-                allowed,
-                remedy,
-            )
+            key = f"{mesh.drawn.table_key}.normal_backlash"
+            raise one_problem(key, millimetres(mesh.backlash), allowed, remedy)
         if mesh.backlash is not None or backlash > -ROUNDING or over > self._printed(mesh):
             return
         name = mesh.gives_way
