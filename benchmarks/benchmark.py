@@ -339,13 +339,13 @@ def pocket_seconds() -> tuple[float, float, float, float]:
         for function in (geometry.pocket_geometry, cells.pocket_cells, network._free_flow):
             function.cache_clear()
         for duty in duties:
-            pocket_geometry(duty.mesh, duty.gears.tools, True)
+            pocket_geometry(duty.gears.mesh, duty.gears.tools, True)
 
     def flows(model: PocketModel) -> None:
         shapes()
         for duty in duties:
             pocket_flow.__wrapped__(
-                pocket_geometry(duty.mesh, duty.gears.tools, True),
+                pocket_geometry(duty.gears.mesh, duty.gears.tools, True),
                 abs(duty.speed1),
                 built.fluids.mixture,
                 built.fluids.pressure,

@@ -21,12 +21,12 @@ SOURCE = Path(__file__).parents[1] / "src" / "epicyclic"
 CEILINGS = {
     "lines": 72_000,
     "lines of the core": 56_000,
-    "lines of case": 4_301,
+    "lines of case": 4_500,
     "files": 280,
     "longest chain of imports": 25,
     "modules loaded by epicyclic.case.case": 45,
     "kernels loaded by epicyclic.case.case": 0,
-    "functions of one solution": 685,  # aim: 500
+    "functions of one solution": 630,  # aim: 500
     "pairs of classes with the same fields": 5,
     "tests of the kind of a set": 0,
 }

@@ -198,11 +198,6 @@ def _parse_unit(text: str) -> Unit:
     return registry().parse_units(_MISSING_CARET.sub("^", f"{start}{text}"))
 
 
-def _turns(unit: Unit) -> object:
-    """The power of the angle in `unit`; pint itself takes angles as pure numbers."""
-    return dict(registry().Quantity(1, unit).to_base_units().unit_items()).get("radian", 0)
-
-
 @lru_cache(maxsize=4096)
 def _convert(number: float, unit: str, si: str) -> float:
     """`number` in `unit` as SI; raises what pint raises, or `_UnitError`."""
@@ -212,7 +207,12 @@ def _convert(number: float, unit: str, si: str) -> float:
         raise _UnitError("has a unit that measures something else")
     if "delta_" in str(parsed):
         raise _UnitError("is a temperature difference", "give the temperature itself")
-    if _turns(parsed) != _turns(wanted):
+    # powers of the angle; pint itself takes angles as pure numbers
+    turns = [
+        dict(ureg.Quantity(1, each).to_base_units().unit_items()).get("radian", 0)
+        for each in (parsed, wanted)
+    ]
+    if turns[0] != turns[1]:
         if si != "rad/s":
             raise _UnitError("has a unit that measures something else")
         rate = format_number(ureg.Quantity(number, parsed).to("1/min").magnitude)
@@ -224,7 +224,7 @@ def _convert(number: float, unit: str, si: str) -> float:
 @lru_cache(maxsize=4096)
 def _parsed_text(quantity: Quantity, text: str) -> float:
     """A text that `quantity` reads: the cases of a sweep have most of theirs in common."""
-    return quantity._parsed(text)
+    return quantity._checked(quantity._converted(*quantity._split_text(text)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,13 +244,25 @@ class Quantity:
         Raises `PydanticCustomError` with the allowed form and range, when `value` is not such a
         quantity.
         """
-        return _parsed_text(self, value) if isinstance(value, str) else self._parsed(value)
+        if isinstance(value, str):
+            return _parsed_text(self, value)
+        quantity = from_pint(value)
+        if quantity is not None:
+            return self._checked(self._converted(*quantity))
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            raise self._error("has no unit", self._form(value))
+        raise self._error("is not a number with a unit", self._form())
 
-    def _parsed(self, value: object) -> float:
-        number, unit = self._split(value)
-        result = self._converted(number, unit)
-        self._check_range(self.to_display(result))
-        return result
+    def _checked(self, value: float) -> float:
+        """`value`, in SI, if it is within the bounds."""
+        shown = self.to_display(value)
+        # comparisons written so that NaN fails them
+        low_ok = self.low is None or (shown > self.low if self.open_low else shown >= self.low)
+        high_ok = self.high is None or shown <= self.high
+        if not (low_ok and high_ok and math.isfinite(shown)):
+            remedy = range_remedy(shown, self.low, self.high, self.display, open_low=self.open_low)
+            raise self._error("is out of range", remedy)
+        return value
 
     def scale_from(self, unit: str) -> tuple[float, float]:
         """What arrays of numbers in `unit` are multiplied by, and what is added, for display.
@@ -303,17 +315,6 @@ class Quantity:
         """What is allowed, in words: ``"a length > 0 mm"``."""
         return describe_range(self.noun, self.low, self.high, self.display, open_low=self.open_low)
 
-    def _split(self, value: object) -> tuple[float, str]:
-        """Number and unit of `value`."""
-        if isinstance(value, str):
-            return self._split_text(value)
-        quantity = from_pint(value)
-        if quantity is not None:
-            return quantity
-        if isinstance(value, int | float) and not isinstance(value, bool):
-            raise self._error("has no unit", self._form(value))
-        raise self._error("is not a number with a unit", self._form())
-
     def _split_text(self, text: str) -> tuple[float, str]:
         if len(text) > _LONGEST_TEXT:
             raise self._error("is not a number with a unit", self._form())
@@ -328,14 +329,6 @@ class Quantity:
         if not match["unit"]:
             raise self._error("has no unit", f'write "{text} {self.display}"')
         return float(match["number"]), match["unit"]
-
-    def _check_range(self, shown: float) -> None:
-        # comparisons written so that NaN fails them
-        low_ok = self.low is None or (shown > self.low if self.open_low else shown >= self.low)
-        high_ok = self.high is None or shown <= self.high
-        if not (low_ok and high_ok and math.isfinite(shown)):
-            remedy = range_remedy(shown, self.low, self.high, self.display, open_low=self.open_low)
-            raise self._error("is out of range", remedy)
 
     def _form(self, number: float | None = None) -> str:
         """How to write it; with the user's `number` if that is short enough to repeat."""

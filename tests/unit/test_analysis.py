@@ -11,14 +11,14 @@ from rich.console import Console
 
 import epicyclic as ep
 from epicyclic.build.machine import build
-from epicyclic.build.models import resolve_models, set_cases
+from epicyclic.build.models import set_cases
 from epicyclic.show.terminal import result_tables
 from epicyclic.study.friction import compare_friction
 
 
 def set_of(case):
     """The only set of a case."""
-    return dict(set_cases(case, [""]))[""]
+    return set_cases(case)[""]
 
 
 IDENTITY = 1e-12  # rounding only
@@ -95,12 +95,12 @@ def test_estimated_mass_is_told_where_it_matters(case):
 
 
 def test_defaults_of_the_models_follow_the_oil(case):
-    assert resolve_models(set_of(case))["friction"] == "mixed-ehl"
+    assert set_of(case).chosen["friction"] == "mixed-ehl"
     keys = ("friction", "rolling", "bearing")
     formulas = ["schlenk", "goksem-hargreaves", "palmgren"]
-    fitted = resolve_models(set_of(case.updated({"lubricant.oil": "iso-vg-100-mineral"})))
+    fitted = set_of(case.updated({"lubricant.oil": "iso-vg-100-mineral"})).chosen
     assert [fitted[key] for key in keys] == [f"fitted-or-{name}" for name in formulas]
-    chosen = resolve_models(set_of(case.updated({"lubricant.oil": "iso-vg-46-mineral"})))
+    chosen = set_of(case.updated({"lubricant.oil": "iso-vg-46-mineral"})).chosen
     assert [chosen[key] for key in keys] == formulas
 
 

@@ -15,7 +15,7 @@ from rich.console import Console
 
 import epicyclic as ep
 from epicyclic import library
-from epicyclic.build.models import resolve_models, set_cases, standing_of
+from epicyclic.build.models import set_cases, standing_of
 from epicyclic.contact.fitted_models import FORMAT, FORMS, OilModel, read_oil_model
 from epicyclic.contact.line_contact import contacts_at
 from epicyclic.files import sealed, unsealed
@@ -31,7 +31,7 @@ from epicyclic.study.friction import compare_friction, recommended
 
 def set_of(case):
     """The only set of a case."""
-    return dict(set_cases(case, [""]))[""]
+    return set_cases(case)[""]
 
 
 OIL = "iso-vg-220-mineral"
@@ -103,7 +103,7 @@ def case(model, tmp_path, monkeypatch):
 
 
 def test_auto_takes_the_built_in_models(case):
-    models = resolve_models(set_of(case))
+    models = set_of(case).chosen
     assert models["friction"] == "fitted-or-schlenk"
     assert models["rolling"] == "fitted-or-goksem-hargreaves"
     assert models["bearing"] == "fitted-or-palmgren"
@@ -120,12 +120,12 @@ def test_auto_takes_the_built_in_models(case):
 
 def test_full_complement_bearings_keep_their_own_formula(case):
     changed = case.updated({"planet_bearing.cage": "full-complement"})
-    assert resolve_models(set_of(changed))["bearing"] == "palmgren"
+    assert set_of(changed).chosen["bearing"] == "palmgren"
 
 
 def test_an_oil_without_simulations_has_no_built_in_models(case):
     changed = case.updated({"lubricant.oil": "iso-vg-46-pao"})
-    assert resolve_models(set_of(changed))["friction"] == "schlenk"
+    assert set_of(changed).chosen["friction"] == "schlenk"
     assert not [note for note in ep.solve(changed).warnings if "are not used" in note]
 
 
@@ -144,7 +144,7 @@ def test_an_oil_with_other_properties_has_none(case, name):
     table["name"] = name
     table["kinematic_viscosity"][0]["value"] = "221.5 mm^2/s"
     changed = case.updated({"lubricant.oil": table})
-    assert resolve_models(set_of(changed))["rolling"] == "goksem-hargreaves"
+    assert set_of(changed).chosen["rolling"] == "goksem-hargreaves"
     told = [note for note in ep.solve(changed).warnings if "are not used" in note]
     assert len(told) == (name == OIL)
     assert all("kinematic_viscosity" in note for note in told)
@@ -155,7 +155,7 @@ def test_where_a_value_is_from_does_not_matter(case):
     table["kinematic_viscosity"][0]["source"] = "another certificate"
     table["lubricant_factor"] = {"value": 0.93}
     changed = case.updated({"lubricant.oil": table})
-    assert resolve_models(set_of(changed))["friction"] == "fitted-or-schlenk"
+    assert set_of(changed).chosen["friction"] == "fitted-or-schlenk"
 
 
 def test_a_file_of_the_user_comes_before_that_built_in(case, model, tmp_path):
@@ -163,7 +163,7 @@ def test_a_file_of_the_user_comes_before_that_built_in(case, model, tmp_path):
     file = tmp_path / "own.json"
     file.write_text(only.to_text())
     changed = case.updated({"models.oil_model": str(file)})
-    models = resolve_models(set_of(changed))
+    models = set_of(changed).chosen
     assert models["friction"] == "fitted-or-schlenk"
     assert models["rolling"] == "goksem-hargreaves"
     assert models["bearing"] == "palmgren"
@@ -171,7 +171,7 @@ def test_a_file_of_the_user_comes_before_that_built_in(case, model, tmp_path):
 
 @pytest.mark.parametrize("key", ["friction", "rolling", "bearing"])
 def test_fitted_models_need_a_file_or_one_built_in(case, key):
-    assert resolve_models(set_of(case.updated({f"models.{key}": "fitted"})))[key] == "fitted"
+    assert set_of(case.updated({f"models.{key}": "fitted"})).chosen[key] == "fitted"
     with pytest.raises(ep.InputError) as error:
         case.updated({f"models.{key}": "fitted", "lubricant.oil": "iso-vg-68-pao"})
     assert [problem.key for problem in error.value.problems] == [f"models.{key}"]

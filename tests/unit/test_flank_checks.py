@@ -226,7 +226,7 @@ def test_a_rim_thinner_than_its_teeth_is_reported(talbot):
 def test_a_rim_is_told_where_planets_are_not_even_or_not_equal(talbot):
     def notes(**changes):
         rim = {"ring.rim_thickness": "30 mm", "models.load_distribution": "uniform"}
-        return " ".join(load_notes(dict(set_cases(talbot.updated(rim | changes), [""]))[""]))
+        return " ".join(load_notes(set_cases(talbot.updated(rim | changes))[""]))
 
     assert "planets" not in notes(**{"planet.count": 6})
     assert "not evenly spaced" in notes(**{"planet.count": 5})

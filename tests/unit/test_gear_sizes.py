@@ -5,10 +5,9 @@ import math
 import pytest
 
 from epicyclic import load_case, solve
-from epicyclic.build.models import set_cases
-from epicyclic.build.result import thin_teeth_notes
 from epicyclic.gears.gear import BasicRack
 from epicyclic.gears.mesh import closed_center_distance, profile_shift_sum, recommended_backlash
+from epicyclic.gears.rules import backlash_notes
 from epicyclic.units import MILLIMETRE
 from problems import only, problems_of
 
@@ -33,11 +32,6 @@ SET = {
     "ring": {"teeth": 85, "face_width": "24 mm", X: -0.42, "roughness": "0.8 um"},
     "lubricant": {"oil": "atf-dexron-vi"},
 }
-
-
-def set_of(case):
-    """The only set of a case."""
-    return dict(set_cases(case, [""]))[""]
 
 
 def changed(**tables):
@@ -213,8 +207,8 @@ def test_the_other_sign_of_a_ring_is_proposed_where_it_fits():
 
 
 def test_gross_backlash_is_warned_of_and_usual_backlash_is_not():
-    assert list(thin_teeth_notes(set_of(load_case(changed())))) == []
-    sun_mesh, ring_mesh = thin_teeth_notes(set_of(load_case(changed(planet={"teeth": 26}))))
+    assert list(backlash_notes(load_case(changed()).gearings[""])) == []
+    sun_mesh, ring_mesh = backlash_notes(load_case(changed(planet={"teeth": 26})).gearings[""])
     assert "sun mesh has a normal backlash" in sun_mesh
     proposed = float(ring_mesh.split(f"ring.{X} = ")[1].split(" has")[0].split(" it")[0])
     case = load_case(changed(planet={"teeth": 26}, ring={X: proposed}))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -318,12 +319,12 @@ def test_pins_form_a_triangle():
 
 def test_alike_planets_are_preferred_to_single_ones_and_these_to_unequal_spacing():
     alike = gearing_of("stepped")
-    assert alike.arrangement(3).individual is False
+    assert replace(alike, count=3).arrangement.individual is False
     single = gearing_of("plus")
-    assert single.arrangement(3).individual is True
-    assert single.arrangement(2).individual is False
+    assert replace(single, count=3).arrangement.individual is True
+    assert replace(single, count=2).arrangement.individual is False
     double = gearing_of("double_planet")
-    uneven = double.arrangement(5)
+    uneven = replace(double, count=5).arrangement
     assert uneven.individual is False
     assert [round(math.degrees(angle), 6) for angle in uneven.angles] == [0, 75, 142.5, 217.5, 285]
 

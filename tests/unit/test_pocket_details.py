@@ -74,7 +74,7 @@ def test_gaps_are_at_their_sides(pair, torque):
     mesh = ep.pocket_details(case)["mesh"]
     duty = mesh_duties(case)[0]
     assert mesh.attrs["drives"] == ("pinion" if torque > 0 else "gear")
-    backlash = duty.mesh.backlash * math.cos(duty.mesh.operating_pressure_angle) * 1e6
+    backlash = duty.gears.mesh.backlash * math.cos(duty.gears.mesh.operating_pressure_angle) * 1e6
     middle = abs(mesh["roll_angle"].sel(tooth="pinion")) < 2.0
     tooth = mesh.sel(tooth="pinion")
     assert np.allclose(tooth["contact_gap"].where(middle, 0.0, drop=True), 0.0)

@@ -47,15 +47,15 @@ def test_the_base_variant_is_the_mesh_of_the_case(name):
     for duty in mesh_duties(case):
         flow = solve_variant(case, duty, base_variant(case, duty))
         # the tooth thickness goes to the operating circle and back
-        assert count * flow.power == pytest.approx(losses[f"{duty.key}_pocketing"], rel=1e-6)
+        assert count * flow.power == pytest.approx(losses[f"{duty.gears.key}_pocketing"], rel=1e-6)
 
 
 def test_the_helix_leaves_the_transverse_section(pair):
     (duty,) = mesh_duties(pair)
     base = base_variant(pair, duty)
-    mesh = varied_duty(duty, replace(base, helix_angle=0.0)).mesh
+    mesh = varied_duty(duty, replace(base, helix_angle=0.0)).gears.mesh
     assert mesh.gear1.rack.helix_angle == 0.0
-    for one, other in ((duty.mesh.gear1, mesh.gear1), (duty.mesh.gear2, mesh.gear2)):
+    for one, other in ((duty.gears.mesh.gear1, mesh.gear1), (duty.gears.mesh.gear2, mesh.gear2)):
         assert other.thickness_half_angle == pytest.approx(one.thickness_half_angle, rel=1e-12)
         assert (other.tip_radius, other.root_radius) == (one.tip_radius, one.root_radius)
 
@@ -64,10 +64,10 @@ def test_the_helix_leaves_the_transverse_section(pair):
 def test_backlash_is_taken_from_both_members(talbot, number):
     duty = mesh_duties(talbot)[number]
     base = base_variant(talbot, duty)
-    mesh = varied_duty(duty, replace(base, backlash=150e-6)).mesh
+    mesh = varied_duty(duty, replace(base, backlash=150e-6)).gears.mesh
     assert mesh.backlash == pytest.approx(150e-6, rel=1e-9)
     for which, radius in (("gear1", mesh.operating_radius1), ("gear2", mesh.operating_radius2)):
-        before = getattr(duty.mesh, which).thickness_at(radius)
+        before = getattr(duty.gears.mesh, which).thickness_at(radius)
         after = getattr(mesh, which).thickness_at(radius)
         assert before - after == pytest.approx((150e-6 - base.backlash) / 2, rel=1e-6)
 
@@ -76,14 +76,14 @@ def test_backlash_is_taken_from_both_members(talbot, number):
 def test_modules_keep_centre_distance_pressure_angle_and_backlash(talbot, number):
     duty = mesh_duties(talbot)[number]
     base = base_variant(talbot, duty)
-    module = duty.mesh.gear1.rack.transverse_module
-    for nearest, teeth in teeth_for_module(duty.mesh, [0.9 * module, 1.1 * module]).items():
-        mesh = varied_duty(duty, replace(base, teeth=teeth)).mesh
+    module = duty.gears.mesh.gear1.rack.transverse_module
+    for nearest, teeth in teeth_for_module(duty.gears.mesh, [0.9 * module, 1.1 * module]).items():
+        mesh = varied_duty(duty, replace(base, teeth=teeth)).gears.mesh
         assert mesh.gear1.rack.transverse_module == pytest.approx(nearest, rel=1e-12)
-        assert mesh.center_distance == duty.mesh.center_distance
+        assert mesh.center_distance == duty.gears.mesh.center_distance
         assert mesh.backlash == pytest.approx(base.backlash, rel=1e-9)
         assert mesh.operating_pressure_angle == pytest.approx(
-            duty.mesh.operating_pressure_angle, rel=1e-12
+            duty.gears.mesh.operating_pressure_angle, rel=1e-12
         )
 
 

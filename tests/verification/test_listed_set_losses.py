@@ -365,15 +365,15 @@ def test_steps_of_opposite_sense_and_one_hand_push_the_planet_less_along_its_axi
         tables["sets"]["S"]["gears"]["sun"]["hand"] = "right"
         built = build(ep.load_case(tables))
         (planet,) = built.sets["S"].planets
-        duties = {duty.key: duty for duty in built.sets["S"].mean_duties(built.state())}
+        duties = {duty.gears.key: duty for duty in built.sets["S"].mean_duties(built.state())}
         sums.append(
             abs(
                 sum(
                     own.hand
                     * math.copysign(1, -duties[own.mesh].torque1)
                     * abs(duties[own.mesh].torque1)
-                    / duties[own.mesh].mesh.operating_radius1
-                    * duties[own.mesh].mesh.operating_helix_tangent
+                    / duties[own.mesh].gears.mesh.operating_radius1
+                    * duties[own.mesh].gears.mesh.operating_helix_tangent
                     for own in planet.meshes
                 )
             )

@@ -31,7 +31,7 @@ def talbot():
 
 def misalignments(case):
     """Of sun and ring mesh. [um]"""
-    return [duty.misalignment * 1e6 for duty in loaded_duties(case).values()]
+    return [duty.gears.deviations.misalignment * 1e6 for duty in loaded_duties(case).values()]
 
 
 def loaded_duties(case):
@@ -59,7 +59,7 @@ def test_bearing_and_meshes_are_in_balance(talbot):
     alpha = math.radians(23.011)
     for duty, outward in zip(duties, (1, -1), strict=True):
         expected = 24.4e-3 * (tilt[0] * math.cos(alpha) + outward * tilt[1] * math.sin(alpha))
-        assert duty.misalignment == pytest.approx(expected, rel=1e-3)
+        assert duty.gears.deviations.misalignment == pytest.approx(expected, rel=1e-3)
 
 
 def test_planet_opens_the_sun_mesh_where_contact_ends_and_the_ring_mesh_where_it_begins(talbot):
@@ -171,20 +171,20 @@ def test_tilt_is_found_in_drawn_sets_down_to_light_loads(number, share):
     built = build(case)
     (planet,) = built.sets[""].planets
     state = built.state()
-    duties = {duty.key: duty for duty in built.sets[""].mean_duties(state)}
+    duties = {duty.gears.key: duty for duty in built.sets[""].mean_duties(state)}
     tilted, load = planet.load(duties, state.speeds["carrier"])
     moments = [
         own.mean((own.line_load * own.lines.length * height).sum(axis=(1, 2)))
-        * math.cos(duty.mesh.gear1.rack.base_helix_angle)
+        * math.cos(duty.gears.mesh.gear1.rack.base_helix_angle)
         for duty in tilted
         for own in (elastic_loads(duty),)
-        for height in (own.lines.face_position - duty.mesh.face_width / 2,)
+        for height in (own.lines.face_position - duty.gears.mesh.face_width / 2,)
     ]
-    contacts = planet._contacts({duty.key: duty for duty in tilted})
+    contacts = planet._contacts({duty.gears.key: duty for duty in tilted})
     signed = [contact.face_sense * m for contact, m in zip(contacts, moments, strict=True)]
     outward = planet.centrifugal(state.speeds["carrier"])
     balanced = planet_load(contacts, outward, signed)
-    scale = load.force * tilted[0].mesh.face_width
+    scale = load.force * tilted[0].gears.mesh.face_width
     assert load.moment_x == pytest.approx(balanced.moment_x, abs=1e-4 * scale)
     assert load.moment_y == pytest.approx(balanced.moment_y, abs=1e-4 * scale)
 

@@ -4,25 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 
-from epicyclic.build.models import (
-    SetCase,
-    bearing_model,
-    contact_modulus,
-    fitted_rolling,
-    loss_choices,
-    mesh_models,
-    oil_share,
-    solid_of,
-)
+from epicyclic.build.models import SetCase, contact_modulus, mesh_models, oil_share, solid_of
 from epicyclic.case.tables.elements import PlanetBearing as BearingTable
 from epicyclic.case.tables.models import Numerics
-from epicyclic.case.tables.operation import LubricationTable
 from epicyclic.contact.elastic_teeth import GearBody, Rim
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.gears import stated as flanks
-from epicyclic.gears.cutting import Tool, cutting_tool, fitted_tool
+from epicyclic.gears.cutting import cutting_tool, fitted_tool
 from epicyclic.gears.gear import CARRIER, HOUSING, Gear
 from epicyclic.gears.gearing import Gearing, outside_radius, outward_of, rim_thickness
 from epicyclic.gears.mesh import Mesh
@@ -33,8 +24,8 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.machine.disc import Disc, Jets, Sump, ThrustBearing
 from epicyclic.machine.element import joined_key
-from epicyclic.machine.gear_mesh import GearMesh
-from epicyclic.machine.gear_set import GearSet, Planet, PlanetMesh, Reference
+from epicyclic.machine.gear_mesh import GearMesh, MeshModels
+from epicyclic.machine.gear_set import GearSet, LossChoice, Planet, PlanetMesh, Reference
 from epicyclic.machine.planets import LoadSharing, PlanetBearing
 
 # How the oil of a case meets the bodies that turn in it.
@@ -45,60 +36,37 @@ def gear_disc(case: SetCase, body: str, gear: Gear, table: StatedGear) -> Disc:
 
     A ring dips as a body without teeth: those of its inside are left out.
     """
-    radius = outside_radius(gear, table)
-    pitch = radius if gear.internal else gear.reference_radius
+    radius, oil = outside_radius(gear, table), case.lubrication
     part = Dipped(
-        radius=pitch,
+        radius=radius if gear.internal else gear.reference_radius,
         tip_radius=radius,
         width=gear.face_width,
-        depth=_depth(case.lubrication, gear.name, radius),
+        depth=0.0,
         module=gear.rack.normal_module,
         teeth=0 if gear.internal else gear.teeth,
         tooth_height=abs(gear.tip_radius - gear.root_radius),
         pressure_angle=gear.rack.normal_pressure_angle,
         helix_angle=abs(gear.rack.helix_angle),
     )
-    return Disc(
-        where=gear.name,
-        body=body,
-        radius=radius,
-        width=gear.face_width,
-        oil_fraction=oil_share(case).share,
-        sump=_sump(case, part),
-        jets=_jets(case.lubrication, gear),
-    )
+    jets = None
+    if oil is not None and oil.method == "jet" and oil.oil_flow:
+        jets = Jets(oil.oil_flow, oil.jet_speed, oil.nozzle_side, gear.reference_radius)
+    share, sump = oil_share(case).share, _sump(case, gear.name, part)
+    return Disc(gear.name, body, radius, gear.face_width, share, sump, jets)
 
 
-def carrier_disc(case: SetCase, body: str, outer_diameter: float, width: float, mate: Gear) -> Disc:
-    """A carrier as it turns in the mixture or dips; its flow is told apart by a gear beside it."""
-    radius = outer_diameter / 2
-    depth = _depth(case.lubrication, "carrier", radius)
-    part = Dipped(radius, radius, width, depth, mate.rack.normal_module)
-    return Disc("carrier", body, radius, width, oil_share(case).share, _sump(case, part))
-
-
-def _depth(table: LubricationTable | None, name: str, radius: float) -> float:
-    """Depth of the lowest point of a part below the oil at rest; 0 above it. [m]"""
-    if table is None or table.method != "dip":
-        return 0.0
-    if table.oil_level is not None:
-        return max(radius + table.oil_level, 0.0)
-    return table.immersion.get(name, 0.0)
-
-
-def _sump(case: SetCase, part: Dipped) -> Sump | None:
+def _sump(case: SetCase, name: str, part: Dipped) -> Sump | None:
+    """What a part dips into, with the depth of its lowest point below the oil at rest."""
     table = case.lubrication
     if table is None or table.method != "dip":
         return None
+    if table.oil_level is None:
+        depth = table.immersion.get(name, 0.0)
+    else:
+        depth = max(part.tip_radius + table.oil_level, 0.0)
     volume = case.thermal.oil_volume if table.oil_volume is None else table.oil_volume
     assert volume is not None
-    return Sump(part, volume, table.churning)
-
-
-def _jets(table: LubricationTable | None, gear: Gear) -> Jets | None:
-    if table is None or table.method != "jet" or not table.oil_flow:
-        return None
-    return Jets(table.oil_flow, table.jet_speed, table.nozzle_side, gear.reference_radius)
+    return Sump(replace(part, depth=depth), volume, table.churning)
 
 
 # From the tables of a set to the element that loses its power.
@@ -124,16 +92,47 @@ def gear_set(
     """The losses of a set."""
     gearing = case.gearing
     discs = dict(_discs(case, bodies))
+    choices = {
+        name: LossChoice(option.include, option.factor) for name, option in case.losses.items()
+    }
+    lacking = {
+        "carrier_drag": (case.carrier, "[carrier]"),
+        "thrust_bearing_viscous": (case.thrust_bearing, "[thrust_bearing]"),
+    }
+    table, sharing = case.sharing, None
+    if table is not None:
+        sharing = LoadSharing(
+            method=table.method,
+            mesh_load_factor=table.mesh_load_factor,
+            angles=gearing.planet_angles,
+            position_errors=table.position_errors or (),
+            floating_member=table.floating_member,
+            support_stiffness=table.support_stiffness,
+            pin_stiffness=table.pin_stiffness,
+        )
+    beside, thrust = case.thrust_bearing, None
+    if beside is not None:
+        one, two = beside.between.split("-")
+        thrust = ThrustBearing(
+            between=(bodies[one], bodies.get(two, HOUSING)),
+            mean_diameter=beside.mean_diameter,
+            viscous_factor=beside.viscous_factor,
+            count=beside.count,
+        )
     return GearSet(
         key=key,
         carrier=bodies[CARRIER] if gearing.planets else HOUSING,
-        meshes=tuple(_meshes(key, case, bodies, flow_tables)),
+        meshes=tuple(_meshes(key, case, bodies, mesh_models(case, choices, flow_tables))),
         planets=tuple(_planet(key, case, body, bodies[body]) for body in gearing.planets),
-        sharing=_sharing(case),
+        sharing=sharing,
         discs=discs,
-        missing=_missing(case),
-        thrust=_thrust_bearing(case, bodies),
-        choices=loss_choices(case),
+        missing={
+            name: f"the case has no {table}"
+            for name, (part, table) in lacking.items()
+            if part is None and name in choices
+        },
+        thrust=thrust,
+        choices=choices,
         reference=_reference(case, bodies, order),
     )
 
@@ -150,10 +149,20 @@ def _reference(case: SetCase, bodies: Mapping[str, str], order: Sequence[str]) -
 
 
 def _meshes(
-    key: str, case: SetCase, bodies: Mapping[str, str], flow_tables: FlowTables
+    key: str, case: SetCase, bodies: Mapping[str, str], models: Mapping[str, MeshModels]
 ) -> Iterator[GearMesh]:
     gearing = case.gearing
-    models, tools = mesh_models(case, flow_tables), _tools(gearing)
+    # the tool of each gear serves the mate that reaches deepest
+    needed: dict[str, float] = {}
+    for mesh in gearing.geometries:
+        ends = ((mesh.gear1, mesh.radius1_at_start), (mesh.gear2, mesh.radius2_at_end))
+        for gear, radius in ends:
+            deeper = max if gear.internal else min
+            needed[gear.name] = deeper(radius, needed.get(gear.name, radius))
+    tools = {
+        name: fitted_tool(gearing.gear(name), table.tool_tip_radius, needed[name])
+        for name, table in gearing.tables.items()
+    }
     for drawn, mesh in zip(gearing.meshes, gearing.geometries, strict=True):
         gears = drawn.first, drawn.second
         one, two = tables = gearing.tables[drawn.first], gearing.tables[drawn.second]
@@ -183,32 +192,14 @@ def gear_bodies(
     mesh: Mesh, tables: tuple[StatedGear, StatedGear], planets: int = 1
 ) -> tuple[GearBody, GearBody]:
     """Materials, root fillets and rims of both members of a mesh, `planets` of which are alike."""
-    one, two = tables
-    return _body(mesh.gear1, one, 1), _body(mesh.gear2, two, planets)
-
-
-def _body(gear: Gear, table: StatedGear, loads: int) -> GearBody:
-    thickness = rim_thickness(table)
-    return GearBody(
-        table.material.elastic_modulus,
-        table.material.poisson_ratio,
-        cutting_tool(gear, table.tool_tip_radius),
-        None if thickness is None else Rim(thickness, loads),
-    )
-
-
-def _tools(gearing: Gearing) -> dict[str, Tool]:
-    """The tool of each gear, which serves the mate that reaches deepest."""
-    needed: dict[str, float] = {}
-    for mesh in gearing.geometries:
-        ends = ((mesh.gear1, mesh.radius1_at_start), (mesh.gear2, mesh.radius2_at_end))
-        for gear, radius in ends:
-            deeper = max if gear.internal else min
-            needed[gear.name] = deeper(radius, needed.get(gear.name, radius))
-    return {
-        name: fitted_tool(gearing.gear(name), table.tool_tip_radius, needed[name])
-        for name, table in gearing.tables.items()
-    }
+    made = []
+    members = zip((mesh.gear1, mesh.gear2), tables, (1, planets), strict=True)
+    for gear, table, loads in members:
+        thickness, material = rim_thickness(table), table.material
+        tool = cutting_tool(gear, table.tool_tip_radius)
+        rim = None if thickness is None else Rim(thickness, loads)
+        made.append(GearBody(material.elastic_modulus, material.poisson_ratio, tool, rim))
+    return made[0], made[1]
 
 
 def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
@@ -227,7 +218,7 @@ def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
         meshes=tuple(_planet_meshes(gearing, planet)),
         mass=sum(stated) if stated else planet_mass(made, bearing),
         mass_estimated=not stated,
-        bearing=planet_bearing(case, bearing),
+        bearing=None if bearing is None else planet_bearing(case, bearing, planet),
         no_bearing=f"the case has no {no_bearing}",
         tilts=case.models.planet_tilt == "coupled",
         nodes=(joined_key(key, planet), joined_key(key, pin)),
@@ -273,31 +264,14 @@ def planet_mass(gears: Iterable[tuple[Gear, StatedGear]], bearing: BearingTable 
     )
 
 
-def _sharing(case: SetCase) -> LoadSharing | None:
-    table = case.sharing
-    if table is None:
-        return None
-    return LoadSharing(
-        method=table.method,
-        mesh_load_factor=table.mesh_load_factor,
-        angles=case.gearing.planet_angles,
-        position_errors=table.position_errors or (),
-        floating_member=table.floating_member,
-        support_stiffness=table.support_stiffness,
-        pin_stiffness=table.pin_stiffness,
-    )
-
-
-def planet_bearing(case: SetCase, table: BearingTable | None) -> PlanetBearing | None:
-    """The planet bearing that `table` describes, with the models of the case."""
-    if table is None:
-        return None
-    name = bearing_model(case, table)
+def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBearing:
+    """The bearing of a planet, with the models of the case."""
+    name = case.bearing_model(planet)
     is_fitted = name in (FittedRolling.name, FITTED_OR_PALMGREN)
     factor = table.viscous_factor
     return PlanetBearing(
         bearing=roller_bearing(table, case.numerics),
-        model=fitted_rolling(case, "bearing_rolling_loss") if is_fitted else name,
+        model=case.fitted_rolling("bearing_rolling_loss") if is_fitted else name,
         palmgren_coefficient=palmgren_coefficient(table),
         viscous_factor=VISCOUS_FACTOR_PER_ROW * table.rows if factor is None else factor,
         conductivity=table.material.thermal_conductivity,
@@ -343,33 +317,9 @@ def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tupl
                 for it in gears
             ),
         )
-    if case.carrier is not None:
-        size = (case.carrier.outer_diameter, case.carrier.width)
+    if case.carrier is not None:  # its flow is told apart by a gear beside it
+        radius, width = case.carrier.outer_diameter / 2, case.carrier.width
         mate = gearing.gear(next(gears[0] for gears in gearing.drags.values()))
-        yield "carrier_drag", (carrier_disc(case, bodies[CARRIER], *size, mate),)
-
-
-def _missing(case: SetCase) -> dict[str, str]:
-    """Losses that are not computed, because the case has no table for them."""
-    parts = {
-        "carrier_drag": (case.carrier, "[carrier]"),
-        "thrust_bearing_viscous": (case.thrust_bearing, "[thrust_bearing]"),
-    }
-    return {
-        name: f"the case has no {table}"
-        for name, (part, table) in parts.items()
-        if part is None and name in case.losses
-    }
-
-
-def _thrust_bearing(case: SetCase, bodies: Mapping[str, str]) -> ThrustBearing | None:
-    table = case.thrust_bearing
-    if table is None:
-        return None
-    one, two = table.between.split("-")
-    return ThrustBearing(
-        between=(bodies[one], bodies.get(two, HOUSING)),
-        mean_diameter=table.mean_diameter,
-        viscous_factor=table.viscous_factor,
-        count=table.count,
-    )
+        part = Dipped(radius, radius, width, 0.0, mate.rack.normal_module)
+        share, sump = oil_share(case).share, _sump(case, "carrier", part)
+        yield "carrier_drag", (Disc("carrier", bodies[CARRIER], radius, width, share, sump),)

@@ -10,7 +10,7 @@ from functools import partial
 
 from epicyclic.build.elements import build_element
 from epicyclic.build.gear_sets import gear_set
-from epicyclic.build.models import fluids_of, oil_share, set_cases, with_lubrication
+from epicyclic.build.models import SetCase, fluids_of, oil_share, set_cases, with_lubrication
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
 from epicyclic.case.rules import needs_force
 from epicyclic.case.tables.elements import ShaftBearingTable
@@ -65,15 +65,14 @@ WATER = 999.0  # Density of water there. [kg/m^3]
 IN_BATH = ("dip", "submerged")
 
 
-def thermal_model(case: Case, machine: Machine) -> ThermalModel | None:
+def thermal_model(case: Case, sets: Mapping[str, SetCase], machine: Machine) -> ThermalModel | None:
     """How the temperatures of a case follow from its losses; None if all are the inlet's."""
     kind = case.models.temperatures
     if kind == "inlet" or case.lubricant is None:
         return None
     fluids = _fluids_at(case, contact_nodes(machine))
     inlet = fluids_of(case).oil.temperature
-    keys = [own.key for own in machine.elements if isinstance(own, GearSet)]
-    tables = {key: own.lubrication for key, own in set_cases(case, keys)}
+    tables = {key: own.lubrication for key, own in sets.items()}
     if kind == "flank":
         factors = {key: _lubrication_factor(case.thermal, table) for key, table in tables.items()}
         return FlankModel(machine, inlet, case.thermal.bulk, factors, fluids)
@@ -301,6 +300,7 @@ class Built:
     known_fluids: Fluids | None  # Oil and mixture; None if every loss is given.
     # Those whose losses are computed; the key of a single set is empty.
     sets: Mapping[str, GearSet]
+    set_cases: Mapping[str, SetCase]  # Their tables and models, by the same keys.
     layout: Layout  # What its result consists of.
     # How temperatures follow from losses; None if all are those of the oil inlet.
     thermal: ThermalModel | None = None
@@ -329,7 +329,7 @@ class Built:
     def loaded_duties(self, state: State) -> dict[str, MeshDuty]:
         """The meshes of the planet that carries most, of every set, by their keys."""
         return {
-            joined_key(name, duty.key): duty
+            joined_key(name, duty.gears.key): duty
             for name, own in self.sets.items()
             for duty in own.loaded_duties(state)
         }
@@ -338,7 +338,7 @@ class Built:
         """The meshes of a planet that carries its mean share, of every set, by their keys."""
         state = self.state()
         return {
-            joined_key(name, duty.key): duty
+            joined_key(name, duty.gears.key): duty
             for name, own in self.sets.items()
             for duty in own.mean_duties(state)
         }
@@ -414,7 +414,8 @@ def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator
 def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
     """A train in the state and at the operating point of the case."""
     shape = case.shape
-    elements = [*_sets(case, flow_tables), *_parts(case)]
+    cases = set_cases(case)
+    elements = [*_sets(case, cases, flow_tables), *_parts(case)]
     sets = {element.key: element for element in elements if isinstance(element, GearSet)}
     return Built(
         machine=replace(
@@ -425,13 +426,14 @@ def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
         operation=operation_of(case),
         known_fluids=fluids_of(case) if case.computed else None,
         sets=sets,
+        set_cases=cases,
         layout=_layout(case, elements),
     )
 
 
 def train_layout(case: TrainCase) -> Layout:
     """What the result of a train consists of."""
-    return _layout(case, [*_sets(case, {}), *_parts(case)])
+    return _layout(case, [*_sets(case, set_cases(case), {}), *_parts(case)])
 
 
 def _train_operation(case: TrainCase) -> Operation:
@@ -445,10 +447,12 @@ def _train_operation(case: TrainCase) -> Operation:
     return Operation(driven, output, operation.torque, speeds, torques, held)
 
 
-def _sets(case: TrainCase, flow_tables: FlowTables) -> Iterator[GearSet]:
+def _sets(
+    case: TrainCase, cases: Mapping[str, SetCase], flow_tables: FlowTables
+) -> Iterator[GearSet]:
     """The sets whose losses are computed."""
     distance = _distances(case)
-    for name, own in set_cases(case, dict(case.computed_sets)):
+    for name, own in cases.items():
         bodies = case.shape.bodies_of(name)
         members = sorted(
             own.gearing.members, key=lambda member: distance.get(bodies[member], len(distance))
@@ -519,21 +523,19 @@ def build(
     flow_tables: FlowTables | None = None,
 ) -> Built:
     """The machine of a case, driven as the case says."""
-    built = _machine(case, flow_tables or {})
-    model = thermal_model(case, built.machine)
+    tables = flow_tables or {}
+    built = build_train(case, tables) if isinstance(case, TrainCase) else _single(case, tables)
+    model = thermal_model(case, built.set_cases, built.machine)
     if model is None:
         return built
     layout = replace(built.layout, nodes=tuple(model.start))
     return replace(built, thermal=model, layout=layout)
 
 
-def _machine(case: Case, tables: FlowTables) -> Built:
-    return build_train(case, tables) if isinstance(case, TrainCase) else _single(case, tables)
-
-
 def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
     """A set or pair by itself."""
-    ((_, own),) = set_cases(case, [""])
+    cases = set_cases(case)
+    own = cases[""]
     gearing = own.gearing
     operation = operation_of(case)
     members = gearing.members
@@ -546,6 +548,7 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
         operation=operation,
         known_fluids=fluids_of(case),
         sets={"": element},
+        set_cases=cases,
         layout=Layout(
             tuple(element.choices),
             members,

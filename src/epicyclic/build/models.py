@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, cast
 
 from epicyclic import library
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
@@ -64,10 +65,21 @@ from epicyclic.registry import load, offered
 
 # A gear set with computed losses as the builders see it, whichever case it is part of.
 
+GENERAL = {"friction": "mixed-lubrication", "rolling": "goksem-hargreaves"}
+"""What ``auto`` stands for with the preset ``general``."""
 
-@dataclass(frozen=True, slots=True)
+
+def preset_of(models: PlanetaryModels) -> str:
+    """What ``auto`` stands for."""
+    return models.preset
+
+
+@dataclass(frozen=True)
 class SetCase:
-    """A gear set with its tables, and those of the case that it is part of."""
+    """A gear set with its tables, and those of the case that it is part of.
+
+    The models that it chooses are found once, when they are first asked for.
+    """
 
     gearing: Gearing
     models: PlanetaryModels  # Those of a pair with the defaults of what planets need.
@@ -86,55 +98,143 @@ class SetCase:
     folder: Path  # Where the files lie that it names.
     found: tuple[str, ...]  # Notes on what its tables leave out.
 
+    @cached_property
+    def oil_model(self) -> OilModel | None:
+        """The fitted models that it names, or those built in for its oil; None without either."""
+        if self.models.oil_model is not None:
+            return read_oil_model(self.folder / self.models.oil_model)
+        return builtin_model(self.lubricant.oil)
 
-def set_cases(
-    case: Case,
-    sets: Iterable[str],  # Names; that of a single set is empty.
-) -> Iterator[tuple[str, SetCase]]:
-    """Name and case of each of some sets whose losses are computed."""
-    if not isinstance(case, TrainCase):
-        yield "", _set_case(case, case, case.gearings[""], tuple(map(str, case.found)))
-        return
-    tables = dict(case.computed_sets)
-    for name in sets:
-        yield name, _set_case(case, tables[name], case.gearings[name], ())
+    @cached_property
+    def chosen(self) -> dict[str, str]:
+        """Its models by key, ``auto`` replaced by what it stands for."""
+        models, table = self.models, self.lubrication
+        pocketing: str = models.pocketing
+        if pocketing == "auto":
+            pocketing = automatic_pocketing(oil_share(self).share)
+        found: dict[str, str] = {
+            "friction": self._model("friction", FittedOrSchlenk.name, "schlenk"),
+            "rolling": self._model("rolling", FittedOrGoksem.name, "goksem-hargreaves"),
+            "load_distribution": models.load_distribution,
+            "mesh": models.mesh,
+            "pocketing": pocketing,
+            "drag": models.drag,
+        }
+        if table is not None:
+            found["lubrication"] = table.method
+            if table.method == "dip":
+                found["churning"] = table.churning
+        if self.bearings:
+            found["bearing"] = ", ".join(dict.fromkeys(map(self.bearing_model, self.bearings)))
+            found["bearing_viscous"] = models.bearing_viscous
+        return found
+
+    def bearing_model(self, body: str) -> str:
+        """The model of the loss of the bearing of a planet."""
+        bearing = self.bearings[body]
+        if self.models.bearing == "auto" and bearing is not None and bearing.cage != "caged":
+            return "palmgren"
+        return self._model("bearing", FITTED_OR_PALMGREN, "palmgren")
+
+    def _model(self, role: str, fitted: str, formula: str) -> str:
+        """As stated, or the regressions for the own fluid, what was fitted for it, or a formula."""
+        stated: str = getattr(self.models, role)
+        if stated != "auto":
+            return stated
+        if role in GENERAL and preset_of(self.models) == "general":
+            return GENERAL[role]
+        if self.lubricant.oil.friction_regression == TALBOT_FLUID.key:
+            return "mixed-ehl"
+        known = self.oil_model
+        return formula if known is None or FITTED_QUANTITIES[role] not in known.fits else fitted
+
+    @cached_property
+    def friction(self) -> FrictionModel:
+        """Its friction model."""
+        name, models, table = self.chosen["friction"], self.models, self.friction_table
+        if name in (FittedFriction.name, FittedOrSchlenk.name):
+            assert self.oil_model is not None  # was checked
+            fitted = FittedFriction(self.oil_model, models.fitted_form)
+            return fitted if name == FittedFriction.name else FittedOrSchlenk(fitted)
+        if name in FRICTION_MODELS:
+            settings = FrictionSettings(
+                constant=models.constant_friction,
+                boundary=models.boundary_friction,
+                fluid=models.fluid_friction,
+                table=None
+                if table is None
+                else FrictionMap(tuple(table.axes().items()), table.friction),
+                oil_held=models.oil_beyond_range == "held",
+                load_factor=models.application_factor * models.mesh_load_factor,
+                surfaces=Surfaces(
+                    running_in=models.running_in_factor if models.running_in == "run-in" else 1.0,
+                    cutoff=models.profile_cutoff,
+                    hurst_exponent=models.hurst_exponent,
+                    hardness=models.flank_hardness,
+                ),
+            )
+            return friction_model(name, settings)
+        if name not in offered("friction_models"):
+            allowed = "is part of a plug-in that is not installed."
+            problem = Problem("models.friction", name, allowed, "Choose another model.")
+            raise InputError([problem])
+        model: FrictionModel = load("friction_models", name)(self)
+        return model
+
+    @cached_property
+    def rolling(self) -> RollingModel:
+        """Its model of the rolling loss."""
+        name = self.chosen["rolling"]
+        if name in (FittedRolling.name, FittedOrGoksem.name):
+            fitted = self.fitted_rolling("rolling_loss")
+            return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)
+        return replace(ROLLING_MODELS[name], oil_held=self.models.oil_beyond_range == "held")
+
+    def fitted_rolling(self, quantity: str) -> FittedRolling:
+        """The fitted rolling loss of its teeth or of its bearings."""
+        assert self.oil_model is not None  # was checked
+        return FittedRolling(self.oil_model, self.models.fitted_form, quantity)
 
 
-def _set_case(
-    case: Case,
-    table: PlanetaryCase | GearPairCase | ComputedSet,
-    gearing: Gearing,
-    found: tuple[str, ...],
-) -> SetCase:
-    parts = vars(table)
-    bearing, own = parts.get("planet_bearing"), parts.get("planet_bearings", {})
-    losses = dict(table.losses)
-    if isinstance(table, ListedSet):
-        losses = {name: losses.get(name, LossOption()) for name in gearing.terms}
-    models = table.models
-    if not isinstance(models, PlanetaryModels):
-        models = PlanetaryModels.model_construct(**dict(models))
-    if models.temperatures != case.models.temperatures:  # those of a train hold for all its sets
-        models = models.model_copy(update={"temperatures": case.models.temperatures})
-    assert case.lubricant is not None
-    return SetCase(
-        gearing,
-        models,
-        table.numerics,
-        losses,
-        parts.get("load_sharing") if gearing.count else None,
-        {body: own.get(body, bearing) for body in gearing.planets},
-        parts.get("carrier"),
-        parts.get("thrust_bearing"),
-        table.lubrication,
-        case.lubricant,
-        case.surroundings,
-        case.thermal,
-        case.friction_table,
-        case.contact_solver,
-        case.folder,
-        found,
-    )
+def set_cases(case: Case) -> dict[str, SetCase]:
+    """Every set of a case whose losses are computed, by its name; that of a single set is empty."""
+    if isinstance(case, TrainCase):
+        tables: dict[str, PlanetaryCase | GearPairCase | ComputedSet] = dict(case.computed_sets)
+    else:
+        tables = {"": case}
+    sets = {}
+    for name, table in tables.items():
+        gearing, parts = case.gearings[name], vars(table)
+        bearing, own = parts.get("planet_bearing"), parts.get("planet_bearings", {})
+        losses = dict(table.losses)
+        if isinstance(table, ListedSet):
+            losses = {term: losses.get(term, LossOption()) for term in gearing.terms}
+        models = table.models
+        if not isinstance(models, PlanetaryModels):
+            models = PlanetaryModels.model_construct(**dict(models))
+        temperatures = case.models.temperatures  # those of a train hold for all its sets
+        if models.temperatures != temperatures:
+            models = models.model_copy(update={"temperatures": temperatures})
+        assert case.lubricant is not None
+        sets[name] = SetCase(
+            gearing,
+            models,
+            table.numerics,
+            losses,
+            parts.get("load_sharing") if gearing.count else None,
+            {body: own.get(body, bearing) for body in gearing.planets},
+            parts.get("carrier"),
+            parts.get("thrust_bearing"),
+            table.lubrication,
+            case.lubricant,
+            case.surroundings,
+            case.thermal,
+            case.friction_table,
+            case.contact_solver,
+            case.folder,
+            () if name else tuple(map(str, case.found)),
+        )
+    return sets
 
 
 # What follows from how oil gets to the gears: the share of oil around them.
@@ -203,77 +303,16 @@ def with_lubrication(
     return thermal.model_copy(update=found)
 
 
-# The models that a case chooses, ready for its elements.
-
-
-def resolve_models(case: SetCase) -> dict[str, str]:
-    """The models of a case by key, ``auto`` replaced by what it stands for."""
-    found: dict[str, str] = {
-        "friction": _friction_name(case),
-        "rolling": _rolling_name(case),
-        "load_distribution": case.models.load_distribution,
-        "mesh": case.models.mesh,
-        "pocketing": pocketing_of(case),
-        "drag": case.models.drag,
-    }
-    if case.lubrication is not None:
-        found["lubrication"] = case.lubrication.method
-        if case.lubrication.method == "dip":
-            found["churning"] = case.lubrication.churning
-    if case.bearings:
-        models = dict.fromkeys(bearing_model(case, it) for it in case.bearings.values())
-        found["bearing"] = ", ".join(models)
-        found["bearing_viscous"] = case.models.bearing_viscous
-    return found
-
-
-def bearing_model(case: SetCase, bearing: PlanetBearing | None) -> str:
-    """The model of the loss of a planet bearing, ``auto`` replaced by what it stands for."""
-    if case.models.bearing != "auto":
-        return case.models.bearing
-    if bearing is not None and bearing.cage != "caged":
-        return "palmgren"
-    return _automatic(case, "bearing_rolling_loss", FITTED_OR_PALMGREN, "palmgren")
-
-
-def preset_of(case: SetCase) -> str:
-    """What ``auto`` stands for in a case."""
-    return case.models.preset
-
-
-def _friction_name(case: SetCase) -> str:
-    chosen = case.models.friction
-    if chosen != "auto":
-        return chosen
-    if preset_of(case) == "general":
-        return "mixed-lubrication"
-    return _automatic(case, "friction", FittedOrSchlenk.name, "schlenk")
-
-
-def _rolling_name(case: SetCase) -> str:
-    chosen = case.models.rolling
-    if chosen != "auto":
-        return chosen
-    if preset_of(case) == "general":
-        return "goksem-hargreaves"
-    return _automatic(case, "rolling_loss", FittedOrGoksem.name, "goksem-hargreaves")
-
-
-def _automatic(case: SetCase, quantity: str, fitted: str, formula: str) -> str:
-    """The regressions of mixed EHL for their fluid, what was fitted for another, or a formula."""
-    if case.lubricant.oil.friction_regression == TALBOT_FLUID.key:
-        return "mixed-ehl"
-    model = fitted_oil_model(case)
-    return formula if model is None or quantity not in model.fits else fitted
+# The models that a set chooses, ready for its elements.
 
 
 def standing_of(case: SetCase) -> dict[str, str]:
     """The models of friction, rolling loss and bearings, and how well each is known to be right."""
-    models, form = resolve_models(case), case.models.fitted_form
+    models, form = dict(case.chosen), case.models.fitted_form
     if models["mesh"] == "loss-factor":
         del models["rolling"]
     uses_fits = any("fitted" in models.get(role, "") for role in FITTED_QUANTITIES)
-    fitted = fitted_oil_model(case) if uses_fits else None
+    fitted = case.oil_model if uses_fits else None
     return {
         role: "; ".join(
             f"{name}: {reliability(role, name, fitted, form)}" for name in models[role].split(", ")
@@ -281,41 +320,6 @@ def standing_of(case: SetCase) -> dict[str, str]:
         for role in RELIABILITY
         if role in models
     }
-
-
-def friction_settings(case: SetCase) -> FrictionSettings:
-    """The numbers that friction models take from the case."""
-    table, models = case.friction_table, case.models
-    return FrictionSettings(
-        constant=case.models.constant_friction,
-        boundary=models.boundary_friction,
-        fluid=case.models.fluid_friction,
-        table=None if table is None else FrictionMap(tuple(table.axes().items()), table.friction),
-        oil_held=case.models.oil_beyond_range == "held",
-        load_factor=case.models.application_factor * case.models.mesh_load_factor,
-        surfaces=Surfaces(
-            running_in=models.running_in_factor if models.running_in == "run-in" else 1.0,
-            cutoff=models.profile_cutoff,
-            hurst_exponent=models.hurst_exponent,
-            hardness=models.flank_hardness,
-        ),
-    )
-
-
-def friction_of(case: SetCase) -> FrictionModel:
-    """The friction model of a case."""
-    name = _friction_name(case)
-    if name in (FittedFriction.name, FittedOrSchlenk.name):
-        fitted = FittedFriction(_given_oil_model(case), case.models.fitted_form)
-        return fitted if name == FittedFriction.name else FittedOrSchlenk(fitted)
-    if name in FRICTION_MODELS:
-        return friction_model(name, friction_settings(case))
-    if name not in offered("friction_models"):
-        allowed = "is part of a plug-in that is not installed."
-        problem = Problem("models.friction", name, allowed, "Choose another model.")
-        raise InputError([problem])
-    model: FrictionModel = load("friction_models", name)(case)
-    return model
 
 
 def contact_modulus(one: StatedMaterial, other: StatedMaterial) -> float:
@@ -338,34 +342,6 @@ def solid_of(
     )
 
 
-def rolling_of(case: SetCase) -> RollingModel:
-    """The rolling-loss model of a case."""
-    name = _rolling_name(case)
-    if name in (FittedRolling.name, FittedOrGoksem.name):
-        fitted = fitted_rolling(case, "rolling_loss")
-        return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)
-    return replace(ROLLING_MODELS[name], oil_held=case.models.oil_beyond_range == "held")
-
-
-def fitted_rolling(case: SetCase, quantity: str) -> FittedRolling:
-    """The fitted rolling loss of the teeth or of the bearings of a case."""
-    return FittedRolling(_given_oil_model(case), case.models.fitted_form, quantity)
-
-
-def fitted_oil_model(case: SetCase) -> OilModel | None:
-    """The fitted models that the case names, or those built in for its oil; None without either."""
-    if case.models.oil_model is not None:
-        return read_oil_model(case.folder / case.models.oil_model)
-    return builtin_model(case.lubricant.oil)
-
-
-def _given_oil_model(case: SetCase) -> OilModel:
-    """The fitted models of a case that asks for them, and was checked to have them."""
-    model = fitted_oil_model(case)
-    assert model is not None
-    return model
-
-
 def fluids_of(case: Case) -> Fluids:
     """Oil and mixture at the oil inlet temperature, which only given losses can do without."""
     assert case.lubricant is not None
@@ -379,61 +355,39 @@ def fluids_of(case: Case) -> Fluids:
     )
 
 
-def loss_choices(case: SetCase) -> dict[str, LossChoice]:
-    """What becomes of each loss of a case, in the order in which they are shown."""
-    options = case.losses.items()
-    return {name: LossChoice(option.include, option.factor) for name, option in options}
-
-
-def pocketing_of(case: SetCase) -> PocketModel:
-    """The model of the flow through the pockets, ``auto`` replaced by what it stands for."""
-    chosen = case.models.pocketing
-    return automatic_pocketing(oil_share(case).share) if chosen == "auto" else chosen
-
-
-def mesh_models(case: SetCase, flow_tables: FlowTables) -> dict[str, MeshModels]:
-    """How the losses of each mesh of a case are computed, by the key of the mesh."""
-    choices, friction, rolling = loss_choices(case), friction_of(case), rolling_of(case)
-    pocketing = pocketing_of(case)
-    file = case.models.pocketing_table
-    meshes = tuple(_before("_pocketing", choices))
-    planets = case.gearing.count
-    fed = _fed(case) / (len(meshes) * (planets or 1))
+def mesh_models(
+    case: SetCase, choices: Mapping[str, LossChoice], flow_tables: FlowTables
+) -> dict[str, MeshModels]:
+    """How the losses of each mesh of a set are computed, by the key of the mesh."""
+    models, numerics, planets = case.models, case.numerics, case.gearing.count
+    keys = [mesh.key for mesh in case.gearing.meshes]
+    fed, table = 0.0, case.lubrication
+    if table is not None and table.oil_share is None and table.oil_flow is not None:
+        jet_in = table.method == "jet" and table.nozzle_side == "in-mesh"
+        if table.method == "flow" or jet_in:
+            fed = table.oil_flow / (len(keys) * (planets or 1))
+    file = models.pocketing_table
     return {
         key: MeshModels(
-            friction=friction,
-            rolling=rolling,
-            by_loss_factor=case.models.mesh == "loss-factor",
-            load_distribution=case.models.load_distribution,
-            positions=case.numerics.mesh_positions,
-            segments=case.numerics.contact_segments,
+            friction=case.friction,
+            rolling=case.rolling,
+            by_loss_factor=models.mesh == "loss-factor",
+            load_distribution=models.load_distribution,
+            positions=numerics.mesh_positions,
+            segments=numerics.contact_segments,
             pockets=PocketSettings(
                 include=choices[f"{key}_pocketing"].include,
                 oil_fraction=oil_share(case).share,
-                model=pocketing,
-                void_pressure=case.models.pocket_void_pressure,
-                slices=case.numerics.pocket_slices,
-                steps=case.numerics.pocket_steps,
-                end_length=case.models.pocket_end_length,
+                model=cast(PocketModel, case.chosen["pocketing"]),
+                void_pressure=models.pocket_void_pressure,
+                slices=numerics.pocket_slices,
+                steps=numerics.pocket_steps,
+                end_length=models.pocket_end_length,
                 file=None if file is None else case.folder / file,
                 tables=flow_tables,
                 fed=fed,
                 any_order=not planets,
             ),
         )
-        for key in meshes
+        for key in keys
     }
-
-
-def _fed(case: SetCase) -> float:
-    """Oil that goes into the meshes of a set as the teeth mesh. [m^3/s]"""
-    table = case.lubrication
-    if table is None or table.oil_share is not None or table.oil_flow is None:
-        return 0.0
-    into = table.method == "flow" or (table.method == "jet" and table.nozzle_side == "in-mesh")
-    return table.oil_flow if into else 0.0
-
-
-def _before(ending: str, names: Iterable[str]) -> Iterator[str]:
-    """What stands before an `ending`, of all names that have it."""
-    return (name.removesuffix(ending) for name in names if name.endswith(ending))

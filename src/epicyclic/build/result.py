@@ -10,23 +10,14 @@ from typing import Any
 import numpy as np
 
 from epicyclic.build.machine import Built
-from epicyclic.build.models import (
-    SetCase,
-    fitted_oil_model,
-    friction_of,
-    oil_share,
-    resolve_models,
-    rolling_of,
-    set_cases,
-    standing_of,
-)
+from epicyclic.build.models import SetCase, oil_share, standing_of
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
 from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears import stated as flanks
 from epicyclic.gears.gear import HOUSING
-from epicyclic.gears.gearing import DEFAULT_RIM_THICKNESS, Gearing, rim_thickness
+from epicyclic.gears.gearing import DEFAULT_RIM_THICKNESS, rim_thickness
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.gears.rules import backlash_notes
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
@@ -35,7 +26,7 @@ from epicyclic.losses.ranges import SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
 from epicyclic.machine.disc import churned
-from epicyclic.machine.element import OIL, Loss, joined_key
+from epicyclic.machine.element import OIL, State, joined_key
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSet, GearSetResult
 from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
@@ -59,31 +50,22 @@ from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 # How oil gets to the gears of a case, and what follows from it.
 
 
-def stated_supplies(case: Case) -> Iterator[tuple[str, OilSupply]]:
-    """How oil gets to the gears of each set that says so, by the key of the set."""
-    sets = dict(case.computed_sets) if isinstance(case, TrainCase) else [""]
-    for key, own in set_cases(case, sets):
-        if own.lubrication is not None:
-            share = oil_share(own)
-            method = own.lubrication.method
-            yield key, OilSupply(method, share.share, *share.band, share.grade, share.source)
-
-
-def solved_supplies(
-    case: Case, sets: Mapping[str, GearSet], solution: Solution
+def oil_supplies(
+    cases: Mapping[str, SetCase],
+    sets: Mapping[str, GearSet] | None = None,  # For what the speeds make of it.
+    state: State | None = None,
 ) -> Iterator[tuple[str, OilSupply]]:
-    """The same with what the speeds make of it."""
-    for key, supply in stated_supplies(case):
-        own = sets[key]
-        discs = [disc for discs in own.discs.values() for disc in discs]
-        yield (
-            key,
-            replace(
-                supply,
-                churning=churned(discs, solution.state),
-                meshes={duty.key: oil_in_mesh(duty) for duty in own.mean_duties(solution.state)},
-            ),
-        )
+    """How oil gets to the gears of each set that says so, by the key of the set."""
+    for key, case in cases.items():
+        if case.lubrication is None:
+            continue
+        share, method = oil_share(case), case.lubrication.method
+        supply = OilSupply(method, share.share, *share.band, share.grade, share.source)
+        if sets is not None and state is not None:
+            discs = [disc for discs in sets[key].discs.values() for disc in discs]
+            meshes = {duty.gears.key: oil_in_mesh(duty) for duty in sets[key].mean_duties(state)}
+            supply = replace(supply, churning=churned(discs, state), meshes=meshes)
+        yield key, supply
 
 
 # Notes: what a user must know about a result besides its numbers.
@@ -105,13 +87,18 @@ def case_notes(
     turning: Collection[str],  # Central gears that turn.
 ) -> tuple[str, ...]:
     """What a user must know about a set: its oil, its load, its flows, its planets."""
-    meshes = {key: item for key, item in found.figures.items() if isinstance(item, MeshFigures)}
     notes = (
         *fluid_notes(case),
         *lubrication_notes(case),
         *load_notes(case),
-        *thin_teeth_notes(case),
-        *contact_notes(meshes),
+        *backlash_notes(case.gearing),
+        *(
+            f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
+            f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed what the "
+            "teeth bend. Contact that begins or ends beyond the path of contact is not modelled."
+            for name, mesh in found.figures.items()
+            if isinstance(mesh, MeshFigures) and mesh.contact_share < LEAST_CONTACT
+        ),
         *pressure_notes(found.figures),
         *found.notes,
     )
@@ -121,26 +108,41 @@ def case_notes(
         *case.found,
         *_arrangement_notes(case),
         *(() if sharing is None else _share_notes(sharing, found.shares)),
-        *_ring_notes(case.gearing, turning),
+        *(
+            f"{case.gearing.key(name)}.rim_thickness is not given: the drag of the turning ring is "
+            f"that of a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
+            for name, table, _ in case.gearing.rings()
+            if name in turning and rim_thickness(table) is None
+        ),
     )
 
 
 def fluid_notes(case: SetCase) -> tuple[str, ...]:
     """What was made for another oil than that of the case, and what the case changes in it."""
-    oil, models = case.lubricant.oil, resolve_models(case)
+    oil, models = case.lubricant.oil, case.chosen
     bearing = "mixed-ehl" in models.get("bearing", "")
     fluids = {
-        "friction": (models["friction"], friction_of(case).made_for),
-        "rolling": (models["rolling"], rolling_of(case).made_for),
+        "friction": (models["friction"], case.friction.made_for),
+        "rolling": (models["rolling"], case.rolling.made_for),
         "bearing": ("mixed-ehl", TALBOT_FLUID if bearing else None),
     }
     notes = [
-        f"models.{key}: the regression {model} was made for {fluid.title}, not for {oil.name}."
-        for key, (model, fluid) in fluids.items()
+        f"models.{key}: the regression {name} was made for {fluid.title}, not for {oil.name}."
+        for key, (name, fluid) in fluids.items()
         if fluid is not None and fluid.key != oil.friction_regression
     ]
-    notes += _fitted_notes(case, models)
-    if case.models.temperatures != "inlet" and friction_of(case).takes_oil_temperature:
+    given = case.models.oil_model is not None
+    if given and any("fitted" in name for name in models.values()):
+        model = case.oil_model
+        if model is not None and model.oil != oil:
+            notes.append(f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}.")
+    changed = changed_properties(oil)
+    if not given and changed and "auto" in (getattr(case.models, key, "") for key in RELIABILITY):
+        notes.append(
+            f"The models built in for {oil.name} are not used, because this oil differs from it in "
+            f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."
+        )
+    if case.models.temperatures != "inlet" and case.friction.takes_oil_temperature:
         notes.append(
             f"models.friction: {models['friction']} was fitted to tests by the temperature of "
             "their oil: it takes that of the oil around the gears, not that of the flanks."
@@ -173,39 +175,6 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
             yield f"Churning {' and '.join(left_out)} is not modelled."
 
 
-def _fitted_notes(case: SetCase, models: Mapping[str, str]) -> Iterator[str]:
-    """On fitted models of another oil, and on those of this name that are not used."""
-    oil, given = case.lubricant.oil, case.models.oil_model is not None
-    if given and any("fitted" in name for name in models.values()):
-        model = fitted_oil_model(case)
-        if model is not None and model.oil != oil:
-            yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
-    changed = changed_properties(oil)
-    asked = any(getattr(case.models, key, "") == "auto" for key in RELIABILITY)
-    if not given and changed and asked:
-        yield (
-            f"The models built in for {oil.name} are not used, because this oil differs from it in "
-            f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."
-        )
-
-
-def thin_teeth_notes(case: SetCase) -> Iterator[str]:
-    """A note on every mesh with gross backlash."""
-    for mesh in case.gearing.geometries:
-        yield from backlash_notes(case.gearing, mesh)
-
-
-def contact_notes(meshes: Mapping[str, MeshFigures]) -> tuple[str, ...]:
-    """A note on every mesh of which much does not carry."""
-    return tuple(
-        f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
-        f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed what the teeth "
-        "bend. Contact that begins or ends beyond the path of contact is not modelled."
-        for name, mesh in meshes.items()
-        if mesh.contact_share < LEAST_CONTACT
-    )
-
-
 def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
     """Contacts pressed beyond what steel bears, and rollers of which much carries nothing."""
     for key, found in figures.items():
@@ -223,7 +192,11 @@ def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
                     f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; at the static rating of a "
                     f"roller bearing it is {GIGAPASCAL.text(BEARING_PRESSURE, 2)}."
                 )
-            idle = _idle_part(found)
+            idle = 0.0  # part of the most loaded roller that carries nothing
+            if found.loads is not None and found.roller_load_max:
+                rollers = found.loads.intensity.sum(axis=2)
+                row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
+                idle = float(np.mean(found.loads.intensity[row, most] == 0))
             if idle > IDLE_PART:
                 yield (
                     f"{name.capitalize()}: {percent(idle, 0)} of the most loaded roller carries "
@@ -232,30 +205,17 @@ def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
                 )
 
 
-def _idle_part(bearing: BearingFigures) -> float:
-    """Part of the length of the most loaded roller that carries nothing. [1]"""
-    if bearing.loads is None or not bearing.roller_load_max:
-        return 0.0
-    rollers = bearing.loads.intensity.sum(axis=2)
-    row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
-    return float(np.mean(bearing.loads.intensity[row, most] == 0))
-
-
-def load_notes(case: SetCase) -> tuple[str, ...]:
-    """Notes on deviations that the load distribution ignores, and on the rim of a ring gear."""
-    notes = []
+def load_notes(case: SetCase) -> Iterator[str]:
+    """Deviations that the load distribution ignores, and rims that leave what is assumed."""
     model, gearing = case.models.load_distribution, case.gearing
-    if _states_deviations(gearing) and not LOAD_DISTRIBUTIONS[model].takes_deviations:
-        notes.append(
+    deviates = any(mesh.table.misalignment for mesh in gearing.meshes) or any(
+        map(flanks.micro_geometries, gearing.tables.values())
+    )
+    if deviates and not LOAD_DISTRIBUTIONS[model].takes_deviations:
+        yield (
             f"models.load_distribution = {model} ignores micro-geometry and misalignment; "
             "compliance takes them into account."
         )
-    return (*notes, *_rim_notes(case))
-
-
-def _rim_notes(case: SetCase) -> Iterator[str]:
-    """Where a rim leaves the assumptions of its formula."""
-    gearing = case.gearing
     for name, table, ring in gearing.rings():
         thickness, key = rim_thickness(table), gearing.key(name)
         if thickness is None:
@@ -273,12 +233,6 @@ def _rim_notes(case: SetCase) -> Iterator[str]:
                 f"{key}.rim_thickness: the rim bends as under evenly spaced and equally loaded "
                 f"planets, but these are {'not equally loaded' if even else 'not evenly spaced'}."
             )
-
-
-def _states_deviations(gearing: Gearing) -> bool:
-    return any(mesh.table.misalignment for mesh in gearing.meshes) or any(
-        map(flanks.micro_geometries, gearing.tables.values())
-    )
 
 
 def general_notes(
@@ -333,7 +287,7 @@ def _arrangement_notes(case: SetCase) -> Iterator[str]:
     planets = gearing.count
     if planets is None or gearing.stated_angles is not None:
         return
-    found = gearing.arrangement()
+    found = gearing.arrangement
     if found.individual:
         bodies = list(gearing.bodies.values())
         stepped = ", ".join(body for body in gearing.planets if bodies.count(body) > 1)
@@ -354,26 +308,18 @@ def _arrangement_notes(case: SetCase) -> Iterator[str]:
         )
 
 
-def _ring_notes(gearing: Gearing, turning: Collection[str]) -> Iterator[str]:
-    for name, table, _ in gearing.rings():
-        if name in turning and rim_thickness(table) is None:
-            yield (
-                f"{gearing.key(name)}.rim_thickness is not given: the drag of the turning ring is "
-                f"that of a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
-            )
-
-
 # From the solution of a machine to the result that the user sees.
-
-
-Methods = dict[str, tuple[str, str]]
 
 
 def assemble(case: Case, built: Built, settled: Settled) -> Result:
     """The result of a case from the solution of its machine."""
     solution = settled.solution
-    losses = dict(_losses(solution))
-    terms = tuple(_term(name, losses[name]) for name in built.layout.losses)
+    losses = solution.losses
+    terms = tuple(
+        LossTerm(name, loss.watts, loss.group, loss.method, loss.source, loss.factor, loss.left_out)
+        for name in built.layout.losses
+        for loss in (losses[name],)
+    )
     flow = PowerFlow(
         {
             name: MemberState(solution.speeds.get(name, 0.0), solution.torques.get(name, 0.0))
@@ -382,9 +328,15 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         solution.input_power,
         solution.efficiency,
     )
-    figures = dict(_figures(solution))
+    figures: dict[str, Any] = {
+        joined_key(key, name) if name else key: item
+        for key, result in solution.results.items()
+        for name, item in result.figures.items()
+    }
     methods = dict(_methods(built))
-    supplies = dict(solved_supplies(case, built.sets, solution))
+    sources = [term.source for term in terms if not term.left_out]
+    sources += [source for _, source in methods.values()]
+    supplies = dict(oil_supplies(built.set_cases, built.sets, solution.state))
     fluids = None if built.known_fluids is None else solution.state.fluids
     flags: SomeFlags = () if fluids is None else fluids.flags
     sharing = built.sets[""].sharing if "" in built.sets else None
@@ -402,19 +354,21 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
             if not isinstance(item, MeshFigures | BearingFigures)
         },
         fluid=None if fluids is None else fluids.figures,
-        models=dict(_models(case, built)),
-        standing=dict(_standing(case, built, supplies)),
+        models={
+            joined_key(key, name): model
+            for key, own in built.set_cases.items()
+            for name, model in own.chosen.items()
+        },
+        standing=dict(_standing(built, supplies)),
         flags=(*flags, *_flags(solution)),
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
-            *_train_notes(case, solution),
-            *_floating_notes(solution),
-            *_heat_notes(settled),
-            *_set_notes(case, built, solution),
+            *_solution_notes(case, settled),
+            *_set_notes(built, solution),
         ),
         load_methods={key: title for key, (title, _) in methods.items()},
         load_sources={key: source for key, (_, source) in methods.items()},
-        sources=_sources(terms, methods),
+        sources=tuple(dict.fromkeys(filter(None, sources))),
         case=case,
         planet_angles=() if sharing is None else sharing.angles,
         planet_shares=next(
@@ -464,25 +418,6 @@ def _heat_paths(case: Case, answer: Answer) -> Iterator[HeatPath]:
         yield HeatPath("oil-cooler", OIL, "cooler", power, math.nan, "given power", "given")
 
 
-def _losses(solution: Solution) -> Iterator[tuple[str, Loss]]:
-    yield from solution.given.items()
-    for key, result in solution.results.items():
-        for name, loss in result.losses.items():
-            yield joined_key(key, name), loss
-
-
-def _term(name: str, loss: Loss) -> LossTerm:
-    return LossTerm(
-        name, loss.watts, loss.group, loss.method, loss.source, loss.factor, loss.left_out
-    )
-
-
-def _figures(solution: Solution) -> Iterator[tuple[str, Any]]:
-    for key, result in solution.results.items():
-        for name, item in result.figures.items():
-            yield joined_key(key, name) if name else key, item
-
-
 def _flags(solution: Solution) -> Iterator[ValidityFlag]:
     """Flags of all elements, those of a train with the name of their set."""
     for key, result in solution.results.items():
@@ -502,27 +437,12 @@ def _methods(built: Built) -> Iterator[tuple[str, tuple[str, str]]]:
             yield joined_key(key, "load_sharing"), SHARING_METHODS[own.sharing.method]
 
 
-def _sources(terms: Iterable[LossTerm], methods: Methods) -> tuple[str, ...]:
-    """Sources of the terms that are included and of the load, each once, in order."""
-    sources = [term.source for term in terms if not term.left_out]
-    sources += [source for _, source in methods.values()]
-    return tuple(dict.fromkeys(source for source in sources if source))
-
-
-def _models(case: Case, built: Built) -> Iterator[tuple[str, str]]:
-    for key, own in set_cases(case, built.sets):
-        for name, model in resolve_models(own).items():
-            yield joined_key(key, name), model
-
-
-def _standing(
-    case: Case, built: Built, supplies: Mapping[str, OilSupply]
-) -> Iterator[tuple[str, str]]:
+def _standing(built: Built, supplies: Mapping[str, OilSupply]) -> Iterator[tuple[str, str]]:
     for key, supply in supplies.items():
         idle = supply.method == "dip" and not supply.churning
         remark = "; nothing that turns reaches the oil" if idle else ""
         yield joined_key(key, "lubrication"), supply.text + remark
-    for key, own in set_cases(case, built.sets):
+    for key, own in built.set_cases.items():
         for role, phrase in standing_of(own).items():
             compared = supplies[key].comparison if role == "churning" else ""
             yield joined_key(key, role), f"{compared}; {phrase}" if compared else phrase
@@ -533,8 +453,8 @@ def _standing(
             yield joined_key(element.key, "shaft_bearing"), phrase
 
 
-def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:
-    for key, own in set_cases(case, built.sets):
+def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
+    for key, own in built.set_cases.items():
         found = solution.results[key]
         assert isinstance(found, GearSetResult)
         turning = {
@@ -549,43 +469,37 @@ def _set_notes(case: Case, built: Built, solution: Solution) -> Iterator[str]:
             yield from result.notes
 
 
-def _train_notes(case: Case, solution: Solution) -> Iterator[str]:
-    if not isinstance(case, TrainCase):
-        return
-    if solution.jammed:
+def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
+    """Trains that lock themselves, parallel ways, teeth that float, and heat that scatters."""
+    solution = settled.solution
+    if solution.jammed and isinstance(case, TrainCase):
         yield (
             "Self-locking: whatever the torque on the output, friction in the meshes does not let "
             "the train turn under this torque on the input; it stands still, and nothing is lost."
         )
-    elif solution.self_locking:
+    elif solution.self_locking and isinstance(case, TrainCase):
         output = case.shape.shaft_of(case.operation.output) or ""
         yield (
             "Self-locking: no power passes from the input to the output; the output "
             f"{case.operation.output} must be driven too, with "
             f"{solution.torques[output]:.6g} N*m."
         )
-    if not solution.unique:
+    if not solution.unique and isinstance(case, TrainCase):
         yield (
             "Some members share their load in more than one possible way (brakes, clutches or "
             "meshes in parallel): of all torques in balance, the smallest are shown."
         )
-
-
-def _heat_notes(settled: Settled) -> Iterator[str]:
-    if settled.change > AGREEMENT:
-        yield (
-            f"Temperatures and losses agree to {settled.change:.1g} K only: a loss scatters from "
-            "one evaluation to the next, as that of a flow through pockets that does not repeat."
-        )
-
-
-def _floating_notes(solution: Solution) -> Iterator[str]:
     for key in sorted(solution.floating):
         yield (
             f"{in_words(key.removeprefix('.'))}: next to no torque passes, and the teeth float in "
             "their backlash: with the losses on either flank they would be pressed to the other "
             "one. The losses are those on one flank; on the other the flow through the pockets "
             "loses another amount, so that the loss jumps over a small range of torque."
+        )
+    if settled.change > AGREEMENT:
+        yield (
+            f"Temperatures and losses agree to {settled.change:.1g} K only: a loss scatters from "
+            "one evaluation to the next, as that of a flow through pockets that does not repeat."
         )
 
 

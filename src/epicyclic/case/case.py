@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from html import escape
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, cast
 
 from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
@@ -111,6 +110,11 @@ _DECIDED = (
     ("thermal", "bath_share"),
 )
 """Keys in place of whose defaults a value follows from [lubrication]."""
+_BESIDE_GEARS = {
+    *("kind", "title", "operation", "lubrication", "surroundings", "thermal", "models", "numerics"),
+    *("losses", "friction_table", "contact_solver", "uncertainty"),
+}
+"""Tables on which gears, their bearings and how they share the load do not depend."""
 
 
 class CaseTable(Table):
@@ -161,14 +165,17 @@ class CaseTable(Table):
         InputError
             With every problem of the changed case.
         """
-        own = self._tables or self.given()
-        tables, problems = with_changes(type(self), own, changes)
-        same = {
+        tables, problems = with_changes(type(self), self._tables or self.given(), changes)
+        return type(self).from_tables(tables, self._source, problems, self)
+
+    def _unchanged(self, tables: Mapping[str, Any]) -> dict[str, Table]:
+        """Those of its own tables that `tables`, made from them by changes, still have."""
+        own = self._tables
+        return {
             key: table
             for key, table in self._sound.items()
             if key in own and tables.get(key) is own[key]
         }
-        return type(self).from_tables(tables, self._source, problems, same)
 
     @classmethod
     def from_tables(
@@ -176,15 +183,20 @@ class CaseTable(Table):
         tables: dict[str, Any],
         source: str,  # The file or built-in case that they come from.
         problems: Sequence[Problem] = (),  # Found before.
-        # Those of the tables that were read before.
-        sound: Mapping[str, Table] = MappingProxyType({}),
+        # That of which some tables were changed; what only depends on others is as it was.
+        before: CaseTable | None = None,
     ) -> Self:
         """The case of `tables`, plain values, checked by themselves and against each other.
 
         Raises `InputError` with `problems` and every other one.
         """
-        valid = validate(cls, tables, sound)
-        validation, told, gearing = with_sizes(valid, tables)
+        same = {} if before is None else before._unchanged(tables)
+        valid = validate(cls, tables, same)
+        kept = None  # gears that were found and checked before
+        keys = tables.keys() | (set() if before is None else before._tables.keys())
+        if before is not None and before._gearings and keys <= same.keys() | _BESIDE_GEARS:
+            kept = before._gearings[""], before._found
+        validation, told, gearing = with_sizes(valid, tables, kept)
         folder = Path(source).parent
         known = {problem.key for problem in problems}
         found = [
@@ -192,7 +204,9 @@ class CaseTable(Table):
             *(problem for problem in validation.problems if problem.key not in known),
             *(
                 as_given(problem, tables)
-                for problem in cross_check(validation.sections, tables, folder, gearing)
+                for problem in cross_check(
+                    validation.sections, tables, folder, gearing, checked=kept is not None
+                )
             ),
         ]
         made = cls._made(validation.case, tables, source, found)
@@ -265,7 +279,9 @@ class CaseTable(Table):
 
 
 def with_sizes(
-    validation: Validation[AnyCase], raw: Mapping[str, Any]
+    validation: Validation[AnyCase],
+    raw: Mapping[str, Any],
+    known: tuple[Gearing, tuple[Found, ...]] | None = None,  # If the gears were read before.
 ) -> tuple[Validation[AnyCase], tuple[Found, ...], Gearing | None]:
     """A validation with what its gears leave out; without [gears] if that cannot be found.
 
@@ -273,13 +289,13 @@ def with_sizes(
     set or a pair if nothing is wrong with their tables.
     """
     told: tuple[Found, ...] = ()
-    if validation.case is not None:
+    if validation.case is not None and known is None:
         told = (*negative_teeth(raw), *converted_roughness(raw), *told_oil(raw))
     sections = dict(validation.sections)
     gears = sections.get("gears")
     if not isinstance(gears, Gears):
         return validation, told, None
-    gearing = gearing_of(sections)
+    gearing = gearing_of(sections) if known is None else known[0]
     if gearing is None:
         # something follows from gears of which some are not valid
         tables = [table for table in sections.values() if isinstance(table, GearTable)]
@@ -287,7 +303,7 @@ def with_sizes(
             del sections["gears"]
             return Validation(None, sections, validation.problems), told, None
         return validation, told, None
-    whole, found, problems = complete(gearing, raw)
+    whole, found, problems = complete(gearing, raw) if known is None else (*known, [])
     if problems:
         del sections["gears"]
         return Validation(None, sections, [*validation.problems, *problems]), told, None
@@ -479,13 +495,14 @@ class TrainCase(_TrainHead):
         tables: dict[str, Any],
         source: str,
         problems: Sequence[Problem] = (),
-        sound: Mapping[str, Table] = MappingProxyType({}),
+        before: CaseTable | None = None,
     ) -> Self:
         """The train of `tables`; parameters and errors as of every case."""
         folder = Path(source).parent
         given = tables.get("sets")
         raw_sets: dict[str, Any] = given if isinstance(given, dict) else {}
         named = tuple(raw_sets)
+        sound = {} if before is None else before._unchanged(tables)
         whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound)
         found = [*problems]
         known = {problem.key for problem in problems}

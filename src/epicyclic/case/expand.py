@@ -69,7 +69,7 @@ def _planetary(parts: Parts) -> Gearing:
         shared=parts["gears"],
         count=parts["planet"].count,
         stated_angles=parts["planet"].angles,
-        hand=_hand(parts),
+        hand=-1 if parts.get("hand") == "left" else 1,
         drags={"sun_drag": ("sun",), "ring_drag": ("ring",)},
         levers=levers,
     )
@@ -89,7 +89,7 @@ def _pair(parts: Parts) -> Gearing:
         gearing,
         tables={name: parts[name] for name in names},
         shared=parts["gears"],
-        hand=_hand(parts),
+        hand=-1 if parts.get("hand") == "left" else 1,
         drags={"drag": names},
         levers={"pinion": {"mesh": 1.0}, "gear": {"mesh": (-1 if internal else 1) * one / two}},
     )
@@ -115,10 +115,6 @@ def _pairing(
         table_key=key,
         direction=parts.get("direction") or 0.0,
     )
-
-
-def _hand(parts: Parts) -> int:
-    return -1 if parts.get("hand") == "left" else 1
 
 
 def _given_planetary_problems(parts: Parts) -> Iterator[Problem]:

@@ -67,6 +67,8 @@ def cross_check(
     given: Collection[str],  # Names of the tables that the case has, valid or not.
     folder: Path,  # Where the files lie that the case names.
     gearing: Gearing | None = None,  # Of a planetary set or a pair whose gears are sound.
+    *,
+    checked: bool = False,  # It was checked before, with bearings and load sharing.
 ) -> list[Problem]:
     """Problems between keys and tables of a case."""
     problems: list[Problem] = []
@@ -88,16 +90,17 @@ def cross_check(
         problems += check_ways_out(thermal, models.temperatures, own)
     if isinstance(models, PlanetaryModels):
         problems += _check_planet_tilt(models, {*given, *sections})
-    if gearing is not None:
+    if gearing is not None and not checked:
         problems += set_problems(gearing)
         bearing = sections.get("planet_bearing")
         if isinstance(bearing, PlanetBearing) and gearing.planets:
             problems += check_bores(gearing, {"planet_bearing": (bearing, gearing.planets)})
     sharing = sections.get("load_sharing")
-    if isinstance(sharing, LoadSharing) and {"sun", "planet", "ring"} <= sections.keys():
+    toothed = {"sun", "planet", "ring"} <= sections.keys()
+    if isinstance(sharing, LoadSharing) and toothed and not checked:
         # tooth numbers are enough, whether the gears fit or not
-        toothed = gearing or expand({"gears": None, **sections})[0]
-        problems += _check_load_sharing(sharing, toothed)
+        whole = gearing or expand({"gears": None, **sections})[0]
+        problems += _check_load_sharing(sharing, whole)
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))

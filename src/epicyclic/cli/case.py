@@ -109,9 +109,10 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     loaded = load_with(case, changes)
     click.echo(f"{case}: a sound {loaded.kind} case.")
     if loaded.lubrication is not None:
-        from epicyclic.build.result import stated_supplies
+        from epicyclic.build.models import set_cases
+        from epicyclic.build.result import oil_supplies
 
-        for name, supply in stated_supplies(loaded):
+        for name, supply in oil_supplies(set_cases(loaded)):
             click.echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
     terminal().print(data_sheet(loaded))
     if loaded.kind == "train":

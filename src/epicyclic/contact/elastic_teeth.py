@@ -180,14 +180,14 @@ def _stiffness(
     """Stiffness matrix in (w, theta_s, theta_y), each of height by face terms. Theory (E1)."""
     nu = poisson_ratio
     top = float(height[-1])
-    points, weights = _gauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
+    points, weights = legendre.leggauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
     t = np.interp((points + 1) / 2 * top, height, thickness)
     v = _polynomials(points, HEIGHT_TERMS)
     dv = _derivatives(points, HEIGHT_TERMS) * 2 / top
     bending = weights * top / 2 * elastic_modulus * t**3 / (12 * (1 - nu**2))
     shear = weights * top / 2 * SHEAR_FACTOR * elastic_modulus / (2 * (1 + nu)) * t
 
-    points, weights = _gauss(face_terms)
+    points, weights = legendre.leggauss(face_terms)
     y = _polynomials(points, face_terms)
     dy = _derivatives(points, face_terms) * 2 / length
     across = weights * length / 2
@@ -197,16 +197,16 @@ def _stiffness(
     n = HEIGHT_TERMS * face_terms
     stiffness = np.zeros((3 * n, 3 * n))
     w, s, r = slice(0, n), slice(n, 2 * n), slice(2 * n, 3 * n)
-    stiffness[w, w] = _kron(_integral(dv, dv, shear), yy)
-    stiffness[w, w] += _kron(_integral(v, v, shear), dydy)
-    stiffness[s, s] = _kron(_integral(dv, dv, bending) + _integral(v, v, shear), yy)
-    stiffness[s, s] += _kron(_integral(v, v, twist), dydy)
-    stiffness[r, r] = _kron(_integral(v, v, bending), dydy)
-    stiffness[r, r] += _kron(_integral(dv, dv, twist) + _integral(v, v, shear), yy)
-    stiffness[s, w] = -_kron(_integral(v, dv, shear), yy)
-    stiffness[r, w] = -_kron(_integral(v, v, shear), ydy)
-    stiffness[r, s] = _kron(_integral(v, dv, bending * nu), ydy.T)
-    stiffness[r, s] += _kron(_integral(dv, v, twist), ydy)
+    stiffness[w, w] = np.kron(_integral(dv, dv, shear), yy)
+    stiffness[w, w] += np.kron(_integral(v, v, shear), dydy)
+    stiffness[s, s] = np.kron(_integral(dv, dv, bending) + _integral(v, v, shear), yy)
+    stiffness[s, s] += np.kron(_integral(v, v, twist), dydy)
+    stiffness[r, r] = np.kron(_integral(v, v, bending), dydy)
+    stiffness[r, r] += np.kron(_integral(dv, dv, twist) + _integral(v, v, shear), yy)
+    stiffness[s, w] = -np.kron(_integral(v, dv, shear), yy)
+    stiffness[r, w] = -np.kron(_integral(v, v, shear), ydy)
+    stiffness[r, s] = np.kron(_integral(v, dv, bending * nu), ydy.T)
+    stiffness[r, s] += np.kron(_integral(dv, v, twist), ydy)
     _add_foundation(stiffness, yy, float(thickness[0]), elastic_modulus, nu)
     for row, column in ((s, w), (r, w), (r, s)):
         stiffness[column, row] = stiffness[row, column].T
@@ -223,7 +223,7 @@ def _add_foundation(
     deflection = DEFLECTION_CONSTANT * (1 - nu**2) / elastic_modulus
     springs = np.linalg.inv(np.array([[deflection, coupling], [coupling, rotation]]))
     at_root = _polynomials(np.array([-1.0]), HEIGHT_TERMS)[0]
-    line = _kron(np.outer(at_root, at_root), yy)
+    line = np.kron(np.outer(at_root, at_root), yy)
     stiffness[:n, :n] += springs[0, 0] * line
     stiffness[n : 2 * n, n : 2 * n] += springs[1, 1] * line
     stiffness[n : 2 * n, :n] += springs[1, 0] * line
@@ -234,16 +234,6 @@ def _add_foundation(
 def _integral(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
     """Integrals of products of the columns of `a` and `b`, values at Gauss points."""
     return a.T @ (weights[:, None] * b)
-
-
-def _kron(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.asarray(np.kron(a, b), dtype=np.float64)
-
-
-def _gauss(count: int) -> tuple[FloatArray, FloatArray]:
-    """Points and weights of Gauss's quadrature over -1 to 1."""
-    points, weights = legendre.leggauss(count)
-    return np.asarray(points, dtype=np.float64), np.asarray(weights, dtype=np.float64)
 
 
 def _polynomials(points: FloatArray, terms: int) -> FloatArray:
@@ -448,13 +438,7 @@ def mesh_compliance(
     Raises `ConvergenceError` if the stiffness of a tooth cannot be inverted. Raises `ValueError` if
     no tool generates a tooth.
     """
-    with one_thread():
-        return _coefficients(mesh, body1, body2, contact_lines(mesh, positions, segments))
-
-
-def _coefficients(
-    mesh: Mesh, body1: GearBody, body2: GearBody, lines: ContactLines
-) -> MeshCompliance:
+    lines = contact_lines(mesh, positions, segments)
     shape = lines.length.shape
     influence = np.zeros((*shape, shape[-1]))
     # lines that are not in contact lie beyond the path of contact: any place on it serves for them
@@ -466,11 +450,12 @@ def _coefficients(
     local_a = np.zeros(shape)
     members = ((mesh.gear1, body1, rho1), (mesh.gear2, body2, mesh.curvature2(rho1)))
     for gear, body, curvature in members:
-        plate = _plate(gear, body)
         overhang = (gear.face_width - mesh.face_width) / 2
         face = (lines.face_position + overhang) / gear.face_width
-        amplitudes = plate.amplitudes(curvature.ravel(), face.ravel()).reshape(*shape, -1)
-        influence += amplitudes @ amplitudes.swapaxes(-1, -2)
+        with one_thread():
+            plate = _plate(gear, body)
+            amplitudes = plate.amplitudes(curvature.ravel(), face.ravel()).reshape(*shape, -1)
+            influence += amplitudes @ amplitudes.swapaxes(-1, -2)
         nu = body.poisson_ratio
         depth = plate.depth(curvature.ravel()).reshape(shape)
         local_a += body.surface_compliance * (np.log(2 * depth) - log_width - nu / (2 * (1 - nu)))
@@ -558,7 +543,7 @@ class LoadedMesh:
         Lag of the driven member against the motion of rigid flanks without deviations, as an arc on
         the base circle: the normal approach over cos(beta_b). Theory (E8). [m]
         """
-        return self.normal_approach / self._cosine
+        return self.normal_approach / math.cos(self.mesh.gear1.rack.base_helix_angle)
 
     @property
     def transmission_error_range(self) -> float:
@@ -573,15 +558,11 @@ class LoadedMesh:
     @property
     def tangent_stiffness(self) -> FloatArray:
         """Slope of the transverse force over the transmission error. Theory (E9). [N/m]"""
-        return self.normal_stiffness * self._cosine**2
+        return self.normal_stiffness * math.cos(self.mesh.gear1.rack.base_helix_angle) ** 2
 
     def mean(self, over_period: FloatArray) -> float:
         """Mean over the mesh period of a figure of shape (positions,)."""
         return float(over_period @ self.lines.weight)
-
-    @property
-    def _cosine(self) -> float:
-        return math.cos(self.mesh.gear1.rack.base_helix_angle)
 
 
 @lru_cache(maxsize=KEPT_LOADS)

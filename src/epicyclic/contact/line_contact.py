@@ -95,11 +95,6 @@ class LineContacts:
         return hertz_half_width(self.line_load, self.radius, self.flanks.equivalent_modulus)
 
     @property
-    def flattening(self) -> FloatArray:
-        """b_h/R_eq, that of Hertz's theory far below 1. [1]"""
-        return self.hertz_half_width / self.radius
-
-    @property
     def surface_speeds(self) -> tuple[FloatArray, FloatArray]:
         """u_1 and u_2 across the contact. [m/s]"""
         half = self.sliding_speed / 2

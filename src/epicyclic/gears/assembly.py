@@ -257,7 +257,7 @@ def _angle_problems(gearing: Gearing) -> Iterator[Problem]:
 
 
 def _place_problems(gearing: Gearing) -> Iterator[Problem]:
-    arrangement, count = gearing.arrangement(), gearing.count
+    arrangement, count = gearing.arrangement, gearing.count
     places = {round(angle / (2 * math.pi), 9) % 1 for angle in arrangement.angles}
     if gearing.stated_angles is not None or len(places) == count:
         return

@@ -321,13 +321,14 @@ class Gearing:
                         found.append(two)
         return pins
 
-    def arrangement(self, count: int | None = None) -> Arrangement:
+    @cached_property
+    def arrangement(self) -> Arrangement:
         """The arms of the carrier: as stated, else equally spaced if possible. Theory (A7).
 
         Planets whose gears stand alike on their bodies are preferred to such that are made one by
         one, and these to unequal spacing.
         """
-        planets = count or self.count or 1
+        planets = self.count or 1
         number = self._closing_number(self.bodies)
         if self.stated_angles is not None:
             return Arrangement(self.stated_angles, number, individual=False)
@@ -341,7 +342,7 @@ class Gearing:
     @property
     def planet_angles(self) -> tuple[float, ...]:
         """Where the planets stand around the axis; empty without planets. [rad]"""
-        return self.arrangement().angles if self.planets and self.count else ()
+        return self.arrangement.angles if self.planets and self.count else ()
 
     def _closing_number(self, owners: Mapping[str, str]) -> int:
         """Teeth on planets by `owners` of gears, and of the central gear, for `closing_number`."""

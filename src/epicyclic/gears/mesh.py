@@ -250,12 +250,8 @@ def profile_shift_sum(
     if cosine > 1 or teeth == 0:
         raise ValueError("the base circles do not let the gears come so close")
     change = involute(math.acos(cosine)) - involute(rack.transverse_pressure_angle)
-    return _sum_for(rack, teeth, change) - thinning(rack, normal_backlash)
-
-
-def _sum_for(rack: BasicRack, teeth: int, change: float) -> float:
-    """x1 + x2 without backlash for a `change` of the involute function. Theory (G44)."""
-    return teeth * change / (2 * math.tan(rack.normal_pressure_angle))
+    total = teeth * change / (2 * math.tan(rack.normal_pressure_angle))
+    return total - thinning(rack, normal_backlash)
 
 
 def closed_center_distance(
@@ -279,7 +275,12 @@ def closed_center_distance(
     if teeth == 0:
         raise ValueError("equal numbers of teeth of a ring and its mate")
     value = involute(rack.transverse_pressure_angle)
-    value += (shift_sum + thinning(rack, normal_backlash)) / _sum_for(rack, teeth, 1.0)
+    value += (
+        (shift_sum + thinning(rack, normal_backlash))
+        * 2
+        * math.tan(rack.normal_pressure_angle)
+        / teeth
+    )
     if value < 0:
         raise ValueError("the teeth are too thin for any centre distance")
     return (

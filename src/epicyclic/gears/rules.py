@@ -365,36 +365,31 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
     gears = (mesh.gear1, mesh.gear2)
     keys = [thickness_key(gearing.key(gear.name), gearing.tables[gear.name]) for gear in gears]
     fits = " or ".join(_fitting(gearing, mesh, gear) for gear in gears)
-    usual = micrometres(_recommended(mesh))
+    usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)
+    less = thinning(mesh.gear1.rack, usual)
     allowed = f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
     allowed += f"centre distance of {millimetres(mesh.center_distance)} (negative backlash)."
     remedy = f"Without backlash {fits} fits{_distance(mesh, distance_key)}; "
-    remedy += f"{_recommended_shift(mesh):.4f} less of one x leaves {usual}, recommended by ISO/TR "
+    remedy += f"{less:.4f} less of one x leaves {micrometres(usual)}, recommended by ISO/TR "
     remedy += f"10064-2.{_other_sign(gearing, mesh)}"
     return [Problem(", ".join(keys), "", allowed, remedy)]
 
 
-def backlash_notes(gearing: Gearing, mesh: Mesh) -> Iterator[str]:
-    """A note on teeth that are far too thin for their mesh."""
-    backlash, usual = mesh.normal_backlash, _recommended(mesh)
-    if backlash <= GROSS * usual:
-        return
-    gears = (mesh.gear1, mesh.gear2)
-    fits = " or ".join(_fitting(gearing, mesh, gear, usual) for gear in gears)
-    yield (
-        f"The {mesh.name} has a normal backlash of {millimetres(backlash)}, "
-        f"{backlash / usual:.2g} times the {micrometres(usual)} that ISO/TR 10064-2 recommends: "
-        f"{TOO_THIN}. With {fits} it has that."
-        f"{_other_sign(gearing, mesh)}"
-    )
-
-
-def _recommended(mesh: Mesh) -> float:
-    return recommended_backlash(mesh.gear1.rack, mesh.center_distance)
-
-
-def _recommended_shift(mesh: Mesh) -> float:
-    return thinning(mesh.gear1.rack, _recommended(mesh))
+def backlash_notes(gearing: Gearing) -> Iterator[str]:
+    """A note on every mesh whose teeth are far too thin."""
+    for mesh in gearing.geometries:
+        backlash = mesh.normal_backlash
+        usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)
+        if backlash <= GROSS * usual:
+            continue
+        gears = (mesh.gear1, mesh.gear2)
+        fits = " or ".join(_fitting(gearing, mesh, gear, usual) for gear in gears)
+        yield (
+            f"The {mesh.name} has a normal backlash of {millimetres(backlash)}, "
+            f"{backlash / usual:.2g} times the {micrometres(usual)} that ISO/TR 10064-2 "
+            f"recommends: {TOO_THIN}. With {fits} it has that."
+            f"{_other_sign(gearing, mesh)}"
+        )
 
 
 def _teeth(mesh: Mesh) -> int:
@@ -433,7 +428,8 @@ def _other_sign(gearing: Gearing, mesh: Mesh) -> str:
     if not mesh.internal or not shift:
         return ""
     over = _over(mesh) - 2 * shift
-    if not -GROSS * _recommended_shift(mesh) <= over <= 10.0**-DIGITS:
+    usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)
+    if not -GROSS * thinning(mesh.gear1.rack, usual) <= over <= 10.0**-DIGITS:
         return ""
     hint = f" With the other sign, {-shift:g}, x of the {ring.name} fits: in ISO 21771 "
     return f"{hint}positive x thickens the teeth."

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from epicyclic.errors import InputError, Problem, one_problem
@@ -72,27 +72,14 @@ class _Sized:
     """A mesh whose centre distance or profile shifts may have to be found."""
 
     drawn: GearPairing
+    gears: tuple[str, str]  # A ring is the second.
+    backlash: float | None  # j_bn, as stated. [m]
     teeth: int  # z1 + z2, those of a ring negative.
     rack: BasicRack  # Rack of both gears.
     place: tuple[str, ...]  # Path of its centre distance.
     stated_distance: float | None  # [m]
     gives_way: str  # The gear that is thinned where digits contradict each other.
     group: str  # Meshes of one group have one centre distance.
-
-    @property
-    def gears(self) -> tuple[str, str]:
-        """Names of its gears; a ring is the second."""
-        return self.drawn.first, self.drawn.second
-
-    @property
-    def backlash_key(self) -> str:
-        """Where its backlash is stated."""
-        return f"{self.drawn.table_key}.normal_backlash"
-
-    @property
-    def backlash(self) -> float | None:
-        """j_bn. [m]"""
-        return self.drawn.table.normal_backlash
 
 
 def complete(
@@ -153,13 +140,16 @@ def _sized(gearing: Gearing) -> Iterator[_Sized]:
     for mesh in gearing.meshes:
         one, two = (gearing.racks[gear] for gear in (mesh.first, mesh.second))
         least = _ALIKE * one.normal_module
-        pairs = zip(astuple(one), astuple(two), strict=True)
+        keys = ("transverse_module", "transverse_pressure_angle", "helix_angle")
+        pairs = ((getattr(one, key), getattr(two, key)) for key in keys)
         if not all(math.isclose(a, b, rel_tol=_ALIKE, abs_tol=least) for a, b in pairs):
             continue
         teeth = [gearing.tables[gear].teeth for gear in (mesh.first, mesh.second)]
         central = gearing.central_gear(mesh)
         yield _Sized(
             mesh,
+            (mesh.first, mesh.second),
+            mesh.table.normal_backlash,
             teeth[0] + (-1 if mesh.internal else 1) * teeth[1],
             one,
             tuple(gearing.distance_key(mesh).split(".")),
@@ -334,7 +324,8 @@ class _Solver:
             allowed = "contradicts the teeth and the centre distance, which leave "
             allowed += f"{micrometres(backlash + mesh.backlash)}."
             remedy = "Leave out normal_backlash, a profile shift or the centre distance."
-            raise one_problem(mesh.backlash_key, millimetres(mesh.backlash), allowed, remedy)
+            key = f"{mesh.drawn.table_key}.normal_backlash"
+            raise one_problem(key, millimetres(mesh.backlash), allowed, remedy)
         if mesh.backlash is not None or backlash > -ROUNDING or over > self._printed(mesh):
             return
         name = mesh.gives_way

@@ -237,18 +237,13 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """
     compiled: Any = numba.njit(fastmath=False, error_model="numpy", nogil=True)(function)
     if _CACHE_DIR is not None:
-        _keep(compiled, _CACHE_DIR)
+        config: Any = numba.config
+        previous = config.CACHE_DIR
+        config.CACHE_DIR = str(_CACHE_DIR)
+        try:
+            compiled._cache = _KernelCache(compiled)
+        except Exception as error:  # numba finds no place that it can write to
+            _note_lost(error)
+        finally:
+            config.CACHE_DIR = previous
     return cast("Callable[P, R]", compiled)
-
-
-def _keep(compiled: Any, folder: Path) -> None:
-    """Keep the machine code of a kernel in `folder`."""
-    config: Any = numba.config
-    previous = config.CACHE_DIR
-    config.CACHE_DIR = str(folder)
-    try:
-        compiled._cache = _KernelCache(compiled)
-    except Exception as error:  # numba finds no place that it can write to
-        _note_lost(error)
-    finally:
-        config.CACHE_DIR = previous

@@ -28,8 +28,7 @@ __all__ = [
 ]
 
 
-def _root() -> Traversable:
-    return resources.files("epicyclic.library")
+_ROOT = resources.files("epicyclic.library")
 
 
 def _read(file: Traversable) -> dict[str, Any]:
@@ -37,7 +36,7 @@ def _read(file: Traversable) -> dict[str, Any]:
 
 
 def _stems(folder: str) -> tuple[str, ...]:
-    files = (entry.name for entry in _root().joinpath(folder).iterdir())
+    files = (entry.name for entry in _ROOT.joinpath(folder).iterdir())
     return tuple(sorted(name.removesuffix(".toml") for name in files if name.endswith(".toml")))
 
 
@@ -51,13 +50,13 @@ def oil_table(name: str) -> dict[str, Any]:
     """The data of one built-in oil. Raises `KeyError` if there is no such oil."""
     if name not in oil_names():
         raise KeyError(name)
-    return _read(_root().joinpath("oils", f"{name}.toml")) | {"name": name}
+    return _read(_ROOT.joinpath("oils", f"{name}.toml")) | {"name": name}
 
 
 @cache
 def oil_model_file(name: str) -> Path | None:
     """The file of the models fitted for a built-in oil; None if there is none."""
-    file = Path(str(_root().joinpath("oilmodels", f"{name}.json")))
+    file = Path(str(_ROOT.joinpath("oilmodels", f"{name}.json")))
     return file if name in oil_names() and file.is_file() else None
 
 
@@ -74,7 +73,7 @@ def finishes() -> Mapping[str, Mapping[str, Any]]:
 
 
 def _read_only(file: str) -> Mapping[str, Mapping[str, Any]]:
-    tables = _read(_root().joinpath(file))
+    tables = _read(_ROOT.joinpath(file))
     return MappingProxyType({name: MappingProxyType(table) for name, table in tables.items()})
 
 
@@ -84,19 +83,20 @@ def case_files() -> tuple[str, ...]:
     return _stems("cases")
 
 
+@cache
 def case_variants() -> dict[str, list[dict[str, Any]]]:
     """For each built-in case, its groups of variants: word in the name -> keys it sets."""
-    return _read(_root().joinpath("variants.toml"))
+    return _read(_ROOT.joinpath("variants.toml"))
 
 
 def case_source(name: str) -> str:
     """The file of a built-in case, with its comments."""
-    return _root().joinpath("cases", f"{name}.toml").read_text(encoding="utf-8")
+    return _ROOT.joinpath("cases", f"{name}.toml").read_text(encoding="utf-8")
 
 
 def minimal_case(kind: str) -> str:
     """A commented file of `kind` with only what a case must state."""
-    return _root().joinpath("minimal", f"{kind}.toml").read_text(encoding="utf-8")
+    return _ROOT.joinpath("minimal", f"{kind}.toml").read_text(encoding="utf-8")
 
 
 def builtin_case(name: str) -> dict[str, Any]:
@@ -109,7 +109,7 @@ def builtin_case(name: str) -> dict[str, Any]:
     base = max(bases, key=len, default="")
     if not base:
         raise KeyError(name)
-    table = _read(_root().joinpath("cases", f"{base}.toml"))
+    table = _read(_ROOT.joinpath("cases", f"{base}.toml"))
     words = name[len(base) :].split("-")[1:]
     if words:
         table["title"] = ", ".join([table["title"].split(",")[0], *words])
@@ -130,7 +130,7 @@ def builtin_case(name: str) -> dict[str, Any]:
 @cache
 def uncertainty_table() -> dict[str, Any]:
     """What is assumed of values and models whose uncertainty a case does not state."""
-    return _read(_root().joinpath("uncertainty.toml"))
+    return _read(_ROOT.joinpath("uncertainty.toml"))
 
 
 @cache

@@ -243,7 +243,7 @@ def _before(values: Any, ended: float) -> Any:
 PocketModel = Literal[
     "incompressible", "isentropic", "mean-density", "central-differences", "talbot-2012"
 ]
-POCKETING_MODELS: dict[PocketModel, str] = {
+POCKETING_MODELS: dict[str, str] = {
     "incompressible": "flow of an incompressible mixture above the pressure of a void",
     "isentropic": "flow of a compressible mixture, isentropic openings",
     "mean-density": "flow of a compressible mixture, mean density at the openings",

@@ -169,23 +169,16 @@ def _lives(mesh: Mesh, clearances: tuple[float, float]) -> Floats:
     """Angles at which the first corner of a tooth enters the tip circle of the mate, and the last
     one leaves it. Theory (Q6)."""
     gear1, gear2 = mesh.gear1, mesh.gear2
-    crossing1 = _crossing(gear1.tip_radius, gear2.tip_radius, mesh.center_distance, mesh.internal)
+    tip1, tip2, distance = gear1.tip_radius, gear2.tip_radius, mesh.center_distance
+    # About each gear, where the tip circles cross. Seen from a ring, its own tip circle is the far
+    # one and that of the planet the near one.
+    cosine1 = mesh.side * (tip1**2 + distance**2 - tip2**2) / (2 * tip1 * distance)
+    cosine2 = (tip2**2 + distance**2 - tip1**2) / (2 * tip2 * distance)
+    crossing1, crossing2 = (math.acos(min(1.0, max(-1.0, it))) for it in (cosine1, cosine2))
     half1 = crossing1 + gear1.tip_half_angle
-    # Seen from a ring, its own tip circle is the far one and that of the planet the near one.
-    cosine = (gear2.tip_radius**2 + mesh.center_distance**2 - gear1.tip_radius**2) / (
-        2 * gear2.tip_radius * mesh.center_distance
-    )
-    crossing2 = math.acos(min(1.0, max(-1.0, cosine)))
     half2 = (crossing2 + gear2.tip_half_angle) * mesh.ratio
     shift = (clearances[0] - clearances[1]) / 2 / gear1.base_radius
     return np.array([[-half1, half1], [-half2 - shift, half2 - shift]])
-
-
-def _crossing(tip1: float, tip2: float, center_distance: float, internal: bool) -> float:
-    """Angle about gear 1, from the line of centres, at which the tip circles cross. [rad]"""
-    side = -1.0 if internal else 1.0
-    cosine = side * (tip1**2 + center_distance**2 - tip2**2) / (2 * tip1 * center_distance)
-    return math.acos(min(1.0, max(-1.0, cosine)))
 
 
 # Geometry of the cells into which the pockets of a mesh are cut, over one mesh period.

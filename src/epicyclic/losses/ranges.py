@@ -323,6 +323,11 @@ def _flag(
     least, most = _ends(values)
     low, high = item.bounds
     outside = (values < low) | (values > high)
+    share = 1.0
+    if isinstance(outside, np.ndarray):  # share of the weight of all values
+        weights = np.broadcast_to(np.asarray(weight, dtype=float), outside.shape)
+        total = float(weights.sum())
+        share = min(float(weights[outside].sum()) / total, 1.0) if total > 0 else 1.0
     scale, offset = item.unit.scale_and_offset()
     return ValidityFlag(
         use,
@@ -332,7 +337,7 @@ def _flag(
         item.low,
         item.high,
         item.unit.display,
-        part * _share(outside, weight),
+        part * share,
         item.source,
     )
 
@@ -351,15 +356,6 @@ def _ends(values: FloatArray | float) -> tuple[float, float]:
     if not values.size:
         return math.inf, -math.inf
     return float(values.min()), float(values.max())
-
-
-def _share(outside: NDArray[np.bool_] | bool, weight: FloatArray | float) -> float:
-    """Share of the weight of all values that those `outside` have. [1]"""
-    if not isinstance(outside, np.ndarray):
-        return 1.0
-    weights = np.broadcast_to(np.asarray(weight, dtype=float), outside.shape)
-    total = float(weights.sum())
-    return min(float(weights[outside].sum()) / total, 1.0) if total > 0 else 1.0
 
 
 FITTED_QUANTITIES = {

@@ -97,20 +97,15 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
     else:
         least = np.linalg.lstsq(matrix, known, rcond=SINGULAR)[0]
         found = least + np.linalg.lstsq(matrix, known - matrix @ least, rcond=SINGULAR)[0]
-    speeds = dict(zip(bodies, map(float, found), strict=True))
-    return dict.fromkeys(machine.resting, 0.0) | _joined(speeds | dict(given))
-
-
-def _joined(speeds: Mapping[str, float]) -> dict[str, float]:
-    """`speeds` in which bodies that turn together do so exactly, and still ones stand still."""
+    speeds = dict(zip(bodies, map(float, found), strict=True)) | dict(given)
+    # bodies that turn together do so exactly, and still ones stand still
     limit = TOGETHER * max(map(abs, speeds.values()), default=0.0)
     joined = {HOUSING: 0.0}
     last = 0.0
     for body, speed in sorted(speeds.items(), key=lambda item: abs(item[1])):
         near = [known for known in (last, -last, 0.0) if abs(speed - known) <= limit]
-        joined[body] = near[0] if near else speed
-        last = joined[body]
-    return joined
+        joined[body] = last = near[0] if near else speed
+    return dict.fromkeys(machine.resting, 0.0) | joined
 
 
 def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
@@ -126,7 +121,9 @@ def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
                 row[place[body]] += coefficient
         length = math.hypot(*row)
         rows.append(row / length if length else row)
-    rows += [_unit(machine.bodies, body) for body in given]
+    for body in given:
+        rows.append(np.zeros(len(place)))
+        rows[-1][place[body]] = 1.0
     return np.array(rows).reshape(len(rows), len(place))
 
 

@@ -95,32 +95,25 @@ def disc_loss(
     methods: dict[str, str] = {}
     for disc in discs:
         speed = state.speeds[disc.body]
-        drag, found, (method, source) = _drag(disc, speed, state)
-        methods[method] = source
+        if disc.sump is not None and disc.dips:
+            model = CHURNING_MODELS[disc.sump.model]
+            drag = disc.sump.power(disc.sump.model, speed, state)
+            flags += churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
+            methods[model.title] = model.source
+        else:
+            mixture = state.fluids.mixed(disc.oil_fraction)
+            own = disc_drag(disc.radius, disc.width, speed, mixture)
+            drag = own.total
+            flags += disc_drag_flags(disc.where, disc.radius, own, speed, mixture)
+            methods[DRAG_METHOD] = DRAG_SOURCE
         if disc.jets is not None:
             drag += _jet_loss(disc.jets, speed, state, struck)
             methods[JET_METHOD] = JET_SOURCE
         drags[disc.body] = drag
-        flags += found
     watts = sum(drags.values())
     brakes = tuple((body, HOUSING, drag / watts) for body, drag in drags.items() if drag)
     method, source = "; ".join(methods), "; ".join(methods.values())
     return Loss(LOAD_INDEPENDENT, watts, method, source, brakes=brakes), flags
-
-
-def _drag(
-    disc: Disc, speed: float, state: State
-) -> tuple[float, tuple[ValidityFlag, ...], tuple[str, str]]:
-    """Churning of a body that dips into a sump, drag in the mixture of another [W]; its method."""
-    if disc.sump is not None and disc.dips:
-        model = CHURNING_MODELS[disc.sump.model]
-        flags = churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
-        power = disc.sump.power(disc.sump.model, speed, state)
-        return power, flags, (model.title, model.source)
-    mixture = state.fluids.mixed(disc.oil_fraction)
-    drag = disc_drag(disc.radius, disc.width, speed, mixture)
-    flags = disc_drag_flags(disc.where, disc.radius, drag, speed, mixture)
-    return drag.total, flags, (DRAG_METHOD, DRAG_SOURCE)
 
 
 def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:

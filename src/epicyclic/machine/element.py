@@ -96,16 +96,13 @@ def fluids_at(
 def oil_flags(oil: Oil, temperature: float) -> tuple[ValidityFlag, ...]:
     """Where properties of an oil at a temperature leave the data behind them."""
     viscosity = extrapolated_viscosity(oil, temperature)
+    low, high = (CELSIUS.to_display(limit) for limit in oil.temperature_range)
+    data = Range("temperature", "temperature", low, high, CELSIUS, "data of this oil")
     return check_ranges(
         ModelUse("oil", oil.name, "properties"),
-        (_temperature_range(oil), _VISCOSITY),
+        (data, _VISCOSITY),
         {"temperature": temperature, "kinematic_viscosity": viscosity},
     )
-
-
-def _temperature_range(oil: Oil) -> Range:
-    low, high = (CELSIUS.to_display(limit) for limit in oil.temperature_range)
-    return Range("temperature", "temperature", low, high, CELSIUS, "data of this oil")
 
 
 # The figures of a result: what an engineer checks by eye on meshes, bearings and oil.

@@ -115,29 +115,9 @@ class MeshDuty:
     drives1: bool  # True if power flows from gear 1 to gear 2 or no power flows.
 
     @property
-    def key(self) -> str:
-        """First word of the losses of the mesh."""
-        return self.gears.key
-
-    @property
-    def mesh(self) -> Mesh:
-        """Its geometry."""
-        return self.gears.mesh
-
-    @property
-    def models(self) -> MeshModels:
-        """How its losses are computed."""
-        return self.gears.models
-
-    @property
-    def misalignment(self) -> float:
-        """F_beta_x. [m]"""
-        return self.gears.deviations.misalignment
-
-    @property
     def force(self) -> float:
         """Along the transverse line of action. Theory (D1). [N]"""
-        return abs(self.torque1) / self.mesh.gear1.base_radius
+        return abs(self.torque1) / self.gears.mesh.gear1.base_radius
 
     def misaligned(self, by: float) -> MeshDuty:
         """The same with a further misalignment in metres."""
@@ -208,19 +188,19 @@ def distribute_load(duty: MeshDuty, last: LoadedMesh | None = None) -> LineLoads
 
     `last`, the mesh under nearly that torque, saves work.
     """
-    models = duty.models
+    models = duty.gears.models
     distribution = LOAD_DISTRIBUTIONS[models.load_distribution]
-    load = MeshLoad(duty.mesh, duty.force, duty.gears.solids, duty.gears.deviations, last)
+    load = MeshLoad(duty.gears.mesh, duty.force, duty.gears.solids, duty.gears.deviations, last)
     return distribution.distribute(load, models.positions, models.segments)
 
 
 def elastic_loads(duty: MeshDuty) -> LoadedMesh:
     """The mesh under the torque of its duty with elastic teeth, whatever distributes the load."""
     return load_mesh_elastically(
-        duty.mesh,
+        duty.gears.mesh,
         *duty.gears.solids,
-        duty.models.positions,
-        duty.models.segments,
+        duty.gears.models.positions,
+        duty.gears.models.segments,
         duty.force,
         duty.gears.deviations,
     )
@@ -241,7 +221,7 @@ def contact_under(
 ) -> MeshContact:
     """Conditions along the contact lines under `loads`, at standstill too."""
     return mesh_contact(
-        duty.mesh,
+        duty.gears.mesh,
         loads.lines,
         loads.line_load,
         force=duty.force,
@@ -264,8 +244,8 @@ def solve_mesh(
 
     `last`, the result under nearly this torque, saves work.
     """
-    friction = duty.models.friction if last is None else last.friction
-    rolling = duty.models.rolling
+    friction = duty.gears.models.friction if last is None else last.friction
+    rolling = duty.gears.models.rolling
     loads = None
     if duty.torque1 != 0 and duty.speed1 != 0:
         loads = distribute_load(duty, None if last is None else last.elastic)
@@ -273,52 +253,51 @@ def solve_mesh(
     loss = MeshLoss(0.0, 0.0)
     if contact is not None:
         friction = friction.solved_for(contact)
-        if duty.models.by_loss_factor:
+        if duty.gears.models.by_loss_factor:
             loss = loss_factor_loss(contact, friction)
         else:
             loss = local_loss(contact, friction, rolling)
     materials = duty.gears.materials
     share1 = 0.5 if contact is None else heat_share1(contact, loss.heat, materials)
     method, source = friction.title, friction.source
-    halves = _heat(duty.gears.nodes, 0.5)
+    node1, node2 = duty.gears.nodes
     rolling_loss = Loss(
-        LOAD_DEPENDENT, count * loss.rolling, rolling.title, rolling.source, heat=halves
+        LOAD_DEPENDENT,
+        count * loss.rolling,
+        rolling.title,
+        rolling.source,
+        heat=((node1, 0.5), (node2, 0.5)),
     )
-    if duty.models.by_loss_factor:
+    if duty.gears.models.by_loss_factor:
         method, source = f"{method} times the loss factor", f"{source}; {OHLENDORF_SOURCE}"
         rolling_loss = Loss(LOAD_DEPENDENT, left_out="the loss-factor method has no rolling loss")
     losses = {
-        f"{duty.key}_sliding": Loss(
+        f"{duty.gears.key}_sliding": Loss(
             LOAD_DEPENDENT,
             count * loss.sliding,
             method,
             source,
-            heat=_heat(duty.gears.nodes, share1),
+            heat=((node1, share1), (node2, 1 - share1)),
         ),
-        f"{duty.key}_rolling": rolling_loss,
-        f"{duty.key}_pocketing": _pocketing(duty.models.pockets, flow, count),
+        f"{duty.gears.key}_rolling": rolling_loss,
+        f"{duty.gears.key}_pocketing": _pocketing(duty.gears.models.pockets, flow, count),
     }
     elastic = None if loads is None else loads.elastic
     figures = partial(_mesh_figures, duty, contact, loss, elastic, flow.figures)
     least = SMALLEST_SHOWN_SHARE * sum(term.watts for term in losses.values())
     notes = pocket_notes(duty, flow.figures, fluids, count, least)
-    notes += stored_note(duty.models.pockets, duty.mesh, flow.figures)
-    if duty.models.by_loss_factor:
-        notes += loss_factor_notes(duty.mesh)
+    notes += stored_note(duty.gears.models.pockets, duty.gears.mesh, flow.figures)
+    if duty.gears.models.by_loss_factor:
+        notes += loss_factor_notes(duty.gears.mesh)
     notes += friction.remarks
     return MeshResult(
         losses=losses,
-        figures=Figures({duty.key: figures}),
+        figures=Figures({duty.gears.key: figures}),
         flags=loss.flags,
         notes=notes,
         elastic=elastic,
         friction=friction,
     )
-
-
-def _heat(nodes: tuple[str, str], share1: float) -> tuple[tuple[str, float], ...]:
-    """Both gears with their shares of a heat."""
-    return ((nodes[0], share1), (nodes[1], 1 - share1))
 
 
 def _pocketing(settings: PocketSettings, flow: MeshFlow, count: int) -> Loss:
@@ -338,13 +317,6 @@ def _largest(values: FloatArray, weight: FloatArray) -> int:
     return int(order[np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])])
 
 
-def _resistance(contact: MeshContact, loss: MeshLoss) -> float:
-    """Loss over the load times the rolling and sliding speeds. [1]"""
-    speed = contact.rolling_speed + np.abs(contact.sliding_speed)
-    resisted = float((contact.line_load * speed) @ contact.weight)
-    return (loss.sliding + loss.rolling) / resisted if resisted else 0.0
-
-
 def _mesh_figures(
     duty: MeshDuty,
     contact: MeshContact | None,
@@ -352,31 +324,34 @@ def _mesh_figures(
     elastic: LoadedMesh | None,
     flow: FlowFigures | None,
 ) -> MeshFigures:
-    mesh = duty.mesh
+    mesh = duty.gears.mesh
     warmth = None if contact is None else mesh_warmth(contact, loss.friction, duty.gears.materials)
     speed1 = abs(duty.speed1)
     sliding = max(
         abs(speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1))
         for rho1 in (mesh.path_start, mesh.path_end)
     )
-    line_load, pressure, flattening = math.nan, math.nan, 0.0
+    line_load, pressure, flattening, resistance = math.nan, math.nan, 0.0, 0.0
     if contact is not None:
+        speed = contact.rolling_speed + np.abs(contact.sliding_speed)
+        resisted = float((contact.line_load * speed) @ contact.weight)
+        resistance = (loss.sliding + loss.rolling) / resisted if resisted else 0.0
         line_load = float(contact.line_load[_largest(contact.line_load, contact.weight)])
         place = _largest(contact.hertz_pressure, contact.weight)  # flattest there, too
         pressure = float(contact.hertz_pressure[place])
-        flattening = float(contact.flattening[place])
+        flattening = float(contact.hertz_half_width[place] / contact.radius[place])
     return MeshFigures(
         pressure_angle=mesh.operating_pressure_angle,
         transverse_contact_ratio=mesh.transverse_contact_ratio,
         overlap_ratio=mesh.overlap_ratio,
         backlash=mesh.backlash,
-        misalignment=duty.misalignment,
+        misalignment=duty.gears.deviations.misalignment,
         pitch_line_speed=speed1 * mesh.operating_radius1,
         sliding_speed_max=sliding,
         line_load_max=line_load,
         hertz_pressure_max=pressure,
         flattening=flattening,
-        resistance=0.0 if contact is None else _resistance(contact, loss),
+        resistance=resistance,
         contact_share=(
             math.nan if contact is None else float(contact.weight.sum()) / mesh.mean_contact_length
         ),

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.pocket_tables import KnownFlows
-from epicyclic.losses.ranges import Flags, ModelUse, SomeFlags, ValidityFlag
+from epicyclic.losses.ranges import Flags, ModelUse, ValidityFlag
 from epicyclic.machine.disc import Disc, ThrustBearing, disc_loss, thrust_loss
 from epicyclic.machine.element import (
     LOAD_INDEPENDENT,
@@ -254,7 +254,7 @@ class GearSet:
         torques = self._torques(state, None if last is None else last.drags)
         if not self._parts_apart:
             return torques
-        duties = {duty.key: duty for duty in self.duties(state, torques, 1 / self.count)}
+        duties = {duty.gears.key: duty for duty in self.duties(state, torques, 1 / self.count)}
         speed = state.speeds[self.carrier]
         bearings = {
             planet.key: self.count * planet.pin_radius * planet.load(duties, speed)[1].force
@@ -278,10 +278,10 @@ class GearSet:
         """The meshes of the planet that carries most, misaligned if it tilts."""
         torques = self._torques(state)
         share = max(self.shares(state, torques))
-        duties = {duty.key: duty for duty in self.duties(state, torques, share)}
+        duties = {duty.gears.key: duty for duty in self.duties(state, torques, share)}
         for planet in self.planets:
             tilted, _ = planet.load(duties, state.speeds[self.carrier])
-            duties |= {duty.key: duty for duty in tilted}
+            duties |= {duty.gears.key: duty for duty in tilted}
         return tuple(duties.values())
 
     def mean_duties(self, state: State) -> tuple[MeshDuty, ...]:
@@ -290,7 +290,7 @@ class GearSet:
 
     def mean_loads(self, state: State) -> dict[str, PlanetLoad]:
         """Load on the bearing of a planet that carries its mean share and does not tilt."""
-        duties = {duty.key: duty for duty in self.mean_duties(state)}
+        duties = {duty.gears.key: duty for duty in self.mean_duties(state)}
         speed = state.speeds[self.carrier]
         return {
             planet.key: replace(planet, tilts=False).load(duties, speed)[1]
@@ -345,7 +345,8 @@ class GearSet:
         duties = self.duties(state, torques, 1 / self.count)
         if self.reference is None:
             duties = tuple(
-                replace(duty, drives1=state.drives[f"{self.key}.{duty.key}"]) for duty in duties
+                replace(duty, drives1=state.drives[f"{self.key}.{duty.gears.key}"])
+                for duty in duties
             )
         return tuple(duty.drives1 for duty in duties), duties
 
@@ -382,14 +383,14 @@ class GearSet:
         last_meshes: Mapping[str, MeshResult],
         last_rollers: Mapping[tuple[str, float], RollerLoads | None],
     ) -> _Branch:
-        duties = {duty.key: duty for duty in self.duties(state, torques, share)}
+        duties = {duty.gears.key: duty for duty in self.duties(state, torques, share)}
         bearings = []
         rollers: dict[tuple[str, float], RollerLoads | None] = {}
         notes: tuple[str, ...] = ()
         carrier = state.speeds[self.carrier]
         for planet in self.planets:
             tilted, load = planet.load(duties, carrier)
-            duties |= {duty.key: duty for duty in tilted}
+            duties |= {duty.gears.key: duty for duty in tilted}
             if planet.bearing is not None:
                 notes += planet.notes(carrier, load)
             if planet.bearing is None:
@@ -411,16 +412,16 @@ class GearSet:
             solve_mesh(
                 duty,
                 state.fluids,
-                flows[duty.key],
+                flows[duty.gears.key],
                 planets,
-                state.fluids.at(joined_key(self.key, duty.key)),
-                last_meshes.get(duty.key),
+                state.fluids.at(joined_key(self.key, duty.gears.key)),
+                last_meshes.get(duty.gears.key),
             )
             for duty in duties.values()
         ]
         notes += tuple(note for mesh in meshes for note in mesh.notes)
         losses: dict[str, Loss] = {}
-        flags: SomeFlags = ()
+        flags = Flags()
         for planet, bearing in zip(self.planets, bearings, strict=True):
             losses |= {
                 name: self._in_bearing(loss, planet) for name, loss in bearing.losses.items()
@@ -444,7 +445,7 @@ class GearSet:
         """Losses of a mesh where they act: sliding is a share of its power, half of the rest brakes
         each of its gears against the carrier.
         """
-        follows = (duty.key,) if self._parts_apart else ()
+        follows = (duty.gears.key,) if self._parts_apart else ()
         if self.reference is not None:
             return {
                 name: self._inside(loss)._replace(follows=follows) for name, loss in losses.items()

@@ -132,8 +132,8 @@ def planet_shares(
         sun_mesh, ring_mesh = duties
         directions = branch_directions(
             branches.angles,
-            sun_mesh.mesh.operating_pressure_angle,
-            ring_mesh.mesh.operating_pressure_angle,
+            sun_mesh.gears.mesh.operating_pressure_angle,
+            ring_mesh.gears.mesh.operating_pressure_angle,
         )
         supports: dict[str, float] = (
             {sharing.floating_member: sharing.support_stiffness} if floats else {}
@@ -148,7 +148,7 @@ def _branches(
     """The branches of all planets. Theory (S6)."""
     sun_mesh = duties[0]
     # the branch force reaches the pin through both meshes
-    through_pin = sum(math.cos(duty.mesh.operating_pressure_angle) for duty in duties)
+    through_pin = sum(math.cos(duty.gears.mesh.operating_pressure_angle) for duty in duties)
     pin_force = through_pin * sun_mesh.force
     pin_compliance = 0.0 if bearing is None else 1 / radial_stiffness(bearing, pin_force)
     if sharing.pin_stiffness is not None:
@@ -220,22 +220,16 @@ class PlanetContact:
         return self.hand * self.sense * (1 if self.member == 2 else -1)
 
     @property
-    def planet_radius(self) -> float:
-        """Operating radius of the planet in this mesh. [m]"""
-        mesh = self.duty.mesh
-        return mesh.operating_radius1 if self.member == 1 else mesh.operating_radius2
-
-    @property
     def direction(self) -> complex:
         """Unit vector of the transverse force on the planet, t + i r."""
-        angle = self.duty.mesh.operating_pressure_angle
+        angle = self.duty.gears.mesh.operating_pressure_angle
         # its arm is -outward, and z x is i times
         return complex(*self.outward) * complex(math.sin(angle), -self.sense * math.cos(angle))
 
     @property
     def axial_force(self) -> float:
         """Axial force of the mesh on the planet, along y. [N]"""
-        mesh = self.duty.mesh
+        mesh = self.duty.gears.mesh
         tangential = abs(self.duty.torque1) / mesh.operating_radius1
         return self.hand * self.sense * tangential * mesh.operating_helix_tangent
 
@@ -259,7 +253,9 @@ def planet_load(
     for contact, own in zip(contacts, mesh_moments or [0.0] * len(contacts), strict=True):
         lever = own + contact.position * contact.duty.force
         moment += lever * contact.direction
-        couple = contact.axial_force * contact.planet_radius
+        mesh = contact.duty.gears.mesh
+        radius = mesh.operating_radius1 if contact.member == 1 else mesh.operating_radius2
+        couple = contact.axial_force * radius  # operating radius of the planet in this mesh
         moment += couple * complex(*contact.outward)
     force = _radial_force(contacts, centrifugal)
     turned = moment * cmath.rect(1.0, -cmath.phase(force))
@@ -424,7 +420,7 @@ def _misaligned(contacts: Contacts, tilt: FloatArray) -> Contacts:
             contact,
             duty=contact.duty.misaligned(
                 contact.face_sense
-                * contact.duty.mesh.face_width
+                * contact.duty.gears.mesh.face_width
                 * float(tilt @ (contact.direction.real, contact.direction.imag))
             ),
         )
@@ -445,9 +441,9 @@ def _mesh_moment(duty: MeshDuty) -> float:
     if duty.torque1 == 0:
         return 0.0
     loaded = elastic_loads(duty)
-    height = loaded.lines.face_position - duty.mesh.face_width / 2
+    height = loaded.lines.face_position - duty.gears.mesh.face_width / 2
     moments = (loaded.line_load * loaded.lines.length * height).sum(axis=(1, 2))
-    return loaded.mean(moments) * math.cos(duty.mesh.gear1.rack.base_helix_angle)
+    return loaded.mean(moments) * math.cos(duty.gears.mesh.gear1.rack.base_helix_angle)
 
 
 def _tilt_under(
@@ -593,6 +589,21 @@ def _bearing_figures(
     row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
     hardest = float(loads.intensity.max()), bearing.inner_radius, bearing.equivalent_modulus
     resisted = float(rollers.sum()) * bearing.pitch_diameter / 2 * abs(speed)
+    inner, outer = (
+        hertz_half_width(
+            loads.intensity, np.full_like(loads.intensity, radius), bearing.equivalent_modulus
+        )
+        for radius in (bearing.inner_radius, bearing.outer_radius)
+    )
+    conductance = roller_conductance(  # through the loaded rollers
+        inner,
+        outer,
+        bearing.slice_width,
+        bearing.roller_diameter,
+        math.pi * bearing.inner_diameter / bearing.rollers_per_row,
+        math.pi * bearing.outer_diameter / bearing.rollers_per_row,
+        own.conductivity,
+    )
     return BearingFigures(
         radial_force=load.force,
         moment=math.hypot(load.moment_x, load.moment_y),
@@ -604,26 +615,6 @@ def _bearing_figures(
         flattening=hertz_half_width(*hardest) / bearing.inner_radius,
         resistance=loss / resisted if resisted else 0.0,
         contact_temperature=oil.temperature,
-        heat_conductance=_heat_conductance(own, loads),
+        heat_conductance=conductance,
         loads=loads,
-    )
-
-
-def _heat_conductance(own: PlanetBearing, loads: RollerLoads) -> float:
-    """Heat from race to race through the loaded rollers. [W/K]"""
-    bearing = own.bearing
-    inner, outer = (
-        hertz_half_width(
-            loads.intensity, np.full_like(loads.intensity, radius), bearing.equivalent_modulus
-        )
-        for radius in (bearing.inner_radius, bearing.outer_radius)
-    )
-    return roller_conductance(
-        inner,
-        outer,
-        bearing.slice_width,
-        bearing.roller_diameter,
-        math.pi * bearing.inner_diameter / bearing.rollers_per_row,
-        math.pi * bearing.outer_diameter / bearing.rollers_per_row,
-        own.conductivity,
     )

@@ -10,7 +10,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.pocket_flow import (
     NETWORK_MODELS,
@@ -85,23 +84,26 @@ def oil_in_mesh(duty: MeshDuty) -> float:
 
     Theory (N9).
     """
-    settings, mesh = duty.models.pockets, duty.mesh
-    ratio = mesh.gear1.teeth / mesh.gear2.teeth
-    spaces = _spaces(mesh.gear1) + ratio * _spaces(mesh.gear2)
-    passing = abs(duty.speed1) / (2 * math.pi) * spaces
+    settings, mesh = duty.gears.models.pockets, duty.gears.mesh
+    # volume of all tooth spaces of each gear, half of the ring that the teeth stand in [m^3]
+    one, two = (
+        math.pi * abs(gear.tip_radius**2 - gear.root_radius**2) * gear.face_width / 2
+        for gear in (mesh.gear1, mesh.gear2)
+    )
+    passing = abs(duty.speed1) / (2 * math.pi) * (one + mesh.gear1.teeth / mesh.gear2.teeth * two)
     if not settings.fed or not passing:
         return settings.oil_fraction
     return min(1.0, settings.oil_fraction + settings.fed / passing)
 
 
-def _spaces(gear: Gear) -> float:
-    """Volume of all tooth spaces of a gear, half of the ring that the teeth stand in. [m^3]"""
-    return math.pi * abs(gear.tip_radius**2 - gear.root_radius**2) * gear.face_width / 2
-
-
 def flow_family(duty: MeshDuty) -> FlowFamily:
     """The flows that that of a mesh belongs to."""
-    settings, mesh, tools, drives1 = duty.models.pockets, duty.mesh, duty.gears.tools, duty.drives1
+    settings, mesh, tools, drives1 = (
+        duty.gears.models.pockets,
+        duty.gears.mesh,
+        duty.gears.tools,
+        duty.drives1,
+    )
     if _exchanged(duty):
         mesh = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
         tools, drives1 = tools[::-1], not drives1
@@ -121,9 +123,9 @@ def _exchanged(duty: MeshDuty) -> bool:
     """Whether gear 2 is gear 1 of the pockets, whose time steps follow a tooth of that gear."""
     one, two = (
         (gear.teeth, gear.tip_radius, gear.root_radius)
-        for gear in (duty.mesh.gear1, duty.mesh.gear2)
+        for gear in (duty.gears.mesh.gear1, duty.gears.mesh.gear2)
     )
-    return duty.models.pockets.any_order and not duty.mesh.internal and one > two
+    return duty.gears.models.pockets.any_order and not duty.gears.mesh.internal and one > two
 
 
 def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
@@ -151,9 +153,9 @@ def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRe
     Raises `InputError` if that table was made for other pockets.
     """
     for duty in duties:
-        if duty.models.pockets.include and duty.speed1 != 0:
+        if duty.gears.models.pockets.include and duty.speed1 != 0:
             request = flow_request(duty, fluids)
-            if _stored_figures(duty.models.pockets, request) is None and not _scales(request):
+            if _stored_figures(duty.gears.models.pockets, request) is None and not _scales(request):
                 yield request
 
 
@@ -169,10 +171,10 @@ def mesh_flows(
     `ConvergenceError` if a flow is not found. Raises `InputError` if the stored table was made for
     other pockets.
     """
-    flows: dict[str, MeshFlow] = {duty.key: MeshFlow() for duty in duties}
+    flows: dict[str, MeshFlow] = {duty.gears.key: MeshFlow() for duty in duties}
     direct: dict[str, FlowRequest] = {}
     for duty in duties:
-        settings = duty.models.pockets
+        settings = duty.gears.models.pockets
         if not settings.include or duty.speed1 == 0:
             continue
         request = flow_request(duty, fluids)
@@ -182,9 +184,9 @@ def mesh_flows(
                 figures = settings.tables[request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
         if figures is None:
-            direct[duty.key] = request
+            direct[duty.gears.key] = request
         else:
-            flows[duty.key] = MeshFlow(figures)
+            flows[duty.gears.key] = MeshFlow(figures)
     solved = dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
     for key, flow in solved.items():
         if flow.figures is not None:
@@ -194,10 +196,10 @@ def mesh_flows(
 
 def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
     """The flow through the pockets of a mesh: family, and as for `FlowFamily.flow`."""
-    settings = duty.models.pockets
+    settings = duty.gears.models.pockets
     lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
     mixture = fluids.mixed(oil_in_mesh(duty))
-    speed = abs(duty.speed1) / (duty.mesh.ratio if _exchanged(duty) else 1.0)
+    speed = abs(duty.speed1) / (duty.gears.mesh.ratio if _exchanged(duty) else 1.0)
     return flow_family(duty), speed, mixture, fluids.pressure - lowest
 
 
@@ -233,7 +235,7 @@ def _solve(request: FlowRequest) -> MeshFlow:
         return MeshFlow(left_out=f"no tooth outline: {error}")
 
 
-def pocketing_method(model: PocketModel, figures: FlowFigures | None) -> str:
+def pocketing_method(model: str, figures: FlowFigures | None) -> str:
     """How the loss was found, in words."""
     method = POCKETING_MODELS[model]
     if figures is None or not figures.nodes:
@@ -253,7 +255,7 @@ def pocket_notes(
     """
     if figures is None:
         return ()
-    settings, name = duty.models.pockets, duty.mesh.name
+    settings, name = duty.gears.models.pockets, duty.gears.mesh.name
     lost = f"the pockets lose {WATT.text(count * figures.power, 3)}"
     notes = []
     if not figures.periodic:
@@ -275,50 +277,42 @@ def pocket_notes(
             f"The pockets of the {name} open faster than they fill and hold voids at "
             f"models.pocket_void_pressure ({lost})."
         )
-    notes += _sound_note(duty, figures, fluids, lost)
-    notes += _study_note(duty, lost)
-    return tuple(notes)
-
-
-def _sound_note(duty: MeshDuty, figures: FlowFigures, fluids: Fluids, lost: str) -> Iterator[str]:
-    """That waves matter to a model without them, or without choking."""
-    model, mixture = duty.models.pockets.model, fluids.mixed(oil_in_mesh(duty))
-    sound = sound_speed(mixture, fluids.pressure)
-    if model != "isentropic" and figures.speed_max > LARGEST_MACH * sound:
-        yield (
-            f"The flow out of the pockets of the {duty.mesh.name} reaches "
+    sound = sound_speed(fluids.mixed(oil_in_mesh(duty)), fluids.pressure)
+    # waves matter to a model without them, or without choking
+    if settings.model != "isentropic" and figures.speed_max > LARGEST_MACH * sound:
+        notes.append(
+            f"The flow out of the pockets of the {name} reaches "
             f"{format_number(figures.speed_max / sound, 3)} times the speed of sound of an even "
             f"mixture, {METRE_PER_SECOND.text(sound, 3)} ({lost}). The loss lies "
             "between those of models.pocketing = incompressible and isentropic; epicyclic pockets "
             "shows both."
         )
+    notes += _study_note(duty, lost)
+    return tuple(notes)
 
 
 def _study_note(duty: MeshDuty, lost: str) -> Iterator[str]:
     """That the mesh lies outside the parametric study of the source."""
-    gear = duty.mesh.gear1
+    mesh = duty.gears.mesh
     found = {
-        "transverse_module": gear.rack.transverse_module,
-        "face_width": duty.mesh.face_width,
-        "helix_angle": abs(gear.rack.helix_angle),
-        "pitch_line_speed": abs(duty.speed1) * duty.mesh.operating_radius1,
+        "transverse_module": mesh.gear1.rack.transverse_module,
+        "face_width": mesh.face_width,
+        "helix_angle": abs(mesh.gear1.rack.helix_angle),
+        "pitch_line_speed": abs(duty.speed1) * mesh.operating_radius1,
     }
-    left = [
-        f"{limit.label} {limit.unit.text(found[limit.name], 3)} "
-        f"({format_number(limit.low or 0.0)} to {format_number(limit.high or 0.0)})"
-        for limit in STUDY_RANGES
-        if not _within(limit, found[limit.name])
-    ]
+    left = []
+    for limit in STUDY_RANGES:
+        value, (low, high) = found[limit.name], limit.limits()
+        if not (low or 0.0) * (1 - _EDGE) <= value <= (high or math.inf) * (1 + _EDGE):
+            left.append(
+                f"{limit.label} {limit.unit.text(value, 3)} "
+                f"({format_number(limit.low or 0.0)} to {format_number(limit.high or 0.0)})"
+            )
     if left:
         yield (
-            f"The {duty.mesh.name} lies outside the study of {STUDY_SOURCE}: {', '.join(left)}. "
+            f"The {mesh.name} lies outside the study of {STUDY_SOURCE}: {', '.join(left)}. "
             f"No other values of the model were published; {lost}."
         )
-
-
-def _within(limit: Range, value: float) -> bool:
-    low, high = limit.limits()
-    return (low or 0.0) * (1 - _EDGE) <= value <= (high or math.inf) * (1 + _EDGE)
 
 
 def stored_note(

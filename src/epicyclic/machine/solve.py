@@ -21,7 +21,15 @@ from epicyclic.machine.balance import (
     find_directions,
     speeds_of,
 )
-from epicyclic.machine.element import LOAD_DEPENDENT, Element, ElementResult, Fluids, Loss, State
+from epicyclic.machine.element import (
+    LOAD_DEPENDENT,
+    Element,
+    ElementResult,
+    Fluids,
+    Loss,
+    State,
+    joined_key,
+)
 from epicyclic.machine.machine import Machine, Operation, forces_of
 
 # What elements have answered so far, and what they would answer to loads next to those.
@@ -48,11 +56,6 @@ class Answer:
     # None if there is none, or none that the same losses at the same places belong to.
     before: Answer | None = None
 
-    def followed_by(self, loads: Mapping[str, float], result: ElementResult) -> Answer:
-        """The next answer."""
-        before = replace(self, before=None) if self._alike(loads, result) else None
-        return Answer(loads, result, before)
-
     def predicted(
         self,
         loads: Mapping[str, float],
@@ -63,7 +66,7 @@ class Answer:
         Losses only: figures and flags are those of the last answer, to loads no farther off than
         `NEAR`.
         """
-        if self.before is None or not self._alike(loads, self.result):
+        if self.before is None or not self.alike(loads, self.result):
             return None
         losses, off = {}, 0.0
         steps: dict[tuple[str, ...], _Step] = {}
@@ -82,7 +85,7 @@ class Answer:
             return None
         return replace(self.result, losses=losses)
 
-    def _alike(self, loads: Mapping[str, float], result: ElementResult) -> bool:
+    def alike(self, loads: Mapping[str, float], result: ElementResult) -> bool:
         """True if loads have the same signs, and losses act at the same places."""
         return all(
             load * self.loads[key] > 0 or load == self.loads[key] for key, load in loads.items()
@@ -203,9 +206,14 @@ class Solution:
     state: State  # That the elements saw.
 
     @property
-    def loss(self) -> float:
-        """Loss of all elements and meshes together. [W]"""
-        return sum(loss.watts for loss in self._losses())
+    def losses(self) -> dict[str, Loss]:
+        """Losses of all elements and meshes by their keys."""
+        own = {
+            joined_key(key, name): loss
+            for key, result in self.results.items()
+            for name, loss in result.losses.items()
+        }
+        return {**own, **self.given}
 
     @property
     def input_power(self) -> float:
@@ -222,7 +230,8 @@ class Solution:
         if not entering:
             return 0.0 if self.jammed else None
         leaves = any(power < 0 for power in self._powers())
-        return max(0.0, 1 - self.loss / entering) if leaves else 0.0
+        lost = sum(loss.watts for loss in self.losses.values())
+        return max(0.0, 1 - lost / entering) if leaves else 0.0
 
     @property
     def power_ratio(self) -> float | None:
@@ -235,11 +244,6 @@ class Solution:
         powers = [torque * self.speeds[body] for body, torque in self.torques.items()]
         limit = NO_POWER * max(map(abs, powers), default=0.0)
         return [power for power in powers if abs(power) > limit]
-
-    def _losses(self) -> Iterable[Loss]:
-        for result in self.results.values():
-            yield from result.losses.values()
-        yield from self.given.values()
 
 
 def lossless_state(machine: Machine, operation: Operation, fluids: Fluids | None) -> State:
@@ -309,15 +313,26 @@ def solve_machine(
         last = _converged(branch)
     if last.efficiencies != efficiencies and not directions.jammed:
         directions = find_directions(machine, operation, speeds, lossless, last.efficiencies)
+    powers = last.balance.powers
+    given = {
+        row.key: Loss(
+            LOAD_DEPENDENT,
+            (1 - row.efficiency) * abs(powers[row.key]),
+            "efficiency given by the case",
+            mesh=row.key,
+        )
+        for row in machine.rows
+        if row.efficiency < 1
+    }
     return Solution(
         speeds=speeds,
         torques=last.balance.torques,
         couplings=last.balance.couplings,
         meshes=last.balance.meshes,
         drives=last.drives,
-        rolling=last.balance.powers,
+        rolling=powers,
         results=branch.results,
-        given=_given_losses(machine, last.balance),
+        given=given,
         ratio=start.ratio,
         self_locking=directions.locking,
         jammed=directions.jammed,
@@ -354,7 +369,9 @@ def _answered(
     if predicted is not None:
         return _Known(known.answer, predicted, loads)
     result = element.evaluate(state, known.result)
-    return _Known(known.answer.followed_by(loads, result), result, loads)
+    last = known.answer
+    before = replace(last, before=None) if last.alike(loads, result) else None
+    return _Known(Answer(loads, result, before), result, loads)
 
 
 @dataclass(frozen=True, slots=True)
@@ -389,16 +406,12 @@ class _Branch:
         )  # fmt: skip
 
     @cached_property
-    def given(self) -> Mapping[str, float]:
-        """Efficiencies of the meshes that the case gives."""
-        return {row.key: row.efficiency for row in self.machine.rows}
-
-    @cached_property
     def unlost(self) -> Balance:
         """Torques with no losses but given ones."""
-        if all(efficiency == 1 for efficiency in self.given.values()):
+        given = {row.key: row.efficiency for row in self.machine.rows}
+        if all(efficiency == 1 for efficiency in given.values()):
             return self.start.lossless
-        return self._balance(self.given)
+        return balance(self.machine, self.operation, self.start.speeds, self.drives, given)
 
     @property
     def results(self) -> dict[str, ElementResult]:
@@ -408,7 +421,7 @@ class _Branch:
     def begin(self) -> Balance:
         """Torques with the losses that are known so far."""
         found = self.unlost
-        return self._balance(*self._effects(found)) if self.known else found
+        return self._with_losses(found)[0] if self.known else found
 
     def under(self, found: Balance, meshes: Mapping[str, float]) -> Balance:
         """`found` with other loads of the meshes."""
@@ -446,8 +459,7 @@ class _Branch:
         results = self.results.values()
         if not math.isfinite(sum(loss.watts for it in results for loss in it.losses.values())):
             raise self.disagreement()
-        efficiencies, frictions = self._effects(found)
-        new = self._balance(efficiencies, frictions)
+        new, efficiencies = self._with_losses(found)
         if _agrees(found.meshes, new.meshes):
             return _Pass(new, self.drives, efficiencies, state)
         if not max(map(abs, new.meshes.values()), default=0.0) < MOST_TORQUE:
@@ -464,14 +476,12 @@ class _Branch:
             'models.rolling, or models.oil_beyond_range = "held".'
         )
 
-    def _effects(self, found: Balance) -> tuple[dict[str, float], list[Friction]]:
-        return effects_of(self.machine, found.powers, self.results.values(), self.braking)
-
-    def _balance(
-        self, efficiencies: Mapping[str, float], frictions: Iterable[Friction] = ()
-    ) -> Balance:
-        speeds = self.start.speeds
-        return balance(self.machine, self.operation, speeds, self.drives, efficiencies, frictions)
+    def _with_losses(self, found: Balance) -> tuple[Balance, dict[str, float]]:
+        """Torques with the losses of the elements, and the efficiencies of the meshes."""
+        results, speeds = self.results.values(), self.start.speeds
+        efficiencies, frictions = effects_of(self.machine, found.powers, results, self.braking)
+        new = balance(self.machine, self.operation, speeds, self.drives, efficiencies, frictions)
+        return new, efficiencies
 
 
 def _led(branch: _Branch) -> Mapping[str, bool]:
@@ -493,7 +503,8 @@ def _converged(branch: _Branch) -> _Pass:
     secants, those that steep losses throw to and fro to steps that become smaller.
     """
     found = _repeated(branch, branch.begin(), 1.0, PLAIN_PASSES)
-    found = _by_secants(branch, found)
+    if not isinstance(found, _Pass):
+        found = _by_secants(branch, found)
     for share, passes in SMALL_STEPS:
         found = _repeated(branch, found, share, passes)
     if isinstance(found, _Pass):
@@ -518,14 +529,11 @@ def _repeated(
     return found
 
 
-def _by_secants(branch: _Branch, found: Balance | _Pass) -> Balance | _Pass:
-    """By Broyden's method on the loads of the meshes; as `found` where that leads nowhere."""
-    if isinstance(found, _Pass):
-        return found
+def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
+    """By Broyden's method on the loads of the meshes; as the `first` where that leads nowhere."""
     from scipy.optimize import NoConvergence, broyden1  # takes a third of a second, rarely needed
 
-    first = found
-    last: Balance | _Pass = found
+    last: Balance | _Pass = first
     start = np.array(list(first.meshes.values()))
     size = np.where(start, np.abs(start), 1.0)
 
@@ -584,20 +592,6 @@ def effects_of(
                     Friction((one, two), share * loss.watts) for one, two, share in loss.brakes
                 ]
     return efficiencies, frictions
-
-
-def _given_losses(machine: Machine, found: Balance) -> dict[str, Loss]:
-    """Losses of the meshes of given efficiency."""
-    return {
-        row.key: Loss(
-            LOAD_DEPENDENT,
-            (1 - row.efficiency) * abs(found.powers[row.key]),
-            "efficiency given by the case",
-            mesh=row.key,
-        )
-        for row in machine.rows
-        if row.efficiency < 1
-    }
 
 
 # Which part of a machine takes how much torque from which shaft.

@@ -187,50 +187,35 @@ class Oil(_Data):
 
     @model_validator(mode="after")
     def _check_points(self) -> Oil:
-        faults = [*self._viscosity_faults(), *self._density_faults(), *self._range_faults()]
-        if faults:
+        if faults := list(self._faults()):
             raise ValidationError.from_exception_data(self.name, faults)
         return self
 
-    def _viscosity_faults(self) -> Iterator[InitErrorDetails]:
-        for first, second in _neighbours(self.kinematic_viscosity):
-            colder, warmer = self.kinematic_viscosity[first], self.kinematic_viscosity[second]
+    def _faults(self) -> Iterator[InitErrorDetails]:
+        remedy, viscosities = "correct one of the two points", self.kinematic_viscosity
+        for first, second in _neighbours(viscosities):
+            colder, warmer = viscosities[first], viscosities[second]
             if warmer.temperature == colder.temperature:
                 yield _repeated("kinematic_viscosity", first, second, warmer.temperature)
             elif warmer.value >= colder.value:
-                yield _fault(
-                    ("kinematic_viscosity", second, "value"),
-                    SQUARE_MM_PER_SECOND.text(warmer.value),
-                    "must fall with rising temperature; at "
-                    f"{CELSIUS.text(colder.temperature)} it is "
-                    f"{SQUARE_MM_PER_SECOND.text(colder.value)}",
-                    "correct one of the two points",
-                )
-
-    def _density_faults(self) -> Iterator[InitErrorDetails]:
+                shown, other = map(SQUARE_MM_PER_SECOND.text, (warmer.value, colder.value))
+                what = "must fall with rising temperature; at "
+                what += f"{CELSIUS.text(colder.temperature)} it is {other}"
+                yield _fault(("kinematic_viscosity", second, "value"), shown, what, remedy)
         for first, second in _neighbours(self.density):
-            colder, warmer = self.density[first], self.density[second]
-            if warmer.temperature == colder.temperature:
-                yield _repeated("density", first, second, warmer.temperature)
+            cold, warm = self.density[first], self.density[second]
+            if warm.temperature == cold.temperature:
+                yield _repeated("density", first, second, warm.temperature)
                 continue
-            slope = (warmer.value - colder.value) / (warmer.temperature - colder.temperature)
+            slope = (warm.value - cold.value) / (warm.temperature - cold.temperature)
             if not STEEPEST_DENSITY <= slope <= 0:
-                yield _fault(
-                    ("density", second, "value"),
-                    f"{warmer.value:g} kg/m^3",
-                    "must fall with rising temperature, by 2 kg/(m^3 K) at most",
-                    "correct one of the two points",
-                )
-
-    def _range_faults(self) -> Iterator[InitErrorDetails]:
+                what = "must fall with rising temperature, by 2 kg/(m^3 K) at most"
+                yield _fault(("density", second, "value"), f"{warm.value:g} kg/m^3", what, remedy)
         low, high = self.temperature_range
         if low >= high:
-            yield _fault(
-                ("temperature_range",),
-                f"{CELSIUS.text(low)} to {CELSIUS.text(high)}",
-                "must rise",
-                "give the lower temperature first",
-            )
+            shown = f"{CELSIUS.text(low)} to {CELSIUS.text(high)}"
+            remedy = "give the lower temperature first"
+            yield _fault(("temperature_range",), shown, "must rise", remedy)
 
 
 def _neighbours(points: Sequence[ViscosityPoint | DensityPoint]) -> Iterator[tuple[int, int]]:

@@ -46,8 +46,21 @@ def judged(result: Result) -> Result:
         **{f"teeth of the {in_words(name)}": mesh for name, mesh in result.meshes.items()},
         **{f"rollers of the {in_words(name)}": one for name, one in result.bearings.items()},
     }
-    models = [*_flattened(contacts), *_resisting(contacts)]
-    reasons = [*_negative(result), *_unbalanced(result), *models]
+    models = list(_overloaded(contacts))
+    reasons = []
+    limit = NEGLIGIBLE * sum(map(abs, result.losses.values()))
+    below = [
+        f"{in_words(name)} {WATT.text(watts, 3)}"
+        for name, watts in result.losses.items()
+        if watts < -limit
+    ]
+    if below:
+        reasons.append(f"Losses are below zero: {', '.join(below)}.")
+    powers = [member.power for member in result.flow.members.values()]
+    left = sum(powers) - result.total
+    if abs(left) > UNBALANCED * max(map(abs, (*powers, result.total)), default=0.0):
+        reasons.append(f"The shafts bring {WATT.text(left, 3)} more than is lost.")
+    reasons += models
     if not reasons:
         return result
     advice = [CHECK_CONTACTS] if models else []
@@ -57,25 +70,8 @@ def judged(result: Result) -> Result:
     return replace(result, status=Status.UNPHYSICAL, notes=(note, *result.notes))
 
 
-def _negative(result: Result) -> list[str]:
-    limit = NEGLIGIBLE * sum(map(abs, result.losses.values()))
-    below = [
-        f"{in_words(name)} {WATT.text(watts, 3)}"
-        for name, watts in result.losses.items()
-        if watts < -limit
-    ]
-    return [f"Losses are below zero: {', '.join(below)}."] if below else []
-
-
-def _unbalanced(result: Result) -> list[str]:
-    powers = [member.power for member in result.flow.members.values()]
-    left = sum(powers) - result.total
-    if abs(left) <= UNBALANCED * max(map(abs, (*powers, result.total)), default=0.0):
-        return []
-    return [f"The shafts bring {WATT.text(left, 3)} more than is lost."]
-
-
-def _flattened(contacts: Mapping[str, Contact]) -> Iterator[str]:
+def _overloaded(contacts: Mapping[str, Contact]) -> Iterator[str]:
+    """Contacts that no material bears, then those that resist with more than any does."""
     for name, found in contacts.items():
         if found.flattening > FLATTENED:
             yield (
@@ -83,9 +79,6 @@ def _flattened(contacts: Mapping[str, Contact]) -> Iterator[str]:
                 f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}, which flattens them over more "
                 "than their radius; no material bears that."
             )
-
-
-def _resisting(contacts: Mapping[str, Contact]) -> Iterator[str]:
     for name, found in contacts.items():
         if found.resistance > MOST_RESISTANCE and found.hertz_pressure_max > PRESSED:
             yield (

@@ -479,7 +479,7 @@ class Result:
     @property
     def total(self) -> float:
         """Total loss. Theory (P3). [W]"""
-        return self._sum(LOAD_DEPENDENT) + self._sum(LOAD_INDEPENDENT)
+        return sum(term.watts for term in self.terms)
 
     def _sum(self, group: str) -> float:
         return sum(term.watts for term in self.terms if term.group == group)

@@ -196,7 +196,7 @@ def validate(
     no other check depends on it, so that one mistake hides no other.
     """
     case, details = _try(kind, raw | dict(sound))
-    problems = list(control_problems(raw))
+    problems = list(control_problems({k: v for k, v in raw.items() if k not in sound}))
     while unknown := [locate(kind, it["loc"]) for it in details if it["type"] == "extra_forbidden"]:
         # repeated, as a table that was misspelt itself may have unknown keys of its own
         tables = tables_of(kind).items()

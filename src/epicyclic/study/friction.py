@@ -7,17 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from epicyclic.build.machine import build
-from epicyclic.build.models import (
-    SetCase,
-    fitted_oil_model,
-    friction_of,
-    friction_settings,
-    pocketing_of,
-    resolve_models,
-    rolling_of,
-    set_cases,
-    standing_of,
-)
+from epicyclic.build.models import SetCase, set_cases, standing_of
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.drag import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
@@ -79,8 +69,8 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
     Raises `InputError` if the case is a train of given efficiencies.
     """
     built = build_computed(case)
-    owners = [own for _, own in set_cases(case, built.sets)]
-    chosen = {resolve_models(own)["friction"] for own in owners}
+    owners = list(built.set_cases.values())
+    chosen = {own.chosen["friction"] for own in owners}
     rows = []
     for name in dict.fromkeys([*_models_for(owners), *sorted(chosen)]):
         if brief and name not in (*_FOR_ONE_OIL, PAIRED, *_OF_ALL_OILS, *chosen):
@@ -88,8 +78,8 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
         local = solve(_with(case, {"friction": name, "mesh": "local"}))
         quick_case = _with(case, {"friction": name, "mesh": "loss-factor"})
         quick = math.nan if brief else _sliding(solve(quick_case))
-        own = next(own for _, own in set_cases(quick_case, built.sets))
-        model = friction_of(own)
+        own = next(iter(set_cases(quick_case).values()))
+        model = own.friction
         flags = [flag for flag in local.flags if flag.use.role == "friction"]
         fluid = model.made_for
         same = fluid is not None and fluid.key == own.lubricant.oil.friction_regression
@@ -155,9 +145,9 @@ def _inside(row: FrictionComparison) -> str:
 def _models_for(owners: Sequence[SetCase]) -> Iterator[str]:
     """The models that can be used for every set."""
     for name in FRICTION_MODELS:
-        if name != "table" or friction_settings(owners[0]).table is not None:
+        if name != "table" or owners[0].friction_table is not None:
             yield name
-    fitted = [fitted_oil_model(own) for own in owners]
+    fitted = [own.oil_model for own in owners]
     if all(model is not None and "friction" in model.fits for model in fitted):
         yield FittedOrSchlenk.name
 
@@ -208,7 +198,7 @@ def methods_of(case: Case) -> dict[str, tuple[str, str]]:
     """Title and source of the method for each role, ``"friction"``; of a train with the set."""
     built = build(case)
     methods: dict[str, tuple[str, str]] = {}
-    for name, own in set_cases(case, built.sets):
+    for name, own in built.set_cases.items():
         prefix = f"{name}: " if name else ""
         found = _methods_of_set(own, built.sets[name])
         methods |= {f"{prefix}{role}": method for role, method in found.items()}
@@ -216,15 +206,15 @@ def methods_of(case: Case) -> dict[str, tuple[str, str]]:
 
 
 def _methods_of_set(case: SetCase, own: GearSet) -> dict[str, tuple[str, str]]:
-    friction, rolling = friction_of(case), rolling_of(case)
+    friction, rolling = case.friction, case.rolling
     methods = {"friction": (friction.title, friction.source)}
-    if resolve_models(case)["mesh"] == "loss-factor":
+    if case.chosen["mesh"] == "loss-factor":
         methods["mesh loss"] = ("friction times the loss factor", OHLENDORF_SOURCE)
     else:
         methods["rolling"] = (rolling.title, rolling.source)
     distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
     methods["load distribution"] = (distribution.title, distribution.source)
-    methods["pocketing"] = (pocketing_method(pocketing_of(case), None), POCKETING_SOURCE)
+    methods["pocketing"] = (pocketing_method(case.chosen["pocketing"], None), POCKETING_SOURCE)
     methods["drag"] = (DRAG_METHOD, DRAG_SOURCE)
     if own.sharing is not None:
         methods["load sharing"] = SHARING_METHODS[own.sharing.method]

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.build.models import set_cases
 from epicyclic.build.result import load_notes
 from epicyclic.case.case import Case
 from epicyclic.errors import one_problem
@@ -103,13 +102,13 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
             case.source,
         )
     built = build_computed(case)
-    notes = {name: load_notes(own) for name, own in set_cases(case, built.sets)}
+    notes = {name: tuple(load_notes(own)) for name, own in built.set_cases.items()}
     state = built.loaded_state()
     return {
         key: _details(case.title, key, duty, state.fluids, notes[name])
         for name, own in built.sets.items()
         for duty in own.loaded_duties(state)
-        for key in (joined_key(name, duty.key),)
+        for key in (joined_key(name, duty.gears.key),)
         if not name or duty.torque1 != 0
     }
 
@@ -119,7 +118,7 @@ def _details(
 ) -> xr.Dataset:
     import xarray as xr
 
-    mesh = duty.mesh
+    mesh = duty.gears.mesh
     loads = distribute_load(duty)
     lines = loads.lines
     pitch_angle = 2 * math.pi / mesh.gear1.teeth
@@ -144,7 +143,7 @@ def _details(
     attributes = {
         "title": f"{_words(key)} of {title or 'the case'}",
         "notes": "\n".join((*notes, *_other_programs(mesh, loads))),
-        "load_distribution": duty.models.load_distribution,
+        "load_distribution": duty.gears.models.load_distribution,
         "force_N": duty.force,
         "pitch_angle_deg": DEGREE.to_display(pitch_angle),
     }
@@ -218,7 +217,7 @@ def _contact(duty: MeshDuty, key: str, fluids: Fluids, loads: LineLoads) -> dict
 
     film = friction = flash = np.full(contact.line_load.shape, math.nan)
     if duty.speed1 != 0:
-        model = duty.models.friction
+        model = duty.gears.models.friction
         film, friction = contact.film_ratio, model.coefficient(contact.seen_by(model))
         flash = flash_temperatures(contact, friction, duty.gears.materials)
     power = friction * contact.line_load * np.abs(contact.sliding_speed)

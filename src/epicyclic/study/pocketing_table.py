@@ -245,7 +245,7 @@ def table_dataset(plan: TablePlan, rows: Rows) -> xr.Dataset:
     made = [i for i, status in enumerate(rows.status) if status == Status.CONVERGED]
     tables = {families[i]: _table_of(rows, i) for i in made}
     speed, temperature = plan.places.axes
-    meshes = [duty.key for duty in mesh_duties(case)]
+    meshes = [duty.gears.key for duty in mesh_duties(case)]
     coordinates = {
         "mesh": meshes,
         "driver": ("driver", list(_DRIVERS), {"long_name": "member that drives"}),

@@ -88,7 +88,7 @@ def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[st
     found = {}
     for name, own in built.sets.items():
         for duty in own.mean_duties(built.state()):
-            key = joined_key(name, duty.key)
+            key = joined_key(name, duty.gears.key)
             if meshes is not None and key not in meshes:
                 continue
             try:
@@ -238,7 +238,7 @@ def _dataset(
     attributes = {
         "title": f"Pockets of {_words(key)} of {title or 'the case'}",
         "notes": "\n".join(pocket_notes(duty, flow_figures(flow), fluids, meshes)),
-        "model": POCKETING_MODELS[duty.models.pockets.model],
+        "model": POCKETING_MODELS[duty.gears.models.pockets.model],
         "drives": mesh.gear1.name if family.drives1 else mesh.gear2.name,
         "members": f"{mesh.gear1.name} {mesh.gear2.name}",
         "internal": int(mesh.internal),
@@ -370,14 +370,14 @@ def _tooth(gear: Gear, tool: Tool | None, dimension: str) -> Variable:
 
 def _with_model(duty: MeshDuty, model: PocketModel) -> MeshDuty:
     """The same mesh with another fluid in its pockets."""
-    pockets = replace(duty.models.pockets, model=model)
-    models = replace(duty.models, pockets=pockets)
+    pockets = replace(duty.gears.models.pockets, model=model)
+    models = replace(duty.gears.models, pockets=pockets)
     return replace(duty, gears=replace(duty.gears, models=models))
 
 
 def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Variable]:
     """What holds for the whole mesh."""
-    model = duty.models.pockets.model
+    model = duty.gears.models.pockets.model
     other: PocketModel = "incompressible" if model == "isentropic" else "isentropic"
     end = solve_pockets(_with_model(duty, other), fluids)
     assert end is not None  # it turns
@@ -400,7 +400,7 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
         "ambient_pressure": (fluids.pressure, "ambient pressure", BAR),
         "speed": (
             abs(duty.speed1),
-            f"speed {of_gear(duty.mesh.gear1.name)} against the line of centres",
+            f"speed {of_gear(duty.gears.mesh.gear1.name)} against the line of centres",
             RPM,
         ),
         "oil_fraction": (oil_in_mesh(duty), "share of oil in the mixture, by volume", NUMBER),

@@ -77,7 +77,7 @@ def places_of(gearing: Gearing) -> SetPlaces | None:
 
 
 def _on_carrier(gearing: Gearing) -> dict[str, tuple[Point, ...]]:
-    arms = gearing.arrangement().angles
+    arms = gearing.arrangement.angles
     found: dict[str, tuple[Point, ...]] = {
         body: ((0.0, 0.0),) for body in gearing.bodies.values() if body not in gearing.planets
     }
@@ -217,7 +217,7 @@ def mesh_views(case: Case) -> dict[str, xr.Dataset]:
     action.
     """
     return {
-        joined_key(prefix, duty.key): _view(duty.mesh)
+        joined_key(prefix, duty.gears.key): _view(duty.gears.mesh)
         for prefix, _, duties in _drawn_sets(case)
         for duty in duties
     }
@@ -237,9 +237,11 @@ def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.
     gears = {
         gear.name: (gear, tool)
         for duty in duties
-        for gear, tool in zip((duty.mesh.gear1, duty.mesh.gear2), duty.gears.tools, strict=True)
+        for gear, tool in zip(
+            (duty.gears.mesh.gear1, duty.gears.mesh.gear2), duty.gears.tools, strict=True
+        )
     }
-    meshes = [duty.mesh for duty in duties]
+    meshes = [duty.gears.mesh for duty in duties]
     places, speeds = found.places(meshes), found.relative_speeds(meshes)
     return {
         name: _shape(*gears[name], table, places[name]).assign_attrs(relative_speed=speeds[name])

@@ -64,7 +64,7 @@ class PocketVariant:
 
 def base_variant(case: Case, duty: MeshDuty) -> PocketVariant:
     """The mesh as the case has it."""
-    mesh = duty.mesh
+    mesh = duty.gears.mesh
     return PocketVariant(
         helix_angle=mesh.gear1.rack.helix_angle,
         face_width=mesh.face_width,
@@ -103,7 +103,7 @@ def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
 
     Raises `ValueError` if such gears do not mesh or cannot be cut.
     """
-    mesh = _varied_mesh(duty.mesh, variant)
+    mesh = _varied_mesh(duty.gears.mesh, variant)
     for what, value in (
         ("backlash", mesh.backlash),
         ("tip clearance of member 1", mesh.tip_clearance1),
@@ -132,7 +132,7 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
         return family.flow(speed, mixture, pressure)
     except ValueError as error:
         raise one_problem(
-            duty.key, "", f"cannot be so: {error}.", "Vary over a smaller range.", "the study"
+            duty.gears.key, "", f"cannot be so: {error}.", "Vary over a smaller range.", "the study"
         ) from None
 
 
@@ -348,7 +348,7 @@ def _choice(name: str, known: Sequence[str]) -> str:
 
 
 def _duty(case: Case, mesh: str | None) -> MeshDuty:
-    duties = {duty.key: duty for duty in mesh_duties(case)}
+    duties = {duty.gears.key: duty for duty in mesh_duties(case)}
     key = next(iter(duties)) if mesh is None else mesh
     if key not in duties:
         allowed = f"must be {' or '.join(duties)}."
@@ -405,7 +405,7 @@ def _levels(base: PocketVariant, name: str, shares: tuple[float, ...]) -> tuple[
 
 def _range(duty: MeshDuty, base: PocketVariant, name: str) -> tuple[float, ...]:
     """Values of the source for its example, over those of the case where they have a unit."""
-    module = duty.mesh.gear1.rack.transverse_module
+    module = duty.gears.mesh.gear1.rack.transverse_module
     values: Mapping[str, NDArray[np.float64]] = {
         "speed": base.speed * np.linspace(0.1, 1.0, 10),
         "helix-angle": np.radians(np.arange(0.0, 36.0, 5.0)),
@@ -421,7 +421,7 @@ def _axis(duty: MeshDuty, name: str, values: tuple[float, ...]) -> StudyAxis:
     if name != "module":
         return StudyAxis(name, values, values)
     try:
-        found = teeth_for_module(duty.mesh, values)
+        found = teeth_for_module(duty.gears.mesh, values)
     except ValueError as error:
         raise one_problem(
             "range module", "", f"{error}.", "Give smaller modules.", "the study"
@@ -541,19 +541,19 @@ def _coordinate(axis: StudyAxis) -> tuple[str, NDArray[np.float64], dict[str, st
 
 def _member(plan: StudyPlan) -> str:
     """Whose speed it is, and against what."""
-    name = plan.duty.mesh.gear1.name
+    name = plan.duty.gears.mesh.gear1.name
     sets = [it for it in plan.case.gearings.values() if it.computed and it.planets]
-    planets = any(plan.duty.mesh in gearing.geometries for gearing in sets)
+    planets = any(plan.duty.gears.mesh in gearing.geometries for gearing in sets)
     return f"{name} against the carrier" if planets else name
 
 
 def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
-    mesh = plan.duty.key.replace("_", " ")
+    mesh = plan.duty.gears.key.replace("_", " ")
     return {
         "title": f"Pocketing loss of the {mesh} of {plan.case.title or 'the case'}",
         "figure": STUDIES[name].figure,
-        "mesh": plan.duty.key,
-        "model": plan.duty.models.pockets.model,
+        "mesh": plan.duty.gears.key,
+        "model": plan.duty.gears.models.pockets.model,
         **origin(plan.case),
     }
 

@@ -45,9 +45,7 @@ class _Roughness(Quantity):
         finishes = library.finishes()
         named = _PARAMETER.fullmatch(value) if isinstance(value, str) else None
         if named is not None:
-            found = rq_of(named[1], super().parse(named[2]))
-            self._check_range(self.to_display(found))
-            return found
+            return self._checked(rq_of(named[1], super().parse(named[2])))
         if isinstance(value, str) and value in finishes:
             value = finishes[value]["roughness"]
         elif isinstance(value, str) and value[:1].isalpha():

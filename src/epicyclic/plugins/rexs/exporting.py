@@ -216,7 +216,7 @@ def case_parts(case: Case) -> Iterator[Component | Relation]:
     """Components and relations that describe a case of one gear set."""
     builder = Builder()
     unit, casing, oil = surroundings(builder, case)
-    ((_, own),) = set_cases(case, [""])
+    own = set_cases(case)[""]
     operation = operation_of(case)
     shafts = {}
     for name in own.gearing.members:
@@ -439,7 +439,7 @@ def _sets(
     shafts: Mapping[str, int],
     places: Mapping[str, Place],
 ) -> None:
-    for name, own in set_cases(case, case.gearings):
+    for name, own in set_cases(case).items():
         joined = {member: shafts[f"{name}.{member}"] for member in own.gearing.members}
         for gear, number in add_set(builder, own, owners, joined, name).items():
             position = case.position_of(f"{name}.{gear}")
