@@ -35,6 +35,7 @@ from epicyclic.contact.temperatures import Solid
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.friction import (
+    CONTAINS_ROLLING,
     DRY_FRICTION,
     FRICTION_MODELS,
     TALBOT_FLUID,
@@ -49,6 +50,7 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.losses.reliability import RELIABILITY, reliability
 from epicyclic.losses.rolling import (
+    CONTAINED,
     ROLLING_MODELS,
     FittedFriction,
     FittedOrGoksem,
@@ -247,6 +249,8 @@ def _rolling_name(case: SetCase) -> str:
     chosen = case.models.rolling
     if chosen != "auto":
         return chosen
+    if _friction_name(case) in CONTAINS_ROLLING:
+        return CONTAINED.name
     return _automatic(case, "rolling_loss", FittedOrGoksem.name, "goksem-hargreaves")
 
 
@@ -329,6 +333,8 @@ def rolling_of(case: SetCase) -> RollingModel:
     if name in (FittedRolling.name, FittedOrGoksem.name):
         fitted = fitted_rolling(case, "rolling_loss")
         return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)
+    if name == CONTAINED.name:
+        return CONTAINED
     return replace(ROLLING_MODELS[name], oil_held=case.models.oil_beyond_range == "held")
 
 

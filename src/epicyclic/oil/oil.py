@@ -79,6 +79,21 @@ class LubricantFactor(_Data):
     source: str = ""
 
 
+def _factor(value: float, kind: str) -> LubricantFactor:
+    return LubricantFactor(value=value, source=f"X_L of ISO/TR 14179-2 for {kind}, second hand")
+
+
+LUBRICANT_FACTORS = {
+    "mineral": _factor(1.0, "mineral oils"),
+    "pao": _factor(0.8, "polyalphaolefins and esters"),
+    "ester": _factor(0.8, "polyalphaolefins and esters"),
+    "pag": _factor(0.75, "polyglycols"),
+    "atf": _factor(1.0, "mineral oils, taken over for transmission fluids"),
+}
+"""X_L by the kind of an oil that does not state it. Theory (F15). The standard has 1.3 for
+phosphoric esters and 1.5 for traction fluids too, which are no kinds here."""
+
+
 class GoldLaw(_Data):
     """alpha = s nu^t with nu in mm^2/s and alpha in 1/GPa (Gold et al. 2001). Theory (L4)."""
 
@@ -144,8 +159,8 @@ class Oil(_Data):
     )
     pressure_viscosity: PressureViscosityLaw
     lubricant_factor: LubricantFactor = Field(
-        default=LubricantFactor(value=1.0, source="X_L of ISO/TR 14179-2, mineral oil"),
-        description="X_L of the friction model of ISO/TR 14179-2.",
+        default=LUBRICANT_FACTORS["mineral"],
+        description="X_L of the friction model of ISO/TR 14179-2. Default: by the kind.",
     )
     friction_regression: Literal["talbot-2012", "xu-2007"] | None = Field(
         default=None,
@@ -159,6 +174,8 @@ class Oil(_Data):
         faults = [*self._viscosity_faults(), *self._density_faults(), *self._range_faults()]
         if faults:
             raise ValidationError.from_exception_data(self.name, faults)
+        if "lubricant_factor" not in self.model_fields_set:
+            self.__dict__["lubricant_factor"] = LUBRICANT_FACTORS[self.kind]
         return self
 
     def _viscosity_faults(self) -> Iterator[InitErrorDetails]:

@@ -344,8 +344,9 @@ class GearPairModels(Table):
         "fitted",
         "fitted-or-goksem-hargreaves",
     ] = option(
-        "auto: mixed-ehl for the fluid it was made for, fitted-or-goksem-hargreaves for an oil "
-        "with fitted models, else goksem-hargreaves.",
+        "auto: none with schlenk and niemann-winter, which contain it; mixed-ehl for the fluid it "
+        "was made for, fitted-or-goksem-hargreaves for an oil with fitted models, else "
+        "goksem-hargreaves.",
         "auto",
     )
     oil_model: str | None = option(
