@@ -163,18 +163,14 @@ class BearingSealTable(Table):
 class ShaftBearingTable(Table):
     """A rolling bearing of a shaft."""
 
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "position": None,
-        "width": None,
-        "viscous_factor": None,
-        "palmgren_coefficient": None,
-        "flange_coefficient": None,
-        "oil_level": None,
-        "drag_variable": None,
-        "sliding_friction": None,
-        "minimum_load_factor": None,
-        "reference_speed": None,
-    }
+    ROLLERS: ClassVar = (
+        "rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness"
+    )  # fmt: skip
+    STAND_INS: ClassVar[dict[str, object]] = dict.fromkeys((
+        *ROLLERS, "position", "width", "viscous_factor", "palmgren_coefficient",
+        "flange_coefficient", "oil_level", "drag_variable", "sliding_friction",
+        "minimum_load_factor", "reference_speed",
+    ))  # fmt: skip
 
     shaft: str = Field(description="The shaft in its bore.")
     against: str = option("The body that holds its outer ring.", "housing")
@@ -185,9 +181,16 @@ class ShaftBearingTable(Table):
     cage: Literal["caged", "full-complement"] = option(
         "full-complement: cylindrical and needle rollers only.", "caged"
     )
-    model: Literal["palmgren", "harris", "skf-2018", "table"] = option(
-        "skf-2018: needs series; harris: of ball bearings, static_load_rating.", "palmgren"
+    model: Literal["auto", "zhou-hoeprich", "palmgren", "harris", "skf-2018", "table"] = option(
+        "auto: of tapered rollers with width zhou-hoeprich, else palmgren; skf-2018: needs series; "
+        "harris: of ball bearings, static_load_rating.",
+        "auto",
     )
+    rollers: int | None = option("Tapered. Default: as many as fit.", ge=4, le=200)
+    roller_diameter: Length | None = option("Mean, tapered. Default: 0.26 (D - d).")
+    roller_length: Length | None = option("Tapered. Default: 0.7 width.")
+    rib_height: Length | None = option("Of the contact on the rib. Default: 0.03 (D - d).")
+    rib_roughness: Roughness | None = option("Rms, rib and roller ends. Default: 0.24 um.")
     series: str | None = option("For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ...", max_length=20)
     dynamic_load_rating: LoadRating | None = option(
         "C, for the minimum load of tapered and needle rollers."
@@ -281,8 +284,6 @@ def bearing_problems(table: ShaftBearingTable) -> list[Problem]:
         reason = f"has no constants for {table.type} roller bearings."
         remedy = 'Choose model = "palmgren" or "table".'
         return [*problems, Problem("model", written(table.model), reason, remedy)]
-    if table.model == "table":
-        return problems + _own_table_problems(table, LossTableTable.AXES)
     problems += _own_table_problems(table, LossTableTable.AXES)
     if table.model == "skf-2018":
         problems += _skf_problems(table)
@@ -315,9 +316,13 @@ def _size_problems(table: ShaftBearingTable) -> list[Problem]:
         remedy = "Delete one." if angles else "Add Y from the catalogue, or the contact angle."
         problems.append(Problem("axial_factor", "", reason, remedy))
     if table.type != "tapered":
+        idle = [*angles, *(key for key in table.ROLLERS if getattr(table, key) is not None)]
         problems += [
-            Problem(key, "", "belongs to tapered roller bearings.", "Delete it.") for key in angles
+            Problem(key, "", "belongs to tapered roller bearings.", "Delete it.") for key in idle
         ]
+    elif table.model == "zhou-hoeprich" and table.width is table.roller_length is None:
+        reason = "is missing; it tells how long the rollers are."
+        problems.append(Problem("width", "", reason, "Add B from the catalogue, or roller_length."))
     return problems
 
 
