@@ -328,7 +328,7 @@ def solid_of(
 
 
 def rolling_of(case: SetCase) -> RollingModel:
-    """The rolling-loss model of a case."""
+    """The rolling-loss model of a case. Theory (R11)."""
     name = _rolling_name(case)
     if name in (FittedRolling.name, FittedOrGoksem.name):
         fitted = fitted_rolling(case, "rolling_loss")

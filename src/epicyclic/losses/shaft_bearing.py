@@ -306,12 +306,17 @@ def minimum_load(
 
 
 def load_flags(
-    use: ModelUse, axial: Range, bearing: CatalogueBearing, load: BearingLoad, speed: float
+    use: ModelUse,
+    axial: Range,
+    bearing: CatalogueBearing,
+    load: BearingLoad,
+    speed: float,
+    speeds: Range = SPEED_PARAMETER,
 ) -> tuple[ValidityFlag, ...]:
     """Flags on speed, static load and, of cylindrical rollers, the ratio `axial` of the forces."""
     if speed == 0:
         return ()
-    ranges = [SPEED_PARAMETER]
+    ranges = [speeds]
     values = {"speed_parameter": speed_parameter(speed, bearing.pitch_diameter)}
     if not math.isnan(bearing.static_load_rating):
         ranges.append(_STATIC_RATIO)
@@ -325,7 +330,7 @@ def load_flags(
 # SKF's friction model of 2018 for deep groove, cylindrical and tapered roller bearings.
 #
 # Forces, lengths and speeds are SI. The printed formulas take N, mm, mm^2/s, rpm and give N mm; the
-# conversion is done once, in `_Printed`. The constants of the series are in the library,
+# conversion is done once, in `_printed`. The constants of the series are in the library,
 # ``bearings/skf-2018.toml``.
 
 STARVATION: Mapping[str, float] = {"jet": 3e-8, "oil-bath": 3e-8, "grease": 6e-8, "oil-air": 6e-8}
@@ -490,27 +495,11 @@ def full_film_friction(kind: BearingType, oil_kind: str) -> float:
     return float(tables["full_film"][name])
 
 
-@dataclass(frozen=True, slots=True)
-class _Printed:
-    """Sizes and state in the units of the printed formulas: mm, rpm, mm^2/s."""
-
-    bore: float
-    outside: float
-    width: float
-    pitch: float
-    rpm: float
-    viscosity: float
-
-    @staticmethod
-    def of(bearing: CatalogueBearing, speed: float, viscosity: float) -> _Printed:
-        return _Printed(
-            bore=bearing.bore * 1e3,
-            outside=bearing.outside_diameter * 1e3,
-            width=bearing.width * 1e3,
-            pitch=bearing.pitch_diameter * 1e3,
-            rpm=abs(speed) / RPM,
-            viscosity=viscosity * 1e6,
-        )
+def _printed(
+    bearing: CatalogueBearing, speed: float, viscosity: float
+) -> tuple[float, float, float]:
+    """Speed, mean diameter and viscosity in the units of the printed formulas: rpm, mm, mm^2/s."""
+    return abs(speed) / RPM, bearing.pitch_diameter * 1e3, viscosity * 1e6
 
 
 def skf_load_variables(
@@ -553,10 +542,10 @@ def skf_reduction_factors(
 
     Theory (J8).
     """
-    at = _Printed.of(bearing, speed, viscosity)
-    heating = math.pow(at.rpm * at.pitch, 1.28) * math.pow(at.viscosity, 0.64)
-    width = math.sqrt(constants.bearing_factor / (2 * (at.outside - at.bore)))
-    dry = starvation * at.viscosity * at.rpm * (at.bore + at.outside) * width
+    rpm, pitch, nu = _printed(bearing, speed, viscosity)
+    heating = math.pow(rpm * pitch, 1.28) * math.pow(nu, 0.64)
+    width = math.sqrt(constants.bearing_factor / (2e3 * (bearing.outside_diameter - bearing.bore)))
+    dry = starvation * nu * rpm * 2 * pitch * width
     return 1 / (1 + 1.84e-9 * heating), math.exp(-dry)
 
 
@@ -582,25 +571,26 @@ def skf_drag_moment(
     """M_drag in an oil bath. Theory (J10). [N m]"""
     if model.oil_level <= 0 or speed == 0:
         return 0.0
-    at, constants = _Printed.of(bearing, speed, viscosity), model.constants
+    (rpm, pitch, nu), constants = _printed(bearing, speed, viscosity), model.constants
+    width = bearing.width * 1e3
     V_M = model.drag_variable
     if V_M is None:
         V_M = drag_variable(bearing, model.oil_level)
-    slenderness = (at.bore + at.outside) / (at.outside - at.bore)
+    slenderness = 2 * bearing.pitch_diameter / (bearing.outside_diameter - bearing.bore)
     K_Z, K_L = constants.bearing_factor, constants.roller_length_factor
     if bearing.type == "deep-groove":
         K_ball = constants.ball_rows * K_Z * slenderness * 1e-12
-        elements = 0.4 * V_M * K_ball * math.pow(at.pitch, 5) * at.rpm**2
+        elements = 0.4 * V_M * K_ball * math.pow(pitch, 5) * rpm**2
     else:
         K_roll = K_L * K_Z * slenderness * 1e-12
-        length = 5 * K_L * at.width / at.pitch
+        length = 5 * K_L * width / pitch
         C_w = 2.789e-10 * length**3 - 2.786e-4 * length**2 + 0.0195 * length + 0.6439
-        elements = 4 * V_M * K_roll * C_w * at.width * math.pow(at.pitch, 4) * at.rpm**2
+        elements = 4 * V_M * K_roll * C_w * width * math.pow(pitch, 4) * rpm**2
     t = _immersion_angle(bearing, model.oil_level)
     f_t = math.sin(t / 2) if t <= math.pi else 1.0
-    R_s = 0.36 * at.pitch**2 * (t - math.sin(t)) * 0.05 * K_Z * slenderness
-    group = at.rpm * at.pitch**2 * f_t / at.viscosity
-    shear = 1.093e-7 * at.rpm**2 * math.pow(at.pitch, 3) * math.pow(group, -1.379) * R_s
+    R_s = 0.36 * pitch**2 * (t - math.sin(t)) * 0.05 * K_Z * slenderness
+    group = rpm * pitch**2 * f_t / nu
+    shear = 1.093e-7 * rpm**2 * math.pow(pitch, 3) * math.pow(group, -1.379) * R_s
     return 1e-3 * (elements + shear)
 
 
@@ -613,16 +603,16 @@ def skf_moments(
 ) -> SkfMoments:
     """Friction moments of SKF's model of 2018. Theory (J8), (J9)."""
     rolling, sliding = skf_load_variables(model.constants, bearing, load)
-    at = _Printed.of(bearing, speed, viscosity)
+    rpm, pitch, nu = _printed(bearing, speed, viscosity)
     hot, dry = skf_reduction_factors(bearing, model.constants, model.starvation, speed, viscosity)
     if model.oil_level >= SUBMERGED * bearing.pitch_diameter:
         dry = 1.0
     # phi_bl, the share of boundary lubrication in the sliding friction: (J9)
-    boundary = math.exp(-2.6e-8 * math.pow(at.rpm * at.viscosity, 1.4) * at.pitch)
+    boundary = math.exp(-2.6e-8 * math.pow(rpm * nu, 1.4) * pitch)
     mu_bl = STARTING_FRICTION if speed == 0 else BOUNDARY_FRICTION
     mu_sl = boundary * mu_bl + (1 - boundary) * model.full_film_friction
     return SkfMoments(
-        rolling=1e-3 * hot * dry * rolling * math.pow(at.viscosity * at.rpm, 0.6),
+        rolling=1e-3 * hot * dry * rolling * math.pow(nu * rpm, 0.6),
         sliding=1e-3 * sliding * mu_sl,
         seal=0.0 if model.seal is None else model.seal.moment,
         drag=skf_drag_moment(model, bearing, speed, viscosity),
@@ -657,9 +647,9 @@ _MEASURED = "measured tapered bearings: Aihara (1987), Zhou and Hoeprich (1991),
 _TAPERED_RANGES = (
     Range("bore", "bore", 17.0, 120.0, MILLIMETRE, _MEASURED),
     Range("viscosity", "viscosity in the bearing", 4.5, 80.0, MILLIPASCAL_SECOND, _MEASURED),
-    replace(SPEED_PARAMETER, high=4.4e5, source=_MEASURED),
     Range("rib_film", "film ratio at the rib", 0.4, None, NUMBER, _MEASURED),
 )
+_TAPERED_SPEED = replace(SPEED_PARAMETER, high=4.4e5, source=_MEASURED)
 TAPERED_ERRORS = {"palmgren": "10 and 84 %", "harris": "10 and 84 %", "skf-2018": "71 and 177 %"}
 """Mean error of other models against two sets of measured tapered bearings. Theory (J26)."""
 
@@ -712,20 +702,10 @@ class TaperedModel:
     ) -> tuple[ValidityFlag, ...]:
         """Flags on static load, and on what no measured bearing had."""
         use = ModelUse("bearing", self.name, where)
-        if speed == 0:
-            return ()
         film = tapered_moments(self, bearing, load, speed, oil).film_ratio
-        values = {
-            "bore": bearing.bore,
-            "viscosity": oil.dynamic_viscosity,
-            "speed_parameter": speed_parameter(speed, bearing.pitch_diameter),
-            "rib_film": film,
-        }
-        static = load_flags(use, AXIAL_RATIO, bearing, load, speed)
-        return (
-            *(flag for flag in static if flag.quantity == _STATIC_RATIO.label),
-            *check_ranges(use, _TAPERED_RANGES, values),
-        )
+        values = {"bore": bearing.bore, "viscosity": oil.dynamic_viscosity, "rib_film": film}
+        measured = check_ranges(use, _TAPERED_RANGES, values) if speed else ()
+        return measured + load_flags(use, AXIAL_RATIO, bearing, load, speed, _TAPERED_SPEED)
 
 
 BearingModel = PalmgrenModel | SkfModel | TaperedModel | TableModel

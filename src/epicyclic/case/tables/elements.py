@@ -160,16 +160,16 @@ class BearingSealTable(Table):
     constant: DragTorque = option("K_S2.", "0 N*m")
 
 
+_OF_TAPERED = ("rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness")
+
+
 class ShaftBearingTable(Table):
     """A rolling bearing of a shaft."""
 
-    ROLLERS: ClassVar = (
-        "rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness"
-    )  # fmt: skip
     STAND_INS: ClassVar[dict[str, object]] = dict.fromkeys((
-        *ROLLERS, "position", "width", "viscous_factor", "palmgren_coefficient",
-        "flange_coefficient", "oil_level", "drag_variable", "sliding_friction",
-        "minimum_load_factor", "reference_speed",
+        *_OF_TAPERED, "position", "width", "viscous_factor", "palmgren_coefficient", "oil_level",
+        "flange_coefficient", "drag_variable", "sliding_friction", "minimum_load_factor",
+        "reference_speed",
     ))  # fmt: skip
 
     shaft: str = Field(description="The shaft in its bore.")
@@ -182,9 +182,7 @@ class ShaftBearingTable(Table):
         "full-complement: cylindrical and needle rollers only.", "caged"
     )
     model: Literal["auto", "zhou-hoeprich", "palmgren", "harris", "skf-2018", "table"] = option(
-        "auto: of tapered rollers with width zhou-hoeprich, else palmgren; skf-2018: needs series; "
-        "harris: of ball bearings, static_load_rating.",
-        "auto",
+        "auto: tapered with width zhou-hoeprich, else palmgren; skf-2018: needs series.", "auto"
     )
     rollers: int | None = option("Tapered. Default: as many as fit.", ge=4, le=200)
     roller_diameter: Length | None = option("Mean, tapered. Default: 0.26 (D - d).")
@@ -192,9 +190,7 @@ class ShaftBearingTable(Table):
     rib_height: Length | None = option("Of the contact on the rib. Default: 0.03 (D - d).")
     rib_roughness: Roughness | None = option("Rms, rib and roller ends. Default: 0.24 um.")
     series: str | None = option("For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ...", max_length=20)
-    dynamic_load_rating: LoadRating | None = option(
-        "C, for the minimum load of tapered and needle rollers."
-    )
+    dynamic_load_rating: LoadRating | None = option("C; for the least load of tapered and needle.")
     static_load_rating: LoadRating | None = option(
         "C0, for ball bearings with harris and skf-2018."
     )
@@ -226,8 +222,7 @@ class ShaftBearingTable(Table):
         le=0.05,
     )
     flange_coefficient: Number | None = option(
-        "f_f of cylindrical rollers under axial force. Default: 0.002 caged, 0.003 full "
-        "complement.",
+        "f_f of cylindrical rollers under axial force. Default: 0.002, full complement 0.003.",
         ge=0,
         le=0.05,
     )
@@ -316,7 +311,7 @@ def _size_problems(table: ShaftBearingTable) -> list[Problem]:
         remedy = "Delete one." if angles else "Add Y from the catalogue, or the contact angle."
         problems.append(Problem("axial_factor", "", reason, remedy))
     if table.type != "tapered":
-        idle = [*angles, *(key for key in table.ROLLERS if getattr(table, key) is not None)]
+        idle = [*angles, *(key for key in _OF_TAPERED if getattr(table, key) is not None)]
         problems += [
             Problem(key, "", "belongs to tapered roller bearings.", "Delete it.") for key in idle
         ]

@@ -344,9 +344,8 @@ class GearPairModels(Table):
         "fitted",
         "fitted-or-goksem-hargreaves",
     ] = option(
-        "auto: none with schlenk and niemann-winter, which contain it; mixed-ehl for the fluid it "
-        "was made for, fitted-or-goksem-hargreaves for an oil with fitted models, else "
-        "goksem-hargreaves.",
+        "auto: none with schlenk and niemann-winter, which contain it; mixed-ehl for its fluid, "
+        "fitted-or-goksem-hargreaves for an oil with fitted models, else goksem-hargreaves.",
         "auto",
     )
     oil_model: str | None = option(
