@@ -10,6 +10,7 @@ from importlib import resources
 import numpy as np
 import pytest
 
+import epicyclic as ep
 from epicyclic import library
 from epicyclic.build.elements import build_element
 from epicyclic.case.tables.elements import ShaftBearingTable, bearing_problems
@@ -258,6 +259,27 @@ def test_what_no_measured_tapered_bearing_had_is_flagged(state):
     result = other.evaluate(state(3000, force))
     watts = sum(loss.watts for loss in result.losses.values())
     assert f"{watts:.3g} W after palmgren" in only(result.notes)
+
+
+def test_auto_takes_the_rib_where_the_width_is_known():
+    tapered = {
+        "bearings.output_rear.type": "tapered", "bearings.output_rear.contact_angle": "14 deg"
+    }  # fmt: skip
+    case = ep.load_case("train-eaxle").updated(tapered)
+    without = ep.solve(case)
+    assert any("W after palmgren" in note for note in without.warnings)
+    assert "output_rear.viscous" in without.losses
+    wide = case.updated(
+        {
+            "bearings.output_rear.bore": "200 mm",
+            "bearings.output_rear.outside_diameter": "260 mm",
+            "bearings.output_rear.width": "30 mm",
+        }
+    )
+    result = ep.solve(wide)
+    watts = result.losses["output_rear.mechanical"]
+    (told,) = (note for note in result.warnings if "bore 200 mm" in note)
+    assert f"zhou-hoeprich (output_rear: output_rear) 100 %; {watts:.3g} W in all" in told
 
 
 TAPER_MODEL = TaperedModel(18, 10.4e-3, 12.6e-3, 1.2e-3, RIB_ROUGHNESS, SUPPLY)
