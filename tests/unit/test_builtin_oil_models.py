@@ -144,7 +144,8 @@ def test_an_oil_with_other_properties_has_none(case, name):
     table["name"] = name
     table["kinematic_viscosity"][0]["value"] = "221.5 mm^2/s"
     changed = case.updated({"lubricant.oil": table})
-    assert set_of(changed).chosen["rolling"] == "goksem-hargreaves"
+    models = set_of(changed).chosen
+    assert (models["friction"], models["rolling"]) == ("schlenk", "contained")
     told = [note for note in ep.solve(changed).warnings if "are not used" in note]
     assert len(told) == (name == OIL)
     assert all("kinematic_viscosity" in note for note in told)
@@ -204,7 +205,8 @@ def test_loss_has_no_step_where_the_simulations_end(case):
     speeds = np.geomspace(110, 900, 30)
     results = [ep.solve(case.updated({"operation.speed": f"{it} rpm"})) for it in speeds]
     friction = np.array([it.meshes["sun_mesh"].friction_mean for it in results])
-    slow = case.updated({"operation.speed": "110 rpm", "models.friction": "schlenk"})
+    same = {"models.friction": "schlenk", "models.rolling": "fitted-or-goksem-hargreaves"}
+    slow = case.updated({"operation.speed": "110 rpm"} | same)
     assert friction[0] == pytest.approx(ep.solve(slow).meshes["sun_mesh"].friction_mean)
     assert np.abs(np.diff(np.log(friction))).max() < 0.25
     assert not any(flag.use.role == "friction" for flag in results[-1].flags)

@@ -178,6 +178,21 @@ def test_oil_behaves_like_an_oil(name):
         assert 0.5 < state.lubricant_factor < 1.6
 
 
+@pytest.mark.parametrize(
+    ("kind", "factor"),
+    [("mineral", 1.0), ("atf", 1.0), ("pao", 0.8), ("ester", 0.8), ("pag", 0.75)],
+)
+def test_lubricant_factor_by_kind(kind, factor):
+    # ISO/TR 14179-2, second hand
+    table = library.oil_table("iso-vg-100-mineral") | {"kind": kind}
+    del table["lubricant_factor"]
+    found = Oil.model_validate(table).lubricant_factor
+    assert found.value == factor
+    assert "ISO/TR 14179-2" in found.source
+    own = Oil.model_validate(table | {"lubricant_factor": {"value": 0.9}})
+    assert own.lubricant_factor.value == 0.9
+
+
 @pytest.mark.parametrize("name", [name for name in OILS if name.startswith("iso-vg")])
 def test_iso_grade_has_its_midpoint_viscosity(name):
     # ISO 3448: the grade is the viscosity at 40 degC, in mm^2/s

@@ -10,6 +10,7 @@ from importlib import resources
 import numpy as np
 import pytest
 
+import epicyclic as ep
 from epicyclic import library
 from epicyclic.build.elements import build_element
 from epicyclic.case.tables.elements import ShaftBearingTable
@@ -17,19 +18,24 @@ from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.shaft_bearing import (
+    RIB_ROUGHNESS,
     STARVATION,
     BearingLoad,
     CatalogueBearing,
     PalmgrenModel,
     SkfModel,
     TableModel,
+    TaperedModel,
     bearing_types,
     drag_variable,
     friction_load,
     full_film_friction,
     harris_coefficient,
+    inlet_heating,
     load_moment,
     minimum_load,
+    roller_loads,
+    rolling_force,
     seal_moment,
     skf_constants,
     skf_drag_moment,
@@ -37,11 +43,13 @@ from epicyclic.losses.shaft_bearing import (
     skf_moments,
     skf_reduction_factors,
     skf_series,
+    skf_supply,
     static_load,
+    tapered_moments,
 )
 from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import ShaftBearing
-from epicyclic.oil.oil import Oil
+from epicyclic.oil.oil import Oil, OilState
 from problems import only, problems_of
 
 RPM = math.pi / 30
@@ -124,6 +132,157 @@ def test_palmgren_adds_the_viscous_loss(state):
     assert parts["viscous"].watts == viscous > 0
     assert parts["mechanical"].by_load
     assert not parts["viscous"].by_load
+
+
+# --- Zhou and Hoeprich ---------------------------------------------------------------------------
+
+
+def lubricant(eta, nu, alpha, beta):
+    return OilState(323.15, nu, eta / nu, eta, alpha, beta, 0.14, 1.0)
+
+
+def fva_3(celsius):
+    """Reference oil FVA 3 as Wingertszahn et al. (2023) have it; alpha by Gold."""
+    eta = 0.062e-3 * math.exp(1021.7 / (celsius + 101.55))
+    nu = eta / (887.6 - 0.65 * (celsius - 15))
+    return lubricant(eta, nu, 9.904e-9 * (nu * 1e6) ** 0.139, 1021.7 / (celsius + 101.55) ** 2)
+
+
+SUPPLY = SkfModel(skf_supply("tapered"), 0.002)
+LARGE = CatalogueBearing("tapered", 80e-3, 140e-3, 33e-3, axial_factor=1.4)
+LARGE_MODEL = TaperedModel(
+    16, 17e-3, 22.7e-3, 1.8e-3, RIB_ROUGHNESS, replace(SUPPLY, oil_level=8.5e-3)
+)
+SMALL = CatalogueBearing(
+    "tapered", 22e-3, 45.2e-3, axial_factor=0.4 / math.tan(math.radians(11 + 32 / 60))
+)
+SMALL_MODEL = TaperedModel(17, 0.26 * 23.2e-3, 10.8e-3, 0.03 * 23.2e-3, RIB_ROUGHNESS, SUPPLY)
+THIN = lubricant(4.6e-3, 5.5e-6, 12.6e-9, 0.023)
+"""An oil of SAE 75W at 80 degC; its viscosity is a guess."""
+
+
+def torque(model, bearing, load, rpm, oil):
+    """[N mm]"""
+    return 1e3 * sum(it.watts for it in model.parts(bearing, load, rpm * RPM, oil)) / (rpm * RPM)
+
+
+def test_rolling_grows_as_the_printed_solutions():
+    # Zhou and Hoeprich, Table 1: 2 F R_e of 0.0623 and 1.1290 at U = 1e-11 and 1e-9, and of 0.5485
+    # and 0.6933 at W = 1e-4 and 3e-4, which their power law (17) smooths
+    fast = rolling_force(1e-9, 3745, 2e-4) / rolling_force(1e-11, 3745, 2e-4)
+    assert fast == pytest.approx(1.1290 / 0.0623, rel=0.10)
+    loaded = rolling_force(3.5e-10, 3745, 3e-4) / rolling_force(3.5e-10, 3745, 1e-4)
+    assert loaded == pytest.approx(0.6933 / 0.5485, rel=0.05)
+    assert rolling_force(1e-10, 3745, 2e-4) == pytest.approx(
+        29.2 * 3.745e-7**0.648 * 2e-4**0.246, rel=1e-12
+    )
+
+
+def test_inlet_heating():
+    assert inlet_heating(0.0) == 1.0
+    assert inlet_heating(1.0) == pytest.approx(1 / 1.213, rel=1e-12)
+    hot = (1 - 13.2 * 0.004) / (1 + 0.213 * (1 + 2.23 * 0.25**0.83))
+    assert inlet_heating(1.0, 0.004, 0.25) == pytest.approx(hot, rel=1e-12)
+
+
+def test_half_of_the_rollers_carry_at_the_printed_ratio():
+    # line contact, epsilon = 0.5: F_a = 1.260 F_r tan(alpha), Q_max = 4.08 F_r/(z cos(alpha)), NSK
+    loads = roller_loads(1 / 1.260, 2000)
+    assert sum(load > 0 for load in loads) == pytest.approx(1000, abs=10)
+    assert max(loads) == pytest.approx(4.08 / 1.260, rel=0.005)
+    assert sum(loads) == pytest.approx(2000, rel=1e-12)
+
+
+def test_rib_friction_at_creep_is_the_starting_torque():
+    # Aihara (1987), Eq. 11: M = e mu F_a cos(beta), mu = 0.2
+    moments = tapered_moments(LARGE_MODEL, LARGE, BearingLoad(0.0, 6000.0), 1e-9, fva_3(50))
+    assert moments.rib == pytest.approx(1.8e-3 * 0.2 * 6000, rel=0.02)
+    # and 0.15 G_sl of SKF's series 322, from which the height on the rib comes
+    _, sliding = skf_load_variables(
+        skf_constants("tapered", "322"), LARGE, BearingLoad(0.0, 6000.0)
+    )
+    assert moments.rib == pytest.approx(0.15e-3 * sliding, rel=0.12)
+
+
+def test_rib_and_raceways_cross_where_printed():
+    # Zhou and Hoeprich, Fig. 9: the raceways are the larger part above 1600 rpm
+    slow, fast = (
+        tapered_moments(SMALL_MODEL, SMALL, BearingLoad(0.0, 3600.0), rpm * RPM, THIN)
+        for rpm in (1600 / 1.3, 1600 * 1.3)
+    )
+    assert slow.rib > slow.rolling
+    assert fast.rib < fast.rolling
+
+
+def test_measured_torque_of_a_32216():
+    # Wingertszahn et al., Lubricants 11 (2023) 369, read from figures: F_r, degC, rpm, N mm
+    measured = (
+        (0, 50, 500, 1300), (0, 50, 2000, 2950), (0, 50, 4000, 3750), (0, 42, 500, 1700),
+        (6500, 50, 500, 1500), (6500, 50, 1000, 1950), (6500, 50, 2000, 2500),
+        (6500, 50, 4000, 3250), (6500, 42, 500, 2000), (6500, 42, 1000, 2650),
+        (6500, 42, 2000, 3500), (6500, 42, 4000, 4450),
+    )  # fmt: skip
+    errors = [
+        torque(LARGE_MODEL, LARGE, BearingLoad(force, 6000.0), rpm, fva_3(celsius)) / found - 1
+        for force, celsius, rpm, found in measured
+    ]
+    assert np.abs(errors).mean() < 0.12
+    assert abs(np.mean(errors)) < 0.05
+
+
+def test_measured_torque_of_an_lm12700():
+    measured = {200: 450, 400: 200, 800: 115, 1600: 85, 2400: 90, 3200: 100, 4000: 110, 4800: 120}
+    load = BearingLoad(0.0, 3600.0)
+    errors = [
+        torque(SMALL_MODEL, SMALL, load, rpm, THIN) / found - 1 for rpm, found in measured.items()
+    ]
+    assert np.abs(errors).mean() < 0.15
+
+
+def test_tapered_moments_vanish_with_the_load_and_grow_with_it():
+    moments = [
+        tapered_moments(LARGE_MODEL, LARGE, BearingLoad(radial, axial), 100.0, fva_3(50))
+        for radial, axial in ((0.0, 0.0), (0.0, 1.0), (0.0, 1e3), (1e3, 0.0), (2e4, 2e4))
+    ]
+    assert moments[0].rolling == moments[0].rib == 0
+    assert 0 < moments[1].rolling < moments[2].rolling < moments[4].rolling
+    assert moments[3].rolling > 0
+
+
+def test_what_no_measured_tapered_bearing_had_is_flagged(state):
+    bearing = ShaftBearing("input.front", ("input", HOUSING), TAPER, TAPER_MODEL)
+    force = BearingLoad(2000.0, 1000.0)
+    assert bearing.evaluate(state(3000, force)).flags == ()
+    (flag,) = bearing.evaluate(state(9000, force)).flags
+    assert flag.use.model == "zhou-hoeprich"
+    other = replace(bearing, model=PalmgrenModel(6.0, 0.0004))
+    result = other.evaluate(state(3000, force))
+    watts = sum(loss.watts for loss in result.losses.values())
+    assert f"{watts:.3g} W after palmgren" in only(result.notes)
+
+
+def test_auto_takes_the_rib_where_the_width_is_known():
+    tapered = {
+        "bearings.output_rear.type": "tapered", "bearings.output_rear.contact_angle": "14 deg"
+    }  # fmt: skip
+    case = ep.load_case("train-eaxle").updated(tapered)
+    without = ep.solve(case)
+    assert any("W after palmgren" in note for note in without.warnings)
+    assert "output_rear.viscous" in without.losses
+    wide = case.updated(
+        {
+            "bearings.output_rear.bore": "200 mm",
+            "bearings.output_rear.outside_diameter": "260 mm",
+            "bearings.output_rear.width": "30 mm",
+        }
+    )
+    result = ep.solve(wide)
+    watts = result.losses["output_rear.mechanical"]
+    (told,) = (note for note in result.warnings if "bore 200 mm" in note)
+    assert f"zhou-hoeprich (output_rear: output_rear) 100 %; {watts:.3g} W in all" in told
+
+
+TAPER_MODEL = TaperedModel(18, 10.4e-3, 12.6e-3, 1.2e-3, RIB_ROUGHNESS, SUPPLY)
 
 
 # --- SKF ------------------------------------------------------------------------------------------

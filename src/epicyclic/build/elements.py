@@ -16,16 +16,24 @@ from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
     DEFAULT_FLANGE_COEFFICIENTS,
     DEFAULT_VISCOUS_FACTORS,
+    RIB_HEIGHT,
+    RIB_ROUGHNESS,
+    ROLLER_DIAMETER,
+    ROLLER_FILL,
+    ROLLER_LENGTH,
     STARVATION,
     BearingLoad,
     BearingModel,
     CatalogueBearing,
     PalmgrenModel,
+    SkfConstants,
     SkfModel,
     TableModel,
+    TaperedModel,
     full_film_friction,
     seal_moment,
     skf_constants,
+    skf_supply,
 )
 from epicyclic.machine.element import Element
 from epicyclic.machine.shaft_parts import Seal, ShaftBearing, TableLoss
@@ -77,10 +85,14 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
         assert points is not None
         return TableModel(points)
     if table.model == "skf-2018":
-        return _skf_model(table, oil)
+        constants = skf_constants(table.type, table.series or "", table.cage)
+        return _skf_model(table, oil, constants)
+    length = table.roller_length or ROLLER_LENGTH * (table.width or 0.0)
+    if table.type == "tapered" and length and table.model in ("auto", "zhou-hoeprich"):
+        return _tapered_model(table, oil, length)
     kind = (table.type, table.cage)
     constant = None
-    if table.model == "palmgren":
+    if table.model != "harris":
         constant = table.palmgren_coefficient or DEFAULT_COEFFICIENTS[kind]
     factor, flange = table.viscous_factor, table.flange_coefficient
     return PalmgrenModel(
@@ -90,11 +102,25 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
     )
 
 
-def _skf_model(table: ShaftBearingTable, oil: Oil) -> SkfModel:
+def _tapered_model(table: ShaftBearingTable, oil: Oil, length: float) -> TaperedModel:
+    height = table.outside_diameter - table.bore
+    diameter = table.roller_diameter or ROLLER_DIAMETER * height
+    pitch_circle = math.pi * (table.outside_diameter + table.bore) / 2
+    return TaperedModel(
+        rollers=table.rollers or max(4, int(ROLLER_FILL * pitch_circle / diameter)),
+        roller_diameter=diameter,
+        roller_length=length,
+        rib_height=table.rib_height or RIB_HEIGHT * height,
+        rib_roughness=table.rib_roughness or RIB_ROUGHNESS,
+        skf=_skf_model(table, oil, skf_supply(table.type, table.cage)),
+    )
+
+
+def _skf_model(table: ShaftBearingTable, oil: Oil, constants: SkfConstants) -> SkfModel:
     seal = table.seal
     friction = table.sliding_friction
     return SkfModel(
-        constants=skf_constants(table.type, table.series or "", table.cage),
+        constants=constants,
         full_film_friction=full_film_friction(table.type, oil.kind)
         if friction is None
         else friction,

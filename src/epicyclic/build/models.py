@@ -36,6 +36,7 @@ from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.stated import StatedMaterial
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.friction import (
+    CONTAINS_ROLLING,
     FRICTION_MODELS,
     TALBOT_FLUID,
     FrictionMap,
@@ -50,6 +51,7 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.losses.reliability import RELIABILITY, reliability
 from epicyclic.losses.rolling import (
+    CONTAINED,
     ROLLING_MODELS,
     FittedFriction,
     FittedOrGoksem,
@@ -141,6 +143,10 @@ class SetCase:
         stated: str = getattr(self.models, role)
         if stated != "auto":
             return stated
+        if role == "rolling" and self._model("friction", FittedOrSchlenk.name, "schlenk") in (
+            CONTAINS_ROLLING
+        ):
+            return CONTAINED.name
         if role in GENERAL and preset_of(self.models) == "general":
             return GENERAL[role]
         if self.lubricant.oil.friction_regression == TALBOT_FLUID.key:
@@ -183,11 +189,13 @@ class SetCase:
 
     @cached_property
     def rolling(self) -> RollingModel:
-        """Its model of the rolling loss."""
+        """Its model of the rolling loss. Theory (R11)."""
         name = self.chosen["rolling"]
         if name in (FittedRolling.name, FittedOrGoksem.name):
             fitted = self.fitted_rolling("rolling_loss")
             return fitted if name == FittedRolling.name else FittedOrGoksem(fitted)
+        if name == CONTAINED.name:
+            return CONTAINED
         return replace(ROLLING_MODELS[name], oil_held=self.models.oil_beyond_range == "held")
 
     def fitted_rolling(self, quantity: str) -> FittedRolling:

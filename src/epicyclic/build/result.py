@@ -21,7 +21,7 @@ from epicyclic.gears.gearing import DEFAULT_RIM_THICKNESS, rim_thickness
 from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.gears.rules import backlash_notes
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
-from epicyclic.losses.friction import TALBOT_FLUID
+from epicyclic.losses.friction import CONTAINS_ROLLING, TALBOT_FLUID
 from epicyclic.losses.ranges import SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
@@ -147,6 +147,12 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
             f"models.friction: {models['friction']} was fitted to tests by the temperature of "
             "their oil: it takes that of the oil around the gears, not that of the flanks."
         )
+    if models["friction"] in CONTAINS_ROLLING or (
+        "schlenk" in models["friction"] and "lubricant_factor" not in oil.model_fields_set
+    ):
+        found = oil.lubricant_factor
+        source = f" ({found.source})" if found.source else ""
+        notes.append(f"models.friction: the oil has X_L = {found.value:g}{source}.")
     factor = case.lubricant.pressure_viscosity_factor
     if factor != 1:
         notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")

@@ -746,6 +746,10 @@ FRICTION_MODELS = {
 }
 
 
+CONTAINS_ROLLING = ("schlenk", "niemann-winter")
+"""Fitted to the whole load-dependent loss of gear tests, that of rolling included. Theory (R11)."""
+
+
 def friction_model(name: str, settings: FrictionSettings) -> FrictionFormula:
     """The friction model called `name`, with the numbers of a case."""
     model = FRICTION_MODELS[name]

@@ -9,7 +9,7 @@ from epicyclic.losses.drag import CHURNING_MODELS
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.losses.planet_bearing import BEARING_RELIABILITY
 from epicyclic.losses.ranges import FITTED_QUANTITIES
-from epicyclic.losses.rolling import ROLLING_MODELS
+from epicyclic.losses.rolling import CONTAINED, ROLLING_MODELS
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
 from epicyclic.units import percent
 
@@ -19,7 +19,7 @@ RELIABILITY: Mapping[str, Mapping[str, str]] = {
         "ehl-direct": "contacts solved, the error of interpolation stated among the warnings; "
         "not compared with measurements",
     },
-    "rolling": {name: model.reliability for name, model in ROLLING_MODELS.items()},
+    "rolling": {it.name: it.reliability for it in (*ROLLING_MODELS.values(), CONTAINED)},
     "bearing": BEARING_RELIABILITY,
     "churning": {name: model.reliability for name, model in CHURNING_MODELS.items()},
     "shaft_bearing": SHAFT_BEARING_RELIABILITY,

@@ -124,6 +124,15 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
     return 2 * np.minimum(elastic, rigid) * contact.rolling_speed
 
 
+CONTAINED = RollingFormula(
+    name="contained",
+    title="rolling loss contained in the friction",
+    source="the tests of the friction model",
+    reliability="that of the friction, which was fitted to the whole load-dependent loss",
+    function=lambda contact, oil_held: np.zeros_like(contact.line_load),
+)
+"""What `auto` is with friction in `CONTAINS_ROLLING`; no case asks for it by name. Theory (R11)."""
+
 ROLLING_MODELS = {
     model.name: model
     for model in (

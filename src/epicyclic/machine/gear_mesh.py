@@ -22,7 +22,7 @@ from epicyclic.losses.contact import (
     MeshLoad,
     mesh_contact,
 )
-from epicyclic.losses.friction import FrictionModel
+from epicyclic.losses.friction import CONTAINS_ROLLING, FrictionModel
 from epicyclic.losses.mesh import (
     MeshLoss,
     heat_share1,
@@ -35,7 +35,7 @@ from epicyclic.losses.mesh import (
 )
 from epicyclic.losses.pocket_tables import FLOW_NUMBERS, FlowFigures
 from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE
-from epicyclic.losses.rolling import RollingModel
+from epicyclic.losses.rolling import CONTAINED, RollingModel
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
@@ -65,6 +65,7 @@ from epicyclic.units import (
     NEWTON_PER_MM,
     NEWTON_PER_UM,
     NUMBER,
+    WATT,
 )
 
 FloatArray = NDArray[np.float64]
@@ -271,6 +272,12 @@ def solve_mesh(
     if duty.gears.models.by_loss_factor:
         method, source = f"{method} times the loss factor", f"{source}; {OHLENDORF_SOURCE}"
         rolling_loss = Loss(LOAD_DEPENDENT, left_out="the loss-factor method has no rolling loss")
+    elif rolling is CONTAINED:
+        rolling_loss = Loss(
+            LOAD_DEPENDENT,
+            left_out=f"contained in the friction {friction.name}, which was fitted to the whole "
+            "load-dependent loss of gear tests",
+        )
     losses = {
         f"{duty.gears.key}_sliding": Loss(
             LOAD_DEPENDENT,
@@ -289,6 +296,12 @@ def solve_mesh(
     notes += stored_note(duty.gears.models.pockets, duty.gears.mesh, flow.figures)
     if duty.gears.models.by_loss_factor:
         notes += loss_factor_notes(duty.gears.mesh)
+    elif rolling is not CONTAINED and friction.name in CONTAINS_ROLLING:
+        notes += (
+            f"The rolling loss of the {duty.gears.mesh.name}, "
+            f"{WATT.text(count * loss.rolling, 3)}, counts twice: the friction {friction.name} was fitted "
+            "to the whole load-dependent loss of gear tests. models.rolling = auto adds none to it.",
+        )
     notes += friction.remarks
     return MeshResult(
         losses=losses,

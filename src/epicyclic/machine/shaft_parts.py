@@ -11,10 +11,12 @@ from epicyclic.losses.drag import RPM as ONE_RPM
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
+    TAPERED_ERRORS,
     BearingLoad,
     BearingModel,
     CatalogueBearing,
     SkfModel,
+    TaperedModel,
     friction_load,
     minimum_load,
 )
@@ -324,10 +326,12 @@ class ShaftBearing:
             },
             figures={"bearing": figures},
             flags=self.model.flags(self.key, self.bearing, load, speed, oil),
-            notes=self._notes(load, least, speed),
+            notes=self._notes(load, least, speed, watts),
         )
 
-    def _notes(self, load: BearingLoad, least: float, speed: float) -> tuple[str, ...]:
+    def _notes(
+        self, load: BearingLoad, least: float, speed: float, watts: float
+    ) -> tuple[str, ...]:
         if speed == 0:
             return ()
         notes = []
@@ -340,7 +344,14 @@ class ShaftBearing:
                 f"of {format_number(least, 3)} N (SKF, second hand). The rolling elements may "
                 "slip; the loss is that of the actual load without slip."
             )
-        if isinstance(self.model, SkfModel) and self.model.drag_is_estimated:
+        if self.bearing.type == "tapered" and self.model.name in TAPERED_ERRORS:
+            notes.append(
+                f"{self.key}: {WATT.text(watts, 3)} after {self.model.name}, which is off by "
+                f"{TAPERED_ERRORS[self.model.name]} in the mean of two sets of measured tapered "
+                "bearings; with its width given, zhou-hoeprich is off by 10 and 14 %."
+            )
+        skf = self.model.skf if isinstance(self.model, TaperedModel) else self.model
+        if isinstance(skf, SkfModel) and skf.drag_is_estimated:
             notes.append(
                 f"{self.key}: the drag variable V_M is an estimate, as SKF's diagram was not at "
                 "hand; give drag_variable."

@@ -102,6 +102,21 @@ BOUNDARY_FRICTION = {
 """Friction of flanks that touch, by the level of additives. [1]"""
 
 
+def _factor(value: float, kind: str) -> LubricantFactor:
+    return LubricantFactor(value=value, source=f"X_L of ISO/TR 14179-2 for {kind}, second hand")
+
+
+LUBRICANT_FACTORS = {
+    "mineral": _factor(1.0, "mineral oils"),
+    "pao": _factor(0.8, "polyalphaolefins and esters"),
+    "ester": _factor(0.8, "polyalphaolefins and esters"),
+    "pag": _factor(0.75, "polyglycols"),
+    "atf": _factor(1.0, "mineral oils, taken over for transmission fluids"),
+}
+"""X_L by the kind of an oil that does not state it. Theory (F15). The standard has 1.3 for
+phosphoric esters and 1.5 for traction fluids too, which are no kinds here."""
+
+
 class GoldLaw(_Data):
     """alpha = s nu^t with nu in mm^2/s and alpha in 1/GPa (Gold et al. 2001). Theory (L4)."""
 
@@ -167,8 +182,8 @@ class Oil(_Data):
     )
     pressure_viscosity: PressureViscosityLaw
     lubricant_factor: LubricantFactor = Field(
-        default=LubricantFactor(value=1.0, source="X_L of ISO/TR 14179-2, mineral oil"),
-        description="X_L of the friction model of ISO/TR 14179-2.",
+        default=LUBRICANT_FACTORS["mineral"],
+        description="X_L of the friction model of ISO/TR 14179-2. Default: by the kind.",
     )
     limiting_traction: Traction | None = Field(
         default=None,
@@ -189,6 +204,8 @@ class Oil(_Data):
     def _check_points(self) -> Oil:
         if faults := list(self._faults()):
             raise ValidationError.from_exception_data(self.name, faults)
+        if "lubricant_factor" not in self.model_fields_set:
+            self.__dict__["lubricant_factor"] = LUBRICANT_FACTORS[self.kind]
         return self
 
     def _faults(self) -> Iterator[InitErrorDetails]:

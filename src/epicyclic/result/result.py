@@ -516,7 +516,8 @@ class Result:
         def loss_of(use: ModelUse) -> float:
             last = LOSSES_OF_ROLES.get(use.role, use.role)
             stage, colon, _ = use.where.rpartition(": ")
-            whole = f"{stage}{colon}{last}"  # the drag of both gears of a pair
+            # the drag of both gears of a pair, or the loss of a bearing of a train
+            whole = in_words(f"{stage}{colon}{last}")
             return losses.get(f"{use.where} {last}", losses.get(whole, math.nan))
 
         return loss_of

@@ -188,6 +188,9 @@ class BearingSealTable(Table):
     constant: DragTorque = option("K_S2.", "0 N*m")
 
 
+_OF_TAPERED = ("rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness")
+
+
 class ShaftBearingTable(ElementTable):
     """A rolling bearing of a shaft."""
 
@@ -200,13 +203,16 @@ class ShaftBearingTable(ElementTable):
     cage: Literal["caged", "full-complement"] = option(
         "full-complement: cylindrical and needle rollers only.", "caged"
     )
-    model: Literal["palmgren", "harris", "skf-2018", "table"] = option(
-        "skf-2018: needs series; harris: of ball bearings, static_load_rating.", "palmgren"
+    model: Literal["auto", "zhou-hoeprich", "palmgren", "harris", "skf-2018", "table"] = option(
+        "auto: tapered with width zhou-hoeprich, else palmgren; skf-2018: needs series.", "auto"
     )
+    rollers: int | None = option("Tapered. Default: as many as fit.", ge=4, le=200)
+    roller_diameter: Length | None = option("Mean, tapered. Default: 0.26 (D - d).")
+    roller_length: Length | None = option("Tapered. Default: 0.7 width.")
+    rib_height: Length | None = option("Of the contact on the rib. Default: 0.03 (D - d).")
+    rib_roughness: Roughness | None = option("Rms, rib and roller ends. Default: 0.24 um.")
     series: str | None = option("For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ...", max_length=20)
-    dynamic_load_rating: LoadRating | None = option(
-        "C, for the minimum load of tapered and needle rollers."
-    )
+    dynamic_load_rating: LoadRating | None = option("C; for the least load of tapered and needle.")
     static_load_rating: LoadRating | None = option(
         "C0, for ball bearings with harris and skf-2018."
     )
@@ -238,8 +244,7 @@ class ShaftBearingTable(ElementTable):
         le=0.05,
     )
     flange_coefficient: Number | None = option(
-        "f_f of cylindrical rollers under axial force. Default: 0.002 caged, 0.003 full "
-        "complement.",
+        "f_f of cylindrical rollers under axial force. Default: 0.002, full complement 0.003.",
         ge=0,
         le=0.05,
     )
@@ -326,7 +331,7 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     """The contact angle of tapered rollers, stated once."""
     angles = [key for key in ("axial_factor", "contact_angle") if getattr(table, key) is not None]
     if table.type != "tapered":
-        for key in angles:
+        for key in [*angles, *(key for key in _OF_TAPERED if getattr(table, key) is not None)]:
             yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
     elif table.model != "table" and not angles:
         reason = "is missing; needed is axial_factor or contact_angle."
@@ -335,6 +340,9 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     elif table.model != "table" and len(angles) == 2:
         reason = "is given beside contact_angle; either follows from the other."
         yield Problem("axial_factor", "", reason, "Delete one.")
+    elif table.model == "zhou-hoeprich" and table.width is table.roller_length is None:
+        reason = "is missing; it tells how long the rollers are."
+        yield Problem("width", "", reason, "Add B from the catalogue, or roller_length.")
 
 
 def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:

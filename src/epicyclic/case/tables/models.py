@@ -350,7 +350,11 @@ class GearPairModels(Table):
         "goksem-hargreaves",
         "fitted",
         "fitted-or-goksem-hargreaves",
-    ] = option("auto: goksem-hargreaves, or that of the preset.", "auto")
+    ] = option(
+        "auto: none with schlenk and niemann-winter, which contain it; else goksem-hargreaves, or "
+        "that of the preset.",
+        "auto",
+    )
     oil_model: str | None = option(
         "For fitted and auto: a file of 'epicyclic oil characterise', from the folder of the "
         "case. Default: the models built in for the oil."
