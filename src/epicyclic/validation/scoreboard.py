@@ -1,0 +1,471 @@
+"""Measurements that others published, computed: how far off, with which trend, inside which band.
+
+Nothing is fitted to them. Each file of the folder ``measurements`` holds sets of one case; files of
+the same form can be given in their place, `read_sets`.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import PydanticCustomError
+
+from epicyclic.case.case import Case, TrainCase, read_case
+from epicyclic.case.fields import choices_of, value_of
+from epicyclic.case.tables.elements import ShaftBearingTable
+from epicyclic.case.tables.models import GearPairModels
+from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
+from epicyclic.files import read_text
+from epicyclic.result.result import versions
+from epicyclic.study.bands.plan import INPUT_POWER, nearby_at
+from epicyclic.study.bands.samples import sample_summary
+from epicyclic.study.bands.study import quick_band
+from epicyclic.study.measured.table import parts_of
+from epicyclic.study.operating import AXES
+from epicyclic.study.solve import solve
+from epicyclic.study.sweeps.run import PointList
+from epicyclic.study.sweeps.runner import HERE, Runner
+from epicyclic.units import NEWTON_METRE, NUMBER, WATT, Quantity
+
+FloatArray = NDArray[np.float64]
+Keys = dict[str, Any]
+"""Keys of a case and their values, as a case file has them."""
+
+GRADES = {
+    "P": "printed",
+    "D": "derived from printed errors by two routes that agree",
+    "R": "regression that the testers fitted to their measurements",
+    "F": "read from a figure, about 10 %",
+}
+DEFAULTS = "defaults"  # The run of a set in which nothing is changed.
+_SHARE = Quantity("a share", NUMBER.si, "%")
+_SLOPE = "branch_slope"
+_QUANTITIES: Mapping[str, Quantity] = {
+    "loss": WATT, "friction_torque": NEWTON_METRE, "loss_share": _SHARE, "efficiency": _SHARE,
+    "mean_friction": NUMBER, _SLOPE: _SHARE,
+}  # fmt: skip
+"""What may have been measured: a loss, or what follows from it and the power or speed of the input.
+
+``mean_friction`` is the loss over the input power and the loss factor that the set states,
+``branch_slope`` the slope of the loss of a branch over its power, by a line through several tests.
+"""
+_ENDS = ("low", "high")  # Columns with the ends of what the measurement may be.
+_ROLES = {"speed": ("speed",), "load": ("torque", "force"), "temperature": ("temperature",)}
+"""Trends, and how the keys end over which they go."""
+_LARGEST_FILE = 1_000_000  # [bytes]
+
+
+# Files of measurements.
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class _Common(_Table):
+    """What a file says of all its sets, and a set of itself, which then counts."""
+
+    changes: Keys = Field(default={}, description="Keys of the case that are changed.")
+    runs: dict[str, Keys] = Field(
+        default={}, description="What else is computed, beside the defaults: name, changed keys."
+    )
+    guessed: str = Field(default="", description="What had to be guessed.")
+
+
+class _SetTable(_Common):
+    """One set: columns of conditions, the last one what was measured."""
+
+    name: str
+    component: str = "total"  # As in a table of `epicyclic.compare_measured`.
+    columns: tuple[str, ...] = Field(min_length=2)  # ``"speed [rpm]"``, ``"planet.roughness"``.
+    points: tuple[tuple[float | str, ...], ...] = Field(min_length=1)
+    loss_factor: float = Field(default=math.nan, gt=0)  # Of a mean friction.
+    over: dict[str, tuple[Any, ...]] = {}  # The tests of a slope: all combinations of these values.
+
+
+class _FileTable(_Common):
+    """A file: where its numbers are from, how they were read, the case, and its sets."""
+
+    source: str
+    grade: Literal["P", "D", "R", "F"]
+    read: str
+    case: str | dict[str, Any]  # A name, a file beside this one, or the tables of a case.
+    set: tuple[_SetTable, ...] = Field(min_length=1)
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredSet:
+    """Points that were measured under some conditions, and the case that is to meet them."""
+
+    name: str
+    source: str
+    grade: str  # One of `GRADES`.
+    read: str
+    guessed: str
+    case: Case
+    component: str
+    quantity: str  # One of `_QUANTITIES`.
+    unit: str
+    loss_factor: float
+    over: tuple[Keys, ...]  # The tests of each point of a slope.
+    runs: Mapping[str, Keys]
+    points: tuple[Keys, ...]  # Keys of the case that each point sets.
+    measured: FloatArray  # In `unit`, as are its ends, which are NaN where they are unknown.
+    ends: FloatArray
+
+    def convert(self, loss: FloatArray, power: FloatArray, speed: FloatArray) -> FloatArray:
+        """The measured quantity that follows from losses and the input. [`unit`]"""
+        found = {
+            "loss": loss,
+            "friction_torque": loss / speed,
+            "loss_share": loss / power,
+            "efficiency": 1 - loss / power,
+            "mean_friction": loss / power / self.loss_factor,
+        }[self.quantity]
+        return found / _one(self.quantity, self.unit)
+
+    def errors(self, computed: FloatArray) -> FloatArray:
+        """(computed - measured)/measured, of an efficiency that of the loss. [1]"""
+        measured = self.measured
+        if self.quantity == "efficiency":
+            whole = 1 / _one(self.quantity, self.unit)
+            computed, measured = whole - computed, whole - measured
+        return (computed - measured) / measured
+
+
+def _one(quantity: str, unit: str) -> float:
+    """One `unit` of a quantity in SI."""
+    known = _QUANTITIES[quantity]
+    return known.parse(f"1 {unit}") if unit or known.si else 1.0
+
+
+def builtin_sets() -> tuple[MeasuredSet, ...]:
+    """The sets that come with the package."""
+    return read_sets(Path(str(resources.files("epicyclic.validation").joinpath("measurements"))))
+
+
+def read_sets(path: Path) -> tuple[MeasuredSet, ...]:
+    """The sets of a file of measurements, or of all files ``.toml`` in a folder.
+
+    Raises `InputError` if a file cannot be read, or states something that cannot be.
+    """
+    files = sorted(path.glob("*.toml")) if path.is_dir() else [path]
+    if not files:
+        remedy = "Put files of measurements there; the manual, validation, shows one."
+        raise one_problem("--measured", str(path), "has no file that ends in .toml.", remedy)
+    return tuple(found for file in files for found in _sets_of(file))
+
+
+def _sets_of(path: Path) -> Iterator[MeasuredSet]:
+    try:
+        file = _FileTable.model_validate(
+            tomllib.loads(read_text(path, "file of measurements", _LARGEST_FILE))
+        )
+    except ValidationError as error:
+        problems = [
+            Problem(".".join(map(str, it["loc"])), "", f"{it['msg']}.", "")
+            for it in error.errors(include_url=False)
+        ]
+        raise InputError(problems, str(path)) from None
+    except tomllib.TOMLDecodeError as error:
+        raise one_problem("", "", f"is no TOML: {error}.", "Correct it.", str(path)) from None
+    given = file.case
+    beside = path.parent / given if isinstance(given, str) else path
+    case = read_case(beside if isinstance(given, str) and beside.is_file() else given)
+    for table in file.set:
+        quantity, unit = _column(table.columns[-1])
+        raise_any(_problems(table, quantity, unit), str(path))
+        heads = [_column(head) for head in table.columns[:-1]]
+        changes = {**file.changes, **table.changes}
+        ends = np.full((2, len(table.points)), math.nan)
+        points = []
+        for number, row in enumerate(table.points):
+            cells = dict(zip(heads, row, strict=False))
+            for side, name in enumerate(_ENDS):
+                ends[side, number] = cells.pop((name, ""), math.nan)
+            points.append({
+                AXES.get(name, name): f"{cell} {own}" if own else cell
+                for (name, own), cell in cells.items()
+            })  # fmt: skip
+        tests = itertools.product(*table.over.values())
+        yield MeasuredSet(
+            name=table.name,
+            source=file.source,
+            grade=file.grade,
+            read=file.read,
+            guessed="; ".join(filter(None, (file.guessed, table.guessed))),
+            case=case.updated(changes) if changes else case,
+            component=table.component,
+            quantity=quantity,
+            unit=unit,
+            loss_factor=table.loss_factor,
+            over=tuple(dict(zip(table.over, values, strict=True)) for values in tests),
+            runs={**file.runs, **table.runs},
+            points=tuple(points),
+            measured=np.array([row[-1] for row in table.points], dtype=float),
+            ends=ends,
+        )
+
+
+def _column(head: str) -> tuple[str, str]:
+    """Name and unit of ``"speed [rpm]"``."""
+    name, _, unit = head.partition("[")
+    return name.strip(), unit.strip().removesuffix("]").strip()
+
+
+def _problems(table: _SetTable, quantity: str, unit: str) -> Iterator[Problem]:
+    """What cannot be in a set, beside keys of its case."""
+    key = f"set {table.name}"
+    if quantity not in _QUANTITIES:
+        known = ", ".join(_QUANTITIES)
+        yield Problem(key, quantity, "was not measured by anybody.", f"Last column: {known}.")
+        return
+    try:
+        _one(quantity, unit)
+    except PydanticCustomError as error:
+        yield Problem(key, table.columns[-1], f"{error.message()}.", "Correct the unit.")
+    if any(len(row) != len(table.columns) for row in table.points):
+        yield Problem(f"{key}: points", "", "has rows that are no row of columns.", "Complete it.")
+    if any(isinstance(row[-1], str) for row in table.points):
+        yield Problem(f"{key}: points", "", "has measured values that are text.", "Give numbers.")
+    if quantity == "mean_friction" and math.isnan(table.loss_factor):
+        yield Problem(f"{key}: loss_factor", "", "is missing: friction needs it.", "Give it.")
+    if (quantity == _SLOPE) != bool(table.over):
+        yield Problem(f"{key}: over", "", f"goes with {_SLOPE}, and that with it.", "Give both.")
+
+
+# What is computed for a set.
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """How near a run comes to a set. Errors and trends are those of (computed - measured)/measured.
+
+    A trend is the error at the highest less that at the lowest value, mean over the points that
+    are alike otherwise; NaN where nothing varies.
+    """
+
+    set: MeasuredSet = field(repr=False)
+    run: str  # `DEFAULTS`, or what is changed.
+    computed: FloatArray  # In the unit of the set; NaN where there is no result.
+    band: FloatArray  # Ends of the 95 % band, shape (2, n); NaN where none was asked for.
+
+    @property
+    def errors(self) -> FloatArray:
+        """Of each point. [1]"""
+        return self.set.errors(self.computed)
+
+    @property
+    def mean_error(self) -> float:
+        """Mean of their magnitudes. [1]"""
+        return float(np.nanmean(np.abs(self.errors)))
+
+    @property
+    def bias(self) -> float:
+        """Mean of the errors. [1]"""
+        return float(np.nanmean(self.errors))
+
+    @property
+    def inside(self) -> int | None:
+        """How many measured values lie in the band of the computed ones."""
+        if np.isnan(self.band).all():
+            return None
+        low, high = self.band
+        return int(((low <= self.set.measured) & (self.set.measured <= high)).sum())
+
+    def trend(self, role: str) -> float:
+        """Over ``"speed"``, ``"load"`` or ``"temperature"``. [1]"""
+        points = self.set.points
+        keys = [key for key in points[0] if key.endswith(_ROLES[role])]
+        found = []
+        for key in keys:
+            values = _numbers(self.set.case, points, key)
+            others = [str({**point, key: ""}) for point in points]
+            for other in dict.fromkeys(others):
+                alike = [number for number, text in enumerate(others) if text == other]
+                low, high = (pick(alike, key=lambda it: values[it]) for pick in (min, max))
+                if values[low] < values[high]:
+                    found.append(self.errors[high] - self.errors[low])
+        return float(np.mean(found)) if found else math.nan
+
+    def to_dict(self) -> Keys:
+        """Everything as plain numbers and text; None stands for NaN."""
+        own = self.set
+        rows = zip(own.points, own.measured, self.computed, self.errors, *self.band, strict=True)
+        heads = ("conditions", "measured", "computed", "error", "band_low", "band_high")
+        figures = {
+            "mean_error": self.mean_error,
+            "bias": self.bias,
+            **{f"trend_over_{role}": self.trend(role) for role in _ROLES},
+        }
+        about = {
+            name: getattr(own, name)
+            for name in ("name", "source", "grade", "read", "guessed", "quantity", "unit")
+        }
+        return {
+            **about,
+            "run": self.run,
+            "count": len(own.points),
+            **{name: _plain(value) for name, value in figures.items()},
+            "inside": self.inside,
+            "points": [
+                dict(zip(heads, (row[0], *map(_plain, row[1:])), strict=True)) for row in rows
+            ],
+        }
+
+
+def _plain(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _numbers(case: Case, points: Sequence[Keys], key: str) -> list[float]:
+    """The values of a key at all points, in SI."""
+    return [float(value_of(case.updated(point), key)) for point in points]
+
+
+def scoreboard(
+    sets: Sequence[MeasuredSet],
+    runner: Runner = HERE,
+    *,
+    models: bool = False,  # Whether each other model is computed too, without bands.
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> tuple[Score, ...]:
+    """Every set with the defaults and the runs of its file, and with each other model.
+
+    Raises `ConvergenceError` if a point cannot be computed.
+    """
+    asked = [
+        (own, run, keys, banded)
+        for own in sets
+        for table, banded in (
+            ({DEFAULTS: {}, **own.runs}, True),
+            (model_runs(own.case) if models else {}, False),
+        )
+        for run, keys in table.items()
+    ]
+    found = []
+    for number, (own, run, keys, banded) in enumerate(asked):
+        progress(number, len(asked))
+        try:
+            case = own.case.updated(keys) if keys else own.case
+        except InputError:
+            if banded:
+                raise
+            continue  # a model that is not for this case
+        solved = _slopes if own.quantity == _SLOPE else _computed
+        found.append(Score(own, run, *solved(own, case, runner, banded)))
+    progress(len(asked), len(asked))
+    return tuple(found)
+
+
+def _computed(
+    own: MeasuredSet, case: Case, runner: Runner, banded: bool
+) -> tuple[FloatArray, FloatArray]:
+    """What is computed at each point, and the ends of its band."""
+    parts = parts_of(own.component)
+    speed = np.abs(_numbers(case, own.points, AXES["speed"]))
+    if not banded:
+        loss, power = _solved(case, own.points, parts, runner)
+        return own.convert(loss, power, speed), np.full((2, loss.size), math.nan)
+    computed, band = [], []
+    for near, turning in zip(
+        nearby_at(case, solve(case.updated(own.points[0])), own.points, runner), speed, strict=True
+    ):
+        rows = [near.outputs.names.index(part) for part in parts]
+        power = np.array([near.input_power])
+        computed.append(own.convert(near.nominal[rows].sum(keepdims=True), power, turning)[0])
+        drawn = own.convert(quick_band(near).results[rows].sum(axis=0), power, turning)
+        found = sample_summary(drawn[np.isfinite(drawn)])
+        band.append((found.low, found.high))
+    return np.array(computed), np.array(band).T
+
+
+def _solved(
+    case: Case, points: Sequence[Keys], parts: Sequence[str], runner: Runner
+) -> tuple[FloatArray, FloatArray]:
+    """Losses and input powers of points. [W]"""
+    rows = runner.run(PointList(case, tuple(points)))
+    if rows.failures:
+        raise ConvergenceError(f"{len(rows.failures)} points fail, one with: {rows.failures[0]}")
+    return np.sum([rows.numbers(part) for part in parts], axis=0), rows.numbers(INPUT_POWER)
+
+
+def _slopes(
+    own: MeasuredSet, case: Case, runner: Runner, banded: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Slopes of the loss of a branch over its power, and the ends of their bands.
+
+    The bands are as wide as those of a line through the first and the last test alone: what is
+    uncertain is off by the same in all tests, and nothing averages out.
+    """
+    parts = parts_of(own.component)
+    tests = [{**point, **test} for point in own.points for test in own.over]
+    branches = np.array([_branches(case.updated(test)) for test in tests])
+    loss, power = (it / branches for it in _solved(case, tests, parts, runner))
+    shape = (len(own.points), len(own.over))
+    one = _one(own.quantity, own.unit)
+    slopes = np.array([
+        np.polyfit(x, y, 1)[0] / one
+        for x, y in zip(power.reshape(shape), loss.reshape(shape), strict=True)
+    ])  # fmt: skip
+    band = np.full((2, slopes.size), math.nan)
+    if banded:
+        last = len(own.over) - 1
+        chosen = [number + end for number in range(0, len(tests), last + 1) for end in (0, last)]
+        ends = [tests[number] for number in chosen]
+        drawn = []
+        for number, near in zip(
+            chosen, nearby_at(case, solve(case.updated(ends[0])), ends, runner), strict=True
+        ):
+            rows = [near.outputs.names.index(part) for part in parts]
+            drawn.append((quick_band(near).results[rows].sum(axis=0)) / branches[number])
+        rise = np.diff(np.array(drawn).reshape(slopes.size, 2, -1), axis=1)[:, 0]
+        run = np.diff(loss[chosen].reshape(-1, 2), axis=1)
+        for number, factors in enumerate(rise / run):
+            found = sample_summary(factors[np.isfinite(factors)])
+            band[:, number] = slopes[number] * np.array([found.low, found.high])
+    return slopes, band
+
+
+def _branches(case: Case) -> int:
+    """Planets of a set, which share its power."""
+    return getattr(getattr(case, "planet", None), "count", 1)
+
+
+def model_runs(case: Case) -> dict[str, Keys]:
+    """Changes of a case to each model of friction, or of its bearings if it has any.
+
+    Left out are models that only state a number, and the contact solver, which takes minutes.
+    """
+    if isinstance(case, TrainCase):
+        kinds = choices_of(ShaftBearingTable.model_fields["model"].annotation)
+        return {
+            kind: {f"bearings.{name}.model": kind for name in case.bearings}
+            for kind in kinds
+            if kind != "table" and case.bearings
+        }
+    names = choices_of(GearPairModels.model_fields["friction"].annotation)
+    stated = ("auto", "constant", "table", "fitted", "ehl-direct")
+    runs: dict[str, Keys] = {
+        name: {"models.friction": name} for name in names if name not in stated
+    }
+    rolling = [term for term in type(case.losses).model_fields if term.endswith("_rolling")]
+    without = {f"losses.{term}.include": False for term in rolling}
+    return runs | {"schlenk, no rolling": {"models.friction": "schlenk", **without}}
+
+
+def to_json(scores: Sequence[Score]) -> str:
+    """All scores and their points as indented JSON text."""
+    content = {"scores": [score.to_dict() for score in scores], "versions": versions()}
+    return json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False)
