@@ -31,10 +31,10 @@ from epicyclic.result.result import versions
 from epicyclic.study.bands.plan import INPUT_POWER, nearby_at
 from epicyclic.study.bands.samples import sample_summary
 from epicyclic.study.bands.study import quick_band
-from epicyclic.study.measured.table import parts_of
+from epicyclic.study.measured.table import LOAD_DEPENDENT, parts_of
 from epicyclic.study.operating import AXES
 from epicyclic.study.solve import solve
-from epicyclic.study.sweeps.run import PointList
+from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, PointList, as_tested, with_unloaded
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import NEWTON_METRE, NUMBER, WATT, Quantity
 
@@ -338,35 +338,34 @@ def scoreboard(
     sets: Sequence[MeasuredSet],
     runner: Runner = HERE,
     *,
-    models: bool = False,  # Whether each other model is computed too, without bands.
+    others: bool = False,  # Whether the runs of the files and each other model are computed too.
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[Score, ...]:
-    """Every set with the defaults and the runs of its file, and with each other model.
+    """Every set with the defaults and, if wanted, otherwise; other models have no bands.
 
     Raises `ConvergenceError` if a point cannot be computed.
     """
-    asked = [
-        (own, run, keys, banded)
-        for own in sets
-        for table, banded in (
-            ({DEFAULTS: {}, **own.runs}, True),
-            (model_runs(own.case) if models else {}, False),
-        )
-        for run, keys in table.items()
-    ]
+    asked = [(own, DEFAULTS, {}) for own in sets]
+    if others:
+        asked += [(own, *run) for own in sets for run in own.runs.items()]
+        asked += [(own, *run) for own in sets for run in model_runs(own.case).items()]
     found = []
-    for number, (own, run, keys, banded) in enumerate(asked):
+    for number, (own, name, keys) in enumerate(asked):
         progress(number, len(asked))
+        is_model = name not in (DEFAULTS, *own.runs)
         try:
             case = own.case.updated(keys) if keys else own.case
         except InputError:
-            if banded:
-                raise
-            continue  # a model that is not for this case
-        solved = _slopes if own.quantity == _SLOPE else _computed
-        found.append(Score(own, run, *solved(own, case, runner, banded)))
+            if is_model:
+                continue  # it is not for this case
+            raise
+        if own.quantity == _SLOPE:
+            computed = _slopes(own, case, runner, banded=name == DEFAULTS)
+        else:
+            computed = _computed(own, case, runner, banded=not is_model)
+        found.append(Score(own, name, *computed))
     progress(len(asked), len(asked))
-    return tuple(found)
+    return tuple(sorted(found, key=lambda score: sets.index(score.set)))
 
 
 def _computed(
@@ -395,10 +394,17 @@ def _solved(
     case: Case, points: Sequence[Keys], parts: Sequence[str], runner: Runner
 ) -> tuple[FloatArray, FloatArray]:
     """Losses and input powers of points. [W]"""
-    rows = runner.run(PointList(case, tuple(points)))
+    tested = case.models.load_dependent == AS_TESTED and [*parts] == [LOAD_DEPENDENT]
+    asked, unloaded = with_unloaded(points)  # points share their partners without torque
+    if tested:
+        case = case.updated({"models.load_dependent": COMPUTED})
+    rows = runner.run(PointList(case, asked if tested else tuple(points)))
     if rows.failures:
         raise ConvergenceError(f"{len(rows.failures)} points fail, one with: {rows.failures[0]}")
-    return np.sum([rows.numbers(part) for part in parts], axis=0), rows.numbers(INPUT_POWER)
+    power = rows.numbers(INPUT_POWER)[: len(points)]
+    if tested:
+        return as_tested(rows, unloaded), power
+    return np.sum([rows.numbers(part) for part in parts], axis=0), power
 
 
 def _slopes(
@@ -406,34 +412,24 @@ def _slopes(
 ) -> tuple[FloatArray, FloatArray]:
     """Slopes of the loss of a branch over its power, and the ends of their bands.
 
-    The bands are as wide as those of a line through the first and the last test alone: what is
-    uncertain is off by the same in all tests, and nothing averages out.
+    The bands are as wide as those of the last test alone: what is uncertain is off by the same in
+    all tests, and nothing averages out.
     """
     parts = parts_of(own.component)
     tests = [{**point, **test} for point in own.points for test in own.over]
     branches = np.array([_branches(case.updated(test)) for test in tests])
     loss, power = (it / branches for it in _solved(case, tests, parts, runner))
-    shape = (len(own.points), len(own.over))
+    rows = zip(*(it.reshape(len(own.points), -1) for it in (power, loss)), strict=True)
     one = _one(own.quantity, own.unit)
-    slopes = np.array([
-        np.polyfit(x, y, 1)[0] / one
-        for x, y in zip(power.reshape(shape), loss.reshape(shape), strict=True)
-    ])  # fmt: skip
+    slopes = np.array([np.polyfit(across, up, 1)[0] / one for across, up in rows])
     band = np.full((2, slopes.size), math.nan)
     if banded:
-        last = len(own.over) - 1
-        chosen = [number + end for number in range(0, len(tests), last + 1) for end in (0, last)]
-        ends = [tests[number] for number in chosen]
-        drawn = []
-        for number, near in zip(
-            chosen, nearby_at(case, solve(case.updated(ends[0])), ends, runner), strict=True
-        ):
-            rows = [near.outputs.names.index(part) for part in parts]
-            drawn.append((quick_band(near).results[rows].sum(axis=0)) / branches[number])
-        rise = np.diff(np.array(drawn).reshape(slopes.size, 2, -1), axis=1)[:, 0]
-        run = np.diff(loss[chosen].reshape(-1, 2), axis=1)
-        for number, factors in enumerate(rise / run):
-            found = sample_summary(factors[np.isfinite(factors)])
+        last = slice(len(own.over) - 1, None, len(own.over))
+        near = nearby_at(case, solve(case.updated(tests[last][0])), tests[last], runner)
+        for number, it in enumerate(near):
+            places = [it.outputs.names.index(part) for part in parts]
+            drawn = quick_band(it).results[places].sum(axis=0) / it.nominal[places].sum()
+            found = sample_summary(drawn[np.isfinite(drawn)])
             band[:, number] = slopes[number] * np.array([found.low, found.high])
     return slopes, band
 
