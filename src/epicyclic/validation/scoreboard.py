@@ -89,7 +89,7 @@ class _SetTable(_Common):
     name: str
     component: str = "total"  # As in a table of `epicyclic.compare_measured`.
     columns: tuple[str, ...] = Field(min_length=2)  # ``"speed [rpm]"``, ``"planet.roughness"``.
-    points: tuple[tuple[float | str, ...], ...] = Field(min_length=1)
+    points: tuple[tuple[int | float | str, ...], ...] = Field(min_length=1)
     loss_factor: float = Field(default=math.nan, gt=0)  # Of a mean friction.
     over: dict[str, tuple[Any, ...]] = {}  # The tests of a slope: all combinations of these values.
 
@@ -104,7 +104,7 @@ class _FileTable(_Common):
     set: tuple[_SetTable, ...] = Field(min_length=1)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class MeasuredSet:
     """Points that were measured under some conditions, and the case that is to meet them."""
 
@@ -195,10 +195,10 @@ def _sets_of(path: Path) -> Iterator[MeasuredSet]:
             for side, name in enumerate(_ENDS):
                 ends[side, number] = cells.pop((name, ""), math.nan)
             points.append({
-                AXES.get(name, name): f"{cell} {own}" if own else cell
+                AXES.get(name, name): f"{cell!r} {own}" if own else cell
                 for (name, own), cell in cells.items()
             })  # fmt: skip
-        tests = itertools.product(*table.over.values())
+        tests = itertools.product(*table.over.values()) if table.over else ()
         yield MeasuredSet(
             name=table.name,
             source=file.source,
@@ -248,7 +248,7 @@ def _problems(table: _SetTable, quantity: str, unit: str) -> Iterator[Problem]:
 # What is computed for a set.
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Score:
     """How near a run comes to a set. Errors and trends are those of (computed - measured)/measured.
 
@@ -284,6 +284,13 @@ class Score:
         low, high = self.band
         return int(((low <= self.set.measured) & (self.set.measured <= high)).sum())
 
+    @property
+    def speeds(self) -> FloatArray | None:
+        """Those of the input at all points; None if a point is formed of several. [rpm]"""
+        if self.set.over:
+            return None
+        return np.array(_numbers(self.set.case, self.set.points, AXES["speed"])) * 30 / math.pi
+
     def trend(self, role: str) -> float:
         """Over ``"speed"``, ``"load"`` or ``"temperature"``. [1]"""
         points = self.set.points
@@ -302,8 +309,13 @@ class Score:
     def to_dict(self) -> Keys:
         """Everything as plain numbers and text; None stands for NaN."""
         own = self.set
-        rows = zip(own.points, own.measured, self.computed, self.errors, *self.band, strict=True)
-        heads = ("conditions", "measured", "computed", "error", "band_low", "band_high")
+        heads = (
+            "conditions", "measured", "measured_low", "measured_high", "computed", "error",
+            "band_low", "band_high",
+        )  # fmt: skip
+        rows = zip(
+            own.points, own.measured, *own.ends, self.computed, self.errors, *self.band, strict=True
+        )
         figures = {
             "mean_error": self.mean_error,
             "bias": self.bias,
@@ -345,7 +357,7 @@ def scoreboard(
 
     Raises `ConvergenceError` if a point cannot be computed.
     """
-    asked = [(own, DEFAULTS, {}) for own in sets]
+    asked: list[tuple[MeasuredSet, str, Keys]] = [(own, DEFAULTS, {}) for own in sets]
     if others:
         asked += [(own, *run) for own in sets for run in own.runs.items()]
         asked += [(own, *run) for own in sets for run in model_runs(own.case).items()]
@@ -459,6 +471,14 @@ def model_runs(case: Case) -> dict[str, Keys]:
     rolling = [term for term in type(case.losses).model_fields if term.endswith("_rolling")]
     without = {f"losses.{term}.include": False for term in rolling}
     return runs | {"schlenk, no rolling": {"models.friction": "schlenk", **without}}
+
+
+def in_band(scores: Sequence[Score]) -> str:
+    """How many measured values lie in the bands that the defaults give, as a sentence."""
+    counted = [it for it in scores if it.run == DEFAULTS and it.inside is not None]
+    inside = sum(it.inside or 0 for it in counted)
+    count = sum(len(it.set.points) for it in counted)
+    return f"{inside} of {count} measured values lie in the 95 % band that the defaults give."
 
 
 def to_json(scores: Sequence[Score]) -> str:
