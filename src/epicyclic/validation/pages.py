@@ -167,7 +167,7 @@ def score_rows(scores: Sequence[Score]) -> Iterator[tuple[str, ...]]:
         trends = (score.trend(role) for role in ("speed", "load", "temperature"))
         yield (
             own.name if score.run == DEFAULTS else f"- {score.run}",
-            own.grade if score.run == DEFAULTS else "",
+            own.file.grade if score.run == DEFAULTS else "",
             str(len(own.points)),
             percent(score.mean_error, 0),
             percent(score.bias, 0, signed=True),
@@ -202,7 +202,7 @@ def source_lines(scores: Sequence[Score]) -> Iterator[str]:
     """Where each set is from, how it was read, and what was guessed."""
     told: dict[str, list[str]] = {}
     for own in dict.fromkeys(score.set for score in scores):
-        text = f"{own.source}: {own.read}. Guessed: {own.guessed or 'nothing'}."
+        text = f"{own.file.source}: {own.file.read}. Guessed: {own.guessed}."
         told.setdefault(text, []).append(own.name)
     return (f"{'; '.join(names)}: {text}" for text, names in told.items())
 

@@ -31,7 +31,7 @@ from epicyclic.result.result import versions
 from epicyclic.study.bands.plan import INPUT_POWER, nearby_at
 from epicyclic.study.bands.samples import sample_summary
 from epicyclic.study.bands.study import quick_band
-from epicyclic.study.measured.table import LOAD_DEPENDENT, parts_of
+from epicyclic.study.measured.table import LOAD_DEPENDENT, loss_names, parts_of
 from epicyclic.study.operating import AXES
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, PointList, as_tested, with_unloaded
@@ -69,13 +69,10 @@ _LARGEST_FILE = 1_000_000  # [bytes]
 # Files of measurements.
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class _Common(_Table):
+class _Common(BaseModel):
     """What a file says of all its sets, and a set of itself, which then counts."""
 
+    model_config = ConfigDict(frozen=True, extra="forbid")
     changes: Keys = Field(default={}, description="Keys of the case that are changed.")
     runs: dict[str, Keys] = Field(
         default={}, description="What else is computed, beside the defaults: name, changed keys."
@@ -108,40 +105,56 @@ class _FileTable(_Common):
 class MeasuredSet:
     """Points that were measured under some conditions, and the case that is to meet them."""
 
-    name: str
-    source: str
-    grade: str  # One of `GRADES`.
-    read: str
-    guessed: str
+    file: _FileTable
+    table: _SetTable
     case: Case
-    component: str
-    quantity: str  # One of `_QUANTITIES`.
-    unit: str
-    loss_factor: float
-    over: tuple[Keys, ...]  # The tests of each point of a slope.
-    runs: Mapping[str, Keys]
     points: tuple[Keys, ...]  # Keys of the case that each point sets.
     measured: FloatArray  # In `unit`, as are its ends, which are NaN where they are unknown.
     ends: FloatArray
 
+    @property
+    def name(self) -> str:
+        """What the set is called."""
+        return self.table.name
+
+    @property
+    def guessed(self) -> str:
+        """What had to be guessed of the case."""
+        return "; ".join(filter(None, (self.file.guessed, self.table.guessed))) or "nothing"
+
+    @property
+    def runs(self) -> Mapping[str, Keys]:
+        """What is computed beside the defaults."""
+        return {**self.file.runs, **self.table.runs}
+
+    @property
+    def tests(self) -> tuple[Keys, ...]:
+        """Those of each point of a slope."""
+        values = itertools.product(*self.table.over.values()) if self.table.over else ()
+        return tuple(dict(zip(self.table.over, it, strict=True)) for it in values)
+
+    @property
+    def quantity(self) -> tuple[str, str]:
+        """What was measured, and its unit."""
+        return _column(self.table.columns[-1])
+
     def convert(self, loss: FloatArray, power: FloatArray, speed: FloatArray) -> FloatArray:
-        """The measured quantity that follows from losses and the input. [`unit`]"""
+        """The measured quantity that follows from losses and the input, in its unit."""
+        quantity, unit = self.quantity
         found = {
             "loss": loss,
             "friction_torque": loss / speed,
             "loss_share": loss / power,
             "efficiency": 1 - loss / power,
-            "mean_friction": loss / power / self.loss_factor,
-        }[self.quantity]
-        return found / _one(self.quantity, self.unit)
+            "mean_friction": loss / power / self.table.loss_factor,
+        }[quantity]
+        return found / _one(quantity, unit)
 
     def errors(self, computed: FloatArray) -> FloatArray:
         """(computed - measured)/measured, of an efficiency that of the loss. [1]"""
-        measured = self.measured
-        if self.quantity == "efficiency":
-            whole = 1 / _one(self.quantity, self.unit)
-            computed, measured = whole - computed, whole - measured
-        return (computed - measured) / measured
+        quantity, unit = self.quantity
+        whole = 1 / _one(quantity, unit) if quantity == "efficiency" else 0.0
+        return (computed - self.measured) / np.abs(whole - self.measured) * (-1 if whole else 1)
 
 
 def _one(quantity: str, unit: str) -> float:
@@ -185,9 +198,10 @@ def _sets_of(path: Path) -> Iterator[MeasuredSet]:
     case = read_case(beside if isinstance(given, str) and beside.is_file() else given)
     for table in file.set:
         quantity, unit = _column(table.columns[-1])
-        raise_any(_problems(table, quantity, unit), str(path))
-        heads = [_column(head) for head in table.columns[:-1]]
         changes = {**file.changes, **table.changes}
+        own = case.updated(changes) if changes else case
+        raise_any(_problems(table, quantity, unit, own), str(path))
+        heads = [_column(head) for head in table.columns[:-1]]
         ends = np.full((2, len(table.points)), math.nan)
         points = []
         for number, row in enumerate(table.points):
@@ -195,27 +209,12 @@ def _sets_of(path: Path) -> Iterator[MeasuredSet]:
             for side, name in enumerate(_ENDS):
                 ends[side, number] = cells.pop((name, ""), math.nan)
             points.append({
-                AXES.get(name, name): f"{cell!r} {own}" if own else cell
-                for (name, own), cell in cells.items()
+                AXES.get(name, name): f"{cell} {by}" if by else cell
+                for (name, by), cell in cells.items()
             })  # fmt: skip
-        tests = itertools.product(*table.over.values()) if table.over else ()
-        yield MeasuredSet(
-            name=table.name,
-            source=file.source,
-            grade=file.grade,
-            read=file.read,
-            guessed="; ".join(filter(None, (file.guessed, table.guessed))),
-            case=case.updated(changes) if changes else case,
-            component=table.component,
-            quantity=quantity,
-            unit=unit,
-            loss_factor=table.loss_factor,
-            over=tuple(dict(zip(table.over, values, strict=True)) for values in tests),
-            runs={**file.runs, **table.runs},
-            points=tuple(points),
-            measured=np.array([row[-1] for row in table.points], dtype=float),
-            ends=ends,
-        )
+            own.updated(points[-1])
+        measured = np.array([row[-1] for row in table.points], dtype=float)
+        yield MeasuredSet(file, table, own, tuple(points), measured, ends)
 
 
 def _column(head: str) -> tuple[str, str]:
@@ -224,25 +223,36 @@ def _column(head: str) -> tuple[str, str]:
     return name.strip(), unit.strip().removesuffix("]").strip()
 
 
-def _problems(table: _SetTable, quantity: str, unit: str) -> Iterator[Problem]:
+def _problems(table: _SetTable, quantity: str, unit: str, case: Case) -> Iterator[Problem]:
     """What cannot be in a set, beside keys of its case."""
     key = f"set {table.name}"
     if quantity not in _QUANTITIES:
-        known = ", ".join(_QUANTITIES)
-        yield Problem(key, quantity, "was not measured by anybody.", f"Last column: {known}.")
+        allowed = "is the last column, and nothing that can be compared."
+        yield Problem(key, quantity, allowed, f"End with one of {', '.join(_QUANTITIES)}.")
         return
     try:
         _one(quantity, unit)
     except PydanticCustomError as error:
-        yield Problem(key, table.columns[-1], f"{error.message()}.", "Correct the unit.")
-    if any(len(row) != len(table.columns) for row in table.points):
-        yield Problem(f"{key}: points", "", "has rows that are no row of columns.", "Complete it.")
-    if any(isinstance(row[-1], str) for row in table.points):
-        yield Problem(f"{key}: points", "", "has measured values that are text.", "Give numbers.")
+        yield Problem(f"{key}: columns", table.columns[-1], f"{error.message()}.", "")
+    known = loss_names(case)
+    for part in parts_of(table.component):
+        if part not in known:
+            allowed = f"is no loss of the case: {', '.join(known)} are."
+            yield Problem(f"{key}: component", part, allowed, "Choose of these.")
+    ends = [place for place, head in enumerate(table.columns[:-1]) if _column(head)[0] in _ENDS]
+    for number, row in enumerate(table.points, 1):
+        if len(row) != len(table.columns):
+            allowed = f"has {len(row)} values for {len(table.columns)} columns."
+            yield Problem(f"{key}: point {number}", "", allowed, "Give one for each column.")
+        elif any(isinstance(row[place], str) for place in (*ends, -1)):
+            allowed = "has text for what was measured."
+            yield Problem(f"{key}: point {number}", "", allowed, "Give a number in the unit.")
     if quantity == "mean_friction" and math.isnan(table.loss_factor):
-        yield Problem(f"{key}: loss_factor", "", "is missing: friction needs it.", "Give it.")
+        allowed = "is missing; losses follow from friction with it."
+        yield Problem(f"{key}: loss_factor", "", allowed, "Give H_V as the source has it.")
     if (quantity == _SLOPE) != bool(table.over):
-        yield Problem(f"{key}: over", "", f"goes with {_SLOPE}, and that with it.", "Give both.")
+        allowed = f"belongs to {_SLOPE}, and is needed for it."
+        yield Problem(f"{key}: over", "", allowed, "Give both or neither.")
 
 
 # What is computed for a set.
@@ -287,23 +297,23 @@ class Score:
     @property
     def speeds(self) -> FloatArray | None:
         """Those of the input at all points; None if a point is formed of several. [rpm]"""
-        if self.set.over:
+        if self.set.table.over:
             return None
         return np.array(_numbers(self.set.case, self.set.points, AXES["speed"])) * 30 / math.pi
 
     def trend(self, role: str) -> float:
         """Over ``"speed"``, ``"load"`` or ``"temperature"``. [1]"""
-        points = self.set.points
+        points, found = self.set.points, []
         keys = [key for key in points[0] if key.endswith(_ROLES[role])]
-        found = []
-        for key in keys:
-            values = _numbers(self.set.case, points, key)
-            others = [str({**point, key: ""}) for point in points]
-            for other in dict.fromkeys(others):
-                alike = [number for number, text in enumerate(others) if text == other]
-                low, high = (pick(alike, key=lambda it: values[it]) for pick in (min, max))
-                if values[low] < values[high]:
-                    found.append(self.errors[high] - self.errors[low])
+        values = _numbers(self.set.case, points, keys[0]) if keys else []
+        others = [
+            str({key: it for key, it in point.items() if key not in keys}) for point in points
+        ]
+        for other in dict.fromkeys(others) if keys else ():
+            alike = [number for number, text in enumerate(others) if text == other]
+            low, high = (pick(alike, key=values.__getitem__) for pick in (min, max))
+            if values[low] < values[high]:
+                found.append(self.errors[high] - self.errors[low])
         return float(np.mean(found)) if found else math.nan
 
     def to_dict(self) -> Keys:
@@ -321,12 +331,13 @@ class Score:
             "bias": self.bias,
             **{f"trend_over_{role}": self.trend(role) for role in _ROLES},
         }
-        about = {
-            name: getattr(own, name)
-            for name in ("name", "source", "grade", "read", "guessed", "quantity", "unit")
-        }
         return {
-            **about,
+            "name": own.name,
+            "source": own.file.source,
+            "grade": own.file.grade,
+            "read": own.file.read,
+            "guessed": own.guessed,
+            **dict(zip(("quantity", "unit"), own.quantity, strict=True)),
             "run": self.run,
             "count": len(own.points),
             **{name: _plain(value) for name, value in figures.items()},
@@ -371,35 +382,46 @@ def scoreboard(
             if is_model:
                 continue  # it is not for this case
             raise
-        if own.quantity == _SLOPE:
-            computed = _slopes(own, case, runner, banded=name == DEFAULTS)
-        else:
-            computed = _computed(own, case, runner, banded=not is_model)
-        found.append(Score(own, name, *computed))
+        banded = name == DEFAULTS or not (is_model or own.tests)  # those of many tests take long
+        found.append(Score(own, name, *_computed(own, case, runner, banded=banded)))
     progress(len(asked), len(asked))
     return tuple(sorted(found, key=lambda score: sets.index(score.set)))
 
 
 def _computed(
-    own: MeasuredSet, case: Case, runner: Runner, banded: bool
+    own: MeasuredSet, case: Case, runner: Runner, *, banded: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """What is computed at each point, and the ends of its band."""
-    parts = parts_of(own.component)
-    speed = np.abs(_numbers(case, own.points, AXES["speed"]))
-    if not banded:
-        loss, power = _solved(case, own.points, parts, runner)
-        return own.convert(loss, power, speed), np.full((2, loss.size), math.nan)
-    computed, band = [], []
-    for near, turning in zip(
-        nearby_at(case, solve(case.updated(own.points[0])), own.points, runner), speed, strict=True
-    ):
-        rows = [near.outputs.names.index(part) for part in parts]
-        power = np.array([near.input_power])
-        computed.append(own.convert(near.nominal[rows].sum(keepdims=True), power, turning)[0])
-        drawn = own.convert(quick_band(near).results[rows].sum(axis=0), power, turning)
-        found = sample_summary(drawn[np.isfinite(drawn)])
-        band.append((found.low, found.high))
-    return np.array(computed), np.array(band).T
+    """What is computed at each point, and the ends of its band.
+
+    The band of a slope is as wide as that of the last of its tests: what is uncertain is off by the
+    same in all of them, and nothing averages out.
+    """
+    parts, count = parts_of(own.table.component), max(1, len(own.tests))
+    tests = [{**point, **test} for point in own.points for test in own.tests or ({},)]
+    loss, power = _solved(case, tests, parts, runner)
+    speed = np.abs(_numbers(case, tests, AXES["speed"]))
+    if own.tests:
+        branches = [_branches(case.updated(test)) for test in tests]
+        rows = zip(*((it / branches).reshape(-1, count) for it in (power, loss)), strict=True)
+        slopes = [np.polyfit(across, up, 1)[0] for across, up in rows]
+        computed = np.array(slopes) / _one(*own.quantity)
+    else:
+        computed = own.convert(loss, power, speed)
+    band = np.full((2, computed.size), math.nan)
+    if banded:
+        last = tests[count - 1 :: count]
+        nearby = nearby_at(case, solve(case.updated(last[0])), last, runner)
+        for number, near in enumerate(nearby):
+            places = [near.outputs.names.index(part) for part in parts]
+            drawn = quick_band(near).results[places].sum(axis=0) / near.nominal[places].sum()
+            factors = drawn[np.isfinite(drawn)]
+            found = sample_summary(
+                factors * computed[number]
+                if own.tests
+                else own.convert(factors * loss[number], power[number], speed[number])
+            )
+            band[:, number] = found.low, found.high
+    return computed, band
 
 
 def _solved(
@@ -417,33 +439,6 @@ def _solved(
     if tested:
         return as_tested(rows, unloaded), power
     return np.sum([rows.numbers(part) for part in parts], axis=0), power
-
-
-def _slopes(
-    own: MeasuredSet, case: Case, runner: Runner, banded: bool
-) -> tuple[FloatArray, FloatArray]:
-    """Slopes of the loss of a branch over its power, and the ends of their bands.
-
-    The bands are as wide as those of the last test alone: what is uncertain is off by the same in
-    all tests, and nothing averages out.
-    """
-    parts = parts_of(own.component)
-    tests = [{**point, **test} for point in own.points for test in own.over]
-    branches = np.array([_branches(case.updated(test)) for test in tests])
-    loss, power = (it / branches for it in _solved(case, tests, parts, runner))
-    rows = zip(*(it.reshape(len(own.points), -1) for it in (power, loss)), strict=True)
-    one = _one(own.quantity, own.unit)
-    slopes = np.array([np.polyfit(across, up, 1)[0] / one for across, up in rows])
-    band = np.full((2, slopes.size), math.nan)
-    if banded:
-        last = slice(len(own.over) - 1, None, len(own.over))
-        near = nearby_at(case, solve(case.updated(tests[last][0])), tests[last], runner)
-        for number, it in enumerate(near):
-            places = [it.outputs.names.index(part) for part in parts]
-            drawn = quick_band(it).results[places].sum(axis=0) / it.nominal[places].sum()
-            found = sample_summary(drawn[np.isfinite(drawn)])
-            band[:, number] = slopes[number] * np.array([found.low, found.high])
-    return slopes, band
 
 
 def _branches(case: Case) -> int:
