@@ -33,11 +33,15 @@ def matrix(head: str, scores: Sequence[Score]) -> str:
 
 
 def main() -> None:
-    scores = scoreboard(builtin_sets(), others=True)
+    write(scoreboard(builtin_sets(), others=True))
+
+
+def write(scores: Sequence[Score]) -> None:
+    """The tables of all scores; by model those of points alone, slopes are formed of many."""
     ours = [score for score in scores if score.run in (DEFAULTS, *score.set.runs)]
-    models = [score for score in scores if score not in ours or score.run == DEFAULTS]
+    models = [it for it in scores if it not in ours or it.run == DEFAULTS]
     bearings = [score for score in models if hasattr(score.set.case, "bearings")]
-    gears = [score for score in models if score not in bearings]
+    gears = [it for it in models if it not in bearings and not it.set.tests]
     text = PAGE.read_text(encoding="utf-8")
     for head, table in (
         ("measured set", score_markdown(ours)),

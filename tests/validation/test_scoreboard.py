@@ -148,7 +148,7 @@ def test_picture_has_labelled_axes(scores):
 
 
 def test_the_manual_shows_the_table(scores):
-    """Run scripts/update_band_table.py where it does not."""
+    """Run scripts/update_scoreboard.py where it does not."""
     text = DOCS.read_text(encoding="utf-8")
     for row in pages.score_markdown([*scores.values()]).splitlines():
         assert row in text
