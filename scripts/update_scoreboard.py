@@ -15,7 +15,7 @@ from epicyclic.show.plots.style import figure_bytes
 from epicyclic.units import percent
 from epicyclic.validation.pages import score_markdown
 from epicyclic.validation.plots import scores_figure
-from epicyclic.validation.scoreboard import DEFAULTS, Score, builtin_sets, scoreboard
+from epicyclic.validation.scoreboard import DEFAULTS, Score, read_sets, scoreboard
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, PICTURE = DOCS / "validation.md", DOCS / "_static" / "measured.svg"
@@ -33,7 +33,7 @@ def matrix(head: str, scores: Sequence[Score]) -> str:
 
 
 def main() -> None:
-    write(scoreboard(builtin_sets(), others=True))
+    write(scoreboard(read_sets(), others=True))
 
 
 def write(scores: Sequence[Score]) -> None:

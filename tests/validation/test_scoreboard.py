@@ -18,7 +18,6 @@ from epicyclic.validation import pages, plots
 from epicyclic.validation.scoreboard import (
     DEFAULTS,
     GRADES,
-    builtin_sets,
     model_runs,
     read_sets,
     scoreboard,
@@ -48,7 +47,7 @@ QUICK = [name for name in REACHED if not name.startswith("slopes")]
 
 @pytest.fixture(scope="module")
 def sets():
-    return {own.name: own for own in builtin_sets()}
+    return {own.name: own for own in read_sets()}
 
 
 @pytest.fixture(scope="module")

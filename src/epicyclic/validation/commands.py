@@ -130,7 +130,7 @@ def scores(path: str, plot: Path | None, json_file: str | None, *, models: bool)
     from epicyclic.study.sweeps.runner import HERE
     from epicyclic.validation import pages, plots, scoreboard
 
-    sets = scoreboard.read_sets(Path(path)) if path else scoreboard.builtin_sets()
+    sets = scoreboard.read_sets(Path(path) if path else None)
     with progress_bar("sets") as progress:
         found = scoreboard.scoreboard(sets, HERE, others=models, progress=progress)
     show(lambda: pages.scores_table(found), lambda: scoreboard.to_json(found), json_file)

@@ -163,36 +163,38 @@ def _one(quantity: str, unit: str) -> float:
     return known.parse(f"1 {unit}") if unit or known.si else 1.0
 
 
-def builtin_sets() -> tuple[MeasuredSet, ...]:
-    """The sets that come with the package."""
-    return read_sets(Path(str(resources.files("epicyclic.validation").joinpath("measurements"))))
-
-
-def read_sets(path: Path) -> tuple[MeasuredSet, ...]:
+def read_sets(path: Path | None = None) -> tuple[MeasuredSet, ...]:
     """The sets of a file of measurements, or of all files ``.toml`` in a folder.
 
-    Raises `InputError` if a file cannot be read, or states something that cannot be.
+    Default: those that come with the package. Raises `InputError` if a file cannot be read, or
+    states something that cannot be.
     """
+    if path is None:
+        path = Path(str(resources.files("epicyclic.validation").joinpath("measurements")))
     files = sorted(path.glob("*.toml")) if path.is_dir() else [path]
     if not files:
         remedy = "Put files of measurements there; the manual, validation, shows one."
         raise one_problem("--measured", str(path), "has no file that ends in .toml.", remedy)
-    return tuple(found for file in files for found in _sets_of(file))
+    found: list[MeasuredSet] = []
+    for file in files:
+        try:
+            found += _sets_of(file)
+        except InputError as error:
+            raise InputError(error.problems, str(file)) from None
+    return tuple(found)
 
 
 def _sets_of(path: Path) -> Iterator[MeasuredSet]:
     try:
-        file = _FileTable.model_validate(
-            tomllib.loads(read_text(path, "file of measurements", _LARGEST_FILE))
-        )
+        tables = tomllib.loads(read_text(path, "file of measurements", _LARGEST_FILE))
+        file = _FileTable.model_validate(tables)
     except ValidationError as error:
-        problems = [
+        raise InputError([
             Problem(".".join(map(str, it["loc"])), "", f"{it['msg']}.", "")
             for it in error.errors(include_url=False)
-        ]
-        raise InputError(problems, str(path)) from None
+        ]) from None  # fmt: skip
     except tomllib.TOMLDecodeError as error:
-        raise one_problem("", "", f"is no TOML: {error}.", "Correct it.", str(path)) from None
+        raise one_problem("", "", f"is no TOML: {error}.", "Correct it.") from None
     given = file.case
     beside = path.parent / given if isinstance(given, str) else path
     case = read_case(beside if isinstance(given, str) and beside.is_file() else given)
@@ -200,7 +202,7 @@ def _sets_of(path: Path) -> Iterator[MeasuredSet]:
         quantity, unit = _column(table.columns[-1])
         changes = {**file.changes, **table.changes}
         own = case.updated(changes) if changes else case
-        raise_any(_problems(table, quantity, unit, own), str(path))
+        raise_any(_problems(table, quantity, unit, own))
         heads = [_column(head) for head in table.columns[:-1]]
         ends = np.full((2, len(table.points)), math.nan)
         points = []
@@ -319,18 +321,13 @@ class Score:
     def to_dict(self) -> Keys:
         """Everything as plain numbers and text; None stands for NaN."""
         own = self.set
-        heads = (
-            "conditions", "measured", "measured_low", "measured_high", "computed", "error",
-            "band_low", "band_high",
-        )  # fmt: skip
-        rows = zip(
-            own.points, own.measured, *own.ends, self.computed, self.errors, *self.band, strict=True
-        )
-        figures = {
-            "mean_error": self.mean_error,
-            "bias": self.bias,
-            **{f"trend_over_{role}": self.trend(role) for role in _ROLES},
-        }
+        columns = {
+            "measured": own.measured, "measured_low": own.ends[0], "measured_high": own.ends[1],
+            "computed": self.computed, "error": self.errors,
+            "band_low": self.band[0], "band_high": self.band[1],
+        }  # fmt: skip
+        figures = {"mean_error": self.mean_error, "bias": self.bias}
+        figures |= {f"trend_over_{role}": self.trend(role) for role in _ROLES}
         return {
             "name": own.name,
             "source": own.file.source,
@@ -343,7 +340,9 @@ class Score:
             **{name: _plain(value) for name, value in figures.items()},
             "inside": self.inside,
             "points": [
-                dict(zip(heads, (row[0], *map(_plain, row[1:])), strict=True)) for row in rows
+                {"conditions": point}
+                | {name: _plain(column[number]) for name, column in columns.items()}
+                for number, point in enumerate(own.points)
             ],
         }
 
@@ -401,7 +400,8 @@ def _computed(
     loss, power = _solved(case, tests, parts, runner)
     speed = np.abs(_numbers(case, tests, AXES["speed"]))
     if own.tests:
-        branches = [_branches(case.updated(test)) for test in tests]
+        sets = (getattr(case.updated(test), "planet", None) for test in tests)
+        branches = [getattr(planet, "count", 1) for planet in sets]
         rows = zip(*((it / branches).reshape(-1, count) for it in (power, loss)), strict=True)
         slopes = [np.polyfit(across, up, 1)[0] for across, up in rows]
         computed = np.array(slopes) / _one(*own.quantity)
@@ -439,11 +439,6 @@ def _solved(
     if tested:
         return as_tested(rows, unloaded), power
     return np.sum([rows.numbers(part) for part in parts], axis=0), power
-
-
-def _branches(case: Case) -> int:
-    """Planets of a set, which share its power."""
-    return getattr(getattr(case, "planet", None), "count", 1)
 
 
 def model_runs(case: Case) -> dict[str, Keys]:
