@@ -138,7 +138,7 @@ def test_palmgren_adds_the_viscous_loss(state):
 
 
 def lubricant(eta, nu, alpha, beta):
-    return OilState(323.15, nu, eta / nu, eta, alpha, beta, 0.14, 1.0)
+    return OilState(323.15, nu, eta / nu, eta, alpha, beta, 0.14, 1.0, 0.139, 0.047, 0.065)
 
 
 def fva_3(celsius):

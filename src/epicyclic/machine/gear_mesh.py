@@ -299,8 +299,9 @@ def solve_mesh(
     elif rolling is not CONTAINED and friction.name in CONTAINS_ROLLING:
         notes += (
             f"The rolling loss of the {duty.gears.mesh.name}, "
-            f"{WATT.text(count * loss.rolling, 3)}, counts twice: the friction {friction.name} was fitted "
-            "to the whole load-dependent loss of gear tests. models.rolling = auto adds none to it.",
+            f"{WATT.text(count * loss.rolling, 3)}, counts twice: the friction {friction.name} was "
+            "fitted to the whole load-dependent loss of gear tests. models.rolling = auto adds "
+            "none to it.",
         )
     notes += friction.remarks
     return MeshResult(

@@ -11,14 +11,18 @@ import click
 from epicyclic.cli.common import (
     case_argument,
     check_page,
+    draw,
+    json_option,
     load_with,
     output_option,
     picture_bytes,
     picture_option,
+    plot_option,
     progress_bar,
     runner_options,
     set_option,
     shard_option,
+    show,
     write_page,
 )
 from epicyclic.cli.many import Write, compute
@@ -44,24 +48,57 @@ if TYPE_CHECKING:
     is_flag=True,
     help="The measured figures only, with the 95 % bands of the computed ones: a minute.",
 )
+@click.option(
+    "--measured",
+    metavar="[PATH]",
+    is_flag=False,
+    flag_value="",
+    help="Losses that others measured, with mean error, bias, trends and bands: half a minute. "
+    "PATH: a file of measurements, or a folder of them, in place of those of the package.",
+)
+@click.option(
+    "--models",
+    is_flag=True,
+    help="With --measured: also with temperatures and with each other model: minutes.",
+)
+@json_option
+@plot_option("With --measured: draw computed against measured values, and errors over speed.")
 @output_option("A page with pictures and tables in place of the table: .html, or .pdf.", "FILE")
-def validate(temperatures: bool, bands: bool, output: Path | None) -> None:
+def validate(
+    temperatures: bool,
+    bands: bool,
+    measured: str | None,
+    models: bool,
+    json_file: str | None,
+    plot: Path | None,
+    output: Path | None,
+) -> None:
     """Compare with published figures: published, computed, difference, verdict."""
     # computing and drawing are loaded by those who ask for them: the command line starts quickly
     from epicyclic.show.terminal import as_on_page, terminal
     from epicyclic.study.sweeps.runner import Runner
     from epicyclic.validation import compare, pages
 
-    chosen = [
-        name for name, is_on in (("--temperatures", temperatures), ("--bands", bands)) if is_on
-    ]
+    options = {"--temperatures": temperatures, "--bands": bands, "--measured": measured is not None}
+    chosen = [name for name, is_on in options.items() if is_on]
     others = [*chosen[1:], *(["-o"] if output is not None else [])]
+    parts = {"--models": models, "--json": json_file is not None, "--plot": plot is not None}
+    if measured is None and any(parts.values()):
+        problems = [
+            Problem(name, "", "goes with --measured.", "Give both, or leave it out.")
+            for name, is_on in parts.items()
+            if is_on
+        ]
+        raise InputError(problems, "the command")
     if chosen and others:
         problems = [
             Problem(name, "", f"does not go with {chosen[0]}.", "Leave one of them out.")
             for name in others
         ]
         raise InputError(problems, "the command")
+    if measured is not None:
+        scores(measured, plot, json_file, models=models)
+        return
     if chosen:
         with progress_bar("tests") as progress:
             runner = Runner(progress=progress)
@@ -86,6 +123,19 @@ def validate(temperatures: bool, bands: bool, output: Path | None) -> None:
         page = pages.validation_html(rows, closures, progress)
     write_page(output, page)
     click.echo(compare.summary(rows, closures))
+
+
+def scores(path: str, plot: Path | None, json_file: str | None, *, models: bool) -> None:
+    """Measured sets, those of the package if `path` is empty, beside what is computed for them."""
+    from epicyclic.study.sweeps.runner import HERE
+    from epicyclic.validation import pages, plots, scoreboard
+
+    sets = scoreboard.read_sets(Path(path) if path else None)
+    with progress_bar("sets") as progress:
+        found = scoreboard.scoreboard(sets, HERE, others=models, progress=progress)
+    show(lambda: pages.scores_table(found), lambda: scoreboard.to_json(found), json_file)
+    if plot is not None:
+        draw(plots.scores_figure(found), plot)
 
 
 # The command reproduce: a chapter of the dissertation computed again.

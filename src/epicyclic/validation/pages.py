@@ -41,6 +41,7 @@ from epicyclic.validation.compare import (
     summary,
 )
 from epicyclic.validation.plots import Reproduced, deviations_size, plot_deviations
+from epicyclic.validation.scoreboard import DEFAULTS, GRADES, Score, in_band
 
 # Published against computed, for a terminal.
 
@@ -154,6 +155,56 @@ def bands_table(rows: Sequence[MeasuredFigure]) -> RenderableType:
         "measurement is not in the band, and nothing is fitted."
     )
     return Group(table, Text(note))
+
+
+SCORE_HEADS = ("", "grade", "n", "error", "bias", "speed", "load", "temp.", "inside")
+
+
+def score_rows(scores: Sequence[Score]) -> Iterator[tuple[str, ...]]:
+    """How near each run comes to its set; runs beside the defaults stand below these."""
+    for score in scores:
+        own, inside = score.set, score.inside
+        trends = (score.trend(role) for role in ("speed", "load", "temperature"))
+        yield (
+            own.name if score.run == DEFAULTS else f"- {score.run}",
+            own.file.grade if score.run == DEFAULTS else "",
+            str(len(own.points)),
+            percent(score.mean_error, 0),
+            percent(score.bias, 0, signed=True),
+            *(MISSING if math.isnan(trend) else f"{100 * trend:+z.0f}" for trend in trends),
+            MISSING if inside is None else str(inside),
+        )
+
+
+def score_markdown(scores: Sequence[Score]) -> str:
+    """`score_rows` as the manual shows them."""
+    heads = ("measured set", *SCORE_HEADS[1:])
+    cells = [heads, ("---",) * len(heads), *score_rows(scores)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in cells).replace("|  |", "| |")
+
+
+def scores_table(scores: Sequence[Score]) -> RenderableType:
+    """One row for each run of each set, what the columns are, and where the sets are from."""
+    table = number_table("Measured by others, computed", *SCORE_HEADS, no_wrap=(True, True))
+    for cells in score_rows(scores):
+        table.add_row(*cells)
+    grades = "; ".join(f"{grade}: {text}" for grade, text in GRADES.items())
+    note = (
+        f"{in_band(scores)} n: points. error: mean of |computed - measured|/measured, bias: the "
+        "same with signs. speed, load, temp.: trend, the error at the highest less that at the "
+        "lowest, in points. inside: values in the band of the shipped distributions. Nothing is "
+        f"fitted. Grades: {grades}."
+    )
+    return Group(table, Text(note), *map(Text, source_lines(scores)))
+
+
+def source_lines(scores: Sequence[Score]) -> Iterator[str]:
+    """Where each set is from, how it was read, and what was guessed."""
+    told: dict[str, list[str]] = {}
+    for own in dict.fromkeys(score.set for score in scores):
+        text = f"{own.file.source}: {own.file.read}. Guessed: {own.guessed}."
+        told.setdefault(text, []).append(own.name)
+    return (f"{'; '.join(names)}: {text}" for text, names in told.items())
 
 
 def remarks(row: Comparison) -> list[str]:

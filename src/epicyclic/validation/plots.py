@@ -33,6 +33,7 @@ from epicyclic.validation import chapters
 from epicyclic.validation.chapters import Family, Mark
 from epicyclic.validation.compare import Comparison
 from epicyclic.validation.pocketing import PublishedStudy, published_study, study_again
+from epicyclic.validation.scoreboard import DEFAULTS, Score
 
 # The figures of the chapters of Talbot (2012), drawn from what was computed for them.
 
@@ -389,3 +390,53 @@ def _number(row: Comparison) -> str:
     low, high = format_number(row.low, 4), format_number(row.high, 4)
     value = low if low == high else f"{low} to {high}"
     return f"{value} {unit_text(row.unit)}".rstrip()
+
+
+# Measured sets: computed against measured, and the error over speed.
+
+NEAR = 15  # Errors up to which a model is near, as the picture shows. [%]
+
+
+def scores_figure(scores: Sequence[Score]) -> Figure:
+    """Every set with the defaults: computed over measured values, and errors over speed."""
+    drawn = [score for score in scores if score.run == DEFAULTS]
+    with styled_figure(1, 2, "Measured by others, computed", panel=(5.6, 4.2)) as (figure, axes):
+        left, right = axes[0]
+        left.set(xscale="log", yscale="log")
+        right.set(xscale="log")
+        for number, score in enumerate(drawn):
+            own, mean = score.set, float(score.set.measured.mean())
+            row, place = divmod(number, len(COLOURS))
+            style: dict[str, Any] = {
+                "ls": "none",
+                "ms": 5,
+                "color": COLOURS[place],
+                "marker": MARKERS[(place + row) % len(MARKERS)],
+                "mfc": "none" if row else COLOURS[place],
+            }
+            spread = np.abs(score.band - score.computed) / mean
+            across = np.abs(own.ends - own.measured) / mean
+            left.errorbar(
+                own.measured / mean, score.computed / mean, spread, across, elinewidth=0.5, **style
+            )
+            speeds = score.speeds
+            if speeds is not None:
+                right.plot(speeds, 100 * score.errors, label=own.name, **style)
+            else:
+                right.plot([], [], label=own.name, **style)
+        ends = np.array([0.2, 5.0])
+        for share in (-NEAR, 0, NEAR):
+            left.plot(
+                ends, ends * (1 + share / 100), color="0.5", lw=0.8, ls="--" if share else "-"
+            )
+            right.axhline(share, color="0.5", lw=0.8, ls="--" if share else "-")
+        left.set(
+            xlim=ends,
+            ylim=ends,
+            xlabel="measured, over the mean of its set",
+            ylabel="computed with its 95 % band, over the same mean",
+        )
+        right.set(xlabel="speed, rpm", ylabel="error, % of the measured value")
+        label_logarithms(left.xaxis, left.yaxis, right.xaxis)
+        legend_of_figure(figure, [right], f"dashed: errors of {NEAR} %")
+    return figure
