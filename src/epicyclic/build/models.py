@@ -296,7 +296,7 @@ def friction_of(case: SetCase) -> FrictionModel:
     if name in FRICTION_MODELS:
         return friction_model(name, friction_settings(case))
     if name not in offered("friction_models"):
-        allowed = "is part of a plug-in that is not installed."
+        allowed = "belongs to a plug-in that is not installed."
         problem = Problem("models.friction", name, allowed, "Choose another model.")
         raise InputError([problem])
     model: FrictionModel = load("friction_models", name)(case)

@@ -105,7 +105,7 @@ def cross_check(
 def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> list[Problem]:
     if not isinstance(operation, PlanetaryOperation):
         return []
-    allowed = f'must be another member than operation.input, "{operation.input}".'
+    allowed = f'must be a different member from operation.input, "{operation.input}".'
     return [
         Problem(f"operation.{key}", operation.input, allowed, "Name one of the other two.")
         for key in ("fixed", "second_input")
@@ -121,7 +121,7 @@ def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> list[P
         return []
     allowed = f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit "
     allowed += f"around the pin of {millimetres(bearing.pin_diameter)}."
-    remedy = "Take fewer or thinner rollers."
+    remedy = "Use fewer or thinner rollers."
     return [Problem(f"{key}.rollers_per_row", str(bearing.rollers_per_row), allowed, remedy)]
 
 
@@ -142,7 +142,7 @@ def check_bores(
             shown = millimetres(bearing.pin_diameter)
             allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
             allowed += f"{millimetres(2 * min(roots))}."
-            remedy = "Take a thinner pin or thinner rollers."
+            remedy = "Use a thinner pin or thinner rollers."
             problems.append(Problem(f"{key}.pin_diameter", shown, allowed, remedy))
     return problems
 
@@ -171,8 +171,8 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     """The model of the bearing loss must be for bearings of this kind."""
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
-    allowed = "is for caged bearings: the rollers of a full-complement bearing rub on each other, "
-    allowed += "which it leaves out."
+    allowed = "applies to caged bearings; rollers of a full-complement bearing rub on each other, "
+    allowed += "and this friction is not included."
     return [Problem("models.bearing", '"mixed-ehl"', allowed, 'Write bearing = "palmgren".')]
 
 
@@ -180,8 +180,8 @@ def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> list[Problem]
     problems, count = [], gearing.count or 1
     if sharing.mesh_load_factor > count:
         shown = f"{sharing.mesh_load_factor:g}"
-        allowed = f"must be at most planet.count, {count}: then one planet has all the load."
-        remedy = "Take a smaller factor."
+        allowed = f"must be at most planet.count, {count}: one planet then carries all load."
+        remedy = "Use a smaller factor."
         problems.append(Problem("load_sharing.mesh_load_factor", shown, allowed, remedy))
     if len(sharing.position_errors or ()) not in (0, count):
         shown = f"{len(sharing.position_errors or ())} values"
@@ -218,7 +218,7 @@ def _check_planet_tilt(models: PlanetaryModels, given: Collection[str]) -> list[
     if models.planet_tilt == "left-out":
         return []
     reasons = {
-        "needs [planet_bearing], in which the planet tilts.": "planet_bearing" not in given,
+        "needs [planet_bearing], because the planet tilts in it.": "planet_bearing" not in given,
         'needs load_distribution = "compliance".': models.load_distribution != "compliance",
     }
     return [
@@ -269,7 +269,7 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
         return []
     if model is None:
         remedy = "Give models.oil_model, a file of 'epicyclic oil characterise'."
-        why = "needs a file of fitted models: none is built in for this oil."
+        why = "needs a file of fitted models, because none is built in for this oil."
         return [Problem(f"models.{key}", f'"{getattr(models, key)}"', why, remedy) for key in asked]
     problems = []
     for key, quantity in asked.items():
@@ -277,8 +277,8 @@ def check_oil_model(models: GearPairModels, folder: Path, lubricant: Table | Non
             [fitted.form for fitted in model.fits[quantity].forms] if quantity in model.fits else []
         )
         if models.fitted_form not in forms:
-            given = models.oil_model or f"that of {model.oil.name}"
-            allowed = f"has no {quantity.replace('_', ' ')} of the form {models.fitted_form}."
+            given = models.oil_model or f"the file for {model.oil.name}"
+            allowed = f"has no {quantity.replace('_', ' ')} in the form {models.fitted_form}."
             remedy = f"Choose another models.{key} or models.fitted_form."
             problems.append(Problem("models.oil_model", given, allowed, remedy))
     return problems
@@ -328,7 +328,7 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
             str(segments),
             f"with {positions} mesh positions the influence coefficients of "
             'models.load_distribution = "compliance" would not fit into memory.',
-            f"Take {fitting} or fewer; 30 are enough for 0.1 %.",
+            f"Use {fitting} or fewer; 30 are enough for 0.1 %.",
         )
     ]
 
@@ -359,7 +359,7 @@ def lubrication_problems(train: TrainCase) -> list[Problem]:
     """What cannot be about the lubrication of the sets; a shared table is checked by itself."""
     problems: list[Problem] = []
     if train.lubrication is not None and train.lubrication.immersion:
-        allowed = "is stated of each set, whose gears it names."
+        allowed = "must be given for each set, because it names gears of the set."
         remedy = "Write [sets.NAME.lubrication], or give oil_level."
         problems.append(Problem("lubrication.immersion", "", allowed, remedy))
     for name, table in train.computed_sets:
@@ -369,7 +369,7 @@ def lubrication_problems(train: TrainCase) -> list[Problem]:
         if train.lubrication is None:
             # the oil around everything that is in no set follows from the train's own table
             allowed = "needs [lubrication] of the train, which it then replaces for this set."
-            remedy = "Add it, for all other parts."
+            remedy = "Add it for all other parts."
             problems.append(Problem(f"sets.{name}.lubrication", "", allowed, remedy))
         found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
         if train.shape.sets[name].listed:
@@ -415,36 +415,36 @@ def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Prob
     """Two bearings at two known places carry a shaft."""
     for name, table in own.items():
         if table.position is None:
-            allowed = f"is missing: the force on the bearing follows from its place along {shaft}."
+            allowed = f"is missing: the force on the bearing depends on its position along {shaft}."
             remedy = f'Add position = "... mm". {GIVE_FORCE}'
             yield Problem(f"bearings.{name}.position", "", allowed, remedy)
     names = ", ".join(own)
     if len(own) > 2:
-        allowed = f"are {len(own)} bearings on {shaft}; statics gives the forces of two."
+        allowed = f"has {len(own)} bearings on {shaft}; statics gives the forces of only two."
         yield Problem("bearings", names, allowed, "Give radial_force of all but two.")
     places = [table.position for table in own.values() if table.position is not None]
     if len(own) == 2 and len(places) == 2 and places[0] == places[1]:
         key = f"bearings.{next(iter(own))}.position"
-        allowed = f"is that of the other bearing of {shaft} too."
-        yield Problem(key, millimetres(places[0]), allowed, "Give both their own positions.")
+        allowed = f"is also that of the other bearing of {shaft}."
+        yield Problem(key, millimetres(places[0]), allowed, "Give them different positions.")
 
 
 def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
     """The forces of gears, and where they act."""
     names = ", ".join(own)
     if len(own) == 1 and any(True for _ in _gears(train, shaft)):
-        allowed = f"is the only bearing of {shaft}, whose gears would tilt it."
+        allowed = f"is the only bearing of {shaft}, so the gear forces would tilt the shaft."
         yield Problem(f"bearings.{names}", "", allowed, f"Add a second bearing. {GIVE_FORCE}")
     for gear in _gears(train, shaft):
         if train.position_of(gear) is None:
-            allowed = f"is missing: the forces on the bearings {names} follow from it."
+            allowed = f"is missing, and the forces on the bearings {names} depend on it."
             remedy = f'Add "{gear}" = "... mm" to [positions]. {GIVE_FORCE}'
             yield Problem(f'positions."{gear}"', "", allowed, remedy)
     for name, gearing in train.shape.sets.items():
         if gearing.computed:
             continue
         if shaft in train.shape.bodies_of(name).values():
-            allowed = f"is missing: the forces of {name}, whose efficiency is given, are not known."
+            allowed = f"is missing: the efficiency of {name} is given, so its forces are unknown."
             remedy = f"Give it for {names}."
             yield Problem(f"bearings.{next(iter(own))}.radial_force", "", allowed, remedy)
 
@@ -496,16 +496,16 @@ def _temperature_problems(train: TrainCase) -> list[Problem]:
         Problem(
             f"sets.{name}.models.temperatures",
             written(table.models.temperatures),
-            f"is a choice for the whole train, which has {written(train.models.temperatures)}.",
-            "Leave it out here, and give models.temperatures of the train.",
+            f"applies to the whole train, which has {written(train.models.temperatures)}.",
+            "Leave it out here, and set models.temperatures of the train.",
         )
         for name, table in train.computed_sets
         if table.models.temperatures not in ("inlet", train.models.temperatures)
     ]
     if train.models.temperatures != "inlet" and not train.computed:
         shown = written(train.models.temperatures)
-        allowed = "needs losses that are computed; all sets have given efficiencies."
-        remedy = 'Take "inlet", or give sets their gears in place of efficiencies.'
+        allowed = "needs computed losses, but all sets have given efficiencies."
+        remedy = 'Use "inlet", or give gears instead of efficiencies for the sets.'
         found.append(Problem("models.temperatures", shown, allowed, remedy))
     return found
 
@@ -530,7 +530,7 @@ def state_problems(key: str, state: StateTable, shape: TrainShape) -> list[Probl
         found = [problem for name in group for problem in _shaft_problems(where, name, shape)]
         problems += found
         if len(group) < 2:
-            allowed = "must be two or more shafts."
+            allowed = "must name two or more shafts."
             problems.append(Problem(where, shown, allowed, "Name the shafts that a clutch joins."))
         elif not found:
             shafts = [shape.shaft_of(name) for name in group]
@@ -552,7 +552,7 @@ def _position_problems(train: TrainCase, shape: TrainShape) -> Iterator[Problem]
     members = [member for names in shape.shafts.values() for member in names]
     for gear in train.positions:
         if gear not in known and gear not in members:
-            remedy = did_you_mean(gear, known) or f"Known are: {', '.join(known)}."
+            remedy = did_you_mean(gear, known) or f"Choose one of {', '.join(known)}."
             yield Problem(f'positions."{gear}"', "", "is not a gear on a shaft.", remedy)
 
 
@@ -562,8 +562,8 @@ def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:
     known = [shaft for shaft in shape.shafts if shaft != HOUSING]
     members = [member for names in shape.shafts.values() for member in names]
     remedy = did_you_mean(name, dict.fromkeys([*known, *members]))
-    remedy = remedy or f"Known are: {', '.join(known)}."
-    return [Problem(key, written(name), "is no shaft and no member of a set.", remedy)]
+    remedy = remedy or f"Choose one of {', '.join(known)}."
+    return [Problem(key, written(name), "is neither a shaft nor a member of a set.", remedy)]
 
 
 def _state_choice(train: TrainCase) -> list[Problem]:
@@ -574,10 +574,10 @@ def _state_choice(train: TrainCase) -> list[Problem]:
         return [Problem(key, "", allowed, f'Write state = "{known[0]}".')]
     if name is not None and name not in known:
         if not known:
-            allowed = "is no state: the train has none."
+            allowed = "is not a state: the train has no states."
             return [Problem(key, written(name), allowed, "Leave it out, or add [states.NAME].")]
-        remedy = did_you_mean(name, known) or f"Known are: {', '.join(known)}."
-        return [Problem(key, written(name), "is no state of the train.", remedy)]
+        remedy = did_you_mean(name, known) or f"Choose one of {', '.join(known)}."
+        return [Problem(key, written(name), "is not a state of the train.", remedy)]
     return []
 
 
@@ -587,21 +587,21 @@ def _ends_problems(train: TrainCase, shape: TrainShape, complete: bool) -> Itera
     ends = {key: shape.shaft_of(getattr(operation, key)) for key in ("input", "output")}
     groups = [{shape.shaft_of(name) for name in group} for group in train.state.joined]
     if ends["input"] == ends["output"]:
-        allowed = "is the input shaft too."
-        remedy = "Name another shaft; a train passes power from one shaft to another."
+        allowed = "is also the input shaft."
+        remedy = "Name another shaft; a train transmits power from one shaft to another."
         yield Problem("operation.output", written(operation.output), allowed, remedy)
     held = shape.held(train.state)
     turning = {*shape.turning(train.state), HOUSING}
     for key, shaft in ends.items():
         if complete and shaft not in turning:
-            allowed = f"is joined to nothing in {_state_words(train)}: it has no members, and no "
-            allowed += "clutch that joins it is closed."
+            allowed = f"is not connected in {_state_words(train)}: it has no members, and no "
+            allowed += "clutch on it is closed."
             shown = written(getattr(operation, key))
             yield Problem(f"operation.{key}", shown, allowed, "Close a clutch, or name another.")
             continue
         by_clutch = any(shaft in group and group & set(held) for group in groups)
         if shaft == HOUSING or shaft in held or by_clutch:
-            allowed = "stands still, as the housing does."
+            allowed = "stands still with the housing."
             if shaft != HOUSING:
                 allowed = f"is held by a brake in {_state_words(train)}."
             advice = "Name a shaft that turns, or release it."
@@ -631,7 +631,7 @@ def _given_problems(
             if shaft in taken:
                 allowed = f"cannot be given: this shaft is {taken[shaft]}."
             elif shaft not in turning:
-                allowed = f"cannot be given: nothing is joined to it in {_state_words(train)}."
+                allowed = f"cannot be given: it is not connected in {_state_words(train)}."
             elif shaft in seen:
                 allowed = f"is given twice: {seen[shaft]} is the same shaft."
             seen[shaft] = name
@@ -657,10 +657,10 @@ def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> li
     problems = []
     if found.blocked:
         means = _means(train.state, held, train.operation.speeds)
-        reason = f"blocks the train: the input shaft {driven} cannot turn" + (
+        reason = f"blocks the train, so the input shaft {driven} cannot turn" + (
             f" with {means}." if means else "."
         )
-        remedy = "Release one of these." if means else "Check the shafts: they join too much."
+        remedy = "Release one of these." if means else ("Check the shafts.")
         problems.append(Problem(key, shown, reason, remedy))
     if not complete:
         return problems
@@ -674,8 +674,8 @@ def _freedom_problems(train: TrainCase, shape: TrainShape, complete: bool) -> li
                 shown,
                 f"leaves {word} degree{'s' if freedoms > 1 else ''} of freedom open: the speed of "
                 f"{names} is not determined.",
-                f"Brake or couple {word} of these shafts more (fixed, joined), or give "
-                f"{word} of them a speed in [operation.speeds].",
+                f"Hold or join {word} more of these shafts (fixed, joined), or give the speed "
+                f"of {word} of them in [operation.speeds].",
             )
         )
     further = {shape.shaft_of(name) or "": name for name in train.operation.speeds}
@@ -699,8 +699,8 @@ def _standing_output(
     speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
     if speeds[shape.shaft_of(output) or ""] != 0:
         return []
-    allowed = f"stands still whatever the input shaft {driven} does in {_state_words(train)}, so "
-    allowed += "that no power reaches it."
+    allowed = f"stands still at any speed of the input shaft {driven} in {_state_words(train)}, so "
+    allowed += "no power reaches it."
     turning = [shaft for shaft in shape.shafts if speeds[shaft] != 0 and shaft != driven]
     remedy = f"Name a shaft that turns with the input: {', '.join(turning)}."
     if not turning:

@@ -45,10 +45,10 @@ def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
     """Problems of the tables that a listed set has beside its gears."""
     known = gearing.terms
     losses = [
-        Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
+        Problem(f"losses.{name}", "", "is not a loss of this set.", remedy)
         for name in table.losses
         if name not in known
-        for remedy in [did_you_mean(name, known) or f"Known are: {', '.join(known)}."]
+        for remedy in [did_you_mean(name, known) or f"The losses are {', '.join(known)}."]
     ]
     planets = _planet_problems(table, gearing)
     return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
@@ -58,11 +58,11 @@ def _name_problems(gearing: Gearing) -> Iterator[Problem]:
     """Names that would give two losses or members the same name."""
     for name in (CARRIER, HOUSING) if gearing.planets else (HOUSING,):
         if name in gearing.bodies or name in gearing.bodies.values():
-            allowed = f"cannot be the name of a gear or body: every set has a {name}."
+            allowed = f"cannot be the name of a gear or body, because every set has a {name}."
             yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
     for name in gearing.bodies:
         if "." in name:
-            allowed = "is not a valid name for a gear: a dot stands between set and gear."
+            allowed = "is not a valid name for a gear, because a dot separates set and gear."
             yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
 
 
@@ -71,12 +71,12 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
     if gearing.planets and table.planets is None:
         names = ", ".join(gearing.planets)
         allowed = f"is missing, and the set has planets ({names})."
-        remedy = "Add planets = 3, or as many as there are."
+        remedy = "Add planets = 3, or the actual number."
         yield Problem("planets", "", allowed, remedy)
     if not gearing.planets:
         remedy = "Leave it out, or write planet = true at the gears on a carrier."
         if table.planets is not None:
-            allowed = "is given, but no gear stands on a carrier."
+            allowed = "is given, but no gear is on a carrier."
             yield Problem("planets", str(table.planets), allowed, remedy)
         for name in ("planet_bearing", "carrier"):
             if getattr(table, name) is not None:
@@ -84,19 +84,19 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
     for name in table.planet_bearings:
         if name not in gearing.planets:
             remedy = did_you_mean(name, gearing.planets)
-            remedy = remedy or f"Known are: {', '.join(gearing.planets) or 'none'}."
+            remedy = remedy or f"The planet bodies are {', '.join(gearing.planets) or 'none'}."
             key = f"planet_bearings.{name}"
-            yield Problem(key, "", "is no body of a planet of this set.", remedy)
+            yield Problem(key, "", "is not a planet body of this set.", remedy)
     placed = {gearing.planet_of(mesh) for mesh in gearing.meshes}
     for body in gearing.planets:
         if body not in placed:
             gear = gearing.gears_of(body)[0]
-            allowed = "meshes with planets only, so that nothing determines where its pin stands."
-            remedy = "Let it mesh with a central gear too."
+            allowed = "meshes with planets only, so its pin position is undetermined."
+            remedy = "Add a mesh with a central gear."
             yield Problem(f"gears.{gear}", "", allowed, remedy)
     in_pairs = any(gearing.planet_pair(mesh) for mesh in gearing.meshes)
     if table.models.planet_tilt == "coupled" and in_pairs:
-        allowed = "is not for planets that mesh with each other."
+        allowed = "does not apply to planets that mesh with each other."
         remedy = 'Write planet_tilt = "left-out".'
         yield Problem("models.planet_tilt", '"coupled"', allowed, remedy)
 
@@ -104,13 +104,13 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
 def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
     sharing, planets = table.load_sharing, table.planets or 1
     if sharing.method not in ("equal", "mesh-load-factor"):
-        allowed = "is for one sun, one ring and planets between them."
+        allowed = "applies only to sets with one sun, one ring and planets between them."
         remedy = 'Write method = "equal" or "mesh-load-factor".'
         yield Problem("load_sharing.method", f'"{sharing.method}"', allowed, remedy)
     if sharing.mesh_load_factor > planets:
         shown = f"{sharing.mesh_load_factor:g}"
-        reason = f"must be at most planets, {planets}: then one planet has all the load."
-        yield Problem("load_sharing.mesh_load_factor", shown, reason, "Take a smaller factor.")
+        reason = f"must be at most planets, {planets}: one planet then carries all load."
+        yield Problem("load_sharing.mesh_load_factor", shown, reason, "Use a smaller factor.")
 
 
 # --- gears ----------------------------------------------------------------------------------------
@@ -123,7 +123,7 @@ def rack_problems(gearing: Gearing) -> Iterator[Problem]:
         names = " or ".join(group)
         without = [gear for gear, keys in given.items() if not keys.keys() & set(group)]
         if len(without) == len(given):
-            remedy = f"Give {names}, there for all gears or at each of them."
+            remedy = f"Give {names} there for all gears, or for each gear."
             yield Problem(f"gears.{group[0]}", "", "is missing.", remedy)
             without = []
         for gear in without:
@@ -135,7 +135,7 @@ def rack_problems(gearing: Gearing) -> Iterator[Problem]:
                 own = getattr(gearing.tables[gear], found[0], None) is not None
                 prefix = gearing.key(gear) if own else "gears"
                 both = ", ".join(f"{prefix}.{key}" for key in found)
-                yield Problem(both, "", "state the same twice.", "Keep one of them.")
+                yield Problem(both, "", "state the same quantity twice.", "Keep one of them.")
 
 
 def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
@@ -155,7 +155,7 @@ def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         words = "the same hand" if mesh.internal else "opposite hands"
         shown = ", ".join(f'"{getattr(gearing.tables[it], "hand", None)}"' for it in stated)
         allowed = f"{mesh.first} and {mesh.second} must have {words} of helix to mesh" + (
-            "." if len(stated) == 2 else ", and the other hands given forbid it."
+            "." if len(stated) == 2 else ", which contradicts the other hands given."
         )
         remedy = "Correct or leave out hand."
         yield Problem(", ".join(f"gears.{gear}.hand" for gear in gears), shown, allowed, remedy)
@@ -195,8 +195,8 @@ def _pin_radius_problems(
     first, wanted = own[0]
     others = [mesh for mesh, a in own if abs(a - wanted) > SAME_PLACE]
     fits = " ".join(_shifts_for(gearing, mesh, wanted) for mesh in others)
-    allowed = f"the pin of {body} would stand at different radii: {shown}."
-    remedy = f"Give all the same; that of {'-'.join(first.pair)} would do: {fits}"
+    allowed = f"the pin of {body} would be at different radii: {shown}."
+    remedy = f"Give them the same; the one of {'-'.join(first.pair)} is possible: {fits}"
     yield Problem(", ".join(keys), "", allowed, remedy)
 
 
@@ -205,15 +205,15 @@ def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
     try:
         one, two = gearing.gear(mesh.first), gearing.gear(mesh.second)
     except ValueError:
-        return "its gears must be made to fit."
+        return "its gears must be adjusted to fit."
     side = -1 if mesh.internal else 1
     bases = two.base_radius + side * one.base_radius
     name = "-".join(mesh.pair)
     if not 0 < bases < distance:
-        return f"{name} cannot work there."
+        return f"{name} cannot work at that centre distance."
     total = profile_shift_sum(one.rack, one.teeth + side * two.teeth, distance)
     return (
-        f"{name} then has no backlash with profile shift coefficients of {total:.4f} in sum "
+        f"{name} then has no backlash if the profile shift coefficients add up to {total:.4f} "
         f"(now {one.profile_shift_coefficient + two.profile_shift_coefficient:.4f})."
     )
 
@@ -232,7 +232,7 @@ def _triangle_problems(
         low, high = abs(radii[one] - radii[two]), radii[one] + radii[two]
         if not low <= distance <= high:
             wide = True
-            allowed = f"cannot be: the pins of {one} and {two} stand at {millimetres(radii[one])} "
+            allowed = f"is impossible: pins of {one} and {two} are at {millimetres(radii[one])} "
             allowed += f"and {millimetres(radii[two])} from the axis."
             remedy = f"It must be from {millimetres(low)} to {millimetres(high)}."
             yield Problem(gearing.distance_key(mesh), millimetres(distance), allowed, remedy)
@@ -244,8 +244,8 @@ def _triangle_problems(
             continue
         apart, distance = math.dist(pins[one].place, pins[two].place), distances[mesh.key] or 0.0
         if abs(apart - distance) > SAME_PLACE:
-            allowed = f"does not close the ring of planets: {one} and {two} stand "
-            allowed += f"{millimetres(apart)} apart by their other meshes."
+            allowed = f"does not close the ring of planets: the other meshes place {one} and {two} "
+            allowed += f"{millimetres(apart)} apart."
             remedy = f"Give {millimetres(apart)}."
             yield Problem(gearing.distance_key(mesh), millimetres(distance), allowed, remedy)
 
@@ -261,7 +261,7 @@ def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
             one, two = drawn.pair
             shown = f'["{one}", "{two}"]'
             allowed = f"cannot mesh: {different}."
-            remedy = "Give both the same normal module, pressure angle and helix angle."
+            remedy = "Give both gears the same normal module, pressure angle and helix angle."
             yield Problem(f"meshes[{gearing.meshes.index(drawn)}]", shown, allowed, remedy)
             continue
         yield from check_mesh(gearing, mesh, gearing.distance_key(drawn))
@@ -326,7 +326,7 @@ def _angle_problems(gearing: Gearing) -> Iterator[Problem]:
         admissible = nearest_admissible_angle(relative, sun, ring)
         if abs(relative - admissible) > ANGLE_TOLERANCE:
             shown = f"{math.degrees(angle):.6g} deg"
-            allowed = "a planet cannot be assembled there: positions differ by multiples of "
+            allowed = "a planet cannot be assembled there: positions must differ by multiples of "
             allowed += f"360/({sun} + {ring}) deg."
             remedy = f"The nearest is {math.degrees(angles[0] + admissible):.6f} deg."
             yield Problem(f"planet.angles[{number}]", shown, allowed, remedy)
@@ -339,9 +339,9 @@ def _place_problems(gearing: Gearing) -> Iterator[Problem]:
         return
     number = arrangement.number
     fitting = [str(n) for n in range(1, MOST_PLANETS + 1) if number % n == 0]
-    allowed = "cannot be assembled: by the numbers of teeth, a planet fits only at multiples of "
-    allowed += f"360/{number} deg from another one."
-    remedy = f"Take {' or '.join(fitting)}, or other numbers of teeth."
+    allowed = "cannot be assembled: with these tooth numbers, a planet fits only at multiples of "
+    allowed += f"360/{number} deg from another planet."
+    remedy = f"Use {' or '.join(fitting)}, or other tooth numbers."
     yield Problem(gearing.count_key, str(count), allowed, remedy)
 
 
@@ -356,7 +356,7 @@ def _axial_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Pro
                 keys = ", ".join(f"gears.{gear}.axial_position" for gear in (one, two))
                 shown = ", ".join(millimetres(positions[gear]) for gear in (one, two))
                 allowed = f"{one} and {two} of {body} overlap by {millimetres(overlap)}."
-                remedy = f"Put them at least {millimetres(width)} apart."
+                remedy = f"Place them at least {millimetres(width)} apart."
                 yield Problem(keys, shown, allowed, remedy)
 
 
@@ -424,7 +424,7 @@ def _fewer(
     for count in range(MOST_PLANETS, 0, -1):
         places = nearest_places(count, 0)
         if all(_gap(gearing, sound, pins, places, one, two) > 0 for one, two in close):
-            return f"Take fewer planets (at most {count} fit equally spaced){other}."
+            return f"Use fewer planets (at most {count} fit equally spaced){other}."
     return "Shorten their teeth, or change the centre distances."
 
 

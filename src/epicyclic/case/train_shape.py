@@ -168,5 +168,5 @@ def _no_member(key: str, name: str, members: Sequence[str], sets: Mapping[str, G
     if owner in sets and member in sets[owner].planets:
         allowed = "is a planet: it turns on the carrier and cannot be joined to a shaft."
         return Problem(key, written(name), allowed, f"Join {owner}.{CARRIER}, or another member.")
-    remedy = did_you_mean(name, members) or f"Known are: {', '.join(members)}."
+    remedy = did_you_mean(name, members) or f"The members are {', '.join(members)}."
     return Problem(key, written(name), "is not a member of a set.", remedy)

@@ -173,11 +173,14 @@ QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
     type=click.Choice(QUANTITIES),
     default=AS_GIVEN,
     show_default=True,
-    help="What to find: the temperature of the oil, or what leads to that of --target.",
+    help="What to solve for: the oil temperature, or the quantity that gives the --target "
+    "temperature.",
 )
-@click.option("--target", metavar="TEMPERATURE", help='Of the oil in the gearbox, as in "90 degC".')
+@click.option(
+    "--target", metavar="TEMPERATURE", help='Oil temperature in the gearbox, as in "90 degC".'
+)
 @json_option
-@plot_option("Draw parts, temperatures and flows of heat (.png, .svg, .pdf).")
+@plot_option("Draw parts, temperatures and heat flows (.png, .svg, .pdf).")
 def heat(
     case: str,
     changes: tuple[str, ...],
@@ -186,7 +189,7 @@ def heat(
     json_file: str | None,
     plot: Path | None,
 ) -> None:
-    """Show how hot all parts get, and where their heat goes.
+    """Show the temperatures of all parts and the heat paths.
 
     Uses the network of all parts whatever models.temperatures is. The heat needs a way out:
     thermal.oil_flow, [thermal.housing] or thermal.cooler_conductance.
@@ -209,7 +212,7 @@ def heat(
     result = solve(solved) if found is None else found.result
     if stated.models.temperatures != "network":
         click.echo(
-            f"With models.temperatures = network in place of {stated.models.temperatures}.",
+            f"Computed with models.temperatures = network instead of {stated.models.temperatures}.",
             err=True,
         )
     show(lambda: _tables(solved, result, found), lambda: _json(result, found), json_file)
@@ -226,8 +229,8 @@ def _check_target(quantity: str, target: str | None) -> None:
     if target is None:
         problem = Problem("--target", "", f"is needed with --solve {quantity}.", 'As in "90 degC".')
     else:
-        remedy = f"Name what leads to it: --solve {', '.join(QUANTITIES[1:])}."
-        problem = Problem("--target", f'"{target}"', "is what would be solved for.", remedy)
+        remedy = f"Name the quantity to solve for: --solve {', '.join(QUANTITIES[1:])}."
+        problem = Problem("--target", f'"{target}"', "is the quantity to solve for.", remedy)
     raise InputError([problem], "the command")
 
 
@@ -261,17 +264,18 @@ OUTPUTS = (".nc", ".csv", ".parquet")
 @click.command("warm-up")
 @case_argument
 @set_option
-@click.option("--for", "duration", metavar="TIME", required=True, help='How long, as in "2 h".')
+@click.option("--for", "duration", metavar="TIME", required=True, help='Duration, as in "2 h".')
 @click.option(
     "--from",
     "start",
     metavar="TEMPERATURE",
-    help='Of all parts at the start, as in "20 degC"; default: thermal.ambient_temperature.',
+    help='Start temperature of all parts, as in "20 degC"; default: thermal.ambient_temperature.',
 )
 @click.option(
     "--cycle",
     metavar="CYCLE",
-    help="A .csv or .parquet file as for 'epicyclic duty', repeated; default: the operating point.",
+    help="A .csv or .parquet file as for 'epicyclic duty', which is repeated; default: the "
+    "operating point.",
 )
 @output_option("Write .nc, .csv or .parquet.", "FILE")
 @plot_option("Draw temperatures and loss over time to a .png, .svg or .pdf file.")

@@ -20,7 +20,7 @@ from epicyclic.registry import load, offered
 @click.argument(
     "files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@output_option("File, or folder of a study or campaign.", required=True)
+@output_option("Output file, or folder of a study or campaign.", required=True)
 def merge(files: tuple[Path, ...], output: Path) -> None:
     """Put shards together, as if one command had computed them.
 

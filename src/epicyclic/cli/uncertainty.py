@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 MAP_SUFFIX = ".nc"
 seed_option = click.option(
-    "--seed", type=int, default=1, show_default=True, help="Of the drawn points."
+    "--seed", type=int, default=1, show_default=True, help="Seed of the samples."
 )
 
 
@@ -40,17 +40,19 @@ seed_option = click.option(
 @click.argument("source", metavar="CASE|MAP")
 @click.argument("cycle", metavar="[CYCLE]", required=False)
 @set_option
-@click.option("--speed", metavar="VALUES", help="Of a map that is computed for a CASE, as of map.")
-@click.option("--torque", metavar="VALUES", help="The same.")
+@click.option(
+    "--speed", metavar="VALUES", help="Speeds of the map of a CASE, as for 'epicyclic map'."
+)
+@click.option("--torque", metavar="VALUES", help="Torques of the map, likewise.")
 @temperature_option
 @click.option(
     "--samples",
     metavar="N",
     type=int,
-    help="Points in each set, a power of 2; default: 256, over a map 32, a cycle 64.",
+    help="Samples in each set, a power of 2; default: 256, for a map 32, for a cycle 64.",
 )
 @click.option(
-    "--points", metavar="N", type=int, help="Points of the CYCLE that stand for all; default: 16."
+    "--points", metavar="N", type=int, help="Points that represent the CYCLE; default: 16."
 )
 @seed_option
 @output_option("Write a .nc file.", "FILE")
@@ -109,15 +111,15 @@ def _check_use(
     plane = [name for name in ("speed", "torque") if values[name] is not None]
     wrong = []
     if of_map or cycle is not None:
-        wrong += [(f"--{name}", "goes with a case alone.") for name in plane]
+        wrong += [(f"--{name}", "applies to a case alone.") for name in plane]
     elif len(plane) == 1:
-        wrong.append((f"--{plane[0]}", "needs the other of --speed and --torque too."))
+        wrong.append((f"--{plane[0]}", "needs both --speed and --torque."))
     if values["temperature"] is not None and not (cycle or plane):
-        wrong.append(("--temperature", "goes with --speed and --torque, or with a cycle."))
+        wrong.append(("--temperature", "requires --speed and --torque, or a cycle."))
     if of_map and changes:
-        wrong.append(("--set", "goes with a case, not with a map."))
+        wrong.append(("--set", "applies to a case, not to a map."))
     if points is not None and cycle is None:
-        wrong.append(("--points", "goes with a cycle."))
+        wrong.append(("--points", "requires a cycle."))
     if wrong:
         remedy = "Add it, or leave this out." if "needs" in wrong[0][1] else "Leave it out."
         raise InputError([Problem(name, "", text, remedy) for name, text in wrong], "the command")
@@ -229,7 +231,7 @@ def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:
     type=int,
     default=256,
     show_default=True,
-    help="Pairs of points, a power of 2.",
+    help="Pairs of samples, a power of 2.",
 )
 @seed_option
 @runner_options

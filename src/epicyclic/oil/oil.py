@@ -134,7 +134,8 @@ class Oil(_Data):
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     description: str = ""
     temperature_range: tuple[Temperature, Temperature] = Field(
-        default=as_stated(("0 degC", "120 degC")), description="Where the values are meant to hold."
+        default=as_stated(("0 degC", "120 degC")),
+        description="Range in which the values are valid.",
     )
     kinematic_viscosity: tuple[ViscosityPoint, ...] = Field(min_length=2)
     density: tuple[DensityPoint, ...] = Field(min_length=1)
@@ -148,8 +149,7 @@ class Oil(_Data):
         description="X_L of the friction model of ISO/TR 14179-2.",
     )
     friction_regression: Literal["talbot-2012", "xu-2007"] | None = Field(
-        default=None,
-        description="The regressions that were made for this oil, or for one of its grade.",
+        default=None, description="Regressions that were made for this oil or for its grade."
     )
     thermal_conductivity: SourcedConductivity | None = None
     specific_heat_capacity: SourcedHeatCapacity | None = None
@@ -170,7 +170,7 @@ class Oil(_Data):
                 yield _fault(
                     ("kinematic_viscosity", second, "value"),
                     SQUARE_MM_PER_SECOND.text(warmer.value),
-                    "must fall with rising temperature; at "
+                    "must fall with rising temperature, but at "
                     f"{CELSIUS.text(colder.temperature)} it is "
                     f"{SQUARE_MM_PER_SECOND.text(colder.value)}",
                     "correct one of the two points",
@@ -187,7 +187,7 @@ class Oil(_Data):
                 yield _fault(
                     ("density", second, "value"),
                     f"{warmer.value:g} kg/m^3",
-                    "must fall with rising temperature, by 2 kg/(m^3 K) at most",
+                    "must fall with rising temperature, by at most 2 kg/(m^3 K)",
                     "correct one of the two points",
                 )
 
@@ -211,7 +211,7 @@ def _repeated(name: str, first: int, second: int, temperature: float) -> InitErr
     return _fault(
         (name, second, "temperature"),
         CELSIUS.text(temperature),
-        f"is that of {name}[{first}] too",
+        f"repeats the temperature {name}[{first}]",
         "give one value for each temperature",
     )
 

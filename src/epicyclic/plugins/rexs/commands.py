@@ -72,7 +72,7 @@ def rexs() -> None:
 @rexs.command("import")
 @click.argument("file")
 @output_option(
-    "The case file to write. Default: FILE with the ending .toml, in this folder.", "CASE.toml"
+    "Output case file. Default: FILE with the ending .toml, in this folder.", "CASE.toml"
 )
 @component_option
 @click.option("--load-case", type=int, metavar="ID", help="A load case of the load spectrum.")
@@ -98,7 +98,7 @@ def import_(
 
     target = output or Path(f"{stem(file)}.toml")
     if target.exists():
-        problem = Problem("--output", str(target), "exists already.", "Name another file.")
+        problem = Problem("--output", str(target), "already exists.", "Name another file.")
         raise InputError([problem], "the command")
     parsed = parse_changes(changes)
     found = read_rexs(file, component, load_case)
@@ -118,7 +118,7 @@ def import_(
 @rexs.command()
 @case_argument
 @click.argument("original", required=False)
-@output_option("The file to write: .rexs, .rexsj or .rexsz.", "FILE", required=True)
+@output_option("Output file: .rexs, .rexsj or .rexsz.", "FILE", required=True)
 @component_option
 @set_option
 def export(
