@@ -77,7 +77,7 @@ EVERY_PROBLEM = {
     "operation.torque": "is not TOML",
     "operation.speed": "turns or radians",
     "operation.oil_inlet_temperature": "measures something else",
-    "operation.fixed": "another member",
+    "operation.fixed": "a different member",
     "gears.transverse_module": "conflicts with normal_module",
     "gears.normal_pressure_angle": "has no unit",
     "gears.helix_angle": "out of range",

@@ -132,7 +132,7 @@ def test_what_cannot_be_found_is_an_input_error(quantity, temperature, words):
 
 
 def test_a_train_of_given_losses_has_no_temperatures():
-    with pytest.raises(InputError, match="needs a case that computes losses"):
+    with pytest.raises(InputError, match="needs a case with computed losses"):
         ep.heat_balance(ep.load_case("train-8hp70"))
 
 
@@ -224,7 +224,7 @@ def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
     assert "Where the heat leaves" in page
     assert "Paths of the heat" in page
     assert 'id="figure-heat-network-1"' in page
-    assert "The oil has its inlet temperature at all contacts." not in page
+    assert "The oil is at its inlet temperature at all contacts." not in page
 
 
 def test_without_a_network_there_is_no_picture_of_it():

@@ -213,8 +213,8 @@ def test_a_gear_above_the_oil_turns_in_the_mixture():
 def test_a_result_says_if_nothing_dips():
     result = ep.solve(pair(DIP | {"oil_level": "-400 mm"}))
     assert result.lubrication[""].churning == {}
-    assert "nothing that turns reaches the oil" in result.standing["lubrication"]
-    assert "nothing that turns" not in ep.solve(pair(DIP)).standing["lubrication"]
+    assert "no turning part reaches the oil" in result.standing["lubrication"]
+    assert "no turning part" not in ep.solve(pair(DIP)).standing["lubrication"]
 
 
 def test_depths_of_single_parts_are_those_of_a_level():
