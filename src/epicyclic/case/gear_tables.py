@@ -267,7 +267,7 @@ class PairGear(GearTable):
 
 
 class Planet(GearTable):
-    """The planets, all alike."""
+    """The planets, which are identical."""
 
     STAND_INS = GearTable.STAND_INS | {
         "angles": None,

@@ -255,7 +255,7 @@ SetTable = PlanetarySet | PairSet | ListedSet | GivenPlanetarySet | GivenPair | 
 
 
 class StateTable(Table):
-    """What brakes and clutches make of a train."""
+    """Closed brakes and clutches of a train."""
 
     fixed: tuple[str, ...] = option("Shafts that brakes hold.", ())
     joined: tuple[tuple[str, ...], ...] = option("Groups of shafts that clutches join.", ())

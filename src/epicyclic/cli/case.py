@@ -123,7 +123,7 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 @set_option
 @plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
 def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
-    """Compare all friction models on a case: spread, ranges left, and which one suits."""
+    """Compare all friction models on a case, with their ranges and a recommendation."""
     from epicyclic.show.terminal import friction_table, terminal
     from epicyclic.study.friction import compare_friction
 
@@ -142,7 +142,7 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
 @set_option
 @plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf.")
 def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
-    """Show how the teeth carry: load, transmission error, stiffness, pressure, friction power."""
+    """Show the tooth contact: load, transmission error, stiffness, pressure, friction power."""
     from epicyclic.show.studies import mesh_tables
     from epicyclic.show.terminal import terminal
     from epicyclic.study.meshes import mesh_details
@@ -191,7 +191,7 @@ def heat(
 ) -> None:
     """Show the temperatures of all parts and the heat paths.
 
-    Uses the network of all parts whatever models.temperatures is. The heat needs a way out:
+    Uses the network of all parts for any models.temperatures. The heat needs a path out:
     thermal.oil_flow, [thermal.housing] or thermal.cooler_conductance.
 
     \b
@@ -288,9 +288,9 @@ def warm_up(
     output: Path | None,
     plot: Path | None,
 ) -> None:
-    """Let a gearbox warm up: temperatures and losses over time.
+    """Compute the warm-up of a gearbox: temperatures and losses over time.
 
-    Temperatures follow from the network of heat, which needs thermal.oil_volume and, of a housing,
+    Temperatures follow from the heat network, which needs thermal.oil_volume and, of a housing,
     thermal.housing.mass.
     """
     from epicyclic.cli.common import progress_bar

@@ -71,7 +71,7 @@ def duty(
     journal: Path | None,
     runner: Runner,
 ) -> None:
-    """Energy that a duty cycle puts in, takes out and loses, by component.
+    """Compute input, output and lost energy of a duty cycle, by component.
 
     CYCLE is a .csv or .parquet file with the columns "speed [rpm]", "torque [N*m]", if it varies
     "temperature [degC]", and "time [s]", "duration [s]" or "share"; any units. MAP is a loss map in

@@ -121,7 +121,7 @@ def sweep(
     of a key, the key itself is its value in the case, as is case(KEY) of any other.
 
     Finished points are kept in a file beside OUTPUT that ends in .partial, so that an interrupted
-    sweep goes on where it stopped when the same command is given again.
+    sweep continues where it stopped when the same command is given again.
     """
     from epicyclic.study.sweeps.axes import columns_of
     from epicyclic.study.sweeps.run import (
@@ -210,9 +210,9 @@ def loss_map(
     VALUES are a,b,c or start:stop:count with a unit. Near zero torque losses rise steeply: to
     start:stop:count from or through zero torques are added that crowd there. The torque loss is
     that at the input member; the file states the signs. A train has a map of each of its states.
-    An interrupted map goes on where it stopped, as a sweep does.
+    An interrupted map continues where it stopped, as a sweep does.
 
-    FILE.nc is a map that is stored already: it is written in another format, and nothing computed.
+    FILE.nc is a map that is stored already: it is only written in another format.
     """
     from epicyclic.show.record import is_stored
 

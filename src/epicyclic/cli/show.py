@@ -104,7 +104,7 @@ stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 @output_option(".html, or .pdf.", required=True)
 @click.option("--size", metavar="SIZE", help='Size of every figure, as in "160x90 mm".')
 def report(source: str, changes: tuple[str, ...], output: Path, size: str | None) -> None:
-    """Write a report as one file that needs nothing else: a page, or print.
+    """Write a self-contained report: an HTML page or a PDF.
 
     FILE.nc is what run --save, map, sweep or uncertainty wrote; a CASE is solved first.
     """

@@ -70,12 +70,12 @@ def uncertainty(
     runner: Runner,
     **values: str | None,
 ) -> None:
-    """Show how well losses and efficiency are known, and which inputs and models that is due to.
+    """Show the uncertainty of losses and efficiency, and the inputs and models that cause it.
 
     Of a CASE, over a loss MAP in a .nc file or, with --speed and --torque, over one that is
     computed, or of the energy that a duty CYCLE loses. Distributions of inputs are those of
-    [uncertainty] of the case, or assumed ones; over a map or cycle an input is off by the same
-    everywhere. With -o, an interrupted computation goes on where it stopped.
+    [uncertainty] of the case, or estimates; over a map or cycle an input has the same error
+    everywhere. With -o, an interrupted computation continues where it stopped.
     """
     from epicyclic.files import check_place
     from epicyclic.show.terminal import terminal
@@ -236,7 +236,7 @@ def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:
 @seed_option
 @runner_options
 def compare_cases(first: str, second: str, samples: int, seed: int, runner: Runner) -> None:
-    """Show whether case SECOND loses less than case FIRST, given what is uncertain in both.
+    """Show whether case SECOND loses less than case FIRST, given the uncertainties of both.
 
     Inputs that both cases share are drawn once for both.
     """

@@ -201,7 +201,7 @@ def study(
     """Study the pocketing loss of a mesh over its main parameters, and draw the figures.
 
     Each study NAME goes to NAME.nc, NAME.csv and a picture in the folder OUTPUT. An interrupted
-    study goes on where it stopped, as a sweep does.
+    study continues where it stopped, as a sweep does.
     """
     from epicyclic.study.sweeps.run import parse_vary
     from epicyclic.validation.pocketing import STUDIES, make_study

@@ -78,7 +78,7 @@ class Carrier(Table):
 
 
 class ThrustBearing(Table):
-    """A thrust bearing that carries no load worth counting, for its viscous loss."""
+    """A thrust bearing that carries negligible load, for its viscous loss."""
 
     mean_diameter: Length
     between: Literal[

@@ -289,7 +289,7 @@ TemperatureModel = Literal["inlet", "flank", "network"]
 
 
 class GearPairModels(Table):
-    """Which method computes what."""
+    """Methods of computation."""
 
     STAND_INS: ClassVar[dict[str, object]] = {
         "constant_friction": None,
@@ -418,7 +418,7 @@ class PlanetaryModels(GearPairModels):
 
 
 class Numerics(Table):
-    """Resolution."""
+    """Numerical resolution."""
 
     mesh_positions: int = Field(default=20, ge=4, le=1000)
     contact_segments: int = Field(default=20, ge=2, le=1000)
@@ -434,7 +434,7 @@ class Numerics(Table):
 
 
 class LossOption(Table):
-    """What becomes of one loss term."""
+    """Options of one loss term."""
 
     include: bool = option("false leaves the term out.", True)
     factor: Number = option("Multiplies the term.", 1.0, ge=0, le=100)

@@ -123,7 +123,7 @@ class HousingTable(Table):
 
 
 class ConductanceTable(Table):
-    """One way of the heat, as 'epicyclic heat' names it."""
+    """One heat path, as 'epicyclic heat' names it."""
 
     value: Conductance | None = option("Instead of the computed one.")
     scale: Number = option("Multiplies it.", 1.0, ge=0, le=1000)
@@ -137,7 +137,7 @@ class CapacityTable(Table):
 
 
 class ThermalTable(Table):
-    """How heat arises and leaves, for models.temperatures other than inlet."""
+    """Generation and removal of heat, for models.temperatures other than inlet."""
 
     lubrication: Literal["spray", "dip", "spray-and-dip", "submerged"] = option(
         "How the oil reaches the gears.", "spray"
@@ -261,7 +261,7 @@ _Level = Annotated[float, Quantity("a height", "m", "mm", low=-1e5, high=1e5)]
 
 
 class LubricationTable(Table):
-    """How oil gets to the gears: gives the share of oil around them, and their churning."""
+    """Oil supply of the gears: gives the share of oil around them, and their churning."""
 
     STAND_INS: ClassVar[dict[str, object]] = {
         "jet_speed": None,

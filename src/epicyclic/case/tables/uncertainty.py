@@ -38,7 +38,7 @@ Stated = str | Number
 
 
 class DistributionTable(Table):
-    """How well one value is known: by one of the keys down to `exact`."""
+    """Uncertainty of one value: by one of the keys down to `exact`."""
 
     EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
         ("normal", "uniform", "tolerance", "lognormal_factor", "exact"),

@@ -160,7 +160,7 @@ def characterise(
 ) -> None:
     """Simulate contacts of OIL, a name of 'epicyclic oils' or a TOML file, and fit models.
 
-    Finished simulations are kept in DIR at once; the same command goes on where it stopped.
+    Finished simulations are kept in DIR at once; the same command continues where it stopped.
 
     \b
     epicyclic oil characterise atf-talbot-2012 --size 512 --seed 1 -o atf

@@ -66,7 +66,7 @@ component_option = click.option(
 
 @click.group()
 def rexs() -> None:
-    """Gears from REXS files, and results into them (.rexs, .rexsj, .rexsz)."""
+    """Import gears from REXS files, export results to them (.rexs, .rexsj, .rexsz)."""
 
 
 @rexs.command("import")
@@ -88,8 +88,8 @@ def import_(
 
     Several stages become one train, unless --component names one of them.
 
-    Every value stands beside the REXS attribute that it comes from. If the case needs more than
-    the file has, it is written all the same, with these keys marked NEEDED, and the command ends
+    Every value is shown with the REXS attribute it comes from. If the case needs more than
+    the file has, it is written anyway, with these keys marked NEEDED, and the command ends
     with exit code 5.
     """
     from epicyclic.plugins.rexs.files import stem
