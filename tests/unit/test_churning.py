@@ -125,7 +125,7 @@ def test_what_leaves_its_range_is_flagged():
     assert flag.quantity == "depth over the diameter"
     assert flag.found_high == pytest.approx(60 / 100.4)
     (flag,) = churning_flags("changenet-velex", "gear", replace(GEAR, radius=20e-3), 300.0)
-    assert (flag.quantity, flag.low) == ("pitch diameter of the immersed part", 50.0)
+    assert (flag.quantity, flag.low) == ("immersed pitch diameter", 50.0)
     (flag,) = churning_flags("iso-14179-1", "gear", GEAR, 500.0)
     assert flag.found_high == pytest.approx(500 * 50.2e-3)
     (flag,) = churning_flags("iso-14179-1", "gear", replace(GEAR, module=0.6e-3), 300.0)

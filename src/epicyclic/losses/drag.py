@@ -341,14 +341,7 @@ _SINGLE_GEARS = (
 )
 _RANGES = {
     "changenet-velex": (
-        Range(
-            "diameter",
-            "pitch diameter of the immersed part",
-            50.0,
-            300.0,
-            MILLIMETRE,
-            _SINGLE_GEARS,
-        ),
+        Range("diameter", "immersed pitch diameter", 50.0, 300.0, MILLIMETRE, _SINGLE_GEARS),
         Range("immersed", "immersion depth over the diameter", None, 0.5, NUMBER, _SINGLE_GEARS),
     ),
     "iso-14179-1": (
@@ -367,12 +360,7 @@ _SPLASH_SOURCE = (
     "doi 10.1007/s10010-020-00423-0"
 )
 _SPLASH = Range(
-    "tip_speed",
-    "circumferential speed of the immersed part",
-    None,
-    20.0,
-    METRE_PER_SECOND,
-    _SPLASH_SOURCE,
+    "tip_speed", "speed of the immersed rim", None, 20.0, METRE_PER_SECOND, _SPLASH_SOURCE
 )
 
 
