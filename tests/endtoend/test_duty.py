@@ -473,7 +473,7 @@ def test_the_command_on_a_case_keeps_its_map(tmp_path, epicyclic):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("map.nc", "cycle.csv", "--set", "a=b"), "--set: goes with a case"),
+        (("map.nc", "cycle.csv", "--set", "a=b"), "--set: applies to a case"),
         (("missing.nc", "cycle.csv"), "does not exist"),
         (("talbot-2012", "cycle.csv", "--map", "map.mat"), "must end in .nc"),
         (("talbot-2012", "cycle.csv", "-o", "out.txt"), "must end in .nc or .csv"),

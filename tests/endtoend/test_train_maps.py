@@ -436,7 +436,7 @@ def test_measurements_have_states_and_losses_of_sets(gearbox, tmp_path, epicycli
     ("change", "words"),
     [
         ({"state": ["1", "N"]}, 'operation.state = "N": is no state'),
-        ({"component": ["total", "P4.sun_mush"]}, "is no loss. Known are P1.sun_mesh"),
+        ({"component": ["total", "P4.sun_mush"]}, "is not a loss. The losses are P1.sun_mesh"),
         ({"sets.P1.eficiency": [0.9, 0.9]}, "Did you mean 'sets.P1.efficiency'"),
     ],
 )

@@ -311,9 +311,9 @@ def test_the_command_on_a_map(plain_map, over_map, tmp_path):
     ("arguments", "message"),
     [
         (["talbot-2012", "--speed", "900 rpm"], "--speed: needs the other"),
-        (["talbot-2012", "--points", "9"], "--points: goes with a cycle"),
-        (["talbot-2012", "--temperature", "50 degC"], "--temperature: goes with"),
-        (["map.nc", "--set", "a=1", "--speed", "900 rpm"], "--speed: goes with a case alone"),
+        (["talbot-2012", "--points", "9"], "--points: requires a cycle"),
+        (["talbot-2012", "--temperature", "50 degC"], "--temperature: requires"),
+        (["map.nc", "--set", "a=1", "--speed", "900 rpm"], "--speed: applies to a case alone"),
         (["talbot-2012", "none.csv"], "is not a file"),
     ],
 )
