@@ -118,12 +118,16 @@ def test_a_temperature_may_be_a_number_of_kelvin():
 @pytest.mark.parametrize(
     ("quantity", "temperature", "words"),
     [
-        ("oil_flow", "71 degC", "oil at 71 degC: cannot be reached: with thermal.oil_flow beyond"),
+        (
+            "oil_flow",
+            "71 degC",
+            "oil at 71 degC: cannot be reached: with unlimited thermal.oil_flow",
+        ),
         ("cooler_power", "150 degC", "with thermal.cooler_power = 0 W it is at 9"),
         ("input_power", "20 degC", r"with operation.torque = 0 N\*m it is at 90"),
         ("oil_flow", "hot", "temperature = "),
         ("oil_flow", 20.0, "temperature = "),
-        ("torque", "90 degC", "is none of cooler_power, oil_flow, input_power"),
+        ("torque", "90 degC", "must be one of cooler_power, oil_flow, input_power"),
     ],
 )
 def test_what_cannot_be_found_is_an_input_error(quantity, temperature, words):
@@ -158,7 +162,7 @@ def test_remarks_compare_with_warm_flanks_and_without_holding():
     assert beyond_range(hot, result).share == pytest.approx(1.0)
     _, second = remarks(hot, result)
     assert second.startswith("100 % of the load-dependent loss arises in contacts")
-    assert second.endswith(f"without holding the total would be {free.total:.0f} W.")
+    assert second.endswith(f"without this limit the total would be {free.total:.0f} W.")
 
 
 @pytest.mark.parametrize(

@@ -248,7 +248,7 @@ def with_clutch_to_a_take_off(**operation):
         ("torques", "held", "is held"),
         ("torques", "housing", "is held"),
         ("torques", "out", "is the output"),
-        ("speeds", "in", "is also the input"),
+        ("speeds", "in", "is the input"),
     ],
 )
 def test_further_speeds_and_torques_of_shafts_that_have_none(key, shaft, words):
