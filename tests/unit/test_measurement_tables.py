@@ -110,7 +110,7 @@ nan,500,90,400 W,0,4,total
         'loss = "500" in line 3, "500" in line 6: has no unit',
         '"inf W" in line 5',
         '"0" in line 2: must be > 0',
-        '"totl" in line 4: is no loss',
+        '"totl" in line 4: is not a loss',
         "line 6 is line 3",
     ):
         assert words in found, words

@@ -73,7 +73,7 @@ BROKEN = {
     "no gears": (xml(""), "no stages"),
     "id twice": (xml("<components><component id='1' type='a'/><component id='1' type='a'/>"
                      "</components>"), "component 1: appears twice"),
-    "id of no number": (xml("<components><component id='one' type='a'/></components>"), "integer id"),
+    "id of no number": (xml("<components><component id='one' type='a'/></components>"), "integer"),
     "attribute twice": (xml("<components><component id='1' type='a'><attribute id='x'/>"
                             "<attribute id='x'/></component></components>"), "x twice"),
     "relation twice": (xml("<relations><relation id='1' type='a'/><relation id='1' type='a'/>"
