@@ -55,19 +55,19 @@ def read_bytes(path: Path, noun: str, largest: int) -> bytes:
     except OSError as error:
         refuse(f"cannot be read: {error.strerror}.", "Check the path.")
     except ValueError:
-        refuse("cannot be read: no path has a zero character.", "Check the path.")
+        refuse("cannot be read: a path has no zero character.", "Check the path.")
     if kind != "a file":
-        refuse(f"cannot be read: it is {kind}.", f"Name a {noun} file.")
+        refuse(f"cannot be read: it is {kind}.", f"Give a {noun} file.")
     if len(content) > largest:
         size = f"{largest / _MEGABYTE:g} MB"
-        refuse(f"is too large to be a {noun} file (over {size}).", f"Name a {noun} file.")
+        refuse(f"is too large to be a {noun} file (over {size}).", f"Give a {noun} file.")
     return content
 
 
 def decode(content: bytes, noun: str) -> str:
     """`content` as text; raises `InputError` unless it is UTF-8."""
     if b"\0" in content:
-        refuse("is not text: it has zero bytes.", f"Name a {noun} file, saved as UTF-8 text.")
+        refuse("is not text: it contains zero bytes.", f"Give a {noun} file saved as UTF-8 text.")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -91,7 +91,7 @@ def csv_rows(text: str) -> Iterator[tuple[int, list[str]]]:
         try:
             (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True)
         except csv.Error as error:
-            refuse(f"is no CSV: {error} in line {number}.", "Correct this line.")
+            refuse(f"is not CSV: {error} in line {number}.", "Correct this line.")
         yield number, [cell.strip() for cell in cells]
 
 
@@ -106,7 +106,7 @@ def check_archive(content: bytes, noun: str, largest: int, remedy: str) -> None:
     except Exception:  # damaged archives end in many kinds of errors
         refuse(f"is not {noun}.", remedy)
     if unpacked > largest:
-        refuse(f"unpacks to more than {largest / _MEGABYTE:g} MB.", remedy)
+        refuse(f"expands to more than {largest / _MEGABYTE:g} MB.", remedy)
 
 
 _COLUMN = re.compile(r"\[\n\s*([-+.,eE\d\s]+)\]")
@@ -130,7 +130,7 @@ def unsealed(text: str) -> dict[str, Any]:
     if not isinstance(content, dict) or _SEAL not in content:
         refuse("has no fingerprint.", _MAKE_AGAIN)
     if content.pop(_SEAL) != _fingerprint(content):
-        refuse("was altered: its fingerprint is that of other content.", _MAKE_AGAIN)
+        refuse("was altered: its fingerprint does not match its content.", _MAKE_AGAIN)
     return content
 
 
@@ -166,7 +166,7 @@ def check_place(path: Path) -> None:
         with suppress(FileNotFoundError):
             path.lstat()  # raises for a name that is too long
         if (path.exists() and not path.is_file()) or not folder.is_dir():
-            raise _error(path, OPTION, "is no place for a file.", "Name a file in a folder.")
+            raise _error(path, OPTION, "cannot hold a file.", "Give a file in a folder.")
         if not os.access(folder, os.W_OK):
             allowed = "lies in a folder without write permission."
             raise _error(path, OPTION, allowed, "Move it.")
@@ -178,7 +178,7 @@ def make_folder(path: Path, option: str = OPTION) -> None:
         _check_name(path)
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        allowed = f"is no place for a folder: {error.strerror}."
+        allowed = f"cannot hold a folder: {error.strerror}."
         raise _error(path, option, allowed, "Name another folder.") from None
 
 
@@ -236,7 +236,7 @@ def _plain_errors(path: Path, option: str) -> Iterator[None]:
 
 def _check_name(path: Path) -> None:
     if "\0" in str(path):
-        raise OSError(errno.EINVAL, "no name has a zero character")
+        raise OSError(errno.EINVAL, "a name has no zero character")
 
 
 def _reason(error: OSError) -> str:

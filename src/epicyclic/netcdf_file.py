@@ -38,7 +38,7 @@ _HEAP_OBJECT = struct.Struct("<H6xQ")
 """Head of what lies in a heap: number, 0 for the free rest, and size. [bytes]"""
 _HEAP_SIGNATURE, _HEAP_VERSION = b"GCOL", 1
 _LONGEST_REASON = 120
-_MAKE_AGAIN = "Make it again."
+_MAKE_AGAIN = "Create it again."
 
 
 def read_groups(path: Path) -> dict[str, xr.Dataset]:
@@ -63,7 +63,7 @@ def read_groups(path: Path) -> dict[str, xr.Dataset]:
             sizes = [data.nbytes for node in tree.subtree for data in node.variables.values()]
             sizes += [POINTER * text.size for own in texts.values() for text in own.values()]
             if len(sizes) > MOST_VARIABLES or sum(sizes) > LARGEST:
-                refuse("holds more than a result or a map does.", "Name one of these.")
+                refuse("contains more than a result or a map.", "Give one of these.")
             tree.load()
             return {
                 node.path.strip("/"): node.to_dataset(inherit=False).assign(
@@ -120,15 +120,15 @@ def _check(path: Path) -> None:
     """Raise `InputError` unless a file can be opened: a pipe would keep the program waiting."""
     try:
         if not path.is_file():
-            refuse("does not exist, or is not a file.", "Check the path.")
+            refuse("does not exist or is not a file.", "Check the path.")
         if path.stat().st_size > LARGEST:
-            refuse(f"is larger than {LARGEST // 10**6} MB.", "Name a smaller one.")
+            refuse(f"is larger than {LARGEST // 10**6} MB.", "Give a smaller file.")
         with path.open("rb") as file:
             if file.read(len(_SIGNATURE)) != _SIGNATURE:
-                refuse("is no NetCDF 4 file.", _MAKE_AGAIN)
+                refuse("is not a NetCDF 4 file.", _MAKE_AGAIN)
             with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
                 if not all(_ends(data, place) for place in _heaps(data)):
-                    refuse("is damaged: a heap of texts has no end.", _MAKE_AGAIN)
+                    refuse("is damaged: a heap of texts is incomplete.", _MAKE_AGAIN)
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise

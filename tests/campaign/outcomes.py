@@ -21,13 +21,13 @@ ENERGY = 1e-9
 """What powers of the shafts and losses may differ by, over the largest of them. [1]"""
 UNSOLVED = {
     "the flow does not converge": "the flow through pockets is not found",
-    "runs away": "it runs away: no temperature at which its heat would leave",
-    "more heat is taken away": "it freezes: coolers take more heat than arises",
-    "no planet loads balance": "the floating member gives way",
+    "thermal runaway": "it runs away: no temperature at which its heat would leave",
+    "more heat is removed": "it freezes: coolers take more heat than arises",
+    "the planet loads have no equilibrium": "the floating member gives way",
     "do not agree after": "losses grow with the torques that they cause",
     "load distribution of the planet bearing": "the loads of the rollers are not found",
     "was not found at": "the loads of the teeth are not found",
-    "no finite number": "a loss is not a finite number",
+    "did not give a finite number": "a loss is not a finite number",
 }
 """What a `ConvergenceError` says, and the outcome that it is counted as."""
 MAY_BE_MISSING = (

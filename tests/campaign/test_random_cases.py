@@ -71,7 +71,7 @@ def test_of_few_contacts_all_are_solved_whatever_the_most_of_many(monkeypatch):
     result = ep.solve(drawn_design(41).updated(changes))
     (note,) = (note for note in result.notes if "ehl-direct" in note)
     assert "18 contacts" in note
-    assert "these are all that differ" in note
+    assert "these are all the different ones" in note
     assert len(solved) == len(set(solved)) == 18
 
 

@@ -218,7 +218,7 @@ def _moving(page, key: str):
     page.mouse.up()
 
 
-@pytest.mark.parametrize("chapter", ["Planet bearing", "How well this is known"])
+@pytest.mark.parametrize("chapter", ["Planet bearing", "Uncertainty of this result"])
 def test_every_picture_follows_a_slider_that_never_stands_still(open_app, chapter):
     page = open_app("talbot-2012")
     _solved(page)
@@ -316,7 +316,7 @@ def test_a_map_is_computed_cancelled_and_saved(open_app):
     page.get_by_role("button", name="Compute").click()
     page.get_by_text(re.compile(r"points of the map: \d+ of \d\d\d\d")).wait_for(timeout=SOLVED)
     page.locator("main .chapter").get_by_role("button", name="Cancel").click()
-    page.get_by_text("Ended before it was done.").wait_for()
+    page.get_by_text("Stopped before it was finished.").wait_for()
     torque.fill("100:2000:3 N*m")
     page.get_by_role("button", name="Compute").click()
     page.locator(".chapter figure svg").first.wait_for(timeout=SOLVED)

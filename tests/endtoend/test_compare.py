@@ -146,12 +146,12 @@ def test_load_dependent_losses_as_a_rig_forms_them(call, measured):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--load-dependent", "as-tested"], "none was measured"),
-        (["-o", "fitted.toml"], "nothing is calibrated"),
+        (["--load-dependent", "as-tested"], "none were measured"),
+        (["-o", "fitted.toml"], "but no keys are calibrated"),
         (["--fit", "planet.roughness", "-o", "fitted.txt"], "must end in .toml"),
         (["--plot", "fit.jpg"], "must end in .png"),
         (["--fit", "planet.roughnes"], "planet.roughness"),
-        (["--hold-out", "0.5"], "there is none"),
+        (["--hold-out", "0.5"], "no keys are fitted"),
     ],
 )
 def test_bad_options_end_before_anything_is_written(call, measured, tmp_path, arguments, words):

@@ -22,7 +22,7 @@ def test_heat_prints_temperatures_and_where_the_heat_goes(epicyclic):
     done = epicyclic("heat", *CASE, *FLOW)
     assert done.returncode == 0
     assert "models.temperatures = network in place of inlet" in done.stderr
-    for words in ("pinion", "over the oil, K", "Where the heat leaves", "flow of oil", "100.0 %"):
+    for words in ("pinion", "above the oil, K", "Where the heat leaves", "flow of oil", "100.0 %"):
         assert words in done.stdout, words
     assert "pinion-jet" in done.stdout
     assert "Sources of the conductances" in done.stdout
@@ -58,9 +58,9 @@ def test_heat_draws_the_network(epicyclic, tmp_path):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ((), "leaves no way out for the heat"),
+        ((), "leaves no path out for the heat"),
         ((*FLOW, "--solve", "oil_flow"), "--target: is needed with --solve oil_flow"),
-        ((*FLOW, "--target", "90 degC"), "is what would be solved for"),
+        ((*FLOW, "--target", "90 degC"), "is the quantity to solve for"),
         ((*FLOW, "--solve", "oil_flow", "--target", "60 degC"), "cannot be reached"),
         ((*FLOW, "--solve", "oil_flow", "--target", "60 W"), "temperature"),
         ((*FLOW, "--solve", "money", "--target", "60 degC"), "money"),

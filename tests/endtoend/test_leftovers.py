@@ -82,5 +82,5 @@ def test_workers_of_a_killed_command_end_quietly(tmp_path):
             time.sleep(0.1)
     assert not any((Path("/dev/shm") / name).exists() for name in locks)
     said = (tmp_path / "errors").read_text().splitlines()
-    assert said[0] == "64 contacts, 0 of them simulated before."
+    assert said[0] == "64 contacts, 0 of them already simulated."
     assert all(line.startswith("contacts: ") for line in said[1:])  # progress, where it takes long

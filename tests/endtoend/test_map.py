@@ -116,7 +116,7 @@ def test_a_second_driven_member_leaves_no_torque_loss_at_rest(case):
     ("key", "words"),
     [
         ("operation.speed", "is varied by speed"),
-        ("operation.input", "which shaft is which"),
+        ("operation.input", "defines the shafts"),
         ("planet.cuont", "not a known key"),
     ],
 )
@@ -145,7 +145,9 @@ def test_files_hold_the_map(data, tmp_path, epicyclic, coarse_options, suffix):
     output = tmp_path / f"map.{suffix}"
     done = epicyclic(*COMMAND, *coarse_options, "-o", str(output))
     assert done.returncode == 0
-    assert done.stderr.startswith("Interpolated linear in the torque, the total loss is off by")
+    assert done.stderr.startswith(
+        "Interpolated linear in the torque; the largest error of the total loss is"
+    )
     assert done.stdout == f"Wrote 30 points to {output}.\n"
     assert names_in(tmp_path) == [output.name]
     if suffix == "nc":
@@ -186,7 +188,7 @@ def test_further_keys_are_axes(tmp_path, epicyclic):
     ("options", "words"),
     [
         (("-o", "map.xyz"), "must end in .nc"),
-        (("-o", "missing/map.nc"), "no place for a file"),
+        (("-o", "missing/map.nc"), "cannot hold a file"),
         (("-o", "map.nc", "--format", "wrong"), "must be one of netcdf"),
         (("-o", "map.nc", "--speed", " "), "--speed"),
         (("-o", "map.vtlm"), "temperature: has 2 values"),

@@ -150,7 +150,7 @@ def test_modelica_gives_the_losses_within_what_it_states(data, tmp_path):
     assert float(ratio) == pytest.approx((73 + 125) / 73, rel=1e-12)
     assert table.shape == (3, 5)
     assert ((table[:, 1:3] > 0.97) & (table[:, 1:3] <= 1)).all()
-    (stated,) = re.findall(r"off by up to (\S+) N.m", text)
+    (stated,) = re.findall(r"error of up to (\S+) N.m", text)
     worst = 0.0
     for speed, torque, loss in points(data, "torque_loss"):
         worst = max(worst, abs(lossy_gear(table, speed * 2 * np.pi / 60, torque) - loss))
@@ -220,7 +220,7 @@ def test_simscape_tables_in_si_units(temperatures, tmp_path):
 def test_what_is_no_map_is_refused(data, tmp_path):
     sweep = ep.sweep(ep.load_case("talbot-2012-pair"), {"operation.speed": ["100 rpm"]})
     for other in (sweep, data.isel(temperature=0), data.drop_attrs(), 5):
-        with pytest.raises(ep.InputError, match="is no loss map"):
+        with pytest.raises(ep.InputError, match="is not a loss map"):
             ep.write_map(other, tmp_path / "map.csv")
     assert list(tmp_path.iterdir()) == []
 
@@ -249,7 +249,7 @@ def test_formats_of_one_table_refuse_more(temperatures, tmp_path, suffix):
     [
         ({"torque": slice(0, None)}, "vecto", "negative and positive"),
         ({"torque": slice(0, None)}, "modelica", "negative and positive"),
-        ({"speed": slice(500, None)}, "modelica", "begins at rest"),
+        ({"speed": slice(500, None)}, "modelica", "starts at rest"),
         ({}, "gem", "must not be negative"),
     ],
 )

@@ -157,20 +157,20 @@ def test_shards_of_another_plan_are_refused(call, tmp_path, shards):
     (file,) = files_of(tmp_path, "o.csv")
     code, _, errors = call("merge", shards[0], file, "-o", tmp_path / "s.csv")
     assert code == 2
-    assert "holds points of another study" in errors
+    assert "holds points of a different study" in errors
     # nor does a shard of another plan write to the same file
     file.replace(shards[1])
     again = ("sweep", *PAIR, "--vary", "pinion.face_width=10:20:6 mm", "-o", tmp_path / "s.csv")
     code, _, errors = call(*again, "--shard", "2/2")
     assert code == 2
-    assert "something else than points of this sweep" in errors
+    assert "something other than points of this sweep" in errors
 
 
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (lambda text: "", "does not say of which study"),
-        (lambda text: "my notes\n" * 3, "does not say of which study"),
+        (lambda text: "", "does not state the study"),
+        (lambda text: "my notes\n" * 3, "does not state the study"),
         (lambda text: text.replace('"version":"', '"version":"0.0.0-'), "was made by version"),
         (lambda text: text.replace('"pinion.face_width"', '"pinion.face"'), "is damaged"),
         (lambda text: text.replace('"kind":"sweep"', '"kind":"swept"'), "is damaged"),
@@ -210,7 +210,7 @@ def test_a_killed_shard_goes_on(call, tmp_path):
     running.wait()
     code, printed, errors = call(*command, "--shard", "2/2")
     assert code == 0, errors
-    assert "Going on from" in errors
+    assert "Continuing from" in errors
     assert "200 of 400 points are in" in printed
     assert call(*command, "--shard", "1/2")[0] == 0
     assert call("merge", *files_of(tmp_path, "s.csv"), "-o", tmp_path / "s.csv")[0] == 0
@@ -449,10 +449,10 @@ def test_what_is_not_for_shards_of_a_comparison_is_told(call, tmp_path, monkeypa
 @pytest.mark.parametrize(
     ("source", "options", "told"),
     [
-        ("map.nc", ("-o", "d.nc"), "goes with a case, not with a map"),
+        ("map.nc", ("-o", "d.nc"), "applies to a case, not to a map"),
         ("talbot-2012-pair", (), "must name the file"),
-        ("talbot-2012-pair", ("--json", "-"), "must be the one file"),
-        ("talbot-2012-pair", ("--json", "d.json", "-o", "d.nc"), "must be the one file"),
+        ("talbot-2012-pair", ("--json", "-"), "must be the only output file"),
+        ("talbot-2012-pair", ("--json", "d.json", "-o", "d.nc"), "must be the only output file"),
         ("talbot-2012-pair", ("--journal", "kept", "-o", "d.nc"), "file of -o or --json"),
         ("talbot-2012-pair", ("--json", "d.txt"), "must end in .nc or .csv or .json"),
     ],
@@ -504,7 +504,7 @@ def test_a_journal_in_a_file_is_refused_where_it_is_a_folder(call, tmp_path):
     duty = ("duty", "talbot-2012-pair", tmp_path / "cycle.csv", "--journal", tmp_path / "file")
     code, _, errors = call(*duty)
     assert code == 2
-    assert "is no place for a folder" in errors
+    assert "cannot hold a folder" in errors
 
 
 def test_a_cluster_of_another_version_is_refused(cluster, monkeypatch):

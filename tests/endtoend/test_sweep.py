@@ -202,7 +202,7 @@ def test_a_file_of_something_else_is_refused(case, tmp_path, content):
     else:
         ep.sweep(case, {"planet.count": [3, 4]}, journal=journal)
     before = journal.read_bytes()
-    with pytest.raises(ep.InputError, match="something else than points of this sweep"):
+    with pytest.raises(ep.InputError, match="something other than points of this sweep"):
         ep.sweep(case, {"planet.count": [3, 5]}, journal=journal)
     assert journal.read_bytes() == before
 
@@ -270,7 +270,7 @@ def test_command_reports_failed_points(tmp_path, epicyclic):
 
 
 @pytest.mark.parametrize(
-    ("output", "words"), [("s.xls", ".parquet"), ("missing/s.csv", "no place for a file")]
+    ("output", "words"), [("s.xls", ".parquet"), ("missing/s.csv", "cannot hold a file")]
 )
 def test_unusable_output_is_refused_before_computing(tmp_path, epicyclic, output, words):
     done = epicyclic(
@@ -346,7 +346,7 @@ def test_interrupted_command_resumes(tmp_path, coarse_options):
     assert running.returncode == 130
     assert output == ""
     said = re.fullmatch(
-        r"(\d+) of 300 points kept in (.*); give the same command again to go on.\n"
+        r"(\d+) of 300 points kept in (.*); give the same command again to continue.\n"
         r"\n*Interrupted.\n",
         errors,
     )
@@ -363,6 +363,6 @@ def test_interrupted_command_resumes(tmp_path, coarse_options):
 
     again = call(*vary)
     assert again.returncode == 0, again.stderr
-    assert again.stderr == f"Going on from {said[1]} of 300 points in {said[2]}.\n"
+    assert again.stderr == f"Continuing from {said[1]} of 300 points in {said[2]}.\n"
     assert names_in(tmp_path) == ["s.csv"]
     assert len(pd.read_csv(tmp_path / "s.csv")) == 300

@@ -52,7 +52,10 @@ def test_a_full_disk_behind_the_output_is_told(tmp_path, command):
     command = command.replace("--json", "talbot-2012-pair --json")
     done = shell(f"{RUN} {command} > /dev/full", tmp_path)
     assert done.returncode == 2
-    assert done.stderr.decode() == "The system refuses the output: No space left on device.\n"
+    assert (
+        done.stderr.decode()
+        == "The system refused access to the output: No space left on device.\n"
+    )
 
 
 def test_a_pipe_that_is_closed_early_is_no_error(tmp_path):
@@ -120,7 +123,7 @@ def test_impossible_names_are_told(tmp_path, monkeypatch, capsys, command):
 
 @pytest.mark.parametrize("sign", ["\x1b[31m", "\x07", "\x00", "\x9b2J", "\ud800"])
 def test_control_characters_come_no_further_than_the_case(sign):
-    with pytest.raises(ep.InputError, match=r"title.*has control characters") as error:
+    with pytest.raises(ep.InputError, match=r"title.*contains control characters") as error:
         ep.load_case("talbot-2012", {"title": f"gears{sign}!"})
     assert sign not in str(error.value)
     with pytest.raises(ep.InputError, match="extra") as error:
@@ -139,5 +142,5 @@ def test_titles_in_a_file_are_checked(tmp_path):
     lines = text.read_text(encoding="utf-8").splitlines()
     lines = [r'title = "a\u001b]0;b"' if line.startswith("title") else line for line in lines]
     path.write_text("\n".join(lines), encoding="utf-8")
-    with pytest.raises(ep.InputError, match=r"title.*has control characters"):
+    with pytest.raises(ep.InputError, match=r"title.*contains control characters"):
         ep.load_case(path)

@@ -139,10 +139,10 @@ def test_a_map_of_computed_losses_has_temperatures_and_states(computed):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--states", "1,N"), "is no state of the train"),
+        (("--states", "1,N"), "is not a state of the train"),
         (("--temperature", "40,80 degC"), "every loss of the train is given"),
         (("--vary", "operation.state=1,2"), "is varied by states"),
-        (("--vary", "operation.output=input"), "which shaft is which"),
+        (("--vary", "operation.output=input"), "defines the shafts"),
         (("--vary", "sets.P1.eficiency=0.9"), "Did you mean 'sets.P1.efficiency'"),
     ],
 )
@@ -233,7 +233,7 @@ def test_vecto_rows_are_those_of_the_state(data, tmp_path):
 
 def test_states_whose_files_would_be_one_are_refused(data, tmp_path):
     twins = data.isel(state=[0, 1]).assign_coords(state=["a/b", "a b"])
-    with pytest.raises(ep.InputError, match="make the same file"):
+    with pytest.raises(ep.InputError, match="lead to the same file"):
         ep.write_map(twins, tmp_path / "box.vtlm")
 
 
@@ -344,7 +344,7 @@ def test_computed_losses_of_a_cycle_are_checked_by_solutions(computed):
 @pytest.mark.parametrize(
     ("states", "words"),
     [
-        (None, "state: is not among the columns, and there are several: 1, 2"),
+        (None, "state: is not among the columns, but the map has several: 1, 2"),
         (["1", "2", "9", "8"], 'state = "9": is none of 1, 2'),
         (["1", "", "2", "8"], 'state = "": is none of 1, 2'),
     ],
@@ -436,7 +436,7 @@ def test_measurements_have_states_and_losses_of_sets(gearbox, tmp_path, epicycli
     ("change", "words"),
     [
         ({"state": ["1", "N"]}, 'operation.state = "N": is no state'),
-        ({"component": ["total", "P4.sun_mush"]}, "is no loss. Known are P1.sun_mesh"),
+        ({"component": ["total", "P4.sun_mush"]}, "is not a loss. The losses are P1.sun_mesh"),
         ({"sets.P1.eficiency": [0.9, 0.9]}, "Did you mean 'sets.P1.efficiency'"),
     ],
 )

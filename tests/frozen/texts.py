@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import lzma
+import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-__all__ = ["TEXTS", "changed_words", "differing", "frozen_texts", "improved"]
+__all__ = ["TEXTS", "changed_words", "differing", "frozen_texts", "improved", "words"]
 
 TEXTS = Path(__file__).with_name("texts.json.xz")
 IMPROVED = Path(__file__).with_name("improved_texts.toml")
@@ -25,9 +26,22 @@ def frozen_texts() -> dict[str, Any]:
     return content
 
 
-def improved(content: Any) -> Any:
-    """A frozen text, or lists and tables of them, as it reads now."""
+def words(content: Any) -> Any:
+    """A text, or lists and tables of them, without its layout.
+
+    Line breaks and the width of columns follow from the words, and change with each of them.
+    """
     if isinstance(content, str):
+        return re.sub(r"\s*─[─\s]*", " ─ ", " ".join(content.split()))
+    if isinstance(content, dict):
+        return {key: words(item) for key, item in content.items()}
+    return [words(item) for item in content] if isinstance(content, list) else content
+
+
+def improved(content: Any) -> Any:
+    """The words of a frozen text, or of lists and tables of them, as they read now."""
+    if isinstance(content, str):
+        content = words(content)
         for old, new in PAIRS:
             content = content.replace(old, new)
         return content
@@ -37,25 +51,20 @@ def improved(content: Any) -> Any:
 
 
 def differing(frozen: Any, found: Any) -> Iterator[tuple[str, str]]:
-    """Pairs of texts in the same place that differ, beside the improved ones.
+    """Pairs of texts in the same place that differ, beside the improved ones."""
+    yield from _differing(improved(frozen), words(found))
 
-    Of texts of several lines only the lines that differ, if there are as many.
-    """
-    frozen = improved(frozen)
+
+def _differing(frozen: Any, found: Any) -> Iterator[tuple[str, str]]:
     if isinstance(frozen, dict) and isinstance(found, dict):
         for key in frozen.keys() & found.keys():
-            yield from differing(frozen[key], found[key])
+            yield from _differing(frozen[key], found[key])
         frozen, found = ({key: it for key, it in one.items() if key not in other}
                          for one, other in ((frozen, found), (found, frozen)))  # fmt: skip
     elif isinstance(frozen, list) and isinstance(found, list) and len(frozen) == len(found):
         for old, new in zip(frozen, found, strict=True):
-            yield from differing(old, new)
+            yield from _differing(old, new)
         return
-    elif isinstance(frozen, str) and isinstance(found, str):
-        lines = frozen.splitlines(), found.splitlines()
-        if len(lines[0]) == len(lines[1]) > 1:
-            yield from differing(*lines)
-            return
     if frozen != found:
         yield tuple(it if isinstance(it, str) else json.dumps(it) for it in (frozen, found))
 

@@ -94,8 +94,8 @@ def test_a_fit_is_the_same_as_its_allowances():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"pinion.tooth_thickness_fit": "31a"}, "no series of DIN 3967"),
-        ({"pinion.tooth_thickness_fit": 27}, "no series of DIN 3967"),
+        ({"pinion.tooth_thickness_fit": "31a"}, "not a series of DIN 3967"),
+        ({"pinion.tooth_thickness_fit": 27}, "not a series of DIN 3967"),
         (
             {
                 "pinion.tooth_thickness_fit": "25c",

@@ -194,7 +194,7 @@ def test_efficiency_near_zero_load(case):
     assert idle.input_power == pytest.approx(idle.total, rel=1e-12)
     light = solve(case, operation__torque="0.1 N*m")
     assert light.efficiency == 0.0
-    assert any("No power leaves" in note for note in light.notes)
+    assert any("No power reaches the output" in note for note in light.notes)
     still = solve(case, operation__speed="0 rpm")
     assert still.total == still.input_power == 0
     assert json.loads(still.to_json())["efficiency"] is None

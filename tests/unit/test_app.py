@@ -429,7 +429,7 @@ def test_a_port_that_is_taken_and_a_case_that_is_none_are_told():
         options = ["talbot-2012", "--port", str(taken.getsockname()[1]), "--no-browser"]
         found = CliRunner().invoke(cli, ["app", *options])
     assert isinstance(found.exception, InputError)
-    assert "cannot be listened at" in str(found.exception)
+    assert "cannot be used as a server address" in str(found.exception)
     assert isinstance(CliRunner().invoke(cli, ["app", "talbot-2013"]).exception, InputError)
 
 
@@ -497,10 +497,10 @@ def test_the_page_shows_form_and_losses_and_the_message_beside_a_wrong_field(sim
 @pytest.mark.parametrize(
     ("chapter", "tab", "shown"),
     [
-        ("", "Losses", "Where do the watts go?"),
+        ("", "Losses", "Where is the power lost?"),
         ("map", "Losses", "Compute"),
         ("gears", "Gears", "mesh periods"),
-        ("bearing", "Losses", "Where do the watts go?"),  # of a planet; a pair has none
+        ("bearing", "Losses", "Where is the power lost?"),  # of a planet; a pair has none
     ],
 )
 def test_a_chapter_is_shown_before_the_others_are_known(simulate, chapter, tab, shown):
@@ -619,7 +619,7 @@ def test_one_of_the_files_of_an_upload_is_a_case(names, tmp_path):
 def test_only_built_in_cases_are_opened_by_name(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text('kind = "planetary"')
-    with pytest.raises(InputError, match="no built-in case"):
+    with pytest.raises(InputError, match="not a built-in case"):
         built_in(str(file))
 
 
@@ -756,7 +756,7 @@ def test_what_is_no_address_is_told(host):
 
     found = CliRunner().invoke(cli, ["app", "talbot-2012", "--host", host, "--no-browser"])
     assert isinstance(found.exception, InputError)
-    assert "cannot be listened at" in str(found.exception)
+    assert "cannot be used as a server address" in str(found.exception)
     assert len(str(found.exception)) < 300
 
 

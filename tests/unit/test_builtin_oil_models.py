@@ -258,11 +258,11 @@ def test_tables_and_reports_begin_with_the_models(case):
     console = Console(width=400, record=True, file=io.StringIO())
     console.print(result_tables(result))
     text = console.export_text()
-    title, losses = text.index("Models, and how well"), text.index("Losses ")
+    title, losses = text.index("Models and their reliability"), text.index("Losses ")
     assert title < losses
     assert f"rolling loss: {result.standing['rolling']}" in text
     page = html.unescape(ep.report_html(ep.record(case, result=result)))
-    assert page.index("Models, and how well") < page.index("loss, W")
+    assert page.index("Models and their reliability") < page.index("loss, W")
     assert f"planet bearing: {result.standing['bearing']}" in page
 
 

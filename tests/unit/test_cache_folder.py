@@ -157,7 +157,7 @@ def test_a_folder_of_the_user_must_be_private_too(tmp_path):
     assert list(given.rglob("*.nbc"))
     given.chmod(0o777)
     (note,) = outcome(tmp_path, NUMBA_CACHE_DIR=str(given))
-    assert note == f"NUMBA_CACHE_DIR is not used: others may write to {given}."
+    assert note == f"NUMBA_CACHE_DIR is not used, because others may write to {given}."
 
 
 TWO = """\

@@ -136,8 +136,8 @@ def test_keys_that_differ_from_contact_to_contact_are_refused():
     ("oil", "given", "told"),
     [
         ("atf-talbot", {}, "Did you mean"),
-        (ATF, {"ranges": {"hertz_pressure": (1.0, 4.0)}}, "tested for"),
-        (ATF, {"ranges": {"rolling_speed": (0.01, 4.0)}}, "tested for"),
+        (ATF, {"ranges": {"hertz_pressure": (1.0, 4.0)}}, "tested range"),
+        (ATF, {"ranges": {"rolling_speed": (0.01, 4.0)}}, "tested range"),
         (ATF, {"ranges": {"roughness1": (0.1, 1.6)}}, "up to 1.75 um together"),
         (ATF, {"ranges": {"slide_to_roll_ratio": (0.0, 1.0)}}, "above zero"),
         (ATF, {"changes": {"lubricant.eyring": "8 MPa"}}, "not a known key"),
@@ -181,9 +181,9 @@ def test_a_folder_keeps_one_campaign(tmp_path):
     older = CampaignFolder(tmp_path / "older", replace(campaign, version="0.0.1"))
     older.prepare()
     assert open_folder(tmp_path / "older").campaign.version == "0.0.1"
-    with pytest.raises(InputError, match="another campaign"):
+    with pytest.raises(InputError, match="a different campaign"):
         CampaignFolder(tmp_path / "older", campaign).prepare()
-    with pytest.raises(InputError, match="another campaign"):
+    with pytest.raises(InputError, match="a different campaign"):
         CampaignFolder(tmp_path / "atf", make_campaign(ATF, size=5)).prepare()
     with pytest.raises(InputError, match="cannot be read"):
         open_folder(tmp_path)
@@ -191,5 +191,5 @@ def test_a_folder_keeps_one_campaign(tmp_path):
     with pytest.raises(InputError, match="no plan"):
         open_folder(tmp_path / "atf")
     (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="is no place for a folder"):
+    with pytest.raises(InputError, match="cannot hold a folder"):
         CampaignFolder(tmp_path / "file", campaign).prepare()

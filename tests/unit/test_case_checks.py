@@ -65,11 +65,11 @@ ONE_PROBLEM = {
     ),
     "no space": (
         TALBOT, {"planet.tooth_thickness": "6 mm"},
-        "planet.root_diameter", "no space left",
+        "planet.root_diameter", "no width left",
     ),
     "no tool": (
         TALBOT, {"planet.root_diameter": "38 mm"},
-        "planet.tip_diameter, planet.root_diameter", "no tool cuts",
+        "planet.tip_diameter, planet.root_diameter", "no tool can cut",
     ),
     "ring no larger than its pinion": (
         PAIR, {"pinion.teeth": 60, "gear.internal": True, "gear.teeth": 60,
@@ -141,12 +141,12 @@ ONE_PROBLEM = {
         "planet.angles[2]", "cannot be assembled there",
     ),
     "the input held still": (
-        TALBOT, {"operation.fixed": "sun"}, "operation.fixed", "another member",
+        TALBOT, {"operation.fixed": "sun"}, "operation.fixed", "a different member",
     ),
     "two speeds of one member": (
         TALBOT, {"operation.fixed": None, "operation.second_input": "sun",
                  "operation.second_speed": "5 rpm"},
-        "operation.second_input", "another member",
+        "operation.second_input", "a different member",
     ),
     "too many rollers": (
         TALBOT, {"planet_bearing.rollers_per_row": 24},

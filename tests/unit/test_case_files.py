@@ -157,7 +157,7 @@ def test_a_line_that_is_not_toml_is_shown(write):
     problem = only(problems_of(read_case, write(TALBOT.replace("[sun]", "[sun"))))
     assert problem.value.startswith("line ")
     assert problem.value.endswith(": [sun")
-    assert problem.remedy == "Mend this line."
+    assert problem.remedy == "Correct this line."
 
 
 @pytest.mark.parametrize(
@@ -210,7 +210,7 @@ def test_a_key_given_twice_is_told(write):
     text = TALBOT.replace("count = 3", "count = 3\ncount = 4")
     problem = only(problems_of(read_case, write(text)))
     assert "count = 4" in problem.value
-    assert "given before" in problem.allowed
+    assert "a second time" in problem.allowed
 
 
 def test_bad_lines_do_not_hide_each_other_nor_the_rest(write):

@@ -77,7 +77,7 @@ EVERY_PROBLEM = {
     "operation.torque": "is not TOML",
     "operation.speed": "turns or radians",
     "operation.oil_inlet_temperature": "measures something else",
-    "operation.fixed": "another member",
+    "operation.fixed": "a different member",
     "gears.transverse_module": "conflicts with normal_module",
     "gears.normal_pressure_angle": "has no unit",
     "gears.helix_angle": "out of range",
@@ -184,8 +184,8 @@ def test_values_are_shown_as_they_were_written(every_kind):
         ("losses", "drag", {}, "losses.drag", "Did you mean"),
         ("sun", "torque", "5 N*m", "sun.torque", "It belongs to operation."),
         ("sun", "sun.teeth", 73, 'sun."sun.teeth"', "Did you mean 'teeth'?"),
-        ("sun", 'a "b"', 73, 'sun."a "b""', "Known are: teeth"),
-        ("sun", "", 73, 'sun.""', "Known are: teeth"),
+        ("sun", 'a "b"', 73, 'sun."a "b""', "The keys are teeth"),
+        ("sun", "", 73, 'sun.""', "The keys are teeth"),
     ],
 )
 def test_one_problem_for_one_mistake(table, key, value, place, words):

@@ -122,10 +122,10 @@ def test_what_leaves_its_range_is_flagged():
     assert churning_flags("changenet-velex", "gear", GEAR, 300.0) == ()
     deep = replace(GEAR, depth=60e-3)
     (flag,) = churning_flags("changenet-velex", "gear", deep, 300.0)
-    assert flag.quantity == "depth over the diameter"
+    assert flag.quantity == "immersion depth over the diameter"
     assert flag.found_high == pytest.approx(60 / 100.4)
     (flag,) = churning_flags("changenet-velex", "gear", replace(GEAR, radius=20e-3), 300.0)
-    assert (flag.quantity, flag.low) == ("pitch diameter of what dips", 50.0)
+    assert (flag.quantity, flag.low) == ("immersed pitch diameter", 50.0)
     (flag,) = churning_flags("iso-14179-1", "gear", GEAR, 500.0)
     assert flag.found_high == pytest.approx(500 * 50.2e-3)
     (flag,) = churning_flags("iso-14179-1", "gear", replace(GEAR, module=0.6e-3), 300.0)

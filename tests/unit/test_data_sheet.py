@@ -48,7 +48,9 @@ def test_a_printed_pair_is_shown_as_printed():
     }
     for label, value in printed.items():
         assert row(text, label)[0] == value, label
-    assert "gear.profile_shift_coefficient = 0.0000: found from the mesh" in " ".join(text.split())
+    assert "gear.profile_shift_coefficient = 0.0000: computed from the mesh" in " ".join(
+        text.split()
+    )
 
 
 def test_specific_sliding_is_that_of_the_speeds():

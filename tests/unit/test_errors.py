@@ -10,7 +10,7 @@ from epicyclic.errors import ConvergenceError, EpicyclicError, InputError, Probl
 
 TEETH = Problem("sun.teeth", "3", "must be 5 or more.", "Increase it.")
 FILE = Problem("", "", "the file is empty.", "Fill it.")
-LINE = Problem("", "line 3: [sun", "is not TOML.", "Mend this line.")
+LINE = Problem("", "line 3: [sun", "is not TOML.", "Correct this line.")
 MISSING = Problem("sun.face_width", "", "is missing.", "Add it.")
 
 
@@ -19,7 +19,7 @@ MISSING = Problem("sun.face_width", "", "is missing.", "Add it.")
     [
         (TEETH, "sun.teeth = 3: must be 5 or more. Increase it."),
         (FILE, "the file is empty. Fill it."),
-        (LINE, "line 3: [sun: is not TOML. Mend this line."),
+        (LINE, "line 3: [sun: is not TOML. Correct this line."),
         (MISSING, "sun.face_width: is missing. Add it."),
     ],
 )

@@ -311,7 +311,7 @@ def test_load_factors_count_in_the_range_of_the_load(talbot):
     """150 N/mm and more: 100 N/mm on the teeth are in it with K_A = 1.6."""
     given = {"operation.torque": "450 N*m", "models.friction": "niemann-winter"}
     loads = [
-        [flag for flag in ep.solve(case).flags if flag.quantity == "load for each face width"]
+        [flag for flag in ep.solve(case).flags if flag.quantity == "load per face width"]
         for case in (
             talbot.updated(given),
             talbot.updated(given | {"models.application_factor": 1.6}),

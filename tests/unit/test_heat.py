@@ -118,12 +118,16 @@ def test_a_temperature_may_be_a_number_of_kelvin():
 @pytest.mark.parametrize(
     ("quantity", "temperature", "words"),
     [
-        ("oil_flow", "71 degC", "oil at 71 degC: cannot be reached: with thermal.oil_flow beyond"),
+        (
+            "oil_flow",
+            "71 degC",
+            "oil at 71 degC: cannot be reached: with unlimited thermal.oil_flow",
+        ),
         ("cooler_power", "150 degC", "with thermal.cooler_power = 0 W it is at 9"),
         ("input_power", "20 degC", r"with operation.torque = 0 N\*m it is at 90"),
         ("oil_flow", "hot", "temperature = "),
         ("oil_flow", 20.0, "temperature = "),
-        ("torque", "90 degC", "is none of cooler_power, oil_flow, input_power"),
+        ("torque", "90 degC", "must be one of cooler_power, oil_flow, input_power"),
     ],
 )
 def test_what_cannot_be_found_is_an_input_error(quantity, temperature, words):
@@ -132,7 +136,7 @@ def test_what_cannot_be_found_is_an_input_error(quantity, temperature, words):
 
 
 def test_a_train_of_given_losses_has_no_temperatures():
-    with pytest.raises(InputError, match="needs a case that computes losses"):
+    with pytest.raises(InputError, match="needs a case with computed losses"):
         ep.heat_balance(ep.load_case("train-8hp70"))
 
 
@@ -158,7 +162,7 @@ def test_remarks_compare_with_warm_flanks_and_without_holding():
     assert beyond_range(hot, result).share == pytest.approx(1.0)
     _, second = remarks(hot, result)
     assert second.startswith("100 % of the load-dependent loss arises in contacts")
-    assert second.endswith(f"without holding the total would be {free.total:.0f} W.")
+    assert second.endswith(f"without this limit the total would be {free.total:.0f} W.")
 
 
 @pytest.mark.parametrize(
@@ -225,7 +229,7 @@ def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
     assert "Where the heat leaves" in page
     assert "Paths of the heat" in page
     assert 'id="figure-heat-network-1"' in page
-    assert "The oil has its inlet temperature at all contacts." not in page
+    assert "The oil is at its inlet temperature at all contacts." not in page
 
 
 @pytest.mark.slow

@@ -219,7 +219,7 @@ def test_a_bad_table_is_told(tmp_path, content, words):
 def test_a_table_with_more_columns_than_keys_is_told_at_once(case):
     """Each of its keys would be looked for among all others: 20 s."""
     points = {f"a.b{number}": ["1", "2"] for number in range(3000)}
-    with pytest.raises(ep.InputError, match="names 3000 keys; such a case has") as caught:
+    with pytest.raises(ep.InputError, match="names 3000 keys; a case of this kind has") as caught:
         make_plan(case, points=points)
     assert len(caught.value.problems) == 1
 
@@ -241,14 +241,14 @@ LENGTH = {"gears.normal_module": ["1.8 mm", "1.9 mm"]}
         ({"vary": LENGTH, "links": {"sun.face_width": "-1 * mm"}}, "out of range"),
         ({"vary": LENGTH, "links": {"sun.face_width": "1 * mm / 0"}}, "divides by zero"),
         ({"vary": LENGTH, "links": {"sun.face_width": "sun.teeth + 1 * mm"}}, "Cannot convert"),
-        ({"vary": LENGTH, "links": {"lubricant.oil": "1"}}, "holds no number"),
+        ({"vary": LENGTH, "links": {"lubricant.oil": "1"}}, "is not a number"),
         ({"vary": LENGTH, "links": {"sun.teeth": "case(sun.teth)"}}, "not a known key"),
         (
             {"vary": LENGTH, "links": {"sun.teeth": "ring.teeth", "ring.teeth": "sun.teeth"}},
-            "in a circle",
+            "is circular",
         ),
         ({"vary": LENGTH, "together": [LENGTH]}, "varied twice"),
-        ({"together": [{**LENGTH, "sun.teeth": [73]}]}, "change together"),
+        ({"together": [{**LENGTH, "sun.teeth": [73]}]}, "vary together"),
         ({"together": [{"sun.teeth": [73, 73], **LENGTH}]}, "same value twice"),
         ({"together": [{}]}, "names no keys"),
         ({"points": {"sun.teeth": range(2000)}, "vary": {"planet.count": range(2000)}}, "fewer"),

@@ -429,7 +429,7 @@ def test_profile_shift_that_would_fit_a_centre_distance_leaves_no_backlash():
         "narrow-ring": {"center_distance": "52.5 mm"},
     }
     problem = only(found("stepped", mesh=mesh))
-    total = float(problem.remedy.split("coefficients of ")[1].split(" in sum")[0])
+    total = float(problem.remedy.split("coefficients add up to ")[1].split(" (now")[0])
     assert total < -0.1
     del mesh["narrow-ring"]
     for more, sound in ((-1e-4, True), (1e-3, False)):
@@ -525,7 +525,7 @@ def test_gears_of_a_planet_that_overlap():
     places = {"gears__wide__axial_position": "0 mm", "gears__narrow__axial_position": "3 mm"}
     problem = only(found("wolfrom", **places))
     assert "overlap by 16 mm" in problem.allowed
-    assert problem.remedy == "Put them at least 19 mm apart."
+    assert problem.remedy == "Place them at least 19 mm apart."
 
 
 def test_bearing_that_does_not_fit():

@@ -158,11 +158,11 @@ def test_a_file_with_two_axes_in_any_order(read):
         ("speed [rpm]\n0\n1\n", ["either torque or power"]),
         ("torque [N*m]\n0\n1\n", ["one or two of the columns"]),
         ("speed [rpm],torque [N*m],power [W]\n0,1,1\n", ["either torque or power"]),
-        ("speed [rpm],speed [rpm],torque [N*m]\n0,1,1\n", ["second such column"]),
+        ("speed [rpm],speed [rpm],torque [N*m]\n0,1,1\n", ["second column of the same name"]),
         ("speed [rpm],torque [N*m]\n0,1\n1\n", ["2 cells"]),
         ("speed [rpm],torque [N*m]\n0,1\none,1\nx,2\n", ["not a number"]),
         ("speed [rpm],torque [kg]\n0,1\n1,1\n", ["measures something else"]),
-        ("speed [rpm],torque [N*m]\n0,1\n0,2\n5,2\n", ["same point as line 2"]),
+        ("speed [rpm],torque [N*m]\n0,1\n0,2\n5,2\n", ["the point of line 2"]),
         ("speed [rpm],torque [N*m]\n0,1\n5,-2\n", ["zero or more"]),
         ("speed [rpm],torque [N*m]\n0,1\n", ["two or more"]),
         (

@@ -213,8 +213,8 @@ def test_a_gear_above_the_oil_turns_in_the_mixture():
 def test_a_result_says_if_nothing_dips():
     result = ep.solve(pair(DIP | {"oil_level": "-400 mm"}))
     assert result.lubrication[""].churning == {}
-    assert "nothing that turns reaches the oil" in result.standing["lubrication"]
-    assert "nothing that turns" not in ep.solve(pair(DIP)).standing["lubrication"]
+    assert "no turning part reaches the oil" in result.standing["lubrication"]
+    assert "no turning part" not in ep.solve(pair(DIP)).standing["lubrication"]
 
 
 def test_depths_of_single_parts_are_those_of_a_level():
@@ -265,9 +265,9 @@ def test_a_held_ring_leaves_all_of_the_oil_to_the_sun():
 
 def test_churning_beyond_its_range_is_told_by_watts():
     result = ep.solve(planetary(DIP | {"oil_level": "40 mm"}))
-    flags = [flag for flag in result.flags if flag.quantity == "depth over the diameter"]
+    flags = [flag for flag in result.flags if flag.quantity == "immersion depth over the diameter"]
     assert {flag.use.where for flag in flags} == {"sun", "ring", "carrier"}
-    (told,) = [text for text in result.warnings if "depth over the diameter" in text]
+    (told,) = [text for text in result.warnings if "immersion depth over the diameter" in text]
     churned = sum(result.losses[name] for name in DRAGS)
     assert f"{churned:.3g} W in all" in told
 

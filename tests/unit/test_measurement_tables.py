@@ -106,11 +106,11 @@ nan,500,90,400 W,0,4,total
         'speed [rpm] = "" in line 4: is empty',
         'speed [rpm] = "1e9" in line 5: is out of range',
         '"abc" in line 3, "abc" in line 6',
-        '"500 N" in line 4: has a unit, and the header has [Nm]',
+        '"500 N" in line 4: has a unit, but the header already has [Nm]',
         'loss = "500" in line 3, "500" in line 6: has no unit',
         '"inf W" in line 5',
         '"0" in line 2: must be > 0',
-        '"totl" in line 4: is no loss',
+        '"totl" in line 4: is not a loss',
         "line 6 is line 3",
     ):
         assert words in found, words
@@ -127,7 +127,7 @@ nan,500,90,400 W,0,4,total
         (GOOD.replace(",1\n", "\n"), "has 5 columns, but line 3 has 4"),
         (GOOD.replace("400", "4,00"), "has 5 columns, but line 3 has 6"),
         (GOOD.replace(",", ";").replace("400", "4,5"), "decimal comma"),
-        (GOOD.replace("1000,", "1000 rpm,"), "the header has .rpm."),
+        (GOOD.replace("1000,", "1000 rpm,"), "the header already has .rpm."),
         (GOOD.replace("[degC]", "[bar]"), "measures something else"),
         (GOOD.replace("run", "planet.count").replace(",2\n", ",99\n"), "line 4: planet.count"),
         ("speed [rpm],torque [N*m]\n", "no rows"),

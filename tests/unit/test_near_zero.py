@@ -68,5 +68,5 @@ def test_command_adds_torques_to_a_range_and_tells_the_error(tmp_path, options, 
     assert done.exit_code == 0, done.output
     lines = file.read_text().splitlines()
     assert len([line for line in lines if not line.startswith("#")]) == count + 1
-    assert "the total loss is off by" in done.output
+    assert "largest error of the total loss" in done.output
     assert any(line.startswith("# torque interpolation: ") for line in lines)

@@ -128,14 +128,14 @@ def test_fits_are_corrected_where_that_helps(monkeypatch):
     ("change", "told"),
     [
         ({"excess": (0.1, 3.5)}, "within 3"),
-        ({"excess": (0.1,)}, "equally many"),
+        ({"excess": (0.1,)}, "have the same length"),
         ({"excess": ()}, "at least 1"),
         ({"weight": (0.0, 0.5)}, "above 0"),
         ({"equivalent_modulus": 0.0}, "greater than 0"),
         ({"conditions": {}}, "must be slide"),
         ({"excess": (0.1, float("nan"))}, "finite"),
         ({"conditions.radius": (1e-3, -2e-3)}, "above zero"),
-        ({"conditions.radius": (1e-3,)}, "equally many"),
+        ({"conditions.radius": (1e-3,)}, "have the same length"),
     ],
     ids=lambda value: str(value)[:40],
 )

@@ -55,7 +55,7 @@ def bomb_of_texts(data):
 HOSTILE = {
     "gained power": (changed("total", (1, 1, 0), -3.0), "total: must not be below 0."),
     "gained torque": (changed("torque_loss", (1, 1, 0), -2.0), "torque_loss: must not be below 0."),
-    "more than all": (changed("efficiency", (1, 1, 0), 1.07), "efficiency: must not exceed 1."),
+    "which exceeds": (changed("efficiency", (1, 1, 0), 1.07), "efficiency: must not exceed 1."),
     "nowhere": (changed("speed", 1, np.nan), "speed: must have finite values."),
     "endless": (changed("temperature", 1, np.inf), "temperature: must "),
     "unsorted": (swapped, "torque: must rise."),
@@ -67,7 +67,7 @@ HOSTILE = {
     "junk case": (with_attribute("", "case", "{}"), "must name the kind of the case"),
     "no json": (with_attribute("", "case", "junk"), "case: "),
     "bomb": (bomb, "holds more than"),
-    "bomb of texts": (bomb_of_texts, "holds more than"),
+    "bomb of texts": (bomb_of_texts, "contains more than"),
 }
 
 
@@ -158,5 +158,5 @@ def test_a_heap_without_an_end_is_refused(tmp_path, damage):
     }[damage]
     content[at : at + 8] = wrong.to_bytes(8, "little")
     path.write_bytes(content)
-    with pytest.raises(ep.InputError, match="a heap of texts has no end"):
+    with pytest.raises(ep.InputError, match="a heap of texts is incomplete"):
         read_groups(path)

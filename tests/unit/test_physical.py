@@ -33,13 +33,13 @@ def test_a_loss_below_zero_is_told(result):
     found = judged(with_loss(result, "ring_drag", -7.25))
     assert found.status == Status.UNPHYSICAL
     assert found.to_dict()["status"] == "unphysical"
-    assert found.warnings[0].startswith("No result: Losses are below zero: ring drag -7.25 W.")
+    assert found.warnings[0].startswith("No result: Losses are negative: ring drag -7.25 W.")
 
 
 def test_energy_that_does_not_balance_is_told(result):
     found = judged(with_loss(result, "ring_drag", result.losses["ring_drag"] + 0.5))
     assert found.status == Status.UNPHYSICAL
-    assert "The shafts bring -0.5 W more than is lost." in found.warnings[0]
+    assert "The shaft powers exceed the losses by -0.5 W." in found.warnings[0]
 
 
 def test_errors_of_the_numerics_are_no_reason(result):
@@ -66,7 +66,7 @@ COLD = {
 def test_rolling_that_exceeds_what_the_load_resists_with_is_told(coarse_talbot):
     found = ep.solve(coarse_talbot.updated({**COLD, "models.mesh_loads": "without-losses"}))
     assert found.status == "unphysical"
-    assert "times what their load can resist with" in found.warnings[0]
+    assert "times the power that their load can dissipate" in found.warnings[0]
     assert 'models.oil_beyond_range = "held"' in found.warnings[0]
     held = ep.solve(coarse_talbot.updated({**COLD, "models.oil_beyond_range": "held"}))
     assert held.status == "converged"
@@ -92,7 +92,7 @@ def test_contacts_wider_than_their_radius_are_told(torque, status):
     assert mesh.flattening == pytest.approx(
         4 * mesh.hertz_pressure_max / contact.flanks.equivalent_modulus, rel=1e-12
     )
-    told = "The teeth of the mesh would be pressed with"
+    told = "The teeth of the mesh would have a contact pressure of"
     assert found.warnings[0].count(told) == (status == "unphysical")
 
 
@@ -124,7 +124,7 @@ def test_the_command_ends_with_3(
     assert ended.value.code == 3
     shown = capsys.readouterr()
     assert json.loads(shown.out)["status"] == "unphysical"
-    assert shown.err.startswith("No result: Losses are below zero: ")
+    assert shown.err.startswith("No result: Losses are negative: ")
 
 
 def test_points_of_sweeps_have_the_outcome_and_no_numbers(coarse_talbot, impossible_pockets):

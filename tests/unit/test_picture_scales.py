@@ -94,7 +94,7 @@ def test_curves_over_a_mesh_period_are_closed(talbot_record):
 
 @pytest.mark.parametrize(
     ("model", "words"),
-    [("schlenk", "one mean for the whole mesh"), ("xu-2007", "mean across the face")],
+    [("schlenk", "one mean value for the whole mesh"), ("xu-2007", "mean across the face")],
 )
 def test_friction_says_when_the_model_is_a_mean(model, words):
     case = ep.load_case("talbot-2012-pair").updated(

@@ -197,7 +197,7 @@ def test_published_values_belong_to_the_example_only(pair, study):
     assert [len(found) for found in stars] == [1, 0, 0]  # face widths of 15, 25 and 35 mm
     assert (stars[0][0].get_xdata(), stars[0][0].get_ydata()) == ([10.0], [120.0])
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
-    bands = "Talbot (2012), between ticks of its axes, 10000 rpm"
+    bands = "Talbot (2012), read between ticks of its axes, 10000 rpm"
     assert texts == ["5000 rpm", "7500 rpm", "10000 rpm", "Talbot (2012), 10000 rpm", bands]
     assert (30.0, 15.0, 57.0, 76.0) in published.bands
     # of the helix angles of this study, 10 and 20 deg of 35 mm

@@ -84,4 +84,4 @@ def test_figures_of_meshes_tell_how_well_pockets_are_computed_where_that_is_know
         for row in table.rows
     }
     assert told["pocketing loss: error of its energy balance"] == ["under 0.01 %"] * 2
-    assert "pocketing loss: largest error of its interpolation" not in told  # all are solved
+    assert "largest interpolation error of the pocketing loss" not in told  # all are solved

@@ -110,7 +110,7 @@ def test_text_reads_back_as_the_same_case(read, tmp_path):
 
 def test_text_says_what_the_user_changed(read):
     text = read(planetary()).text({"planet_bearing": None, "sun.roughness": "0.3 um"})
-    assert re.search(r"^# \[planet_bearing\] +# Taken out by the user\.$", text, re.MULTILINE)
+    assert re.search(r"^# \[planet_bearing\] +# Removed by the user\.$", text, re.MULTILINE)
     assert re.search(r'^roughness = "0.3 um" +# Set by the user\.$', text, re.MULTILINE)
     assert "rolling_element" not in text
 
@@ -180,7 +180,7 @@ def test_hands_of_helices_must_fit(read):
 def test_planets_must_be_alike(read):
     parts = planetary()
     parts.set(PLANET + 1, face_width=mm(21.0))
-    with pytest.raises(ep.InputError, match="must be alike"):
+    with pytest.raises(ep.InputError, match="must be equal"):
         read(parts)
 
 

@@ -55,51 +55,51 @@ GOOD = pair().xml().encode()
 BROKEN = {
     "empty": (b"", "is empty"),
     "blank": (b" \n", "is empty"),
-    "cut short": (GOOD[: len(GOOD) // 2], "not sound XML"),
-    "cut in the head": (b"<?xml", "not sound XML"),
-    "not XML": (b"hello", "not sound XML"),
+    "cut short": (GOOD[: len(GOOD) // 2], "not valid XML"),
+    "cut in the head": (b"<?xml", "not valid XML"),
+    "not XML": (b"hello", "not valid XML"),
     "another XML": (b"<html/>", "first element is not model"),
-    "binary": (bytes(range(256)), "not sound XML"),
-    "wrong encoding": (GOOD.replace(b"stage B", b"st\xe4ge B"), "not sound XML"),
-    "unknown encoding": (GOOD.replace(b"UTF-8", b"EBCDIC-X"), "not sound XML"),
-    "zero byte": (GOOD.replace(b"stage B", b"st\0ge B"), "not sound XML"),
-    "deep": (xml("<a>" * 5000 + "</a>" * 5000), "not sound XML"),
-    "entities": (f"{BOMB}<model version='1.5'>&s;</model>".encode(), "sound XML|document type"),
-    "entities in an attribute": (f"{BOMB}<model version='&s;'/>".encode(), "sound XML"),
+    "binary": (bytes(range(256)), "not valid XML"),
+    "wrong encoding": (GOOD.replace(b"stage B", b"st\xe4ge B"), "not valid XML"),
+    "unknown encoding": (GOOD.replace(b"UTF-8", b"EBCDIC-X"), "not valid XML"),
+    "zero byte": (GOOD.replace(b"stage B", b"st\0ge B"), "not valid XML"),
+    "deep": (xml("<a>" * 5000 + "</a>" * 5000), "not valid XML"),
+    "entities": (f"{BOMB}<model version='1.5'>&s;</model>".encode(), "valid XML|document type"),
+    "entities in an attribute": (f"{BOMB}<model version='&s;'/>".encode(), "valid XML"),
     "file entity": (f"{SECRET}<model version='1.5'>&a;</model>".encode(), "document type"),
-    "file entity in an attribute": (f"{SECRET}<model version='&a;'/>".encode(), "sound XML"),
+    "file entity in an attribute": (f"{SECRET}<model version='&a;'/>".encode(), "valid XML"),
     "no version": (b"<model/>", 'version ""'),
     "later version": (xml("").replace(b"1.5", b"3.0"), 'version "3.0"'),
     "no gears": (xml(""), "no stages"),
     "id twice": (xml("<components><component id='1' type='a'/><component id='1' type='a'/>"
-                     "</components>"), "component 1: is there twice"),
-    "id of no number": (xml("<components><component id='one' type='a'/></components>"), "as id"),
+                     "</components>"), "component 1: appears twice"),
+    "id of no number": (xml("<components><component id='one' type='a'/></components>"), "integer"),
     "attribute twice": (xml("<components><component id='1' type='a'><attribute id='x'/>"
                             "<attribute id='x'/></component></components>"), "x twice"),
     "relation twice": (xml("<relations><relation id='1' type='a'/><relation id='1' type='a'/>"
-                           "</relations>"), "relation 1: is there twice"),
+                           "</relations>"), "relation 1: appears twice"),
     "relation to nothing": (xml("<relations><relation id='1' type='a'><ref id='9' role='b'/>"
-                                "</relation></relations>"), "component 9, which is not there"),
+                                "</relation></relations>"), "component 9, which does not exist"),
     "load case of nothing": (xml("<load_spectrum id='1'><load_case id='1'><component id='9' "
                                  "type='a'/></load_case></load_spectrum>"), "component 9"),
-    "JSON cut short": (pair().json().encode()[:500], "not sound JSON"),
+    "JSON cut short": (pair().json().encode()[:500], "not valid JSON"),
     "JSON of another kind": (b'{"a": 1}', 'no object "model"'),
     "JSON list": (b"[1]", 'no object "model"'),
-    "JSON NaN": (b'{"model": {"version": NaN}}', "not sound JSON: expected value at line 1"),
-    "JSON deep": (b'{"model":' + b"[" * 100_000, "not sound JSON: recursion limit exceeded"),
-    "JSON of long numbers": (b'{"model": {"version": ' + b"9" * 5000 + b"}}", "sound JSON"),
+    "JSON NaN": (b'{"model": {"version": NaN}}', "not valid JSON: expected value at line 1"),
+    "JSON deep": (b'{"model":' + b"[" * 100_000, "not valid JSON: recursion limit exceeded"),
+    "JSON of long numbers": (b'{"model": {"version": ' + b"9" * 5000 + b"}}", "valid JSON"),
     "JSON in Latin-1": ('{"model": "ä"}'.encode("latin-1"), "not UTF-8"),
     "JSON of wrong types": (b'{"model": {"version": "1.5", "components": 3}}', "list of objects"),
-    "not an archive": (b"PK\x03\x04 no archive", "not a sound archive"),
-    "archive with a shifted directory": (zipped(a__rexs=GOOD)[8:], "sound XML|sound archive"),
+    "not an archive": (b"PK\x03\x04 no archive", "not a valid archive"),
+    "archive with a shifted directory": (zipped(a__rexs=GOOD)[8:], "valid XML|valid archive"),
     "archive with other sizes": (zipped(a__rexs=GOOD).replace(b"a.rexs", b"b.rexs", 1), "archive"),
-    "archive cut short": (zipped(a__rexs=GOOD)[:300], "not a sound archive"),
+    "archive cut short": (zipped(a__rexs=GOOD)[:300], "not a valid archive"),
     "empty archive": (archive_of(), "no member in REXS"),
     "archive of two": (zipped(a__rexs=GOOD, b__rexs=GOOD), "2 members"),
-    "archive that leads out": (archive_of(("../a.rexs", GOOD)), "leads out of it"),
-    "archive to a root": (archive_of(("a.rexs", GOOD), ("/etc/b", b"")), "leads out of it"),
-    "archive to a drive": (archive_of(("C:\\a.rexs", GOOD)), "leads out of it"),
-    "archive in archive": (zipped(a__rexs=zipped(a__rexs=GOOD)), "not sound XML"),
+    "archive that leads out": (archive_of(("../a.rexs", GOOD)), "outside of it"),
+    "archive to a root": (archive_of(("a.rexs", GOOD), ("/etc/b", b"")), "outside of it"),
+    "archive to a drive": (archive_of(("C:\\a.rexs", GOOD)), "outside of it"),
+    "archive in archive": (zipped(a__rexs=zipped(a__rexs=GOOD)), "not valid XML"),
 }  # fmt: skip
 
 
@@ -270,7 +270,7 @@ def test_too_much_beside_the_model_is_not_copied(tmp_path, solved, monkeypatch):
     file = tmp_path / "gears.rexsz"
     file.write_bytes(archive_of(("gears.rexs", GOOD), ("big", b"x" * 101)))
     assert ep.read_rexs(file).kind == "gear_pair"
-    with pytest.raises(ep.InputError, match="too much beside"):
+    with pytest.raises(ep.InputError, match="too many files beside"):
         ep.write_rexs(tmp_path / "out.rexsz", solved, file)
 
 

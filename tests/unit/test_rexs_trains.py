@@ -153,7 +153,7 @@ def test_what_is_lacking_is_needed(read):
         found.case()
     told = " ".join(problem.remedy for problem in excinfo.value.problems)
     assert "The file has no external_load with torque_around_u_axis" in told
-    assert "Set operation.output. Shafts of one set only are motor, wheels." in told
+    assert "Set operation.output. The shafts of a single set are motor, wheels." in told
 
 
 def test_gears_without_shafts_need_shafts(read):
@@ -206,7 +206,7 @@ def test_several_stated_torques(read):
     found = read(parts)
     assert found.tables["operation"]["input"] == "motor"
     assert found.tables["operation"]["output"] == "wheels"
-    assert any("is taken as the input" in note for note in found.notes)
+    assert any("is used as the input" in note for note in found.notes)
     parts.add(62, "external_load", "pump", torque_around_u_axis=(-3.0, "N m"))
     parts.relate("assembly", assembly=21, part=62)
     parts.set(DRIVEN, torque_around_u_axis=None)

@@ -110,7 +110,7 @@ def test_members_of_shafts():
         (["wide", "narrow"], "turn with the body planet"),
         (["fixed_ring", "output_ring"], "both are ring gears"),
         (["sun", "fixed_ring"], "both turn about the axis"),
-        (["wide", "fixed_ring"], "listed before"),
+        (["wide", "fixed_ring"], "listed already"),
     ],
 )
 def test_gears_that_cannot_mesh(mesh, words):
@@ -185,7 +185,7 @@ def test_an_output_that_the_input_does_not_turn():
 def test_states_are_named_when_one_is_missing_or_unknown():
     tables = eight_speed()
     tables["operation"]["state"] = "11"
-    assert "is no state" in told(tables)["operation.state"]
+    assert "is not a state" in told(tables)["operation.state"]
     del tables["operation"]["state"]
     assert "must be one of 1, 2, 3" in told(tables)["operation.state"]
 
@@ -216,7 +216,7 @@ def test_positions_and_bearings_that_forces_need():
 def test_names_of_parts_differ():
     tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
     tables["seals"]["motor_front"] = tables["seals"]["motor_seal"]
-    assert "has the name of another part" in told(tables)["seals.motor_front"]
+    assert "has the same name as another part" in told(tables)["seals.motor_front"]
 
 
 def test_computed_losses_need_an_oil_and_its_temperature():
@@ -243,8 +243,8 @@ def with_clutch_to_a_take_off(**operation):
 @pytest.mark.parametrize(
     ("key", "shaft", "words"),
     [
-        ("torques", "pto", "nothing is joined to it"),
-        ("speeds", "pto", "nothing is joined to it"),
+        ("torques", "pto", "it is not connected"),
+        ("speeds", "pto", "it is not connected"),
         ("torques", "held", "is held"),
         ("torques", "housing", "is held"),
         ("torques", "out", "is the output"),

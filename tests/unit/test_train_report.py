@@ -122,7 +122,7 @@ def test_the_states_of_a_gearbox_are_a_table_of_ratios_and_steps():
     assert rows["1"].split()[:2] == ["1", "4.6957"]
     assert rows["2"].split()[:3] == ["2", "3.1304", "1.5"]
     assert rows["R"].split()[1:3] == ["-3.2968", "suns,"]  # no step to another sense of rotation
-    assert "housing, stands still" in printed(state_tables(small_axle()))
+    assert "housing, at rest" in printed(state_tables(small_axle()))
 
 
 def test_friction_of_all_sets_is_compared():

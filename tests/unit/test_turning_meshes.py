@@ -59,7 +59,7 @@ E_AXLE = {
 
 
 def floats(result):
-    return [note for note in result.notes if "float in their backlash" in note]
+    return [note for note in result.notes if "float within their backlash" in note]
 
 
 @pytest.mark.parametrize("torque", ["0.05 N*m", "0.2 N*m"])

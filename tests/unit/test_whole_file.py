@@ -112,7 +112,7 @@ def test_impossible_names_are_told_plainly(tmp_path, name, call):
 @pytest.mark.parametrize("name", ["x" * 300, "a\0b", "file/below"])
 def test_impossible_folders_are_told_plainly(tmp_path, name):
     (tmp_path / "file").write_text("")
-    with pytest.raises(ep.InputError, match="is no place for a folder"):
+    with pytest.raises(ep.InputError, match="cannot hold a folder"):
         make_folder(tmp_path / name)
 
 

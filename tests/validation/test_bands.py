@@ -59,4 +59,4 @@ def test_bands_hold_errors_that_all_tests_share(figures):
 def test_ways_to_validate_do_not_go_together():
     for arguments in (["--bands", "--temperatures"], ["--bands", "-o", "page.html"]):
         run = CliRunner().invoke(cli, ["validate", *arguments])
-        assert "does not go with" in str(run.exception)
+        assert "conflicts with" in str(run.exception)

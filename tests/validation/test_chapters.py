@@ -204,7 +204,7 @@ def test_command_writes_figures_data_and_a_page(tmp_path):
 def test_an_unknown_figure_is_refused(tmp_path):
     done = CliRunner().invoke(cli, ["reproduce", "5", "--figure", "3.4", "-o", str(tmp_path)])
     assert isinstance(done.exception, InputError)
-    assert "is not computed: 5.1, 5.2" in str(done.exception)
+    assert "is not available; the figures are 5.1, 5.2" in str(done.exception)
 
 
 @pytest.mark.slow

@@ -94,9 +94,9 @@ def test_the_last_line_counts_what_the_rows_are(rows):
     agreeing = [row for row in counted if row.verdict == "agrees"]
     printed = [row for row in agreeing if row.settled == "print"]
     assert text.startswith(
-        f"{len(agreeing)} of {len(counted)} figures agree: {len(printed)} to the digits"
+        f"{len(agreeing)} of {len(counted)} figures agree: {len(printed)} to the printed digits"
     )
-    assert f"{len(agreeing) - len(printed)} within a tolerance that was settled" in text
+    assert f"{len(agreeing) - len(printed)} within a tolerance that was chosen" in text
     assert f"Differing: {len(KNOWN_DIFFERENCES)}." in text
     assert "7 that fixed an unknown input" in text
 
@@ -115,7 +115,7 @@ def test_open_figures_are_counted_apart(rows):
     worse = replace(figure, computed=figure.computed | {"talbot-2012": 120.5})
     told = summary(rows, (figure, worse))
     assert told.startswith(summary(rows))
-    assert "Of 2 open figures of pocketing hold 0 with incompressible" in told
+    assert "Of 2 open pocketing figures, the following agree 0 with incompressible" in told
     assert "1 with talbot-2012." in told
 
 
@@ -215,6 +215,6 @@ def test_page_and_temperatures_exclude_each_other(tmp_path):
     from epicyclic.cli.main import cli
 
     done = CliRunner().invoke(cli, ["validate", "--temperatures", "-o", str(tmp_path / "v.html")])
-    assert "does not go with --temperatures" in str(done.exception)
+    assert "conflicts with --temperatures" in str(done.exception)
     done = CliRunner().invoke(cli, ["validate", "-o", str(tmp_path / "v.txt")])
     assert "must end in .html or .pdf" in str(done.exception)

@@ -86,7 +86,9 @@ def test_the_recommended_model_and_the_largest_warning_are_told():
     own = model_remarks(case, result)
     assert any("mixed-ehl suits: it was made for this oil" in text for text in own)
     other = case.updated({"models.friction": "niemann-winter"})
-    assert any("would suit better" in text for text in model_remarks(other, ep.solve(other)))
+    assert any(
+        "would suit this case better" in text for text in model_remarks(other, ep.solve(other))
+    )
     watts, group = max(result.flags_with_loss, key=lambda pair: pair[0])
     assert watts > 0.05 * result.total
     assert f"{group[0].quantity}" in own[0]
@@ -101,8 +103,8 @@ def test_run_tells_it_in_four_sentences_and_as_json(band):
     assert 3 <= len(texts) <= 4
     printed = CliRunner().invoke(cli, ["run", "talbot-2012-pair"])
     assert printed.exit_code == 0, printed.output
-    assert "What limits the trust in it" in printed.output
-    assert "Measured, this would narrow the band" in " ".join(printed.output.split())
+    assert "Limits of confidence" in printed.output
+    assert "A measurement of these would narrow the band" in " ".join(printed.output.split())
     asked = CliRunner().invoke(cli, ["run", "talbot-2012-pair", "--json", "-"])
     found = json.loads(asked.output)
     pair = ep.load_case("talbot-2012-pair")

@@ -196,7 +196,7 @@ def test_losses_that_grow_beyond_bounds_next_to_self_locking_are_told_in_plain_w
             "operation.torque": "-10 N*m",
         }
     )
-    with pytest.raises(ep.ConvergenceError, match=r"self-locking.*smaller losses.*the other way"):
+    with pytest.raises(ep.ConvergenceError, match=r"self-locking.*smaller losses.*reversed power"):
         ep.solve(case)
     assert ep.solve(case.updated({"operation.torque": "10 N*m"})).efficiency > 0
 

@@ -511,5 +511,7 @@ def test_a_flow_that_does_not_repeat_takes_bounded_work(pair, monkeypatch, most,
 def test_a_flow_that_takes_more_than_the_bound_is_told(pair, monkeypatch):
     monkeypatch.setattr(fluid, "ITERATIONS_MOST", 9)  # three periods at most
     pocket_flow.cache_clear()
-    with pytest.raises(ep.ConvergenceError, match=r"too many iterations; take another models"):
+    with pytest.raises(
+        ep.ConvergenceError, match=r"too many iterations. Choose another models.pocketing"
+    ):
         solve(pair(0.0), rpm=14300.0, xi=0.9999, slices=8, steps=12)

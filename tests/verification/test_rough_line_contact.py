@@ -229,7 +229,7 @@ def test_status_tells_of_a_breakdown(monkeypatch):
     monkeypatch.setattr(Profile, "resampled", lambda self, spacing: broken)
     result = solve_rough(contact_of(20, 8, slip=0.2), profile, nodes=NODES)
     assert result.status is Status.FAILED
-    assert result.message == "a time step broke down"
+    assert result.message == "a time step failed"
 
 
 def test_status_of_a_smooth_failure_is_passed_on():

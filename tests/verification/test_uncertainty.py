@@ -195,7 +195,7 @@ def test_flows_through_pockets_stay_where_they_are_nearly_the_same(monkeypatch):
         },
     })  # fmt: skip
     result = ep.solve(fast)
-    assert any("hold voids" in note for note in result.warnings)
+    assert any("contain voids" in note for note in result.warnings)
     solved = []
     flow = FlowFamily.flow
     monkeypatch.setattr(FlowFamily, "flow", lambda *at: (solved.append(at), flow(*at))[1])
@@ -221,7 +221,7 @@ def test_a_report_shows_the_band_of_a_stored_result_and_of_samples(case, study, 
     (data,) = kept.group("uncertainty").values()
     total = data.sel(result="total")
     assert data.identical(quick_dataset(case, ep.solve(case)))
-    assert "How well this is known" in page
+    assert "Uncertainty of this result" in page
     assert f">{float(total['low']):.1f}<" in page.replace("</data>", "<")
     assert {"drivers", "band"} <= set(available(kept))
     write_dataset(study, tmp_path / "samples.nc")

@@ -263,7 +263,7 @@ def test_curves_of_too_few_samples_explain_nothing():
 def test_a_key_without_a_distribution_at_some_points_is_told(case):
     shares = {"surroundings.oil_air_ratio": [0.0, 0.3]}
     data = ep.loss_map(case, ["900 rpm"], ["60 N*m"], vary=shares, jobs=1)
-    with pytest.raises(InputError, match=r"oil_air_ratio.*at some operating points only"):
+    with pytest.raises(InputError, match=r"oil_air_ratio.*only at some operating points"):
         ep.uncertainty(data, samples=16)
     known = case.updated({"uncertainty": {"surroundings.oil_air_ratio": {"exact": True}}})
     data = ep.loss_map(known, ["900 rpm"], ["60 N*m"], vary=shares, jobs=1)
@@ -273,11 +273,11 @@ def test_a_key_without_a_distribution_at_some_points_is_told(case):
 
 def test_what_cannot_be_sampled_is_told(case, plain_map):
     for source, options, message in (
-        (case, {"cycle": CYCLE, "temperature": ["40 degC", "50 degC"]}, "must be one"),
+        (case, {"cycle": CYCLE, "temperature": ["40 degC", "50 degC"]}, "must be a single value"),
         (case, {"cycle": CYCLE, "points": 1}, "must be 2 or more"),
         (plain_map, {"samples": 20}, "power of 2"),
         (plain_map.assign_attrs(case="{}"), {}, "none of this version"),
-        (xr.Dataset(), {}, "no loss map"),
+        (xr.Dataset(), {}, "not a loss map"),
     ):
         with pytest.raises(InputError, match=message):
             ep.uncertainty(source, **options)
@@ -312,9 +312,9 @@ def test_the_command_on_a_map(plain_map, over_map, tmp_path):
     ("arguments", "message"),
     [
         (["talbot-2012", "--speed", "900 rpm"], "--speed: needs the other"),
-        (["talbot-2012", "--points", "9"], "--points: goes with a cycle"),
-        (["talbot-2012", "--temperature", "50 degC"], "--temperature: goes with"),
-        (["map.nc", "--set", "a=1", "--speed", "900 rpm"], "--speed: goes with a case alone"),
+        (["talbot-2012", "--points", "9"], "--points: requires a cycle"),
+        (["talbot-2012", "--temperature", "50 degC"], "--temperature: requires"),
+        (["map.nc", "--set", "a=1", "--speed", "900 rpm"], "--speed: applies to a case alone"),
         (["talbot-2012", "none.csv"], "is not a file"),
     ],
 )

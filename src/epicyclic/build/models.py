@@ -181,7 +181,7 @@ class SetCase:
             )
             return friction_model(name, settings)
         if name not in offered("friction_models"):
-            allowed = "is part of a plug-in that is not installed."
+            allowed = "belongs to a plug-in that is not installed."
             problem = Problem("models.friction", name, allowed, "Choose another model.")
             raise InputError([problem])
         model: FrictionModel = load("friction_models", name)(self)

@@ -95,7 +95,7 @@ def case_notes(
         *(
             f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
             f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed what the "
-            "teeth bend. Contact that begins or ends beyond the path of contact is not modelled."
+            "teeth deflection of the teeth. Contact that begins or ends beyond the path of contact is not modelled."
             for name, mesh in found.figures.items()
             if isinstance(mesh, MeshFigures) and mesh.contact_share < LEAST_CONTACT
         ),
@@ -109,8 +109,8 @@ def case_notes(
         *_arrangement_notes(case),
         *(() if sharing is None else _share_notes(sharing, found.shares)),
         *(
-            f"{case.gearing.key(name)}.rim_thickness is not given: the drag of the turning ring is "
-            f"that of a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
+            f"{case.gearing.key(name)}.rim_thickness is not given, so the drag of the turning ring "
+            f"is computed for a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
             for name, table, _ in case.gearing.rings()
             if name in turning and rim_thickness(table) is None
         ),
@@ -144,8 +144,9 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
         )
     if case.models.temperatures != "inlet" and case.friction.takes_oil_temperature:
         notes.append(
-            f"models.friction: {models['friction']} was fitted to tests by the temperature of "
-            "their oil: it takes that of the oil around the gears, not that of the flanks."
+            f"models.friction: {models['friction']} was fitted to tests by their oil "
+            "temperature, so it uses the temperature of the oil around the gears and not of "
+            "the flanks."
         )
     if models["friction"] in CONTAINS_ROLLING or (
         "schlenk" in models["friction"] and "lubricant_factor" not in oil.model_fields_set
@@ -166,8 +167,8 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
         return
     if "oil_air_ratio" in case.surroundings.model_fields_set:
         yield (
-            f"{SHARE_KEY} has no effect: the share of oil follows from [lubrication], whose "
-            "oil_share states a known one."
+            f"{SHARE_KEY} has no effect: the share of oil follows from [lubrication]; give a "
+            "known share as oil_share there."
         )
     if table.method == "jet" and table.oil_flow is None:
         yield (
@@ -187,16 +188,16 @@ def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
         name = key.replace("_", " ")
         if isinstance(found, MeshFigures) and found.hertz_pressure_max > GEAR_PRESSURE:
             yield (
-                f"The teeth of the {name} are pressed with "
-                f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; hardened steel bears about "
-                f"{GIGAPASCAL.text(GEAR_PRESSURE, 2)} for a few times."
+                f"The contact pressure on the teeth of the {name} is "
+                f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; hardened steel withstands "
+                f"about {GIGAPASCAL.text(GEAR_PRESSURE, 2)} for a few load cycles."
             )
         if isinstance(found, BearingFigures):
             if found.hertz_pressure_max > BEARING_PRESSURE:
                 yield (
-                    f"The rollers of the {name} are pressed with "
-                    f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; at the static rating of a "
-                    f"roller bearing it is {GIGAPASCAL.text(BEARING_PRESSURE, 2)}."
+                    f"The contact pressure on the rollers of the {name} is "
+                    f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}; at the static load rating "
+                    f"of a roller bearing it is {GIGAPASCAL.text(BEARING_PRESSURE, 2)}."
                 )
             idle = 0.0  # part of the most loaded roller that carries nothing
             if found.loads is not None and found.roller_load_max:
@@ -205,9 +206,9 @@ def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
                 idle = float(np.mean(found.loads.intensity[row, most] == 0))
             if idle > IDLE_PART:
                 yield (
-                    f"{name.capitalize()}: {percent(idle, 0)} of the most loaded roller carries "
-                    f"nothing of its {NEWTON.text(found.roller_load_max, 3)}, because the planet "
-                    f"is tilted by {format_number(found.moment, 3)} N m."
+                    f"{name.capitalize()}: {percent(idle, 0)} of the length of the most loaded "
+                    f"roller carries none of its {NEWTON.text(found.roller_load_max, 3)}, "
+                    f"because the planet is tilted by {format_number(found.moment, 3)} N m."
                 )
 
 
@@ -229,15 +230,15 @@ def load_notes(case: SetCase) -> Iterator[str]:
         height = ring.root_radius - ring.tip_radius
         if thickness < height:
             yield (
-                f"{key}.rim_thickness is less than the height of the teeth, "
-                f"{1e3 * height:.4g} mm: the deflection of so thin a rim is outside what the "
-                "compliance is made for."
+                f"{key}.rim_thickness is less than the tooth height, {1e3 * height:.4g} mm: the "
+                "deflection of so thin a rim is outside what the compliance model covers."
             )
         even = are_evenly_spaced(gearing.planet_angles or (0.0,))
         if not even or (case.sharing is not None and case.sharing.method != "equal"):
             yield (
-                f"{key}.rim_thickness: the rim bends as under evenly spaced and equally loaded "
-                f"planets, but these are {'not equally loaded' if even else 'not evenly spaced'}."
+                f"{key}.rim_thickness: the rim deflection assumes evenly spaced and equally "
+                "loaded planets, but these are "
+                f"{'not equally loaded' if even else 'not evenly spaced'}."
             )
 
 
@@ -257,7 +258,8 @@ def general_notes(
     ]
     if efficiency == 0.0 and input_power > 0:
         notes.append(
-            "No power leaves: the losses take all that enters, and the output must be driven."
+            "No power reaches the output: the losses consume all input power, so the output "
+            "must be driven."
         )
     return tuple(notes)
 
@@ -276,7 +278,7 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
         )
         notes.append(
             f"No load reaches {'planet' if len(idle) == 1 else 'planets'} {', '.join(idle)} of "
-            f"{len(shares)}: the others bend less than their positions differ{beyond}."
+            f"{len(shares)}: the position errors exceed the deflection of the others{beyond}."
         )
     notes += [
         f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}."
@@ -299,9 +301,10 @@ def _arrangement_notes(case: SetCase) -> Iterator[str]:
         stepped = ", ".join(body for body in gearing.planets if bodies.count(body) > 1)
         fitting = [str(n) for n in range(1, planets + 1) if found.number % n == 0]
         yield (
-            f"{planets} equally spaced planets cannot be alike: on each {stepped} the gears must "
-            f"be turned against each other in its own way, because {found.number}/{planets} is no "
-            f"integer. Alike ones fit equally spaced if there are {' or '.join(fitting)}."
+            f"{planets} equally spaced planets cannot be identical: on each {stepped} the gears "
+            f"need a different angle to each other, because {found.number}/{planets} is not an "
+            "integer. Identical planets can be equally spaced if there are "
+            f"{' or '.join(fitting)}."
         )
     elif not are_evenly_spaced(found.angles):
         number = str(found.number)
@@ -309,7 +312,7 @@ def _arrangement_notes(case: SetCase) -> Iterator[str]:
             number = f"({gearing.tables['sun'].teeth} + {gearing.tables['ring'].teeth})"
         placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in found.angles)
         yield (
-            f"{planets} planets cannot be equally spaced, because {number}/{planets} is no "
+            f"{planets} planets cannot be equally spaced, because {number}/{planets} is not an "
             f"integer; they stand at {placed} deg."
         )
 
@@ -446,7 +449,7 @@ def _methods(built: Built) -> Iterator[tuple[str, tuple[str, str]]]:
 def _standing(built: Built, supplies: Mapping[str, OilSupply]) -> Iterator[tuple[str, str]]:
     for key, supply in supplies.items():
         idle = supply.method == "dip" and not supply.churning
-        remark = "; nothing that turns reaches the oil" if idle else ""
+        remark = "; no turning part reaches the oil" if idle else ""
         yield joined_key(key, "lubrication"), supply.text + remark
     for key, own in built.set_cases.items():
         for role, phrase in standing_of(own).items():
@@ -480,8 +483,9 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     solution = settled.solution
     if solution.jammed and isinstance(case, TrainCase):
         yield (
-            "Self-locking: whatever the torque on the output, friction in the meshes does not let "
-            "the train turn under this torque on the input; it stands still, and nothing is lost."
+            "Self-locking: under this torque on the input, friction in the meshes keeps the "
+            "train at rest, whatever the torque on the output. It stands still and loses no "
+            "power."
         )
     elif solution.self_locking and isinstance(case, TrainCase):
         output = case.shape.shaft_of(case.operation.output) or ""
@@ -492,20 +496,22 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
         )
     if not solution.unique and isinstance(case, TrainCase):
         yield (
-            "Some members share their load in more than one possible way (brakes, clutches or "
-            "meshes in parallel): of all torques in balance, the smallest are shown."
+            "The load of some members is statically indeterminate (brakes, clutches or meshes "
+            "in parallel); of all torques in balance, the smallest are shown."
         )
     for key in sorted(solution.floating):
         yield (
-            f"{in_words(key.removeprefix('.'))}: next to no torque passes, and the teeth float in "
-            "their backlash: with the losses on either flank they would be pressed to the other "
-            "one. The losses are those on one flank; on the other the flow through the pockets "
-            "loses another amount, so that the loss jumps over a small range of torque."
+            f"{in_words(key.removeprefix('.'))}: almost no torque is transmitted, and the teeth "
+            "float within their backlash: the losses on either flank would press them against "
+            "the other one. The losses shown are those on one flank. On the other flank the "
+            "loss of the flow through the pockets differs, so the loss jumps within a small "
+            "range of torque."
         )
     if settled.change > AGREEMENT:
         yield (
-            f"Temperatures and losses agree to {settled.change:.1g} K only: a loss scatters from "
-            "one evaluation to the next, as that of a flow through pockets that does not repeat."
+            f"Temperatures and losses agree to {settled.change:.1g} K only, because a loss scatters from "
+            "one evaluation to the next, such as that of a flow through pockets that is not "
+            "periodic."
         )
 
 

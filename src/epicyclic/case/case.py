@@ -327,8 +327,8 @@ def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
             yield Found(
                 f"{name}.teeth",
                 str(-teeth),
-                "a ring, because the number is negative; its profile shift is that of ISO 21771 "
-                "and DIN 3960, positive where it thickens the teeth.",
+                "a ring gear, because the number is negative; its profile shift is as in ISO "
+                "21771 and DIN 3960, positive if it makes the teeth thicker.",
             )
 
 
@@ -651,7 +651,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         ]
     if all(key in raw for key in _GIVEN):
         allowed = "conflicts with mesh_efficiency."
-        remedy = "Give one of them: of the set from sun to ring, or of each of its meshes."
+        remedy = "Give one of them: that of the set from sun to ring, or that of each mesh."
         problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
     return _ReadSet(None if problems else read.case, problems, told)
 
@@ -753,8 +753,8 @@ def _element_problems(train: TrainCase) -> list[Problem]:
             allowed = "is not a valid name for a part: use letters, and no dot."
             problems.append(Problem(key, "", allowed, "Choose another name."))
         if name in taken:
-            allowed = f"has the name of another part, {taken[name]}.{name}."
-            problems.append(Problem(key, "", allowed, "Choose another name: losses carry it."))
+            allowed = f"has the same name as another part, {taken[name]}.{name}."
+            problems.append(Problem(key, "", allowed, "Choose another name."))
         taken[name] = kind
         found = list(table.problems())
         if not found and train.lubricant is not None:
@@ -925,7 +925,7 @@ def _no_such_case(name: object) -> Problem:
     groups = library.case_variants().get(base, [])
     words = "; ".join(" or ".join(group["words"]) for group in groups)
     if words:
-        remedy = f"Variants are named {base}- and at most one word of each group: {words}."
+        remedy = f"The name of a variant is {base}- with at most one word of each group: {words}."
     else:
         remedy = did_you_mean(name, known) or "See 'epicyclic cases'."
     return Problem("CASE", written(name), allowed, remedy)

@@ -123,7 +123,7 @@ def _given_planetary_problems(parts: Parts) -> Iterator[Problem]:
     if "gears" in parts:
         return
     if ring <= sun:
-        allowed = f"must exceed the {sun} teeth of the sun, around which it stands."
+        allowed = f"must exceed the {sun} teeth of the sun, which it surrounds."
         yield Problem("ring.teeth", str(ring), allowed, "Check both tooth numbers.")
     elif planet is not None and planet >= ring:
         allowed = f"must be less than the {ring} teeth of the ring, in which the planet turns."
@@ -198,7 +198,7 @@ def _name_problems(parts: Parts, bodies: Mapping[str, str]) -> list[Problem]:
         key, shown = f"meshes[{number}]", f'["{one}", "{two}"]'
         for gear in dict.fromkeys((one, two)):
             if gear not in bodies:
-                remedy = did_you_mean(gear, bodies) or f"Known are: {', '.join(bodies)}."
+                remedy = did_you_mean(gear, bodies) or f"The gears are {', '.join(bodies)}."
                 problems.append(Problem(key, written(gear), "is not a gear of this set.", remedy))
         if one == two:
             problems.append(
@@ -208,23 +208,23 @@ def _name_problems(parts: Parts, bodies: Mapping[str, str]) -> list[Problem]:
             allowed = f"cannot mesh: both gears turn with the body {bodies.get(one, one)}."
             problems.append(Problem(key, shown, allowed, "Give one of them another body."))
         if frozenset((one, two)) in seen:
-            problems.append(Problem(key, shown, "is listed before.", "List each mesh once."))
+            problems.append(Problem(key, shown, "is listed already.", "List each mesh once."))
         seen.add(frozenset((one, two)))
     used = {gear for pair in listed for gear in pair}
     problems += [
-        Problem(f"gears.{gear}", "", "is in no mesh.", "Add its mesh to meshes, or remove it.")
+        Problem(f"gears.{gear}", "", "has no mesh.", "Add its mesh to meshes, or remove it.")
         for gear in bodies
         if gear not in used
     ]
     known = {f"{one}-{two}" for pair in listed for one, two in (pair, pair[::-1])}
     for one, two in listed:
         if {f"{one}-{two}", f"{two}-{one}"} <= {*parts["mesh"]}:
-            allowed = f"is the mesh {one}-{two} again."
+            allowed = f"repeats the mesh {one}-{two}."
             problems.append(Problem(f"mesh.{two}-{one}", "", allowed, "Keep one of the two."))
     for name in parts["mesh"]:
         if name not in known:
-            remedy = f"Known are: {', '.join('-'.join(pair) for pair in listed)}."
-            problems.append(Problem(f"mesh.{name}", "", "is no mesh of this set.", remedy))
+            remedy = f"The meshes are {', '.join('-'.join(pair) for pair in listed)}."
+            problems.append(Problem(f"mesh.{name}", "", "is not a mesh of this set.", remedy))
     return problems
 
 
@@ -245,7 +245,7 @@ def _mesh_problem(
         if not gears[ring].internal:
             continue
         if bodies[ring] in planets:
-            allowed = f"cannot mesh: the ring gear {ring} would be a planet."
+            allowed = f"cannot mesh, because the ring gear {ring} would be a planet."
             return Problem(key, shown, allowed, f"Leave out gears.{ring}.planet.")
         if gears[ring].teeth <= gears[mate].teeth:
             allowed = (

@@ -35,7 +35,7 @@ class SharedGears(Table):
     normal_pressure_angle: PressureAngle | None = option("alpha_n at the reference circle.")
     transverse_pressure_angle: PressureAngle | None = option("alpha_t at the reference circle.")
     helix_angle: HelixAngle | None = option("beta at the reference circle, magnitude.")
-    center_distance: Length | None = option("Of every mesh.")
+    center_distance: Length | None = option("Centre distance of every mesh.")
     addendum_coefficient: Number = option(
         "h_aP/m_n, for gears without tip_diameter. ISO 53, profile A.", 1.0, gt=0, le=3
     )
@@ -43,7 +43,7 @@ class SharedGears(Table):
         "h_fP/m_n, for gears without root_diameter. ISO 53, profile A.", 1.25, gt=0, le=4
     )
     basic_rack: RackName | None = option(
-        "A profile of ISO 53 instead of both coefficients, also for the tool's tip."
+        "A profile of ISO 53 instead of both coefficients and of the tool tip radius."
     )
 
 
@@ -83,30 +83,30 @@ class TopographyTable(Table):
 class MicroGeometryTable(Table):
     """Modifications and deviations of the working flanks, positive where material is missing."""
 
-    tip_relief: SmallLength = option("At the tip.", "0 um")
+    tip_relief: SmallLength = option("Relief at the tip.", "0 um")
     tip_relief_roll_length: Length | None = option(
         "Roll length from the tip to the start of the relief."
     )
     tip_relief_diameter: Length | None = option(
-        "Instead of it: the diameter where the relief starts."
+        "Diameter where the relief starts, instead of the roll length."
     )
     tip_relief_shape: ReliefShape = "linear"
-    root_relief: SmallLength = option("At the start of the active profile.", "0 um")
+    root_relief: SmallLength = option("Relief at the start of the active profile.", "0 um")
     root_relief_roll_length: Length | None = option(
         "Roll length from the start of the active profile."
     )
     root_relief_diameter: Length | None = option(
-        "Instead of it: the diameter where the relief starts."
+        "Diameter where the relief starts, instead of the roll length."
     )
     root_relief_shape: ReliefShape = "linear"
-    profile_crown: Deviation = option("Parabola over the active profile.", "0 um")
-    profile_slope: Deviation = option("Positive: material is missing at the tip.", "0 um")
-    lead_crown: Deviation = option("Parabola over the face width of the gear.", "0 um")
+    profile_crown: Deviation = option("Height of the parabola over the active profile.", "0 um")
+    profile_slope: Deviation = option("Positive: material is removed at the tip.", "0 um")
+    lead_crown: Deviation = option("Height of the parabola over the face width.", "0 um")
     lead_slope: Deviation = option(
-        "Positive: material is missing at the end where contact ends.", "0 um"
+        "Positive: material is removed at the end where contact ends.", "0 um"
     )
-    end_relief: SmallLength = option("At both ends.", "0 um")
-    end_relief_length: Length | None = option("From each end.")
+    end_relief: SmallLength = option("Relief at both ends of the face.", "0 um")
+    end_relief_length: Length | None = option("Length of the relief from each end.")
     end_relief_shape: ReliefShape = "linear"
     topography: TopographyTable | None = option("Deviations over the flank, added to the others.")
 
@@ -115,7 +115,7 @@ LEAST_TEETH, MOST_TEETH = 5, 2000
 RING_TEETH: Any = Field(
     ge=LEAST_TEETH,
     le=MOST_TEETH,
-    description="Number of teeth; a ring may have it negative, as in ISO 21771 and DIN 3960.",
+    description="Number of teeth; it may be negative for a ring, as in ISO 21771 and DIN 3960.",
     json_schema_extra={
         "minimum": -MOST_TEETH,
         "not": {"exclusiveMinimum": -LEAST_TEETH, "exclusiveMaximum": LEAST_TEETH},
@@ -151,21 +151,19 @@ class GearTable(Table):
     span_measurement: Length | None = option("W_k, base tangent length over teeth_in_span teeth.")
     teeth_in_span: int | None = option("k.", ge=1, le=2000)
     dimension_over_pins: Length | None = option("M_d over two balls, or between them in a ring.")
-    measuring_pin_diameter: Length | None = option(
-        "D_M of the balls; of a spur gear pins are the same."
-    )
+    measuring_pin_diameter: Length | None = option("D_M of the balls, or of pins for a spur gear.")
     tooth_thickness_allowance: (
         Annotated[tuple[Deviation, ...], Field(min_length=2, max_length=2)] | None
     ) = option(
-        "Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth are thinner "
-        "by their mean."
+        "Upper and lower allowance, A_sne and A_sni of DIN 3967, negative; the teeth are made "
+        "thinner by their mean."
     )
     tooth_thickness_fit: ThicknessFit | None = option(
-        'Series of both by DIN 3967 instead, "27cd": tolerance 21 to 30, allowance a to h.'
+        'Both from a series of DIN 3967, as in "27cd": tolerance 21 to 30, allowance a to h.'
     )
     profile_shift_coefficient: Number | None = option(
-        "x; positive thickens the teeth, on a ring too. Default: what the mate and the centre "
-        "distance leave.",
+        "x; positive thickens the teeth, on a ring too. Default: the value that fits the mate "
+        "and the centre distance.",
         ge=-3,
         le=5,
     )
@@ -174,11 +172,11 @@ class GearTable(Table):
     )
     material: NamedMaterial = option("A name or a table.", "steel")
     accuracy_class: int | None = option(
-        "Flank tolerance class of ISO 1328-1:2013: its slopes are uncertain by it.", ge=1, le=11
+        "Flank tolerance class of ISO 1328-1:2013, for the uncertainty of the slopes.", ge=1, le=11
     )
     tool_tip_radius: ShortLength | None = option(
-        "Rounding of the cutting tool's tip, which leaves the root fillet. Default: 0.38 m_n "
-        "(rack) or 0.2 m_n (shaper), or less where the mate needs the involute."
+        "Tip radius of the cutting tool, which forms the root fillet. Default: 0.38 m_n (rack) "
+        "or 0.2 m_n (shaper), or less where the mate needs a longer involute."
     )
     micro_geometry: MicroGeometryTable | None = option(
         "Modifications and deviations of the flanks."
@@ -222,8 +220,8 @@ def internal_if_negative(table: Any) -> Any:
 _RimThickness = Annotated[
     Length | None,
     Field(
-        description="From root to outside. Default: 3 normal modules (estimate) for the drag, and "
-        "a rim that is held on its outside and does not bend."
+        description="Root circle to outside. Default: 3 normal modules (estimate) for the drag, "
+        "and a rim that is supported on its outside and does not bend."
     ),
 ]
 
@@ -245,7 +243,7 @@ class PairGear(GearTable):
 
 
 class Planet(GearTable):
-    """The planets, all alike."""
+    """The planets, which are identical."""
 
     STAND_INS = GearTable.STAND_INS | {
         "angles": None,
@@ -259,11 +257,11 @@ class Planet(GearTable):
         "equal spacing."
     )
     mass: Mass | None = option(
-        "Of one planet with its rollers: its centrifugal force loads the planet bearing. Default: "
-        "from the sizes of gear and rollers and the density of their materials."
+        "Mass of one planet with its rollers; its centrifugal force loads the planet bearing. "
+        "Default: from the dimensions of gear and rollers and the density of their materials."
     )
     micro_geometry_ring_side: MicroGeometryTable | None = option(
-        "Of the flanks that work against the ring. Default: micro_geometry holds on both sides."
+        "For the flanks that mesh with the ring. Default: micro_geometry, for both sides."
     )
 
 
@@ -298,6 +296,6 @@ class SetMesh(MeshTable):
     """A mesh whose gears or centre distance may be found from it."""
 
     normal_backlash: ShortLength | None = option(
-        "j_bn, for what is left out: a profile shift or the centre distance. Default: none, as "
-        "the profile shifts of ISO 21771."
+        "j_bn, used to find a profile shift or centre distance that is left out. Default: "
+        "none, as for the profile shifts of ISO 21771."
     )

@@ -126,7 +126,7 @@ def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Par
         return Problem(key, "", "is not a known key.", remedy)
     quantity = quantity_of(*field)
     if not is_continuous(field, quantity):
-        return Problem(key, "", "holds no continuous number.", "Fit a key that does.")
+        return Problem(key, "", "is not a continuous number.", "Fit a key that is.")
     if key in varied:
         return Problem(key, "", "is given by a column of the table.", "Fit another key.")
     value = value_of(case, key)
@@ -146,7 +146,7 @@ def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Par
 
 
 def no_start(key: str, what: str) -> Problem:
-    allowed = f"{what}; it must have one to vary about."
+    allowed = f"{what}; it needs one, about which it is varied."
     return Problem(key, "", allowed, f'Add --set "{key}=...".')
 
 

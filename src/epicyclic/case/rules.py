@@ -109,7 +109,7 @@ def cross_check(
 
 def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> Iterator[Problem]:
     if isinstance(operation, PlanetaryOperation):
-        allowed = f'must be another member than operation.input, "{operation.input}".'
+        allowed = f'must be a different member from operation.input, "{operation.input}".'
         for key in ("fixed", "second_input"):
             if getattr(operation, key) == operation.input:
                 yield Problem(f"operation.{key}", "", allowed, "Name one of the other two.")
@@ -122,7 +122,7 @@ def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> Iterat
     if bearing.rollers_per_row > room:
         allowed = f"only {math.floor(room)} rollers of {millimetres(bearing.roller_diameter)} fit "
         allowed += f"around the pin of {millimetres(bearing.pin_diameter)}."
-        yield Problem(f"{key}.rollers_per_row", "", allowed, "Take fewer or thinner rollers.")
+        yield Problem(f"{key}.rollers_per_row", "", allowed, "Use fewer or thinner rollers.")
 
 
 def check_bores(
@@ -139,7 +139,7 @@ def check_bores(
             if roots and bore >= 2 * min(roots):
                 allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
                 allowed += f"{millimetres(2 * min(roots))}."
-                remedy = "Take a thinner pin or thinner rollers."
+                remedy = "Use a thinner pin or thinner rollers."
                 yield Problem(f"{key}.pin_diameter", "", allowed, remedy)
 
 
@@ -162,10 +162,10 @@ def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
     """Problems of the tables that a listed set has beside its gears."""
     known = gearing.terms
     losses = [
-        Problem(f"losses.{name}", "", "is no loss of this set.", remedy)
+        Problem(f"losses.{name}", "", "is not a loss of this set.", remedy)
         for name in table.losses
         if name not in known
-        for remedy in [did_you_mean(name, known) or f"Known are: {', '.join(known)}."]
+        for remedy in [did_you_mean(name, known) or f"The losses are {', '.join(known)}."]
     ]
     planets = _planet_problems(table, gearing)
     return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
@@ -175,11 +175,11 @@ def _name_problems(gearing: Gearing) -> Iterator[Problem]:
     """Names that would give two losses or members the same name."""
     for name in (CARRIER, HOUSING) if gearing.planets else (HOUSING,):
         if name in gearing.bodies or name in gearing.bodies.values():
-            allowed = f"cannot be the name of a gear or body: every set has a {name}."
+            allowed = f"cannot be the name of a gear or body, because every set has a {name}."
             yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
     for name in gearing.bodies:
         if "." in name:
-            allowed = "is not a valid name for a gear: a dot stands between set and gear."
+            allowed = "is not a valid name for a gear, because a dot separates set and gear."
             yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
 
 
@@ -188,12 +188,12 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
     if gearing.planets and table.planets is None:
         names = ", ".join(gearing.planets)
         allowed = f"is missing, and the set has planets ({names})."
-        remedy = "Add planets = 3, or as many as there are."
+        remedy = "Add planets = 3, or the actual number."
         yield Problem("planets", "", allowed, remedy)
     if not gearing.planets:
         remedy = "Leave it out, or write planet = true at the gears on a carrier."
         if table.planets is not None:
-            allowed = "is given, but no gear stands on a carrier."
+            allowed = "is given, but no gear is on a carrier."
             yield Problem("planets", str(table.planets), allowed, remedy)
         for name in ("planet_bearing", "carrier"):
             if getattr(table, name) is not None:
@@ -201,19 +201,19 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
     for name in table.planet_bearings:
         if name not in gearing.planets:
             remedy = did_you_mean(name, gearing.planets)
-            remedy = remedy or f"Known are: {', '.join(gearing.planets) or 'none'}."
+            remedy = remedy or f"The planet bodies are {', '.join(gearing.planets) or 'none'}."
             key = f"planet_bearings.{name}"
-            yield Problem(key, "", "is no body of a planet of this set.", remedy)
+            yield Problem(key, "", "is not a planet body of this set.", remedy)
     placed = {gearing.planet_of(mesh) for mesh in gearing.meshes}
     for body in gearing.planets:
         if body not in placed:
             gear = gearing.gears_of(body)[0]
-            allowed = "meshes with planets only, so that nothing determines where its pin stands."
-            remedy = "Let it mesh with a central gear too."
+            allowed = "meshes with planets only, so its pin position is undetermined."
+            remedy = "Add a mesh with a central gear."
             yield Problem(f"gears.{gear}", "", allowed, remedy)
     in_pairs = any(gearing.planet_pair(mesh) for mesh in gearing.meshes)
     if table.models.planet_tilt == "coupled" and in_pairs:
-        allowed = "is not for planets that mesh with each other."
+        allowed = "does not apply to planets that mesh with each other."
         remedy = 'Write planet_tilt = "left-out".'
         yield Problem("models.planet_tilt", '"coupled"', allowed, remedy)
 
@@ -221,7 +221,7 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
 def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
     sharing, planets = table.load_sharing, table.planets or 1
     if sharing.method not in ("equal", "mesh-load-factor"):
-        allowed = "is for one sun, one ring and planets between them."
+        allowed = "applies only to sets with one sun, one ring and planets between them."
         remedy = 'Write method = "equal" or "mesh-load-factor".'
         yield Problem("load_sharing.method", f'"{sharing.method}"', allowed, remedy)
     if sharing.mesh_load_factor > planets:
@@ -232,8 +232,8 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     """The model of the bearing loss must be for bearings of this kind."""
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
-    allowed = "is for caged bearings: the rollers of a full-complement bearing rub on each other, "
-    allowed += "which it leaves out."
+    allowed = "applies to caged bearings; rollers of a full-complement bearing rub on each other, "
+    allowed += "and this friction is not included."
     return [Problem("models.bearing", '"mixed-ehl"', allowed, 'Write bearing = "palmgren".')]
 
 
@@ -265,14 +265,14 @@ def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> Iterator[Prob
 def _most_loaded(sharing: LoadSharing, key: str, planets: int) -> Problem:
     """One planet cannot have more than all the load; `key` says how many there are."""
     shown = f"{sharing.mesh_load_factor:g}"
-    allowed = f"must be at most {key}, {planets}: then one planet has all the load."
-    return Problem("load_sharing.mesh_load_factor", shown, allowed, "Take a smaller factor.")
+    allowed = f"must be at most {key}, {planets}: one planet then carries all load."
+    return Problem("load_sharing.mesh_load_factor", shown, allowed, "Use a smaller factor.")
 
 
 def _check_planet_tilt(models: PlanetaryModels, given: Collection[str]) -> Iterator[Problem]:
     key, remedy = "models.planet_tilt", 'Or write planet_tilt = "left-out".'
     if models.planet_tilt == "coupled" and "planet_bearing" not in given:
-        yield Problem(key, "", "needs [planet_bearing], in which the planet tilts.", remedy)
+        yield Problem(key, "", "needs [planet_bearing], because the planet tilts in it.", remedy)
     if models.planet_tilt == "coupled" and models.load_distribution != "compliance":
         yield Problem(key, "", 'needs load_distribution = "compliance".', remedy)
 
@@ -313,13 +313,13 @@ def check_oil_model(
     for key, quantity in asked.items():
         if model is None:
             remedy = "Give models.oil_model, a file of 'epicyclic oil characterise'."
-            allowed = "needs a file of fitted models: none is built in for this oil."
+            allowed = "needs a file of fitted models, because none is built in for this oil."
             yield Problem(f"models.{key}", f'"{getattr(models, key)}"', allowed, remedy)
             continue
         forms = model.fits[quantity].forms if quantity in model.fits else ()
         if models.fitted_form not in [fitted.form for fitted in forms]:
-            given = models.oil_model or f"that of {model.oil.name}"
-            allowed = f"has no {quantity.replace('_', ' ')} of the form {models.fitted_form}."
+            given = models.oil_model or f"the file for {model.oil.name}"
+            allowed = f"has no {quantity.replace('_', ' ')} in the form {models.fitted_form}."
             remedy = f"Choose another models.{key} or models.fitted_form."
             yield Problem("models.oil_model", given, allowed, remedy)
 
@@ -362,7 +362,7 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
     allowed = f"with {positions} mesh positions the influence coefficients of "
     allowed += 'models.load_distribution = "compliance" would not fit into memory.'
     fitting = max(2, math.isqrt(MOST_COEFFICIENTS // positions))
-    remedy = f"Take {fitting} or fewer; 30 are enough for 0.1 %."
+    remedy = f"Use {fitting} or fewer; 30 are enough for 0.1 %."
     return [Problem("numerics.contact_segments", "", allowed, remedy)]
 
 
@@ -391,7 +391,7 @@ _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = 
 def lubrication_problems(train: TrainCase) -> Iterator[Problem]:
     """What cannot be about the lubrication of the sets; a shared table is checked by itself."""
     if train.lubrication is not None and train.lubrication.immersion:
-        allowed = "is stated of each set, whose gears it names."
+        allowed = "must be given for each set, because it names gears of the set."
         remedy = "Write [sets.NAME.lubrication], or give oil_level."
         yield Problem("lubrication.immersion", "", allowed, remedy)
     for name, table in train.computed_sets:
@@ -401,7 +401,7 @@ def lubrication_problems(train: TrainCase) -> Iterator[Problem]:
         if train.lubrication is None:
             # the oil around everything that is in no set follows from the train's own table
             allowed = "needs [lubrication] of the train, which it then replaces for this set."
-            yield Problem(f"sets.{name}.lubrication", "", allowed, "Add it, for all other parts.")
+            yield Problem(f"sets.{name}.lubrication", "", allowed, "Add it for all other parts.")
         found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
         if train.shape.sets[name].listed:
             found += check_immersion(own, train.shape.sets[name].members)
@@ -446,36 +446,36 @@ def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Prob
     """Two bearings at two known places carry a shaft."""
     for name, table in own.items():
         if table.position is None:
-            allowed = f"is missing: the force on the bearing follows from its place along {shaft}."
+            allowed = f"is missing: the force on the bearing depends on its position along {shaft}."
             remedy = f'Add position = "... mm". {GIVE_FORCE}'
             yield Problem(f"bearings.{name}.position", "", allowed, remedy)
     names = ", ".join(own)
     if len(own) > 2:
-        allowed = f"are {len(own)} bearings on {shaft}; statics gives the forces of two."
+        allowed = f"has {len(own)} bearings on {shaft}; statics gives the forces of only two."
         yield Problem("bearings", names, allowed, "Give radial_force of all but two.")
     places = [table.position for table in own.values() if table.position is not None]
     if len(own) == 2 and len(places) == 2 and places[0] == places[1]:
         key = f"bearings.{next(iter(own))}.position"
-        allowed = f"is that of the other bearing of {shaft} too."
-        yield Problem(key, millimetres(places[0]), allowed, "Give both their own positions.")
+        allowed = f"is also that of the other bearing of {shaft}."
+        yield Problem(key, millimetres(places[0]), allowed, "Give them different positions.")
 
 
 def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:
     """The forces of gears, and where they act."""
     names = ", ".join(own)
     if len(own) == 1 and any(True for _ in _gears(train, shaft)):
-        allowed = f"is the only bearing of {shaft}, whose gears would tilt it."
+        allowed = f"is the only bearing of {shaft}, so the gear forces would tilt the shaft."
         yield Problem(f"bearings.{names}", "", allowed, f"Add a second bearing. {GIVE_FORCE}")
     for gear in _gears(train, shaft):
         if train.position_of(gear) is None:
-            allowed = f"is missing: the forces on the bearings {names} follow from it."
+            allowed = f"is missing, and the forces on the bearings {names} depend on it."
             remedy = f'Add "{gear}" = "... mm" to [positions]. {GIVE_FORCE}'
             yield Problem(f'positions."{gear}"', "", allowed, remedy)
     for name, gearing in train.shape.sets.items():
         if gearing.computed:
             continue
         if shaft in train.shape.bodies_of(name).values():
-            allowed = f"is missing: the forces of {name}, whose efficiency is given, are not known."
+            allowed = f"is missing: the efficiency of {name} is given, so its forces are unknown."
             remedy = f"Give it for {names}."
             yield Problem(f"bearings.{next(iter(own))}.radial_force", "", allowed, remedy)
 
@@ -515,16 +515,16 @@ def _temperature_problems(train: TrainCase) -> list[Problem]:
         Problem(
             f"sets.{name}.models.temperatures",
             written(table.models.temperatures),
-            f"is a choice for the whole train, which has {written(train.models.temperatures)}.",
-            "Leave it out here, and give models.temperatures of the train.",
+            f"applies to the whole train, which has {written(train.models.temperatures)}.",
+            "Leave it out here, and set models.temperatures of the train.",
         )
         for name, table in train.computed_sets
         if table.models.temperatures not in ("inlet", train.models.temperatures)
     ]
     if train.models.temperatures != "inlet" and not train.computed:
         shown = written(train.models.temperatures)
-        allowed = "needs losses that are computed; all sets have given efficiencies."
-        remedy = 'Take "inlet", or give sets their gears in place of efficiencies.'
+        allowed = "needs computed losses, but all sets have given efficiencies."
+        remedy = 'Use "inlet", or give gears instead of efficiencies for the sets.'
         found.append(Problem("models.temperatures", shown, allowed, remedy))
     return found
 
@@ -550,5 +550,5 @@ def _position_problems(train: TrainCase) -> Iterator[Problem]:
     members = [member for names in train.shape.shafts.values() for member in names]
     for gear in train.positions:
         if gear not in known and gear not in members:
-            remedy = did_you_mean(gear, known) or f"Known are: {', '.join(known)}."
+            remedy = did_you_mean(gear, known) or f"Choose one of {', '.join(known)}."
             yield Problem(f'positions."{gear}"', "", "is not a gear on a shaft.", remedy)

@@ -47,7 +47,9 @@ from epicyclic.units import (
 Efficiency = Annotated[Number, Field(gt=0, le=1)]
 Position = Annotated[float, Quantity("a position", "m", "mm", low=-1e5, high=1e5)]
 _BODY: Any = option("Gears with the same body turn together. Default: its own.")
-_PLANET: Any = option("true: it stands on the carrier. Default: as the meshes and shafts suggest.")
+_PLANET: Any = option(
+    "true: the gear is on the carrier. Default: as the meshes and shafts suggest."
+)
 
 
 class Teeth(Table):
@@ -102,7 +104,7 @@ class PlanetarySet(Table):
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
     hand: Literal["right", "left"] = option(
-        "Of the helix of the sun, for the forces on shaft bearings.", "right"
+        "Hand of the helix of the sun, for the forces on shaft bearings.", "right"
     )
     lubrication: LubricationTable | None = LUBRICATION
     models: PlanetaryModels = PlanetaryModels()
@@ -118,9 +120,9 @@ class GivenPlanetarySet(Table):
     sun: Teeth
     ring: GivenRing
     planet: GivenPlanet = GivenPlanet()
-    efficiency: Efficiency | None = option("With the carrier at rest, sun to ring.")
+    efficiency: Efficiency | None = option("Efficiency from sun to ring with the carrier at rest.")
     mesh_efficiency: Efficiency | None = option(
-        "Of each of the two meshes, with the carrier at rest."
+        "Efficiency of each of the two meshes with the carrier at rest."
     )
 
 
@@ -135,7 +137,7 @@ class PairSet(Table):
         "From the axis of the pinion to that of the gear, for the forces on shaft bearings.",
         "0 deg",
     )
-    hand: Literal["right", "left"] = option("Of the helix of the pinion, for the same.", "right")
+    hand: Literal["right", "left"] = option("Helix of the pinion, likewise.", "right")
     lubrication: LubricationTable | None = LUBRICATION
     models: GearPairModels = GearPairModels()
     numerics: Numerics = Numerics()
@@ -161,16 +163,16 @@ class ListedGear(PairGear):
     transverse_pressure_angle: PressureAngle | None = option("Default: of [gears].")
     helix_angle: HelixAngle | None = option("Default: of [gears].")
     hand: Literal["right", "left"] | None = option(
-        "Of the helix. Default: the first gear right, the others as their mates demand, gears of "
-        "one body alike."
+        "Hand of the helix. Default: right for the first gear, the others as their mates "
+        "require, the same for gears of one body."
     )
     mass: Mass | None = option(
-        "Of one planet with its rollers, at one of the gears of its body: its centrifugal force "
-        "loads the planet bearing. Default: from its sizes."
+        "Mass of one planet with its rollers, given at one of the gears of its body; its "
+        "centrifugal force loads the planet bearing. Default: from its dimensions."
     )
     axial_position: Position | None = option(
-        "Of the middle of its face from the middle of the planet bearing. Default: gears of one "
-        "body side by side, in the order of meshes."
+        "Distance of the middle of its face from the middle of the planet bearing. Default: "
+        "gears of one body side by side, in the order of meshes."
     )
 
 
@@ -178,12 +180,12 @@ class ListedMesh(SetMesh):
     """What belongs to one mesh of a listed set, ``[sets.NAME.mesh.GEAR-GEAR]``."""
 
     center_distance: Length | None = option(
-        "Default: of [gears], that of another mesh of the same planet with a central gear, or "
-        "from the profile shifts, x."
+        "Default: the one in [gears], that of another mesh of the same planet with a central "
+        "gear, or from the profile shifts, x."
     )
     direction: Angle = option(
-        "Of fixed axes, from that of the first gear of the pair to that of the second, for the "
-        "forces on shaft bearings.",
+        "For fixed axes: direction from the axis of the first gear of the pair to that of the "
+        "second, for the forces on shaft bearings.",
         "0 deg",
     )
 
@@ -229,9 +231,9 @@ class ListedSet(_Listed):
     members: dict[str, ListedGear]
     mesh: dict[str, ListedMesh] = Field(default={})
     planet_bearing: PlanetBearing | None = option(
-        "Of every planet that planet_bearings does not name."
+        "Bearing of every planet that planet_bearings does not name."
     )
-    planet_bearings: dict[str, PlanetBearing] = option("By the body of the planet.", {})
+    planet_bearings: dict[str, PlanetBearing] = option("Bearings by the body of the planet.", {})
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     lubrication: LubricationTable | None = LUBRICATION
@@ -244,7 +246,7 @@ class GivenListedSet(_Listed):
     """A set whose gears and meshes are listed, with given efficiencies."""
 
     members: dict[str, GivenListedGear]
-    mesh_efficiency: Efficiency = Field(description="Of every mesh, with the carrier at rest.")
+    mesh_efficiency: Efficiency = Field(description="That of every mesh, carrier at rest.")
     mesh: dict[str, GivenMesh] = Field(default={})
 
 
@@ -253,7 +255,7 @@ SetTable = PlanetarySet | PairSet | ListedSet | GivenPlanetarySet | GivenPair | 
 
 
 class StateTable(Table):
-    """What brakes and clutches make of a train."""
+    """Closed brakes and clutches of a train."""
 
     fixed: tuple[str, ...] = option("Shafts that brakes hold.", ())
     joined: tuple[tuple[str, ...], ...] = option("Groups of shafts that clutches join.", ())
@@ -276,15 +278,15 @@ class TrainOperation(Table):
     input: str = Field(description="The shaft to which torque and speed belong.")
     output: str = Field(description="The shaft whose torque balances.")
     torque: Torque = Field(
-        description="On the input shaft; negative = coasting, power flows back through it."
+        description="Torque on the input shaft; negative: coasting, power flows back through it."
     )
-    speed: RotationalSpeed = Field(description="Of the input shaft.")
+    speed: RotationalSpeed = Field(description="Speed of the input shaft.")
     oil_inlet_temperature: Temperature | None = option(
         "Oil temperature at all contacts; needed for computed losses."
     )
     speeds: dict[str, RotationalSpeed] = option(
-        "Of further driven shafts, if the train has more freedom.", {}
+        "Speeds of further driven shafts, if the train has more degrees of freedom.", {}
     )
     torques: dict[str, Torque] = option(
-        "From outside on further shafts, such as a power take-off.", {}
+        "External torques on further shafts, such as a power take-off.", {}
     )

@@ -124,7 +124,7 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 @set_option
 @plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
 def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
-    """Compare all friction models on a case: spread, ranges left, and which one suits."""
+    """Compare all friction models on a case, with their ranges and a recommendation."""
     from epicyclic.show.terminal import friction_table, terminal
     from epicyclic.study.friction import compare_friction
 
@@ -143,7 +143,7 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
 @set_option
 @plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf.")
 def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
-    """Show how the teeth carry: load, transmission error, stiffness, pressure, friction power."""
+    """Show the tooth contact: load, transmission error, stiffness, pressure, friction power."""
     from epicyclic.show.studies import mesh_tables
     from epicyclic.show.terminal import terminal
     from epicyclic.study.meshes import mesh_details
@@ -174,11 +174,14 @@ QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
     type=click.Choice(QUANTITIES),
     default=AS_GIVEN,
     show_default=True,
-    help="What to find: the temperature of the oil, or what leads to that of --target.",
+    help="What to solve for: the oil temperature, or the quantity that gives the --target "
+    "temperature.",
 )
-@click.option("--target", metavar="TEMPERATURE", help='Of the oil in the gearbox, as in "90 degC".')
+@click.option(
+    "--target", metavar="TEMPERATURE", help='Oil temperature in the gearbox, as in "90 degC".'
+)
 @json_option
-@plot_option("Draw parts, temperatures and flows of heat (.png, .svg, .pdf).")
+@plot_option("Draw parts, temperatures and heat flows (.png, .svg, .pdf).")
 def heat(
     case: str,
     changes: tuple[str, ...],
@@ -187,9 +190,9 @@ def heat(
     json_file: str | None,
     plot: Path | None,
 ) -> None:
-    """Show how hot all parts get, and where their heat goes.
+    """Show the temperatures of all parts and the heat paths.
 
-    Uses the network of all parts whatever models.temperatures is. The heat needs a way out:
+    Uses the network of all parts for any models.temperatures. The heat needs a path out:
     thermal.oil_flow, [thermal.housing] or thermal.cooler_conductance.
 
     \b
@@ -210,7 +213,7 @@ def heat(
     result = solve(solved) if found is None else found.result
     if stated.models.temperatures != "network":
         click.echo(
-            f"With models.temperatures = network in place of {stated.models.temperatures}.",
+            f"Computed with models.temperatures = network instead of {stated.models.temperatures}.",
             err=True,
         )
     show(lambda: _tables(solved, result, found), lambda: _json(result, found), json_file)
@@ -227,8 +230,8 @@ def _check_target(quantity: str, target: str | None) -> None:
     if target is None:
         problem = Problem("--target", "", f"is needed with --solve {quantity}.", 'As in "90 degC".')
     else:
-        remedy = f"Name what leads to it: --solve {', '.join(QUANTITIES[1:])}."
-        problem = Problem("--target", f'"{target}"', "is what would be solved for.", remedy)
+        remedy = f"Name the quantity to solve for: --solve {', '.join(QUANTITIES[1:])}."
+        problem = Problem("--target", f'"{target}"', "is the quantity to solve for.", remedy)
     raise InputError([problem], "the command")
 
 
@@ -262,17 +265,18 @@ OUTPUTS = (".nc", ".csv", ".parquet")
 @click.command("warm-up")
 @case_argument
 @set_option
-@click.option("--for", "duration", metavar="TIME", required=True, help='How long, as in "2 h".')
+@click.option("--for", "duration", metavar="TIME", required=True, help='Duration, as in "2 h".')
 @click.option(
     "--from",
     "start",
     metavar="TEMPERATURE",
-    help='Of all parts at the start, as in "20 degC"; default: thermal.ambient_temperature.',
+    help='Start temperature of all parts, as in "20 degC"; default: thermal.ambient_temperature.',
 )
 @click.option(
     "--cycle",
     metavar="CYCLE",
-    help="A .csv or .parquet file as for 'epicyclic duty', repeated; default: the operating point.",
+    help="A .csv or .parquet file as for 'epicyclic duty', which is repeated; default: the "
+    "operating point.",
 )
 @output_option("Write .nc, .csv or .parquet.", "FILE")
 @plot_option("Draw temperatures and loss over time to a .png, .svg or .pdf file.")
@@ -285,9 +289,9 @@ def warm_up(
     output: Path | None,
     plot: Path | None,
 ) -> None:
-    """Let a gearbox warm up: temperatures and losses over time.
+    """Compute the warm-up of a gearbox: temperatures and losses over time.
 
-    Temperatures follow from the network of heat, which needs thermal.oil_volume and, of a housing,
+    Temperatures follow from the heat network, which needs thermal.oil_volume and, of a housing,
     thermal.housing.mass.
     """
     from epicyclic.cli.common import progress_bar

@@ -133,7 +133,7 @@ def tell_compilation() -> None:
             return
         told = now
         click.echo(
-            f"First run of this version: compiling the numerics, {count} of some {COMPILED} "
+            f"First run of this version: compiling the numerics, {count} of about {COMPILED} "
             f"functions after {_seconds(now - first)}.",
             err=True,
         )
@@ -273,7 +273,7 @@ json_option = click.option(
 temperature_option = click.option(
     "--temperature",
     metavar="VALUES",
-    help='Of the oil at the inlet, as in "40,60,90 degC"; default: that of the case.',
+    help='Oil inlet temperatures, as in "40,60,90 degC"; default: that of the case.',
 )
 
 
@@ -281,7 +281,9 @@ def runner_options(command: Callable[..., None]) -> Callable[..., None]:
     """Where points are computed: --jobs and --dask, of which the command gets a `runner`."""
 
     @click.option(
-        "--jobs", type=click.IntRange(1, 10_000), help="Worker processes; default: as it pays."
+        "--jobs",
+        type=click.IntRange(1, 10_000),
+        help="Worker processes; default: chosen automatically.",
     )
     @click.option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster, tcp://host:8786.")
     @wraps(command)
@@ -301,10 +303,11 @@ journal_option = click.option(
     "--journal",
     metavar="DIR",
     type=click.Path(path_type=Path),
-    help="Keep finished points there, so that the same command goes on after an interruption.",
+    help="File or folder for finished points, from which the same command continues after an "
+    "interruption.",
 )
 shard_option = click.option(
-    "--shard", metavar="I/N", help="Compute share I of N; 'epicyclic merge' puts all together."
+    "--shard", metavar="I/N", help="Compute share I of N; 'epicyclic merge' combines all shares."
 )
 """To stand above `runner_options`."""
 
@@ -317,7 +320,7 @@ def set_option_for(what: str, example: str) -> Callable[[Any], Any]:
         metavar="KEY=VALUE",
         multiple=True,
         help=f'Change a key of {what}, as in --set "{example}". An empty value removes the key; '
-        "{sun,ring}.teeth are two keys.",
+        "{sun,ring}.teeth stands for two keys.",
     )
 
 

@@ -48,21 +48,27 @@ if TYPE_CHECKING:
     "--load-dependent",
     type=click.Choice(["computed", "as-tested"]),
     default="computed",
-    help="What load-dependent losses are: the sum of their terms (default), or the total loss less "
-    "that without torque, both at the temperatures that they lead to.",
+    help="Definition of load-dependent losses: the sum of their terms (default), or the total loss "
+    "less the loss without torque, each at its own temperatures.",
 )
-@click.option("--group", metavar="COLUMN", help="Errors by its values; default: temperature.")
+@click.option(
+    "--group",
+    metavar="COLUMN",
+    help="Column by whose values errors are grouped; default: temperature.",
+)
 @click.option(
     "--fit",
     metavar="KEY,...",
-    help="Calibrate these keys of the case, within the ranges that a case file allows.",
+    help="Calibrate these keys of the case within the ranges that a case file allows.",
 )
 @click.option(
     "--hold-out",
     metavar="COLUMN=VALUE|SHARE",
-    help="Points that the fit must not see: where a column has a value, or a random share.",
+    help="Points excluded from the fit: rows where a column has a value, or a random share.",
 )
-@click.option("--seed", type=click.IntRange(0), default=0, help="Of that share; default 0.")
+@click.option(
+    "--seed", type=click.IntRange(0), default=0, help="Seed of the random share; default: 0."
+)
 @output_option("Write the calibrated case (.toml).", "FILE")
 @plot_option("Draw parity and residuals to .png, .svg or .pdf.")
 @json_option
@@ -166,12 +172,14 @@ def _draw(comparison: MeasuredComparison, plot: Path) -> None:
 def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:
     """Raise `InputError` for options that do not go with a shard."""
     reasons = {
-        "--fit": "is not for shards: each round of a fit begins with what the one before found.",
-        "--hold-out": "goes with --fit, which is not for shards.",
-        "--journal": "is not for shards: their points are kept beside the file of --json.",
+        "--fit": "is not possible with shards, because each round of a fit starts from the "
+        "result of the previous one.",
+        "--hold-out": "requires --fit, which is not possible with shards.",
+        "--journal": "is not possible with shards, whose points are kept beside the file of "
+        "--json.",
     }
     problems = [
-        Problem(name, "", reasons[name], "Leave one of them out.")
+        Problem(name, "", reasons[name], "Remove one of them.")
         for name, value in others.items()
         if value is not None
     ]
@@ -187,7 +195,7 @@ def _check_output(output: Path | None, keys: list[str]) -> None:
         return
     check_ending("-o", output, (".toml",))
     if not keys:
-        allowed = "holds the calibrated case, and nothing is calibrated."
+        allowed = "holds the calibrated case, but no keys are calibrated."
         raise InputError(
             [Problem("-o", str(output), allowed, "Name the keys with --fit.")], "the command"
         )
@@ -203,8 +211,8 @@ def _calibrated_text(comparison: MeasuredComparison) -> str:
     assert calibrated is not None
     assert fit is not None
     heading = [
-        f"{CALIBRATED}: the values marked so were fitted to {fit.points} measured losses of",
-        f"{comparison.measured.source}. Agreement with these is no validation.",
+        f"{CALIBRATED}: the marked values were fitted to {fit.points} measured losses of",
+        f"{comparison.measured.source}. Agreement with these is not validation.",
         *(f"Warning: {note}" for note in fit.warnings),
     ]
     about = {}

@@ -44,15 +44,15 @@ _JSON = ".json"
     "temperatures",
     metavar="VALUE",
     multiple=True,
-    help='Oil inlet, as in "20 degC", for a cycle without a column of it; may be given again.',
+    help='Oil inlet temperature, as in "20 degC", if it is not a column of the cycle; repeatable.',
 )
-@click.option("--clamp", is_flag=True, help="Take points outside of the map at its border.")
+@click.option("--clamp", is_flag=True, help="Evaluate points outside the map at its boundary.")
 @click.option(
     "--map",
     "map_file",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Keep the map that is computed for a CASE, in a .nc file.",
+    help="Keep the map computed for a CASE in a .nc file.",
 )
 @output_option("Write .nc or .csv.", "FILE")
 @json_option
@@ -71,7 +71,7 @@ def duty(
     journal: Path | None,
     runner: Runner,
 ) -> None:
-    """Energy that a duty cycle puts in, takes out and loses, by component.
+    """Compute input, output and lost energy of a duty cycle, by component.
 
     CYCLE is a .csv or .parquet file with the columns "speed [rpm]", "torque [N*m]", if it varies
     "temperature [degC]", and "time [s]", "duration [s]" or "share"; any units. MAP is a loss map in
@@ -172,7 +172,7 @@ def _check_options(
     if Path(map_or_case).suffix == _MAP_SUFFIX:
         given = (("--set", changes), ("--map", map_file), ("--shard", runner.shard))
         problems += [
-            Problem(name, "", "goes with a case, not with a map.", "Leave it out.")
+            Problem(name, "", "applies to a case, not to a map.", "Leave it out.")
             for name, value in given
             if value
         ]
@@ -190,10 +190,12 @@ def _check_shard(output: Path | None, json_file: str | None, journal: Path | Non
     """Raise `InputError` unless there is one file beside which a shard can keep its points."""
     problems = []
     if journal is not None:
-        allowed = "is not for shards: their points are kept beside the file of -o or --json."
+        allowed = (
+            "is not possible with shards, whose points are kept beside the file of -o or --json."
+        )
         problems.append(Problem("--journal", str(journal), allowed, "Leave it out."))
     if json_file is not None and (output is not None or json_file == "-"):
-        allowed = "must be the one file that a shard is for."
+        allowed = "must be the only output file of a shard."
         remedy = "Give -o FILE or --json FILE; 'epicyclic merge' writes any of them."
         problems.append(Problem("--json", json_file, allowed, remedy))
     elif json_file is None and output is None:

@@ -158,13 +158,15 @@ def _told(error: Exception) -> int:
         case OSError() if os.environ.get("EPICYCLIC_TRACEBACK") != "1":
             _discard_output()
             place = printable(str(error.filename or "the output"))[:_LONGEST_NAME]
-            click.echo(f"The system refuses {place}: {error.strerror or error}.", err=True)
+            click.echo(
+                f"The system refused access to {place}: {error.strerror or error}.", err=True
+            )
             return EXIT_INPUT
     if os.environ.get("EPICYCLIC_TRACEBACK") == "1":
         raise error
     click.echo(
-        f"Error of the program: {type(error).__name__}: {error}\n"
-        "Set EPICYCLIC_TRACEBACK=1 to see where it arose.",
+        f"Internal error: {type(error).__name__}: {error}\nSet EPICYCLIC_TRACEBACK=1 for the "
+        "traceback.",
         err=True,
     )
     return EXIT_ERROR

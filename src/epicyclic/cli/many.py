@@ -37,7 +37,7 @@ def refuse_options(options: Mapping[str, object]) -> None:
         Problem(
             f"--{name}",
             "",
-            "says what is computed, and a stored map is computed already.",
+            "selects what is computed, but a stored map already holds its results.",
             "Leave it out, or give the case in place of the file.",
         )
         for name, value in options.items()
@@ -58,7 +58,7 @@ def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None
     if heated:
         case = map_case(data)
         if case is None:
-            allowed = "cannot be given: the case of the map is none of this version."
+            allowed = "cannot be given, because the case of the map was not made by this version."
             problem = Problem("--temperature-state", "", allowed, "Compute the map again.")
             raise InputError([problem], str(file))
         data = with_temperature_state(data, case)
@@ -87,20 +87,20 @@ SHOWN_FAILURES = 10
     "together",
     metavar="KEY=VALUES; KEY=VALUES",
     multiple=True,
-    help='Keys whose values change together, as in "sun.teeth=30,33; ring.teeth=84,90".',
+    help='Keys that vary together, as in "sun.teeth=30,33; ring.teeth=84,90".',
 )
 @click.option(
     "--points",
     metavar="FILE.csv",
     type=click.Path(path_type=Path),
-    help='A point in each row, a key in each column: "gears.normal_module [mm]".',
+    help='Table with one point per row and one key per column: "gears.normal_module [mm]".',
 )
 @click.option(
     "--link",
     "links",
     metavar="KEY=EXPRESSION",
     multiple=True,
-    help='A key that follows from others, as in "ring.teeth = sun.teeth + 2 * planet.teeth".',
+    help='A key computed from others, as in "ring.teeth = sun.teeth + 2 * planet.teeth".',
 )
 @output_option(".nc, .csv or .parquet", required=True)
 @shard_option
@@ -121,7 +121,7 @@ def sweep(
     of a key, the key itself is its value in the case, as is case(KEY) of any other.
 
     Finished points are kept in a file beside OUTPUT that ends in .partial, so that an interrupted
-    sweep goes on where it stopped when the same command is given again.
+    sweep continues where it stopped when the same command is given again.
     """
     from epicyclic.study.sweeps.axes import columns_of
     from epicyclic.study.sweeps.run import (
@@ -160,29 +160,36 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
 @click.command("map")
 @click.argument("case", metavar="CASE|FILE.nc")
 @set_option
-@click.option("--speed", metavar="VALUES", help='Of the input member, as in "0:4000:41 rpm".')
+@click.option("--speed", metavar="VALUES", help='Speed of the input member, as in "0:4000:41 rpm".')
 @click.option(
     "--torque",
     metavar="VALUES",
-    help='On the input member, as in "-1000:1000:41 N*m"; against the speed is coasting.',
+    help='Torque on the input member, as in "-1000:1000:41 N*m"; against the speed means coasting.',
 )
 @temperature_option
 @click.option(
-    "--states", metavar="NAMES", help='Of a train, as in "1,2,R"; default: all in which it can run.'
+    "--states",
+    metavar="NAMES",
+    help='States of a train, as in "1,2,R"; default: all in which it can run.',
 )
 @click.option(
-    "--vary", metavar="KEY=VALUES", multiple=True, help='Further keys, as in "planet.count=3,4".'
+    "--vary",
+    metavar="KEY=VALUES",
+    multiple=True,
+    help='Further keys to vary, as in "planet.count=3,4".',
 )
 @output_option("File of the map.", required=True)
-@click.option("--format", "name", metavar="NAME", help="Default: by the ending of the file.")
 @click.option(
-    "--even-torques", is_flag=True, help="Add no torques that crowd at zero to start:stop:count."
+    "--format", "name", metavar="NAME", help="File format; default: by the ending of the file."
+)
+@click.option(
+    "--even-torques", is_flag=True, help="Do not add torques close to zero to start:stop:count."
 )
 @click.option(
     "--temperature-state",
     "heated",
     is_flag=True,
-    help="Of an FMU: its temperature follows from its losses.",
+    help="For an FMU: its temperature follows from its losses.",
 )
 @shard_option
 @runner_options
@@ -203,9 +210,9 @@ def loss_map(
     VALUES are a,b,c or start:stop:count with a unit. Near zero torque losses rise steeply: to
     start:stop:count from or through zero torques are added that crowd there. The torque loss is
     that at the input member; the file states the signs. A train has a map of each of its states.
-    An interrupted map goes on where it stopped, as a sweep does.
+    An interrupted map continues where it stopped, as a sweep does.
 
-    FILE.nc is a map that is stored already: it is written in another format, and nothing computed.
+    FILE.nc is a map that is stored already: it is only written in another format.
     """
     from epicyclic.show.record import is_stored
 
@@ -325,7 +332,7 @@ def compute(
     _tell_others(output, journal.path)
     size, kept = len(share_of(plan, runner.shard)), len(journal.read())
     if kept:
-        click.echo(f"Going on from {kept} of {size} points in {journal.path}.", err=True)
+        click.echo(f"Continuing from {kept} of {size} points in {journal.path}.", err=True)
     with _kept_in(journal, size):
         with progress_bar(noun) as progress:
             rows = replace(runner, journal=journal.path, progress=progress, output=how).run(plan)
@@ -356,7 +363,7 @@ def _print_thin_teeth(rows: Rows) -> None:
     if thin:
         click.echo(
             f"{thin} of {len(rows)} points: the teeth are far too thin for their centre distance. "
-            "Leave profile shifts out, and they are found for each point.",
+            "If profile shifts are left out, they are computed for each point.",
             err=True,
         )
 
@@ -373,8 +380,8 @@ def _tell_others(output: Path, own: Path) -> None:
     for path in sorted(output.parent.glob(f"{glob.escape(output.name)}.*.partial")):
         if path.name != own.name:
             click.echo(
-                f"{path} holds points of an interrupted sweep of another case or other values; it "
-                "is kept. Delete it if you do not need it.",
+                f"{path} holds points of an interrupted sweep of another case or with other "
+                "values, and is kept. Delete it if you do not need it.",
                 err=True,
             )
 
@@ -389,7 +396,7 @@ def _kept_in(journal: Journal, size: int) -> Iterator[None]:
         if kept:
             click.echo(
                 f"{kept} of {size} points kept in {journal.path}; give the same command again to "
-                "go on.",
+                "continue.",
                 err=True,
             )
         raise

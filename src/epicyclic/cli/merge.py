@@ -20,11 +20,11 @@ from epicyclic.registry import load, offered
 @click.argument(
     "files", metavar="FILE...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@output_option("File, or folder of a study or campaign.", required=True)
+@output_option("Output file, or folder of a study or campaign.", required=True)
 def merge(files: tuple[Path, ...], output: Path) -> None:
-    """Put shards together, as if one command had computed them.
+    """Combine shards, as if one command had computed them.
 
-    FILEs are those of all shards. They know what was computed; nothing else need be told.
+    FILEs are those of all shards. They state what was computed; no other option is needed.
 
     \b
     epicyclic sweep case.toml --vary "planet.count=3,4" -o s.nc --shard 1/2

@@ -44,7 +44,7 @@ ANIMATION = ".gif"
     "--animate",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Draw each mesh in motion to FILE-MESH.gif, pressure as colour.",
+    help="Animate each mesh in FILE-MESH.gif, with the pressure as colour.",
 )
 def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Path | None) -> None:
     """Show the pockets between the teeth: shape, pressure, speed of the flow, power."""
@@ -86,10 +86,13 @@ FORMATS = (".nc", ".csv")
 @case_argument
 @set_option
 @click.option(
-    "--speed", metavar="VALUES", required=True, help='Of the input member, as in "500:5000:10 rpm".'
+    "--speed",
+    metavar="VALUES",
+    required=True,
+    help='Speed of the input member, as in "500:5000:10 rpm".',
 )
 @temperature_option
-@output_option(".nc, to be used, or .csv", required=True)
+@output_option(".nc for use in a case, or .csv", required=True)
 @shard_option
 @runner_options
 def pockets_table(

@@ -52,15 +52,15 @@ def oils(name: str | None) -> None:
         return
     if name not in library.oil_names():
         remedy = did_you_mean(name, library.oil_names()) or "See 'epicyclic oils'."
-        raise InputError([Problem("NAME", repr(name), "is no built-in oil.", remedy)])
+        raise InputError([Problem("NAME", repr(name), "is not a built-in oil.", remedy)])
     terminal().print(oil_sheet(name))
 
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path), default=Path("case.toml"))
 @click.option("--kind", type=click.Choice(["planetary", "gear_pair", "train"]))
-@click.option("--minimal", is_flag=True, help="Only what must be stated.")
-@click.option("--like", metavar="CASE", help="With the values of a built-in case or a file.")
+@click.option("--minimal", is_flag=True, help="Write only the required keys.")
+@click.option("--like", metavar="CASE", help="Use the values of a built-in case or a file.")
 def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
     """Write a commented case FILE (default case.toml) to start from."""
     from epicyclic import library
@@ -71,7 +71,7 @@ def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
         problem = Problem("--like", like, f"conflicts with {given}.", "Give one of them.")
         raise InputError([problem], "the command")
     if file.exists():
-        problem = Problem("FILE", str(file), "exists already.", "Name another file.")
+        problem = Problem("FILE", str(file), "already exists.", "Name another file.")
         raise InputError([problem], "the command")
     if like is not None:
         text = text_like(like)
@@ -102,9 +102,9 @@ stored_argument = click.argument("source", metavar="CASE|FILE.nc")
 @stored_argument
 @set_option
 @output_option(".html, or .pdf.", required=True)
-@click.option("--size", metavar="SIZE", help='Of every figure, as in "160x90 mm".')
+@click.option("--size", metavar="SIZE", help='Size of every figure, as in "160x90 mm".')
 def report(source: str, changes: tuple[str, ...], output: Path, size: str | None) -> None:
-    """Write a report as one file that needs nothing else: a page, or print.
+    """Write a self-contained report: an HTML page or a PDF.
 
     FILE.nc is what run --save, map, sweep or uncertainty wrote; a CASE is solved first.
     """
@@ -124,18 +124,18 @@ def report(source: str, changes: tuple[str, ...], output: Path, size: str | None
 @stored_argument
 @click.argument("what", required=False)
 @set_option
-@output_option(f"The picture, {', '.join(PICTURES)}; default: WHAT.png.")
-@click.option("--size", metavar="SIZE", help='As in "160x90 mm"; default: that of a slide.')
+@output_option(f"Image file, {', '.join(PICTURES)}; default: WHAT.png.")
+@click.option("--size", metavar="SIZE", help='Size, as in "160x90 mm"; default: that of a slide.')
 @click.option(
     "--dpi",
     type=click.IntRange(20, 1200),
-    help="Pixels an inch of a .png; default: 1920 pixels over the width.",
+    help="Pixels per inch of a .png; default: 1920 pixels over the width.",
 )
 @click.option(
     "--format",
     "ending",
     type=click.Choice([name[1:] for name in PICTURES]),
-    help="Of WHAT.FORMAT, if no output is named.",
+    help="Format of WHAT.FORMAT, if no output is given.",
 )
 def plot(
     source: str,
@@ -176,7 +176,7 @@ def _stored(source: str, changes: Sequence[str]) -> Stored:
         problem = Problem(
             "--set",
             f'"{changes[0]}"',
-            "changes a case, and a stored result is none.",
+            "changes a case and cannot be applied to a stored result.",
             "Solve the case with it: epicyclic run CASE --set ... --save FILE.nc.",
         )
         raise InputError([problem], "the command")

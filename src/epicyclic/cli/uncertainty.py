@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 MAP_SUFFIX = ".nc"
 seed_option = click.option(
-    "--seed", type=int, default=1, show_default=True, help="Of the drawn points."
+    "--seed", type=int, default=1, show_default=True, help="Seed of the samples."
 )
 
 
@@ -40,17 +40,19 @@ seed_option = click.option(
 @click.argument("source", metavar="CASE|MAP")
 @click.argument("cycle", metavar="[CYCLE]", required=False)
 @set_option
-@click.option("--speed", metavar="VALUES", help="Of a map that is computed for a CASE, as of map.")
-@click.option("--torque", metavar="VALUES", help="The same.")
+@click.option(
+    "--speed", metavar="VALUES", help="Speeds of the map of a CASE, as for 'epicyclic map'."
+)
+@click.option("--torque", metavar="VALUES", help="Torques of the map, likewise.")
 @temperature_option
 @click.option(
     "--samples",
     metavar="N",
     type=int,
-    help="Points in each set, a power of 2; default: 256, over a map 32, a cycle 64.",
+    help="Samples in each set, a power of 2; default: 256, for a map 32, for a cycle 64.",
 )
 @click.option(
-    "--points", metavar="N", type=int, help="Points of the CYCLE that stand for all; default: 16."
+    "--points", metavar="N", type=int, help="Points that represent the CYCLE; default: 16."
 )
 @seed_option
 @output_option("Write a .nc file.", "FILE")
@@ -68,12 +70,12 @@ def uncertainty(
     runner: Runner,
     **values: str | None,
 ) -> None:
-    """Show how well losses and efficiency are known, and which inputs and models that is due to.
+    """Show the uncertainty of losses and efficiency, and the inputs and models that cause it.
 
     Of a CASE, over a loss MAP in a .nc file or, with --speed and --torque, over one that is
     computed, or of the energy that a duty CYCLE loses. Distributions of inputs are those of
-    [uncertainty] of the case, or assumed ones; over a map or cycle an input is off by the same
-    everywhere. With -o, an interrupted computation goes on where it stopped.
+    [uncertainty] of the case, or estimates; over a map or cycle an input has the same error
+    everywhere. With -o, an interrupted computation continues where it stopped.
     """
     from epicyclic.files import check_place
     from epicyclic.show.terminal import terminal
@@ -109,15 +111,15 @@ def _check_use(
     plane = [name for name in ("speed", "torque") if values[name] is not None]
     wrong = []
     if of_map or cycle is not None:
-        wrong += [(f"--{name}", "goes with a case alone.") for name in plane]
+        wrong += [(f"--{name}", "applies to a case alone.") for name in plane]
     elif len(plane) == 1:
-        wrong.append((f"--{plane[0]}", "needs the other of --speed and --torque too."))
+        wrong.append((f"--{plane[0]}", "needs both --speed and --torque."))
     if values["temperature"] is not None and not (cycle or plane):
-        wrong.append(("--temperature", "goes with --speed and --torque, or with a cycle."))
+        wrong.append(("--temperature", "requires --speed and --torque, or a cycle."))
     if of_map and changes:
-        wrong.append(("--set", "goes with a case, not with a map."))
+        wrong.append(("--set", "applies to a case, not to a map."))
     if points is not None and cycle is None:
-        wrong.append(("--points", "goes with a cycle."))
+        wrong.append(("--points", "requires a cycle."))
     if wrong:
         remedy = "Add it, or leave this out." if "needs" in wrong[0][1] else "Leave it out."
         raise InputError([Problem(name, "", text, remedy) for name, text in wrong], "the command")
@@ -229,12 +231,12 @@ def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:
     type=int,
     default=256,
     show_default=True,
-    help="Pairs of points, a power of 2.",
+    help="Pairs of samples, a power of 2.",
 )
 @seed_option
 @runner_options
 def compare_cases(first: str, second: str, samples: int, seed: int, runner: Runner) -> None:
-    """Show whether case SECOND loses less than case FIRST, given what is uncertain in both.
+    """Show whether case SECOND loses less than case FIRST, given the uncertainties of both.
 
     Inputs that both cases share are drawn once for both.
     """

@@ -318,7 +318,7 @@ class Structured:
             max_nfev=400,
         )  # fmt: skip
         if not found.success:
-            raise ValueError(f"no least squares: {found.message}")
+            raise ValueError(f"least squares failed: {found.message}")
         coefficients: FloatArray = found.x
         return coefficients
 
@@ -482,7 +482,7 @@ class NearbySimulations(BaseModel):
             raise ValueError(f"the conditions must be {', '.join(CONDITIONS)}")
         columns = (*self.conditions.values(), self.weight)
         if any(len(column) != len(self.excess) for column in columns):
-            raise ValueError("conditions, excess and weight must be equally many")
+            raise ValueError("conditions, excess and weight must have the same length")
         with np.errstate(all="ignore"):  # what is no number is refused
             sound = bool(np.isfinite(self._places).all())
         if not sound:
@@ -641,7 +641,9 @@ class QuantityFit(_Data):
             raise ValueError(f"the domain must have {', '.join(CONDITIONS)}")
         for name, (low, high) in self.domain.items():
             if not 0 <= low <= high or (low == 0 and name not in _MAY_BE_ZERO):
-                raise ValueError(f"the domain of {name} must rise, above zero: {low:g} to {high:g}")
+                raise ValueError(
+                    f"the domain of {name} must be rising and above zero: {low:g} to {high:g}"
+                )
         return self
 
 
@@ -674,7 +676,7 @@ class OilModel(_Data):
         for quantity, fit in self.fits.items():
             known = FORMS.get(quantity)
             if known is None:
-                raise ValueError(f"no quantity {quantity}")
+                raise ValueError(f"there is no quantity {quantity}")
             for fitted in fit.forms:
                 form = known.get(fitted.form)
                 if form is None or form.size != len(fitted.coefficients):
@@ -753,8 +755,8 @@ def check_resistance(
     worst = shares[np.argmax(np.abs(np.nan_to_num(shares, nan=np.inf) - 0.5))]
     if not 0 < worst <= 1:
         raise ValueError(
-            f"{quantity}: {form.name} coefficients give {worst:.3g} times the load as resistance "
-            "within the domain, which must be above 0 and at most 1"
+            f"{quantity}: {form.name} coefficients give a resistance of {worst:.3g} times the "
+            "load within the domain, which must be above 0 and at most 1"
         )
 
 
@@ -783,11 +785,11 @@ def _read(path: Path, _changed: int, _size: int) -> OilModel:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
         where = f" at {place}" if place else ""
-        raise _file_error(path, f"is no sound oil model{where}: {first['msg']}.") from None
+        raise _file_error(path, f"is not a valid oil model{where}: {first['msg']}.") from None
 
 
 def _file_error(path: Path, allowed: str) -> InputError:
-    remedy = "Give a model.json of 'epicyclic oil characterise' of this version."
+    remedy = "Give a model.json from 'epicyclic oil characterise' of this version."
     return InputError([Problem("models.oil_model", str(path), allowed, remedy)], str(path))
 
 

@@ -144,8 +144,8 @@ def _loaded(
 
 def _gives_way() -> ConvergenceError:
     return ConvergenceError(
-        "no planet loads balance: with this support of the members the gear set gives way; "
-        "support the floating member, or use more planets."
+        "the planet loads have no equilibrium: the gear set is not held by this support of its "
+        "members. Support the floating member, or use more planets."
     )
 
 

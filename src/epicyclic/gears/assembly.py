@@ -50,7 +50,7 @@ def rack_problems(gearing: Gearing) -> Iterator[Problem]:
         names = " or ".join(group)
         without = [gear for gear, keys in given.items() if not keys.keys() & set(group)]
         if len(without) == len(given):
-            remedy = f"Give {names}, there for all gears or at each of them."
+            remedy = f"Give {names} there for all gears, or for each gear."
             yield Problem(f"gears.{group[0]}", "", "is missing.", remedy)
             without = []
         for gear in without:
@@ -62,7 +62,7 @@ def rack_problems(gearing: Gearing) -> Iterator[Problem]:
                 own = getattr(gearing.tables[gear], found[0], None) is not None
                 prefix = gearing.key(gear) if own else "gears"
                 both = ", ".join(f"{prefix}.{key}" for key in found)
-                yield Problem(both, "", "state the same twice.", "Keep one of them.")
+                yield Problem(both, "", "state the same quantity twice.", "Keep one of them.")
 
 
 def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
@@ -80,7 +80,7 @@ def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         words = "the same hand" if mesh.internal else "opposite hands"
         shown = ", ".join(f'"{own[gear]}"' for gear in stated)
         allowed = f"{mesh.first} and {mesh.second} must have {words} of helix to mesh" + (
-            "." if len(stated) == 2 else ", and the other hands given forbid it."
+            "." if len(stated) == 2 else ", which contradicts the other hands given."
         )
         remedy = "Correct or leave out hand."
         yield Problem(
@@ -120,8 +120,8 @@ def _pin_radius_problems(gearing: Gearing, body: str) -> Iterator[Problem]:
     first, wanted = own[0]
     others = [mesh for mesh, a in own if abs(a - wanted) > SAME_PLACE]
     fits = " ".join(_shifts_for(gearing, mesh, wanted) for mesh in others)
-    allowed = f"the pin of {body} would stand at different radii: {shown}."
-    remedy = f"Give all the same; that of {'-'.join(first.pair)} would do: {fits}"
+    allowed = f"the pin of {body} would be at different radii: {shown}."
+    remedy = f"Give them the same; the one of {'-'.join(first.pair)} is possible: {fits}"
     yield Problem(", ".join(keys), "", allowed, remedy)
 
 
@@ -130,15 +130,15 @@ def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
     try:
         one, two = gearing.gear(mesh.first), gearing.gear(mesh.second)
     except ValueError:
-        return "its gears must be made to fit."
+        return "its gears must be adjusted to fit."
     side = -1 if mesh.internal else 1
     bases = two.base_radius + side * one.base_radius
     name = "-".join(mesh.pair)
     if not 0 < bases < distance:
-        return f"{name} cannot work there."
+        return f"{name} cannot work at that centre distance."
     total = profile_shift_sum(one.rack, one.teeth + side * two.teeth, distance)
     return (
-        f"{name} then has no backlash with profile shift coefficients of {total:.4f} in sum "
+        f"{name} then has no backlash if the profile shift coefficients add up to {total:.4f} "
         f"(now {one.profile_shift_coefficient + two.profile_shift_coefficient:.4f})."
     )
 
@@ -156,7 +156,7 @@ def _triangle_problems(gearing: Gearing) -> Iterator[Problem]:
         low, high = abs(radii[one] - radii[two]), radii[one] + radii[two]
         if not low <= distance <= high:
             wide = True
-            allowed = f"cannot be: the pins of {one} and {two} stand at {millimetres(radii[one])} "
+            allowed = f"is impossible: pins of {one} and {two} are at {millimetres(radii[one])} "
             allowed += f"and {millimetres(radii[two])} from the axis."
             remedy = f"It must be from {millimetres(low)} to {millimetres(high)}."
             yield Problem(gearing.distance_key(mesh), millimetres(distance), allowed, remedy)
@@ -168,8 +168,8 @@ def _triangle_problems(gearing: Gearing) -> Iterator[Problem]:
             continue
         apart, distance = math.dist(pins[one].place, pins[two].place), distances[mesh.key] or 0.0
         if abs(apart - distance) > SAME_PLACE:
-            allowed = f"does not close the ring of planets: {one} and {two} stand "
-            allowed += f"{millimetres(apart)} apart by their other meshes."
+            allowed = f"does not close the ring of planets: the other meshes place {one} and {two} "
+            allowed += f"{millimetres(apart)} apart."
             remedy = f"Give {millimetres(apart)}."
             yield Problem(gearing.distance_key(mesh), millimetres(distance), allowed, remedy)
 
@@ -185,7 +185,7 @@ def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
             one, two = drawn.pair
             shown = f'["{one}", "{two}"]'
             allowed = f"cannot mesh: {different}."
-            remedy = "Give both the same normal module, pressure angle and helix angle."
+            remedy = "Give both gears the same normal module, pressure angle and helix angle."
             yield Problem(f"meshes[{gearing.meshes.index(drawn)}]", shown, allowed, remedy)
             continue
         yield from check_mesh(gearing, mesh, gearing.distance_key(drawn))
@@ -250,7 +250,7 @@ def _angle_problems(gearing: Gearing) -> Iterator[Problem]:
         admissible = nearest_admissible_angle(relative, sun, ring)
         if abs(relative - admissible) > ANGLE_TOLERANCE:
             shown = f"{math.degrees(angle):.6g} deg"
-            allowed = "a planet cannot be assembled there: positions differ by multiples of "
+            allowed = "a planet cannot be assembled there: positions must differ by multiples of "
             allowed += f"360/({sun} + {ring}) deg."
             remedy = f"The nearest is {math.degrees(angles[0] + admissible):.6f} deg."
             yield Problem(f"planet.angles[{number}]", shown, allowed, remedy)
@@ -263,9 +263,9 @@ def _place_problems(gearing: Gearing) -> Iterator[Problem]:
         return
     number = arrangement.number
     fitting = [str(n) for n in range(1, MOST_PLANETS + 1) if number % n == 0]
-    allowed = "cannot be assembled: by the numbers of teeth, a planet fits only at multiples of "
-    allowed += f"360/{number} deg from another one."
-    remedy = f"Take {' or '.join(fitting)}, or other numbers of teeth."
+    allowed = "cannot be assembled: with these tooth numbers, a planet fits only at multiples of "
+    allowed += f"360/{number} deg from another planet."
+    remedy = f"Use {' or '.join(fitting)}, or other tooth numbers."
     yield Problem(gearing.count_key, str(count), allowed, remedy)
 
 
@@ -280,7 +280,7 @@ def _axial_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Pro
                 keys = ", ".join(f"gears.{gear}.axial_position" for gear in (one, two))
                 shown = ", ".join(millimetres(positions[gear]) for gear in (one, two))
                 allowed = f"{one} and {two} of {body} overlap by {millimetres(overlap)}."
-                remedy = f"Put them at least {millimetres(width)} apart."
+                remedy = f"Place them at least {millimetres(width)} apart."
                 yield Problem(keys, shown, allowed, remedy)
 
 
@@ -342,7 +342,7 @@ def _fewer(
     for count in range(MOST_PLANETS, 0, -1):
         places = nearest_places(count, 0)
         if all(_gap(gearing, sound, places, one, two) > 0 for one, two in close):
-            return f"Take fewer planets (at most {count} fit equally spaced){other}."
+            return f"Use fewer planets (at most {count} fit equally spaced){other}."
     return "Shorten their teeth, or change the centre distances."
 
 

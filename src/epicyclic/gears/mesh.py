@@ -248,7 +248,7 @@ def profile_shift_sum(
     """
     cosine = abs(teeth) * rack.transverse_base_pitch / (2 * math.pi * center_distance)
     if cosine > 1 or teeth == 0:
-        raise ValueError("the base circles do not let the gears come so close")
+        raise ValueError("the base circles do not allow so small a centre distance")
     change = involute(math.acos(cosine)) - involute(rack.transverse_pressure_angle)
     total = teeth * change / (2 * math.tan(rack.normal_pressure_angle))
     return total - thinning(rack, normal_backlash)
@@ -273,7 +273,7 @@ def closed_center_distance(
     56.8
     """
     if teeth == 0:
-        raise ValueError("equal numbers of teeth of a ring and its mate")
+        raise ValueError("a ring and its mate have equal numbers of teeth")
     value = involute(rack.transverse_pressure_angle)
     value += (
         (shift_sum + thinning(rack, normal_backlash))
@@ -362,5 +362,5 @@ def pin_angle(radius1: float, radius2: float, distance: float) -> float:
     """
     cosine = (radius1**2 + radius2**2 - distance**2) / (2 * radius1 * radius2)
     if abs(cosine) > 1:
-        raise ValueError("no triangle has these sides")
+        raise ValueError("these sides do not form a triangle")
     return math.acos(cosine)

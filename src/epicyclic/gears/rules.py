@@ -77,7 +77,7 @@ def _check_fit(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     """DIN 3967 has no allowances for larger gears."""
     if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
         return None
-    allowed = f"is for reference diameters up to {millimetres(LARGEST_FIT)}, and this one has "
+    allowed = f"applies to reference diameters up to {millimetres(LARGEST_FIT)}, and this gear has "
     allowed += f"{millimetres(2 * gear.reference_radius)}."
     remedy = "Give tooth_thickness_allowance."
     return Problem(f"{key}.tooth_thickness_fit", f'"{table.tooth_thickness_fit}"', allowed, remedy)
@@ -88,11 +88,11 @@ def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     if table.span_measurement is not None:
         if gear.internal and gear.rack.helix_angle > 0:
             place = f"{key}.span_measurement"
-            reason = "cannot be measured on a helical ring."
+            reason = "cannot be measured on a helical ring gear."
             advice = "Give dimension_over_pins with measuring_pin_diameter."
             return Problem(place, millimetres(table.span_measurement), reason, advice)
         radius = measures.span_contact_radius(gear, table.span_measurement)
-        remedy = f"Over {measures.usual_span_teeth(gear)} teeth it would touch in the middle."
+        remedy = f"Over {measures.usual_span_teeth(gear)} teeth it would touch mid-flank."
         what = "span_measurement"
     elif table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
         radius = measures.pin_contact_radius(gear, table.measuring_pin_diameter)
@@ -137,7 +137,7 @@ def _no_involute_for_thickness(gearing: Gearing, name: str) -> Problem:
         remedy = "Check it, measuring_pin_diameter, tooth number and module."
         return Problem(f"{key}.dimension_over_pins", shown, allowed, remedy)
     shown = millimetres(table.thickness_diameter or 0.0)
-    allowed = f"lies inside the base circle of {millimetres(base)}, where there is no involute."
+    allowed = f"lies inside the base circle of {millimetres(base)}, where no involute exists."
     remedy = "Give the tooth thickness at a larger diameter."
     return Problem(f"{key}.thickness_diameter", shown, allowed, remedy)
 
@@ -153,7 +153,7 @@ def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     height = gear.tip_radius - gear.root_radius
     if (-height if gear.internal else height) <= 0:
         larger, smaller = (root, tip) if gear.internal else (tip, root)
-        allowed = f"leave no tooth: {larger} must exceed {smaller} on "
+        allowed = f"leave no tooth: {larger} must exceed {smaller} for "
         allowed += f"{'a ring' if gear.internal else 'an external gear'}."
         remedy = "Correct one of the two."
         return Problem(f"{tip}, {root}", f"{tip_shown}, {root_shown}", allowed, remedy)
@@ -161,20 +161,20 @@ def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     if gear.tip_radius <= gear.base_radius:
         allowed = f"lies inside the base circle of {millimetres(2 * gear.base_radius)}, so that "
         allowed += "the tooth has no involute at its tip."
-        remedy = f"Increase it beyond {millimetres(2 * gear.base_radius)}, or take more teeth."
+        remedy = f"Increase it above {millimetres(2 * gear.base_radius)}, or use more teeth."
         return Problem(tip, tip_shown, allowed, remedy)
     if gear.thickness_at(gear.tip_radius) <= 0:
-        allowed = "the teeth are pointed before they reach the tip circle."
+        allowed = "the teeth become pointed below the tip circle."
         remedy = f"Shorten the teeth, or make them thicker with {thickness}."
         return Problem(tip, tip_shown, allowed, remedy)
     if gear.tip_form_radius <= gear.base_radius or gear.tip_half_angle <= 0:
         allowed = "leaves no tip land or no involute: the tooth is "
         allowed += f"{millimetres(gear.thickness_at(gear.tip_radius))} thick at the tip circle, "
-        allowed += "and each of its two chamfers takes about its height of that."
+        allowed += "and each of its two chamfers removes about its own height from that."
         return Problem(f"{key}.tip_chamfer", millimetres(gear.tip_chamfer), allowed, "Reduce it.")
     if gear.half_angle_at(max(gear.root_radius, gear.base_radius)) >= math.pi / gear.teeth:
-        allowed = "there is no space left between the teeth at the root."
-        remedy = f"Make the teeth less deep, or thinner with {thickness}."
+        allowed = "the tooth spaces have no width left at the root."
+        remedy = f"Reduce the tooth depth, or make the teeth thinner with {thickness}."
         return Problem(root, root_shown, allowed, remedy)
     return None
 
@@ -267,7 +267,7 @@ def _check_contact_ratio(gearing: Gearing, mesh: Mesh, distance_key: str) -> lis
         return []
     chamfers = ", reduce tip_chamfer" if one.tip_chamfer > 0 or two.tip_chamfer > 0 else ""
     key, shown = _tips(gearing, one, two)
-    allowed = f"{fault}: motion is not passed on."
+    allowed = f"{fault}: motion is not transmitted continuously."
     remedy = f"Lengthen the teeth{chamfers} or correct {distance_key}. {_reference_distance(mesh)}"
     return [Problem(key, shown, allowed, remedy)]
 
@@ -293,7 +293,7 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
     if curvature < 0:
         end = gear.base_radius
         fault = (
-            f"reaches inside the base circle of the {gear.name}, where there is no involute (tip "
+            f"reaches inside the base circle of the {gear.name}, where no involute exists (tip "
             "interference)"
         )
     else:
@@ -331,7 +331,7 @@ def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
     tip, root = (f"{key}.{which}_diameter" for which in ("tip", "root"))
     shown = f"{_diameter(gear.tip_radius, table.tip_diameter)}, "
     shown += f"{_diameter(gear.root_radius, table.root_diameter)}"
-    allowed = f"no tool cuts such a tooth: {reason}."
+    allowed = f"no tool can cut such a tooth: {reason}."
     remedy = f"Change the tip or root diameter, or {thickness_key(key, table)}."
     return Problem(f"{tip}, {root}", shown, allowed, remedy)
 
@@ -387,7 +387,7 @@ def backlash_notes(gearing: Gearing) -> Iterator[str]:
         yield (
             f"The {mesh.name} has a normal backlash of {millimetres(backlash)}, "
             f"{backlash / usual:.2g} times the {micrometres(usual)} that ISO/TR 10064-2 "
-            f"recommends: {TOO_THIN}. With {fits} it has that."
+            f"recommends: {TOO_THIN}. With {fits} it has the recommended backlash."
             f"{_other_sign(gearing, mesh)}"
         )
 
@@ -525,7 +525,7 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
         allowed = f"within {millimetres(flank.active_length)} of roll"
         shown = millimetres(roll_length)
     reason = f"the relief must start in {inside}, {allowed}."
-    return Problem(f"{key}_{given[0]}", shown, reason, "Correct where it starts.")
+    return Problem(f"{key}_{given[0]}", shown, reason, "Correct the start of the relief.")
 
 
 def _without_amount(flank: _Flank) -> list[Problem]:
@@ -585,7 +585,7 @@ def _check_topography(flank: _Flank, table: StatedTopography) -> list[Problem]:
         problems.append(Problem(f"{key}.deviation", shown, allowed, remedy))
     base = 2 * flank.gear.base_radius
     if table.diameter and table.diameter[0] < base:
-        allowed = f"lies inside the base circle of {millimetres(base)}, where there is no involute."
+        allowed = f"lies inside the base circle of {millimetres(base)}, where no involute exists."
         remedy = "Leave out these rows."
         problems.append(Problem(f"{key}.diameter", millimetres(table.diameter[0]), allowed, remedy))
     return problems or _check_place(flank, table)
@@ -604,7 +604,7 @@ def _check_place(flank: _Flank, table: StatedTopography) -> list[Problem]:
             f"{millimetres(points[0])} to {millimetres(points[-1])}",
             f"must overlap the {where}, {millimetres(low)} to {millimetres(high)}, by at least "
             "half of the longer of the two.",
-            "Give the deviations where the flank works.",
+            "Give the deviations on the active part of the flank.",
         )
         for name, points, where, (low, high) in places
         if min(points[-1], high) - max(points[0], low) < max(points[-1] - points[0], high - low) / 2

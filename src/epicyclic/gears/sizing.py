@@ -105,7 +105,7 @@ def complete(
     unknown = [name for name, table in solver.tables.items() if not table.states_thickness]
     if unknown:
         keys = ", ".join(f"{gearing.key(it)}.profile_shift_coefficient" for it in unknown)
-        allowed = "is missing, and no mesh with a gear of the same basic rack tells it."
+        allowed = "is missing, and no mesh with a gear of the same basic rack gives it."
         return gearing, named, [Problem(keys, "", allowed, "Add it.")]
     return _completed(gearing, solver), (*named, *solver.found), []
 
@@ -247,7 +247,7 @@ class _Solver:
             return closed_center_distance(mesh.rack, mesh.teeth, total, mesh.backlash or 0.0)
         except ValueError as error:
             key = ", ".join(map(self._shift_key, mesh.gears))
-            allowed = f"leave no centre distance: {error}."
+            allowed = f"allow no centre distance: {error}."
             remedy = f"Correct the profile shifts, or give {'.'.join(mesh.place)}."
             raise one_problem(key, "", allowed, remedy) from None
 
@@ -310,7 +310,7 @@ class _Solver:
             )
         else:
             with_what = f"with a normal backlash of {micrometres(mesh.backlash)}"
-        self.found.append(Found(key, value, f"found from the {mesh.drawn.title}, {with_what}."))
+        self.found.append(Found(key, value, f"computed from the {mesh.drawn.title}, {with_what}."))
 
     # --- what is stated twice ---
 
@@ -336,8 +336,8 @@ class _Solver:
                 self._shift_key(name),
                 f"{shift:.6f}",
                 f"adjusted, because the teeth of the {mesh.drawn.title} are "
-                f"{-1e9 * backlash:.3g} nm too thick for the centre distance, less than the "
-                "printed digits tell.",
+                f"{-1e9 * backlash:.3g} nm too thick for the centre distance, which is less "
+                "than the printed digits show.",
             )
         )
 
@@ -370,7 +370,7 @@ def _no_distance(meshes: Sequence[_Sized]) -> InputError:
     place = ".".join(meshes[0].place)
     pairs = " or ".join(" and ".join(mesh.gears) for mesh in meshes)
     table, _, key = place.rpartition(".")
-    allowed = "is missing, and no mesh tells it: that takes the tooth thickness of both gears, "
+    allowed = "is missing, and no mesh gives it: that needs the tooth thickness of both gears, "
     allowed += f"{pairs}."
     remedy = f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.'
     return one_problem(place, "", allowed, remedy)

@@ -139,7 +139,7 @@ def _chosen_directory() -> Path | None:
         return cache_directory(Path(__file__).parents[1])
     folder = Path(given)
     if folder.exists() and not is_private(folder):
-        _notes[f"NUMBA_CACHE_DIR is not used: others may write to {folder}."] = None
+        _notes[f"NUMBA_CACHE_DIR is not used, because others may write to {folder}."] = None
         return None
     return folder
 
@@ -210,7 +210,10 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
 
 def _note_lost(error: Exception) -> None:
     reason = getattr(error, "strerror", None) or error
-    text = f"Compiled code cannot be kept in {_CACHE_DIR}: {reason}. Every start compiles it anew."
+    text = (
+        f"Compiled code cannot be kept in {_CACHE_DIR}: {reason}. It is compiled again at "
+        "every start."
+    )
     _notes[text] = None
 
 

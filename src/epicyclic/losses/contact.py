@@ -227,7 +227,7 @@ def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
 
 LOAD_DISTRIBUTIONS: dict[str, LoadDistribution] = {
     "uniform": LoadDistribution(
-        "even along all contact lines", "", partial(_in_proportion, "uniform")
+        "uniform along all contact lines", "", partial(_in_proportion, "uniform")
     ),
     "minimum-energy": LoadDistribution(
         "stiffness along the path of contact from minimum energy",

@@ -38,7 +38,8 @@ _CREEPING = Range(
     70.0,
     None,
     NUMBER,
-    "below, a disc in creeping flow, 32/3 mu omega r^3, drags more: Lamb, Hydrodynamics",
+    "below it, the drag of a disc in creeping flow, 32/3 mu omega r^3, is larger: Lamb, "
+    "Hydrodynamics",
 )
 _RIM_SOURCE = "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)"
 _RIM = Range("reynolds_number", "Reynolds number of the rim", None, 60.0, NUMBER, _RIM_SOURCE)
@@ -322,14 +323,14 @@ CHURNING_MODELS: Mapping[ChurningModel, Churning] = {
         "churning after Changenet and Velex",
         "C. Changenet, P. Velex, J. Mech. Des. 129 (2007) 128; regimes: C. Changenet, G. Leprince, "
         "F. Ville, P. Velex, J. Mech. Des. 133 (2011) 121009; second hand",
-        "fitted to tests of single gears, whose scatter was not found in print; "
-        "readings of its slow regime in other works lie up to 40 % lower",
+        "fitted to tests of single gears, whose scatter was not found in print; other works give "
+        "up to 40 % less in its slow regime",
         changenet_velex,
     ),
     "iso-14179-1": Churning(
         "churning of ISO/TR 14179-1",
         "ISO/TR 14179-1:2001, second hand",
-        "coefficients of a standard, which states no error",
+        "coefficients of a standard that states no error",
         iso_14179_1,
     ),
 }
@@ -340,8 +341,8 @@ _SINGLE_GEARS = (
 )
 _RANGES = {
     "changenet-velex": (
-        Range("diameter", "pitch diameter of what dips", 50.0, 300.0, MILLIMETRE, _SINGLE_GEARS),
-        Range("immersed", "depth over the diameter", None, 0.5, NUMBER, _SINGLE_GEARS),
+        Range("diameter", "immersed pitch diameter", 50.0, 300.0, MILLIMETRE, _SINGLE_GEARS),
+        Range("immersed", "immersion depth over the diameter", None, 0.5, NUMBER, _SINGLE_GEARS),
     ),
     "iso-14179-1": (
         Range(
@@ -350,7 +351,7 @@ _RANGES = {
             LEAST_MODULE,
             None,
             MILLIMETRE,
-            "below, the factor of the teeth nears zero and is held: limit of this package",
+            "below it, the factor of the teeth approaches zero and is held: limit of this package",
         ),
     ),
 }
@@ -359,7 +360,7 @@ _SPLASH_SOURCE = (
     "doi 10.1007/s10010-020-00423-0"
 )
 _SPLASH = Range(
-    "tip_speed", "circumferential speed of what dips", None, 20.0, METRE_PER_SECOND, _SPLASH_SOURCE
+    "tip_speed", "speed of the immersed rim", None, 20.0, METRE_PER_SECOND, _SPLASH_SOURCE
 )
 
 

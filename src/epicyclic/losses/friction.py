@@ -331,7 +331,7 @@ _FORMULA_SPEED = Range(
     "pitch_line_speed", "pitch-line speed", 1.0, 50.0, METRE_PER_SECOND, _NIEMANN
 )
 _LOAD = Range(
-    "specific_load", "load for each face width", 150.0, None, NEWTON_PER_MM, _NIEMANN, specific_load
+    "specific_load", "load per face width", 150.0, None, NEWTON_PER_MM, _NIEMANN, specific_load
 )
 _FORMULA_PRESSURE = Range(
     "pitch_point_pressure",
@@ -512,11 +512,11 @@ def paired_friction(contact: LineContacts, settings: FrictionSettings) -> FloatA
     return published * pairing_ratio("friction", contact)
 
 
-_SUCCESSOR = "none is in print; that of the later regression, Talbot (2012), Table 5.1"
+_SUCCESSOR = "none is printed; that of the later regression, Talbot (2012), Table 5.1"
 _REGRESSION_PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SUCCESSOR)
 _REGRESSION_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SUCCESSOR)
 _FORMULA_RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
-_VISCOSITY_SOURCE = "none is in print; a 75W-90 gear oil from 150 to 25 degC"
+_VISCOSITY_SOURCE = "none is printed; a 75W-90 gear oil from 150 to 25 degC"
 _VISCOSITY = Range(
     "dynamic_viscosity", "dynamic viscosity", 5.0, 180.0, MILLIPASCAL_SECOND, _VISCOSITY_SOURCE
 )
@@ -643,9 +643,9 @@ FRICTION_MODELS = {
             name="mixed-ehl",
             title="mixed-EHL friction regression",
             source=f"{REGRESSION_SOURCE}, Eq. 5.8",
-            reliability="regression of simulated contacts, its error against them not printed; "
-            "with it the measured loss of the sets it was made for is predicted 3.5 % low in its "
-            "slope at 90 °C (Talbot 2012, Fig. 5.9), lower at 40 and 60 °C",
+            reliability="regression of simulated contacts, whose error against them is not "
+            "printed; with it the predicted slope of the measured loss of the sets it was made "
+            "for is 3.5 % low at 90 °C (Talbot 2012, Fig. 5.9), lower at 40 and 60 °C",
             function=mixed_ehl,
             ranges=TALBOT_GEAR_RANGES,
             made_for=TALBOT_FLUID,
@@ -655,7 +655,7 @@ FRICTION_MODELS = {
             title="mixed-EHL friction regression, pairing of unequal flanks from the solver",
             source=f"{REGRESSION_SOURCE}, Eq. 5.8; solver for line contacts of this package",
             reliability="mixed-ehl where both flanks are equally rough; the effect of a smoother "
-            "one is that of the solver of this package, not compared with measurements",
+            "flank is from the solver of this package and was not compared with measurements",
             function=paired_friction,
             ranges=TALBOT_GEAR_RANGES,
             made_for=TALBOT_FLUID,
@@ -664,8 +664,8 @@ FRICTION_MODELS = {
             name="xu-2007",
             title="EHL friction regression of Xu et al.",
             source="Xu, Kahraman, Anderson, Maddock, J. Mech. Des. 129 (2007) 58",
-            reliability="regression of simulated contacts; 24 to 36 % off the measured loss of one "
-            "jet-lubricated spur pair (tests of Petry-Johnson et al., second hand)",
+            reliability="regression of simulated contacts; 24 to 36 % error against the measured "
+            "loss of one jet-lubricated spur pair (tests of Petry-Johnson et al., second hand)",
             function=xu_2007,
             ranges=(
                 _REGRESSION_PRESSURE,
@@ -697,7 +697,7 @@ FRICTION_MODELS = {
             name="matsumoto",
             title="film share of Matsumoto and Morikawa",
             source="S. Matsumoto and K. Morikawa, Int. Gear Conf. Lyon (2014) 1078",
-            reliability=f"film and dry friction are estimates of the case; {_NOT_COMPARED}",
+            reliability=f"film and dry friction are estimates in the case; {_NOT_COMPARED}",
             function=matsumoto,
             ranges=FILM_RANGES,
         ),
@@ -705,7 +705,7 @@ FRICTION_MODELS = {
             name="doleschel",
             title="film share of Doleschel",
             source="A. Doleschel, Diss. TU Muenchen (2002)",
-            reliability=f"film and dry friction are estimates of the case; {_NOT_COMPARED}",
+            reliability=f"film and dry friction are estimates in the case; {_NOT_COMPARED}",
             function=doleschel,
             ranges=FILM_RANGES,
         ),

@@ -126,13 +126,15 @@ def table_problems(
             Problem(
                 "speed",
                 RPM.text(float(axes["speed"][0])),
-                "must not be negative: a loss is the same in both senses of rotation.",
+                "must not be negative, because a loss is the same in both senses of rotation.",
                 "Give magnitudes of the speed difference.",
             )
         )
     if quantity == "power" and "speed" not in axes:
         remedy = "Add speed, or give torque."
-        problems.append(Problem("power", "", "needs the axis speed: at rest it is zero.", remedy))
+        problems.append(
+            Problem("power", "", "needs the axis speed, because it is zero at rest.", remedy)
+        )
     return problems + _value_problems(quantity, axes, values)
 
 
@@ -155,8 +157,8 @@ def _value_problems(
     if quantity == "power" and "speed" in axes and axes["speed"][0] == 0:
         at_rest = np.take(array, 0, axis=list(axes).index("speed"))
         if np.any(at_rest > 0):
-            allowed = "must be zero at speed 0: nothing that stands still loses power."
-            remedy = "Give 0 W there, or begin at a higher speed."
+            allowed = "must be zero at speed 0, because a part at rest loses no power."
+            remedy = "Give 0 W there, or start at a higher speed."
             return [Problem("power", f"{at_rest.max():.6g} W", allowed, remedy)]
     return []
 
@@ -190,7 +192,7 @@ def _parse(text: str, source: str) -> LossTable:
         refuse(f"has more than {_MOST_ROWS} rows.", "Keep the points that describe the curve.")
     ragged = [line for line, cells in body if len(cells) != len(header)]
     if ragged:
-        allowed = f"must have {len(header)} cells, as the header has."
+        allowed = f"must have {len(header)} cells, like the header."
         problems.append(Problem(_lines(ragged), "", allowed, "Complete or delete these lines."))
         raise InputError(problems)
     data = {}
@@ -213,14 +215,16 @@ def _columns(header: Sequence[str]) -> tuple[dict[int, tuple[str, str]], list[Pr
         match = _HEADER.fullmatch(text)
         name = match["name"].strip().lower() if match else text.lower()
         if name not in known:
-            allowed = f"is not a known column; known are {', '.join(known)}."
+            allowed = f"is not a known column; the columns are {', '.join(known)}."
             problems.append(Problem(_shown(text), "", allowed, "Rename or delete it."))
         elif match is None:
             unit = _COLUMNS[name][1].display
             allowed, remedy = "has no unit.", f"Write it as {name} [{unit}]."
             problems.append(Problem(_shown(text), "", allowed, remedy))
         elif name in (seen for seen, _ in columns.values()):
-            problems.append(Problem(_shown(text), "", "is a second such column.", "Delete one."))
+            problems.append(
+                Problem(_shown(text), "", "is a second column of the same name.", "Delete one.")
+            )
         else:
             columns[number] = (name, match["unit"].strip())
             try:
@@ -275,7 +279,7 @@ def _gridded(data: Mapping[str, FloatArray], lines: Sequence[int], source: str) 
     problems = []
     for line, place in zip(lines, where, strict=True):
         if place in seen:
-            allowed = f"is at the same point as line {seen[place]}."
+            allowed = f"repeats the point of line {seen[place]}."
             problems.append(Problem(f"line {line}", "", allowed, "Delete one."))
         seen.setdefault(place, line)
     shape = tuple(len(points) for points in axes.values())
@@ -288,7 +292,7 @@ def _gridded(data: Mapping[str, FloatArray], lines: Sequence[int], source: str) 
         )
         count = f"{len(gaps)} points, the first at" if len(gaps) > 1 else "the point"
         allowed = f"the file has no row for {count} {first}."
-        remedy = f"Give every value of {names[0]} with every value of {names[-1]}."
+        remedy = f"Combine every value of {names[0]} with every value of {names[-1]}."
         problems.append(Problem("", "", allowed, remedy))
     raise_any(problems)
     values = np.zeros(shape)

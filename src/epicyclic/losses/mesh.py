@@ -172,9 +172,9 @@ def loss_factor_notes(mesh: Mesh) -> tuple[str, ...]:
         return ()
     return (
         f"The loss factor of the {mesh.name} is {ohlendorf_loss_factor(mesh):.4f}. Ohlendorf's "
-        f"closed form, which other programs apply here too, gives {ohlendorf_closed_form(mesh):.4f}"
-        f"; it holds for tip contact ratios up to {CLOSED_LIMIT:g}, and here they are {tip1:.2f} "
-        f"and {tip2:.2f}.",
+        "closed form, which other programs also use here, gives "
+        f"{ohlendorf_closed_form(mesh):.4f}; it is valid for tip contact ratios up to "
+        f"{CLOSED_LIMIT:g}; here they are {tip1:.2f} and {tip2:.2f}.",
     )
 
 

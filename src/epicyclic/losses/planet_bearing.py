@@ -60,7 +60,7 @@ FIRST_APPROACH = 1e-5  # Displacement beyond the clearance at which the iteratio
 
 BEARING_RELIABILITY = {
     "mixed-ehl": "calibrated on three printed losses of one bearing; a fourth, with smoother "
-    "rollers, is met within 10 %",
+    "rollers, is reproduced within 10 %",
     "palmgren": "its source gives a range of a factor of 2 for caged rollers",
 }
 """How well each model is known to be right, as a phrase."""

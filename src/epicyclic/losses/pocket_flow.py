@@ -248,7 +248,7 @@ POCKETING_MODELS: dict[str, str] = {
     "isentropic": "flow of a compressible mixture, isentropic openings",
     "mean-density": "flow of a compressible mixture, mean density at the openings",
     "central-differences": "flow of a compressible mixture, mean density, central differences",
-    "talbot-2012": "flow of an incompressible mixture as a reading of the source has it",
+    "talbot-2012": "flow of an incompressible mixture, after one reading of the source",
 }
 NETWORK_MODELS: tuple[PocketModel, ...] = ("incompressible", "talbot-2012")
 """Those without sound waves, whose flow scales with density and speed."""
@@ -415,8 +415,8 @@ def _compressible_flow(
 
 def _no_solution(geometry: PocketGeometry) -> ConvergenceError:
     return ConvergenceError(
-        f"pocketing of the {geometry.mesh.name}: the flow does not converge, not even in shorter "
-        "time steps, or takes too many iterations; take another models.pocketing, or leave the "
+        f"pocketing of the {geometry.mesh.name}: the flow does not converge even with shorter "
+        "time steps, or needs too many iterations. Choose another models.pocketing, or leave the "
         "term out (losses)."
     )
 

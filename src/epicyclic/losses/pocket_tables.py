@@ -71,7 +71,7 @@ FLOW_NUMBERS: dict[str, tuple[str, Quantity]] = {
     "power": ("pocketing loss of one mesh", WATT),
     "pressure_max": ("highest pressure in the pockets, above ambient", BAR),
     "pressure_min": ("lowest pressure in the pockets, above ambient", BAR),
-    "speed_max": ("fastest flow out of or into a pocket", METRE_PER_SECOND),
+    "speed_max": ("highest flow speed out of or into a pocket", METRE_PER_SECOND),
     "difference": ("pocketing loss: error of its energy balance", NUMBER),
 }
 """Label and quantity of the numbers of `FlowFigures`."""
@@ -460,7 +460,7 @@ class _Stored(BaseModel):
     def _fits(self) -> _Stored:
         nodes = len(self.number)
         if len(self.scaled) != nodes or len(self.readable) != nodes - 1:
-            raise ValueError("numbers and figures differ in count")
+            raise ValueError("the counts of numbers and figures differ")
         if any(np.diff(self.number) <= 0):
             raise ValueError("the numbers do not rise")
         powers = [figures[0] for figures in self.scaled]
@@ -525,7 +525,7 @@ def _read(path: Path, _changed: int, _size: int) -> StoredTables:
         raise _error(path, f"is damaged: {reason}.") from None
     version = metadata.version("epicyclic")
     if stored.version != version:
-        raise _error(path, f"was made by version {stored.version}, this is {version}.")
+        raise _error(path, f"was made by version {stored.version}, but this is {version}.")
     return stored
 
 
@@ -548,7 +548,7 @@ def _table(path: Path, changed: int, size: int, family: FlowFamily) -> FlowTable
         and stored.family.get("drives1") == family.drives1
     ]
     if not alike:
-        raise _error(path, f"has no table of a {family.mesh.name}.")
+        raise _error(path, f"has no table for a {family.mesh.name}.")
     stored = alike[0]
     differing = [
         Problem(

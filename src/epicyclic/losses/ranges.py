@@ -23,7 +23,7 @@ SMALLEST_SHOWN_SHARE = 0.01
 SMALLEST_APART = 0.01
 """Part of the total loss below which a range left shares a sentence with others. [1]"""
 OUT_OF_RANGE = "Out of range"  # Begins what `describe_flags` says of a flag.
-OF_THIS_PACKAGE = "limit of this package; none is in print"
+OF_THIS_PACKAGE = "limit of this package; none is printed"
 """Source of a range that no publication states."""
 
 
@@ -145,7 +145,7 @@ class ModelUse:
     instead: str = ""
 
     def __str__(self) -> str:
-        instead = f"; {self.instead} takes over" if self.instead else ""
+        instead = f"; {self.instead} is used instead" if self.instead else ""
         return f"{self.role.replace('_', ' ')} {self.model} ({self.where}{instead})"
 
 
@@ -229,7 +229,7 @@ def describe_flags(
     elif small:
         ranges = "; ".join(range_text(group) for _, group in small)
         watts = max(watts for watts, _ in small)
-        sentences.append(f"{OUT_OF_RANGE}, each for {WATT.text(watts, 2)} at most: {ranges}.")
+        sentences.append(f"{OUT_OF_RANGE}, each for at most {WATT.text(watts, 2)}: {ranges}.")
     return tuple(sentences)
 
 

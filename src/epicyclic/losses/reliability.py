@@ -16,8 +16,8 @@ from epicyclic.units import percent
 RELIABILITY: Mapping[str, Mapping[str, str]] = {
     "friction": {
         **{name: model.reliability for name, model in FRICTION_MODELS.items()},
-        "ehl-direct": "contacts solved, the error of interpolation stated among the warnings; "
-        "not compared with measurements",
+        "ehl-direct": "contacts are solved, and the warnings state the interpolation error; not "
+        "compared with measurements",
     },
     "rolling": {it.name: it.reliability for it in (*ROLLING_MODELS.values(), CONTAINED)},
     "bearing": BEARING_RELIABILITY,

@@ -140,8 +140,8 @@ ROLLING_MODELS = {
             name="mixed-ehl",
             title="mixed-EHL rolling-loss regression",
             source=f"{REGRESSION_SOURCE}, Eq. 5.10",
-            reliability="its scale is a reconstruction, right within a factor of about 2 against "
-            "smooth contacts (R4)",
+            reliability="its scale is a reconstruction, correct within a factor of about 2 "
+            "against smooth contacts (R4)",
             function=mixed_ehl_rolling,
             ranges=TALBOT_GEAR_RANGES,
             made_for=TALBOT_FLUID,
@@ -150,8 +150,8 @@ ROLLING_MODELS = {
             name="mixed-ehl+pairing",
             title="mixed-EHL rolling-loss regression, pairing of unequal flanks from the solver",
             source=f"{REGRESSION_SOURCE}, Eq. 5.10; solver for line contacts of this package",
-            reliability="as mixed-ehl where both flanks are equally rough, the effect of a "
-            "smoother one from the solver of this package",
+            reliability="mixed-ehl where both flanks are equally rough; the effect of a smoother "
+            "flank is from the solver of this package",
             function=paired_rolling,
             ranges=TALBOT_GEAR_RANGES,
             made_for=TALBOT_FLUID,
@@ -161,7 +161,7 @@ ROLLING_MODELS = {
             title="rolling loss of Goksem and Hargreaves",
             source="Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346; light load: "
             "H. M. Martin, Engineering 102 (1916) 119",
-            reliability="within some 15 % of solved smooth contacts without heating; rough "
+            reliability="within about 15 % of solved smooth contacts without heating; rough "
             "contacts lose more",
             function=goksem_hargreaves,
             ranges=(
@@ -446,7 +446,7 @@ class _FittedOrFormula(Generic[Fit]):
     @property
     def title(self) -> str:
         """Both methods."""
-        return f"{self.fitted.title}, beyond them {self.beyond.title}"
+        return f"{self.fitted.title}; outside their range {self.beyond.title}"
 
     @property
     def source(self) -> str:

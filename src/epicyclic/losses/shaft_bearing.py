@@ -60,10 +60,10 @@ PALMGREN_METHOD = "load-dependent moment after Palmgren"
 HARRIS_METHOD = "load-dependent moment after Harris"
 HARRIS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991), second hand"
 
-_MEANS = "mean coefficients of bearings of a type, whose scatter was not found in print"
+_MEANS = "mean coefficients of a bearing type, whose scatter was not found in print"
 SHAFT_BEARING_RELIABILITY = {
     "zhou-hoeprich": "mean error against two sets of measured tapered bearings 10 and 14 %",
-    "skf-2018": "formulas of a catalogue, which states no error",
+    "skf-2018": "formulas of a catalogue that states no error",
     "palmgren": _MEANS,
     "harris": _MEANS,
     "table": "given by the case",

@@ -93,7 +93,7 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
         known[-len(given) :] = list(given.values())
     if matrix.shape[0] == matrix.shape[1]:
         found = solution_of(matrix, known)
-        assert found is not None, "they determine all: the checks of the case say so"
+        assert found is not None, "the speeds are determined, as the checks of the case ensure"
     else:
         least = np.linalg.lstsq(matrix, known, rcond=SINGULAR)[0]
         found = least + np.linalg.lstsq(matrix, known - matrix @ least, rcond=SINGULAR)[0]

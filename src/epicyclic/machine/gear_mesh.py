@@ -153,13 +153,11 @@ class MeshFigures:
     misalignment: float = figure("misalignment, with tilt of the planet if coupled", MICROMETRE)
     pitch_line_speed: float = figure("pitch-line speed, relative to carrier", METRE_PER_SECOND)
     sliding_speed_max: float = figure("largest sliding speed", METRE_PER_SECOND)
-    line_load_max: float = figure("largest line load but for 1 % of the contact", NEWTON_PER_MM)
-    hertz_pressure_max: float = figure(
-        "largest Hertz pressure but for 1 % of the contact", GIGAPASCAL
-    )
-    contact_share: float = figure("share of the contact lines that carries", NUMBER)
-    film_ratio_min: float = figure("film ratio, smallest", NUMBER)
-    film_ratio_max: float = figure("film ratio, largest", NUMBER)
+    line_load_max: float = figure("line load exceeded on 1 % of the contact", NEWTON_PER_MM)
+    hertz_pressure_max: float = figure("Hertz pressure exceeded on 1 % of the contact", GIGAPASCAL)
+    contact_share: float = figure("loaded share of the contact lines", NUMBER)
+    film_ratio_min: float = figure("smallest film ratio", NUMBER)
+    film_ratio_max: float = figure("largest film ratio", NUMBER)
     friction_mean: float = figure("mean coefficient of friction", NUMBER)
     loss_factor: float = figure("loss factor H_V (Ohlendorf)", NUMBER)
     transmission_error_range: float = figure("loaded transmission error, peak to peak", MICROMETRE)
@@ -169,11 +167,11 @@ class MeshFigures:
     pocket_speed_max: float = figure(*FLOW_NUMBERS["speed_max"])
     pocket_power_difference: float = figure(*FLOW_NUMBERS["difference"])
     pocket_interpolation_error: float = figure(
-        "pocketing loss: largest error of its interpolation", NUMBER
+        "largest interpolation error of the pocketing loss", NUMBER
     )
-    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
-    flash_temperature_mean: float = figure("flash temperature, mean over the load", KELVIN)
-    flash_temperature_max: float = figure("flash temperature, largest", KELVIN)
+    contact_temperature: float = figure("oil temperature at the contact inlet", CELSIUS)
+    flash_temperature_mean: float = figure("mean flash temperature, weighted by load", KELVIN)
+    flash_temperature_max: float = figure("largest flash temperature", KELVIN)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

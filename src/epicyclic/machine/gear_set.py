@@ -118,9 +118,9 @@ class Planet:
             return ()
         where = self.key.replace("_", " ")
         return (
-            f"{where}: the mass of a planet is not given. From its sizes it is "
-            f"{format_number(self.mass, 3)} kg and pulls outward with {NEWTON.text(force, 3)}, "
-            f"of {NEWTON.text(load.force, 3)} on the bearing.",
+            f"{where}: the mass of a planet is not given. Estimated from its dimensions, it is "
+            f"{format_number(self.mass, 3)} kg and its centrifugal force is "
+            f"{NEWTON.text(force, 3)} of the {NEWTON.text(load.force, 3)} on the bearing.",
         )
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:

@@ -170,10 +170,10 @@ def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
         if coldest < COLDEST:
             node = min(answer.temperatures, key=answer.temperatures.__getitem__)
             return ConvergenceError(
-                f"more heat is taken away than arises: the {node.replace('_', ' ')} would be "
-                f"colder than {CELSIUS.text(COLDEST, 4)}, down to which losses are computed. Give "
-                "a smaller thermal.cooler_power, or thermal.cooler_conductance, which takes no "
-                "more than there is."
+                f"more heat is removed than generated: the {node.replace('_', ' ')} would be "
+                f"colder than {CELSIUS.text(COLDEST, 4)}, the lowest temperature at which losses "
+                "are computed. Give a smaller thermal.cooler_power, or "
+                "thermal.cooler_conductance, which cannot remove more heat than is generated."
             )
         if hottest > HOTTEST:
             break
@@ -183,10 +183,10 @@ def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
     if OIL in temperatures and node != OIL:
         reached += f", oil {CELSIUS.text(temperatures[OIL], 4)}"
     return ConvergenceError(
-        "the gearbox runs away: its heat would leave only beyond "
-        f"{CELSIUS.text(HOTTEST, 4)}, up to which losses are computed. After {len(found)} passes "
-        f"the temperatures are: {reached}. Take more heat away (thermal.oil_flow, "
-        "thermal.cooler_conductance, a larger [thermal.housing]), or pass less power."
+        f"thermal runaway: the heat balance closes only above {CELSIUS.text(HOTTEST, 4)}, the "
+        f"highest temperature at which losses are computed. After {len(found)} passes the "
+        f"temperatures are: {reached}. Remove more heat (thermal.oil_flow, "
+        "thermal.cooler_conductance, a larger [thermal.housing]), or transmit less power."
     )
 
 
@@ -500,7 +500,7 @@ class NetworkModel:
         self._check_names(network)
         left = network.cut_off()
         if any(node == OIL or heat.get(node) for node in left):
-            allowed = f"the heat of {', '.join(left)} has no way out."
+            allowed = f"the heat of {', '.join(left)} has no path out of the gearbox."
             raise one_problem("thermal", "", allowed, _OUTLET_REMEDY)
         # parts at rest, which nothing heats or cools, are as warm as the oil
         resting = (
@@ -560,7 +560,7 @@ class NetworkModel:
             Problem(
                 key,
                 "",
-                f"is not given: how fast the {node} warms up depends on it.",
+                f"is not given, but the warm-up rate of the {node} depends on it.",
                 f'Give it, as "{example}", or thermal.capacities.{node}.value.',
             )
             for node, (key, example) in _STATED_CAPACITIES.items()
@@ -632,7 +632,7 @@ class NetworkModel:
         raise_any(_no_such("thermal.jet_shares", "part", strangers, self.wetted))
         known = [link.key for link in network.links]
         unknown = set(self.settings.changes) - set(known)
-        raise_any(_no_such("thermal.conductances", "way of the heat", unknown, known))
+        raise_any(_no_such("thermal.conductances", "heat path", unknown, known))
 
 
 _OUTLET_REMEDY = (
@@ -667,8 +667,8 @@ def _seats(own: object) -> Iterator[tuple[str, str]]:
 
 
 def _no_such(table: str, noun: str, unknown: Iterable[str], known: Iterable[str]) -> list[Problem]:
-    allowed = f"is no {noun} here; there are {', '.join(known)}."
+    allowed = f"is not a {noun} here; these are {', '.join(known)}."
     return [
-        Problem(f"{table}.{name}", "", allowed, "Take one of these names.")
+        Problem(f"{table}.{name}", "", allowed, "Use one of these names.")
         for name in sorted(unknown)
     ]

@@ -280,7 +280,9 @@ class Transient:
             atol=np.append(np.full(count, tolerance), 2 * [tolerance * self._paths.inertia.sum()]),
         )
         if not done.success:
-            raise ConvergenceError(f"the course of the temperatures has no end: {done.message}")
+            raise ConvergenceError(
+                f"the temperatures could not be integrated to the end: {done.message}"
+            )
         return Course(done.t, done.y[:count], done.y[count], done.y[-1])
 
     def settled(self, guess: FloatArray) -> FloatArray | None:

@@ -76,11 +76,11 @@ def bearing_reactions(
     alone does not give the reactions; the message says why.
     """
     if not supports:
-        raise ValueError("the shaft has no bearing that could take its loads")
+        raise ValueError("the shaft has no bearing to carry its loads")
     if len(supports) > 2:
         raise ValueError(
-            f"the shaft has {len(supports)} bearings, and statics gives the forces of two only; "
-            "give radial_force yourself"
+            f"the shaft has {len(supports)} bearings, but statics gives the forces of only two; "
+            "give radial_force"
         )
     forces = np.array([load.force for load in loads], dtype=float).reshape(-1, 3)
     moments = np.array([load.moment for load in loads], dtype=float).reshape(-1, 2)
@@ -111,8 +111,8 @@ def _check_single(
     left = float(np.abs(about.sum(axis=0)).max())
     if left > NEGLIGIBLE * largest:
         raise ValueError(
-            f"a moment of {format_number(left, 4)} N m is left on the only bearing of the shaft; "
-            "add a second bearing, or give radial_force yourself"
+            f"a moment of {format_number(left, 4)} N m remains on the only bearing of the shaft; "
+            "add a second bearing, or give radial_force"
         )
 
 

@@ -484,7 +484,10 @@ class PlanetBearing:
         if isinstance(self.model, FittedRolling):
             title, source = self.model.title, self.model.source
             if self.palmgren_beyond:
-                return f"{title}, beyond them {PALMGREN_METHOD}", f"{source}; {PALMGREN_SOURCE}"
+                return (
+                    f"{title}; outside their range {PALMGREN_METHOD}",
+                    f"{source}; {PALMGREN_SOURCE}",
+                )
             return title, source
         if self.model == "mixed-ehl":
             return BEARING_METHOD, BEARING_SOURCE
@@ -508,7 +511,7 @@ class BearingFigures:
     roller_load_max: float = figure("most loaded roller", NEWTON)
     roller_azimuth: float = figure("azimuth of that roller from the load", DEGREE)
     hertz_pressure_max: float = figure("largest Hertz pressure, inner race", GIGAPASCAL)
-    contact_temperature: float = figure("oil where it enters the contacts", CELSIUS)
+    contact_temperature: float = figure("oil temperature at the contact inlet", CELSIUS)
     heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
 
 

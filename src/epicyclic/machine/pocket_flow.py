@@ -232,7 +232,7 @@ def _solve(request: FlowRequest) -> MeshFlow:
     try:
         return MeshFlow(family.figures(speed, mixture, pressure))
     except ValueError as error:
-        return MeshFlow(left_out=f"no tooth outline: {error}")
+        return MeshFlow(left_out=f"the tooth has no outline: {error}")
 
 
 def pocketing_method(model: str, figures: FlowFigures | None) -> str:
@@ -260,8 +260,8 @@ def pocket_notes(
     notes = []
     if not figures.periodic:
         notes.append(
-            f"The flow through the pockets of the {name} does not repeat from one mesh period "
-            f"to the next; its loss is the mean of {figures.periods // 2} periods."
+            f"The flow through the pockets of the {name} is not periodic over mesh periods; its "
+            f"loss is the mean of {figures.periods // 2} periods."
         )
     if count * figures.power < least:
         return tuple(notes)
@@ -269,12 +269,12 @@ def pocket_notes(
     if lowest < 0:
         notes.append(
             f"The pressure in the pockets of the {name} falls to {BAR.text(lowest, 3)} absolute, "
-            f"which no fluid can have ({lost}): models.pocketing = {settings.model} is meant for "
-            "lower speeds."
+            f"which is impossible for a fluid ({lost}); models.pocketing = {settings.model} is "
+            "meant for lower speeds."
         )
     elif settings.model == "incompressible" and lowest <= settings.void_pressure * (1 + _AT_VOID):
         notes.append(
-            f"The pockets of the {name} open faster than they fill and hold voids at "
+            f"The pockets of the {name} open faster than they fill and contain voids at "
             f"models.pocket_void_pressure ({lost})."
         )
     sound = sound_speed(fluids.mixed(oil_in_mesh(duty)), fluids.pressure)
@@ -282,10 +282,10 @@ def pocket_notes(
     if settings.model != "isentropic" and figures.speed_max > LARGEST_MACH * sound:
         notes.append(
             f"The flow out of the pockets of the {name} reaches "
-            f"{format_number(figures.speed_max / sound, 3)} times the speed of sound of an even "
-            f"mixture, {METRE_PER_SECOND.text(sound, 3)} ({lost}). The loss lies "
-            "between those of models.pocketing = incompressible and isentropic; epicyclic pockets "
-            "shows both."
+            f"{format_number(figures.speed_max / sound, 3)} times the speed of sound of a "
+            f"homogeneous mixture, {METRE_PER_SECOND.text(sound, 3)} ({lost}). The loss lies "
+            "between those of models.pocketing = incompressible and isentropic; epicyclic "
+            "pockets shows both."
         )
     notes += _study_note(duty, lost)
     return tuple(notes)
@@ -322,6 +322,6 @@ def stored_note(
     if settings.file is None or figures is None or figures.file:
         return ()
     return (
-        f"models.pocketing_table does not hold the flow through the pockets of the {mesh.name} "
-        "at this speed, oil density and pressure: it was found without the table.",
+        f"models.pocketing_table does not cover the flow through the pockets of the {mesh.name} "
+        "at this speed, oil density and pressure, so the flow was computed without the table.",
     )

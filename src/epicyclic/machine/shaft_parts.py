@@ -112,7 +112,7 @@ _RANGES: Mapping[SealFormula, tuple[Range, ...]] = {
             0.0,
             None,
             NUMBER,
-            "below zero it has no meaning; held at zero",
+            "it has no meaning below zero; held at zero",
         ),
     ),
 }
@@ -254,7 +254,7 @@ class ShaftBearingFigures:
 
     radial_force: float = figure("radial force", NEWTON)
     axial_force: float = figure("axial force", NEWTON)
-    friction_load: float = figure("load P1 that sets the friction", NEWTON)
+    friction_load: float = figure("load P1 for the friction moment", NEWTON)
     minimum_load: float = figure("minimum load (SKF)", NEWTON)
     speed: float = figure("speed difference of the rings", RPM)
     friction_torque: float = figure("friction torque", NEWTON_METRE)
@@ -353,7 +353,7 @@ class ShaftBearing:
         skf = self.model.skf if isinstance(self.model, TaperedModel) else self.model
         if isinstance(skf, SkfModel) and skf.drag_is_estimated:
             notes.append(
-                f"{self.key}: the drag variable V_M is an estimate, as SKF's diagram was not at "
-                "hand; give drag_variable."
+                f"{self.key}: the drag variable V_M is an estimate, because SKF's diagram was "
+                "not available; give drag_variable."
             )
         return tuple(notes)

@@ -470,9 +470,9 @@ class _Branch:
         """What to say if losses and torques do not agree."""
         return ConvergenceError(
             f"losses and torques do not agree after {self.passes} passes: the losses grow with the "
-            "torques that they cause. Either the gears are next to self-locking in this direction "
-            "of power: they can turn only with smaller losses, or with power the other way. Or a "
-            "formula gives far too much outside its range: choose another models.friction or "
+            "torques that they cause. Either the gears are close to self-locking in this direction "
+            "of power; then they turn only with smaller losses or with reversed power. Or a "
+            "formula fails far outside its range; then choose another models.friction or "
             'models.rolling, or models.oil_beyond_range = "held".'
         )
 

@@ -176,7 +176,7 @@ def _no_member(key: str, name: str, members: Sequence[str], sets: Mapping[str, G
     if owner in sets and member in sets[owner].planets:
         allowed = "is a planet: it turns on the carrier and cannot be joined to a shaft."
         return Problem(key, written(name), allowed, f"Join {owner}.{CARRIER}, or another member.")
-    remedy = did_you_mean(name, members) or f"Known are: {', '.join(members)}."
+    remedy = did_you_mean(name, members) or f"The members are {', '.join(members)}."
     return Problem(key, written(name), "is not a member of a set.", remedy)
 
 
@@ -240,7 +240,7 @@ def state_problems(key: str, state: Joined, shape: TrainShape) -> list[Problem]:
         found = [problem for name in group for problem in _shaft_problems(where, name, shape)]
         problems += found
         if len(group) < 2:
-            allowed = "must be two or more shafts."
+            allowed = "must name two or more shafts."
             problems.append(Problem(where, shown, allowed, "Name the shafts that a clutch joins."))
         elif not found:
             shafts = [shape.shaft_of(name) for name in group]
@@ -257,8 +257,8 @@ def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:
     known = [shaft for shaft in shape.shafts if shaft != HOUSING]
     members = [member for names in shape.shafts.values() for member in names]
     remedy = did_you_mean(name, dict.fromkeys([*known, *members]))
-    remedy = remedy or f"Known are: {', '.join(known)}."
-    return [Problem(key, written(name), "is no shaft and no member of a set.", remedy)]
+    remedy = remedy or f"Choose one of {', '.join(known)}."
+    return [Problem(key, written(name), "is neither a shaft nor a member of a set.", remedy)]
 
 
 def _state_choice(train: Train) -> list[Problem]:
@@ -269,10 +269,10 @@ def _state_choice(train: Train) -> list[Problem]:
         return [Problem(key, "", allowed, f'Write state = "{known[0]}".')]
     if name is not None and name not in known:
         if not known:
-            allowed = "is no state: the train has none."
+            allowed = "is not a state: the train has no states."
             return [Problem(key, written(name), allowed, "Leave it out, or add [states.NAME].")]
-        remedy = did_you_mean(name, known) or f"Known are: {', '.join(known)}."
-        return [Problem(key, written(name), "is no state of the train.", remedy)]
+        remedy = did_you_mean(name, known) or f"Choose one of {', '.join(known)}."
+        return [Problem(key, written(name), "is not a state of the train.", remedy)]
     return []
 
 
@@ -283,21 +283,21 @@ def _ends_problems(train: Train, complete: bool) -> Iterator[Problem]:
     ends = {key: shape.shaft_of(getattr(operation, key)) for key in ("input", "output")}
     groups = [{shape.shaft_of(name) for name in group} for group in train.state.joined]
     if ends["input"] == ends["output"]:
-        allowed = "is the input shaft too."
-        remedy = "Name another shaft; a train passes power from one shaft to another."
+        allowed = "is also the input shaft."
+        remedy = "Name another shaft; a train transmits power from one shaft to another."
         yield Problem("operation.output", written(operation.output), allowed, remedy)
     held = shape.held(train.state)
     turning = {*shape.turning(train.state), HOUSING}
     for key, shaft in ends.items():
         if complete and shaft not in turning:
-            allowed = f"is joined to nothing in {_state_words(train)}: it has no members, and no "
-            allowed += "clutch that joins it is closed."
+            allowed = f"is not connected in {_state_words(train)}: it has no members, and no "
+            allowed += "clutch on it is closed."
             shown = written(getattr(operation, key))
             yield Problem(f"operation.{key}", shown, allowed, "Close a clutch, or name another.")
             continue
         by_clutch = any(shaft in group and group & set(held) for group in groups)
         if shaft == HOUSING or shaft in held or by_clutch:
-            allowed = "stands still, as the housing does."
+            allowed = "stands still with the housing."
             if shaft != HOUSING:
                 allowed = f"is held by a brake in {_state_words(train)}."
             advice = "Name a shaft that turns, or release it."
@@ -326,7 +326,7 @@ def _given_problems(train: Train, ends: Mapping[str, str | None]) -> Iterator[Pr
             if shaft in taken:
                 allowed = f"cannot be given: this shaft is {taken[shaft]}."
             elif shaft not in turning:
-                allowed = f"cannot be given: nothing is joined to it in {_state_words(train)}."
+                allowed = f"cannot be given: it is not connected in {_state_words(train)}."
             elif shaft in seen:
                 allowed = f"is given twice: {seen[shaft]} is the same shaft."
             seen[shaft] = name
@@ -353,10 +353,10 @@ def _freedom_problems(train: Train, complete: bool) -> list[Problem]:
     problems = []
     if found.blocked:
         means = _means(train.state, held, train.operation.speeds)
-        reason = f"blocks the train: the input shaft {driven} cannot turn" + (
+        reason = f"blocks the train, so the input shaft {driven} cannot turn" + (
             f" with {means}." if means else "."
         )
-        remedy = "Release one of these." if means else "Check the shafts: they join too much."
+        remedy = "Release one of these." if means else ("Check the shafts.")
         problems.append(Problem(key, shown, reason, remedy))
     if not complete:
         return problems
@@ -370,8 +370,8 @@ def _freedom_problems(train: Train, complete: bool) -> list[Problem]:
                 shown,
                 f"leaves {word} degree{'s' if freedoms > 1 else ''} of freedom open: the speed of "
                 f"{names} is not determined.",
-                f"Brake or couple {word} of these shafts more (fixed, joined), or give "
-                f"{word} of them a speed in [operation.speeds].",
+                f"Hold or join {word} more of these shafts (fixed, joined), or give the speed "
+                f"of {word} of them in [operation.speeds].",
             )
         )
     further = {shape.shaft_of(name) or "": name for name in train.operation.speeds}
@@ -396,8 +396,8 @@ def _standing_output(
     speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
     if speeds[shape.shaft_of(output) or ""] != 0:
         return []
-    allowed = f"stands still whatever the input shaft {driven} does in {_state_words(train)}, so "
-    allowed += "that no power reaches it."
+    allowed = f"stands still at any speed of the input shaft {driven} in {_state_words(train)}, so "
+    allowed += "no power reaches it."
     turning = [shaft for shaft in shape.shafts if speeds[shaft] != 0 and shaft != driven]
     remedy = f"Name a shaft that turns with the input: {', '.join(turning)}."
     if not turning:

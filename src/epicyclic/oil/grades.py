@@ -20,7 +20,7 @@ GOLD: dict[str, tuple[float, float, str]] = {
     "pao": (7.382, 0.1335, "polyalphaolefin"),
     "ester": (6.605, 0.1360, "ester"),
     "pag": (5.489, 0.1485, "polyglycol"),
-    "atf": (9.904, 0.1390, "mineral oil, taken to hold for transmission fluids"),
+    "atf": (9.904, 0.1390, "mineral oil, assumed for transmission fluids"),
 }
 """s, t and name of base oils; Gold et al. (2001), second hand; see `GoldLaw`."""
 
@@ -72,7 +72,7 @@ def whole_oil(table: dict[str, Any], preset: Mapping[str, Any] | None) -> dict[s
             f"has no viscosity grade of ISO 3448: iso_vg must be one of {near}", "Choose one"
         )
     if grade is not None and "viscosity_40" in table:
-        raise _refused_oil("gives iso_vg and viscosity_40, which say the same", "Give one of them")
+        raise _refused_oil("gives iso_vg and viscosity_40, which are the same", "Give one of them")
     whole: dict[str, Any]
     if preset is not None and "viscosity_100" not in table:
         whole = dict(preset) | own
@@ -88,12 +88,11 @@ def _viscosities(table: Mapping[str, Any]) -> tuple[dict[str, Any], ...]:
     grade, warm = table.get("iso_vg"), table.get("viscosity_100")
     if warm is None:
         raise _refused_oil(
-            "does not tell the viscosity at 100 degC, and no built-in oil is of this grade and "
-            "kind",
-            'Add viscosity_100 = "... mm^2/s" of the data sheet',
+            "leaves the viscosity at 100 degC open, and no built-in oil has this grade and kind",
+            'Add viscosity_100 = "... mm^2/s" from the data sheet',
         )
     if grade is None and "viscosity_40" not in table:
-        raise _refused_oil("does not tell the viscosity at 40 degC", "Add iso_vg or viscosity_40")
+        raise _refused_oil("leaves the viscosity at 40 degC open", "Add iso_vg or viscosity_40")
     stated = table.get("viscosity_40", f"{_SMALL.get(grade or 0, grade)} mm^2/s")
     source = "as stated" if grade is None else "ISO 3448, middle of the grade"
     return _point("40 degC", stated, source), _point("100 degC", warm, "as stated")
@@ -108,7 +107,7 @@ def _typical(kind: str) -> dict[str, Any]:
     s, t, base = GOLD.get(kind, GOLD["mineral"])
     density = f"{DENSITY.get(kind, DENSITY['mineral'])} kg/m^3"
     return {
-        "density": (_point("15 degC", density, f"usual for {base}, an estimate"),),
+        "density": (_point("15 degC", density, f"typical of {base}, an estimate"),),
         "pressure_viscosity": {
             "law": "gold",
             "s": s,
@@ -132,7 +131,7 @@ def short_oil_told(table: object, preset: str | None) -> tuple[str, str] | None:
         told.append(f"density {DENSITY[table['kind']]} kg/m^3 at 15 degC, an estimate")
     if "pressure_viscosity" not in table:
         told.append(
-            f"pressure-viscosity coefficient by Gold's constants for {GOLD[table['kind']][2]}, not "
-            "measured on this oil"
+            "pressure-viscosity coefficient from Gold's constants for "
+            f"{GOLD[table['kind']][2]}, not measured on this oil"
         )
     return f"an oil of the kind {table['kind']}", f"{'; '.join(told) or 'all stated'}."

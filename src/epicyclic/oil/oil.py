@@ -172,7 +172,8 @@ class Oil(_Data):
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     description: str = ""
     temperature_range: tuple[Temperature, Temperature] = Field(
-        default=as_stated(("0 degC", "120 degC")), description="Where the values are meant to hold."
+        default=as_stated(("0 degC", "120 degC")),
+        description="Range in which the values are valid.",
     )
     kinematic_viscosity: tuple[ViscosityPoint, ...] = Field(min_length=2)
     density: tuple[DensityPoint, ...] = Field(min_length=1)
@@ -194,8 +195,7 @@ class Oil(_Data):
         description="Package against wear and scuffing, by which flanks that touch rub less.",
     )
     friction_regression: Literal["talbot-2012", "xu-2007"] | None = Field(
-        default=None,
-        description="The regressions that were made for this oil, or for one of its grade.",
+        default=None, description="Regressions that were made for this oil or for its grade."
     )
     thermal_conductivity: SourcedConductivity | None = None
     specific_heat_capacity: SourcedHeatCapacity | None = None
@@ -216,7 +216,7 @@ class Oil(_Data):
                 yield _repeated("kinematic_viscosity", first, second, warmer.temperature)
             elif warmer.value >= colder.value:
                 shown, other = map(SQUARE_MM_PER_SECOND.text, (warmer.value, colder.value))
-                what = "must fall with rising temperature; at "
+                what = "must fall with rising temperature, but at "
                 what += f"{CELSIUS.text(colder.temperature)} it is {other}"
                 yield _fault(("kinematic_viscosity", second, "value"), shown, what, remedy)
         for first, second in _neighbours(self.density):
@@ -226,7 +226,7 @@ class Oil(_Data):
                 continue
             slope = (warm.value - cold.value) / (warm.temperature - cold.temperature)
             if not STEEPEST_DENSITY <= slope <= 0:
-                what = "must fall with rising temperature, by 2 kg/(m^3 K) at most"
+                what = "must fall with rising temperature, by at most 2 kg/(m^3 K)"
                 yield _fault(("density", second, "value"), f"{warm.value:g} kg/m^3", what, remedy)
         low, high = self.temperature_range
         if low >= high:
@@ -244,7 +244,7 @@ def _repeated(name: str, first: int, second: int, temperature: float) -> InitErr
     return _fault(
         (name, second, "temperature"),
         CELSIUS.text(temperature),
-        f"is that of {name}[{first}] too",
+        f"repeats the temperature {name}[{first}]",
         "give one value for each temperature",
     )
 

@@ -32,7 +32,7 @@ PRESSED = 1e8
 with more than their load. [Pa]"""
 CHECK_FILES = "Check the files and tables that the case names, or choose other models."
 CHECK_CONTACTS = (
-    "Check torque and sizes. If they are meant so, a formula runs away far outside its range: "
+    "Check torque and sizes. If they are intended, a formula diverges far outside its range: "
     "choose other models.friction, models.rolling or models.bearing, or "
     'models.oil_beyond_range = "held".'
 )
@@ -55,11 +55,11 @@ def judged(result: Result) -> Result:
         if watts < -limit
     ]
     if below:
-        reasons.append(f"Losses are below zero: {', '.join(below)}.")
+        reasons.append(f"Losses are negative: {', '.join(below)}.")
     powers = [member.power for member in result.flow.members.values()]
     left = sum(powers) - result.total
     if abs(left) > UNBALANCED * max(map(abs, (*powers, result.total)), default=0.0):
-        reasons.append(f"The shafts bring {WATT.text(left, 3)} more than is lost.")
+        reasons.append(f"The shaft powers exceed the losses by {WATT.text(left, 3)}.")
     reasons += models
     if not reasons:
         return result
@@ -75,13 +75,13 @@ def _overloaded(contacts: Mapping[str, Contact]) -> Iterator[str]:
     for name, found in contacts.items():
         if found.flattening > FLATTENED:
             yield (
-                f"The {name} would be pressed with "
+                f"The {name} would have a contact pressure of "
                 f"{GIGAPASCAL.text(found.hertz_pressure_max, 3)}, which flattens them over more "
-                "than their radius; no material bears that."
+                "than their radius. No material withstands that."
             )
     for name, found in contacts.items():
         if found.resistance > MOST_RESISTANCE and found.hertz_pressure_max > PRESSED:
             yield (
-                f"The {name} would lose {found.resistance:.3g} times what their load can resist "
-                "with at the speeds of their surfaces."
+                f"The {name} would lose {found.resistance:.3g} times the power that their load "
+                "can dissipate at their surface speeds."
             )

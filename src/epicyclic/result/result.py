@@ -665,7 +665,7 @@ def _number_fields(layout: Layout) -> Iterator[tuple[str, str, str, Callable[[Re
     if layout.shares:
         yield "mesh_load_factor", "mesh load factor", "1", lambda it: it.mesh_load_factor
     if layout.rolling:
-        label = "speed of the input over that of the output"
+        label = "input speed over output speed"
         yield "ratio", label, "1", partial(_of_train, "ratio")
         label = "sum of the rolling powers over the input power"
         yield "power_ratio", label, "1", partial(_of_train, "power_ratio")

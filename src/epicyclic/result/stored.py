@@ -127,7 +127,7 @@ def _contradictions(found: Mapping[str, Any], data: Mapping[str, Any]) -> Iterat
         if OIL not in {**heat.temperatures, **heat.given}:
             yield "heat", "the temperature of the oil is missing"
         if not {path.hot for path in heat.ways} <= heat.temperatures.keys():
-            yield "heat", "ways name parts without temperatures"
+            yield "heat", "heat paths name parts without temperatures"
     train: Train | None = found["train"]
     if train is None:
         if found["fluid"] is None or data.get("mesh_load_factor") is None:
@@ -241,5 +241,5 @@ def _supplies(stated: Any, reader: Reader) -> dict[str, OilSupply]:
                 meshes=reader.read(Numbers, own["oil_share_in_meshes"], "lubrication", NUMBER),
             )
     except (AttributeError, KeyError, TypeError):
-        reader.refuse("lubrication", "is no supply of oil")
+        reader.refuse("lubrication", "is not an oil supply")
     return found

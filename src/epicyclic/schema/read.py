@@ -41,8 +41,8 @@ def control_problems(tables: Any, path: tuple[str | int, ...] = ()) -> Iterator[
     """Texts in plain values with signs that control a terminal, or are no characters."""
     if isinstance(tables, str) and not tables.isprintable():
         if any(category(char) in _CONTROLS and char not in _LAYOUT for char in tables):
-            allowed = "has control characters."
-            yield Problem(dotted(path), written(tables), allowed, "Leave them out.")
+            allowed = "contains control characters."
+            yield Problem(dotted(path), written(tables), allowed, "Remove them.")
     elif isinstance(tables, Mapping):
         for key, item in tables.items():
             yield from control_problems(item, (*path, key))
@@ -169,7 +169,7 @@ def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
 def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
     """The tables of a text, its bad lines mended where that is possible."""
     if any(len(_KEY_DOT.findall(part)) > _DEEPEST_KEY for part in _BETWEEN_KEYS.split(text)):
-        refuse("has too deeply nested tables.", "Name a case file.")
+        refuse("has tables that are nested too deeply.", "Give a case file.")
     lines = text.replace("\r\n", "\n").split("\n")
     bad_lines: list[_BadLine] = []
     while True:
@@ -177,7 +177,7 @@ def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
             # with an empty line at the end every mistake lies in a line
             return tomllib.loads("\n".join([*lines, "", ""])), bad_lines
         except RecursionError:
-            refuse("has too deeply nested tables.", "Name a case file.")
+            refuse("has tables that are nested too deeply.", "Give a case file.")
         except ValueError as error:
             line = _bad_line(error, lines)
         mended = None
@@ -243,12 +243,12 @@ def _problem(line: _BadLine, key: str) -> Problem:
     else:
         given = one_line(match["value"].strip())
     if line.reason.startswith(_GIVES_AGAIN):
-        return Problem(key, given, "gives a key that is given before.", "Keep one of the two.")
+        return Problem(key, given, "gives a key a second time.", "Keep one of the two.")
     if line.reason.startswith("Cannot declare"):
         advice = "Put all its keys under one header; a dotted key, such as "
         advice += "micro_geometry.tip_relief under [sun], declares its table too."
         return Problem(key, given, f"declares a table twice (line {line.number}).", advice)
-    remedy = "Mend this line." if match is None else _remedy(match["key"], _value(match))
+    remedy = "Correct this line." if match is None else _remedy(match["key"], _value(match))
     return Problem(key, given, f"is not TOML (line {line.number}): {line.reason}.", remedy)
 
 

@@ -86,7 +86,7 @@ def unknown_key(
     if not remedy and homes:
         remedy = f"It belongs to {' or '.join(homes)}."
     if not remedy:
-        remedy = f"Known are: {', '.join(known)}." if known else "Remove it."
+        remedy = f"The keys are {', '.join(known)}." if known else "Remove it."
     return Problem(dotted(place.path), written(value), "is not a known key.", remedy)
 
 

@@ -117,7 +117,7 @@ def data_sheet(case: Case) -> RenderableType:
         parts.append(Text(oil))
     if case.found:
         told = tuple(map(str, case.found))
-        parts.append(as_on_page(page.Listing(told, "Found, converted or adjusted")))
+        parts.append(as_on_page(page.Listing(told, "Computed, converted or adjusted")))
     return titled(case.title or case.kind, *parts)
 
 
@@ -167,10 +167,10 @@ def _oil(case: Case) -> str | None:
 def state_tables(case: TrainCase) -> RenderableType:
     """Shafts of a train with their members, and the ratio of every state."""
     states = train_states(case)
-    shafts = plain_table("Shafts", Column("", no_wrap=True), "turns together")
+    shafts = plain_table("Shafts", Column("", no_wrap=True), "turns as one body")
     for name, members in case.shape.shafts.items():
-        shafts.add_row("housing, stands still" if name == HOUSING else name, ", ".join(members))
-    title = f"Ratio: speed of {case.operation.input} over that of {case.operation.output}"
+        shafts.add_row("housing, at rest" if name == HOUSING else name, ", ".join(members))
+    title = f"Ratio: speed of {case.operation.input} over speed of {case.operation.output}"
     numbers = (Column(head, justify="right", no_wrap=True) for head in ("ratio", "step"))
     table = plain_table(title, "state", *numbers, "held", "joined", "")
     before: StateKinematics | None = None
@@ -200,7 +200,7 @@ def _step(before: StateKinematics | None, state: StateKinematics) -> str:
 def case_table() -> RenderableType:
     """Built-in cases and the words that name their variants."""
     variants = "variants: at most one word of each line, joined by -"
-    table = plain_table("Built-in cases", Column("name", no_wrap=True), "what it is", variants)
+    table = plain_table("Built-in cases", Column("name", no_wrap=True), "description", variants)
     for name in library.case_files():
         groups = library.case_variants().get(name, [])
         words = "\n".join(f"{' '.join(group['words'])}  ({group['about']})" for group in groups)

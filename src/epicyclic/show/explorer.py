@@ -17,9 +17,9 @@ from epicyclic.study.operating import OPERATING, PLANE
 from epicyclic.units import WATT, unit_text
 
 EXPLORER_LEAD = (
-    "Move a slider, by hand or with the arrow keys, or click into a picture. Dots are computed "
-    "points; between them every number is interpolated linearly, and the efficiency is that of the "
-    "interpolated powers. Between names and whole numbers nothing is interpolated."
+    "Move a slider with the mouse or the arrow keys, or click into a picture. Dots are computed "
+    "points. Between them every number is interpolated linearly, and the efficiency follows from "
+    "the interpolated powers. Names and whole numbers are not interpolated."
 )
 
 MOST_VALUES = 1_500_000  # That a page holds: 8 MB.
@@ -48,12 +48,12 @@ def explorer_items(
     for some in (groups, losses, main):
         if len(some) <= room:
             left_out = len(groups) - len(some)
-            note = f"{left_out} further results are left out: they are too many for a page."
+            note = f"{left_out} further results are left out, because they are too many for a page."
             explorer = Explorer(_contents(at_rest, axes, some))
             return (explorer, *((Listing((note,)),) if left_out else ()))
     text = (
-        f"{at_rest['total'].size} points are too many for an explorer within a page; "
-        f"{MOST_VALUES // len(main)} are the most. Vary fewer values, or fewer keys."
+        f"{at_rest['total'].size} points are too many for an explorer within a page; the limit is "
+        f"{MOST_VALUES // len(main)}. Vary fewer values, or fewer keys."
     )
     return (Listing((text,)),)
 

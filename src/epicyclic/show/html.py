@@ -86,7 +86,7 @@ def report_html(
     else:
         cycle = str(stored.attrs.get("cycle", ""))
         sections = _uncertainty_sections(stored, drawings)
-        content = _content(stored, "How well it is known", cycle, band_figures(stored), sections)
+        content = _content(stored, "Uncertainty", cycle, band_figures(stored), sections)
     return page_html(**content)
 
 

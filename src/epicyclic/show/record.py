@@ -347,14 +347,14 @@ def map_problems(data: xr.Dataset) -> Iterator[Problem]:
         if axis == "temperature" and axis not in data.coords:
             continue  # a train whose losses are all given has no oil
         if axis not in dims:
-            yield Problem(axis, "", "is no axis of the map.", RUN_AGAIN)
+            yield Problem(axis, "", "is not an axis of the map.", RUN_AGAIN)
         else:
             yield from _number_problems(axis, data, axis, (axis,))
     for name in _MAP_NUMBERS:
         yield from _number_problems(name, data, name, tuple(map(str, dims)))
     for name in _MAP_TEXTS:
         if name not in data or data[name].dtype.kind not in "OU":
-            yield Problem(name, "", "must be text for every point.", RUN_AGAIN)
+            yield Problem(name, "", "must have a text for every point.", RUN_AGAIN)
     yield from _label_problems("", data)
 
 
@@ -394,7 +394,7 @@ def _value_problems(place: str, data: xr.Dataset, name: str) -> Iterator[Problem
         return
     values = data[name].to_numpy()
     if np.isnan(values).any():
-        yield Problem(place, "", "must not lack values.", RUN_AGAIN)
+        yield Problem(place, "", "must not have missing values.", RUN_AGAIN)
     if name.endswith(("diameter", "radius")) and (values <= 0).any():
         yield Problem(place, "", "must be positive.", RUN_AGAIN)
 

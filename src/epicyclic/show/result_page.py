@@ -56,36 +56,37 @@ def result_section(record: ResultRecord, drawings: Drawings, name: str) -> Secti
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
 _MOST_BESIDE = 4  # Gears whose table has room beside a picture.
 _POCKET_LEAD = (
-    "A pocket is named after the member whose tooth is in a space of the other. Lines from dark "
-    "to light are slices across the face."
+    "A pocket is named after the gear whose tooth enters the tooth space of the other gear. "
+    "Lines from dark to light are slices across the face."
 )
 _ASSUMPTIONS = (
     "Speed and torque are steady; dynamic loads are not modelled.",
-    "Shafts, carrier and housing do not bend; misalignment is that of the case, and of the tilt of "
-    "the planets if models.planet_tilt is coupled.",
-    "Inputs in italics, in the tables below, were not given and have their default values.",
+    "Shafts, carrier and housing do not bend; misalignment comes from the case, and from the "
+    "tilt of the planets if models.planet_tilt is coupled.",
+    "Inputs in italics in the tables below were not given and have their default values.",
 )
 _OIL = {
-    "inlet": "The oil has its inlet temperature at all contacts.",
-    "flank": "The oil has its inlet temperature; in the meshes it is as warm as the gears.",
-    "network": "Oil in contacts is as warm as the mean of the parts that touch, which are of one "
-    "temperature each.",
+    "inlet": "The oil is at its inlet temperature at all contacts.",
+    "flank": "The oil is at its inlet temperature; in the meshes it is at the temperature of the "
+    "gears.",
+    "network": "Oil in contacts is at the mean temperature of the parts that touch; each part "
+    "has one temperature.",
 }
 """What is assumed about temperatures."""
 _OTHER_KEYS = {"lubrication": "lubrication.method", "churning": "lubrication.churning"}
 """Keys that choose a model elsewhere than in [models]."""
 _OF_PLANETS = (
-    "Figures of meshes and bearing are those of the most loaded planet; losses are those of all.",
+    "Figures of meshes and bearing are for the most loaded planet; losses are for all planets.",
 )
 _INPUT_LEAD = (
-    "Values in italics were not given: they are defaults. Defaults that have no effect here are "
-    "left out."
+    "Values in italics were not given; they are defaults. Defaults without effect here are left "
+    "out."
 )
 
 
 BAND_LEAD = (
-    "95 % of what the result may be, given how well inputs and models are known, from each of them "
-    "one standard deviation up and down. 'epicyclic uncertainty' finds it from samples."
+    "95 % interval of the result from the uncertainty of inputs and models, with each varied up "
+    "and down by one standard deviation. 'epicyclic uncertainty' computes it from samples."
 )
 
 
@@ -124,10 +125,10 @@ def _train_losses(result: Result, train: Train, drawings: Drawings) -> tuple[Ite
 
 def _validity_lead(result: Result) -> str:
     if not result.flags:
-        return "Every model was used within the range in which it was made."
+        return "Every model was used within its range of validity."
     return (
-        "Some models were used outside the range in which they were made. Their conditions are "
-        "held at the limits of the range; the share of the loss concerned is stated."
+        "Some models were used outside their range of validity. Their conditions are held at the "
+        "limits of the range; the affected share of the loss is stated."
     )
 
 
@@ -265,7 +266,7 @@ def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:
 _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
     "losses": _losses_chapter,
     "uncertainty": lambda record, drawings: Section(
-        "uncertainty", "How well this is known", _uncertainty(record, drawings), BAND_LEAD
+        "uncertainty", "Uncertainty of this result", _uncertainty(record, drawings), BAND_LEAD
     ),
     "validity": lambda record, drawings: Section(
         "validity", "Validity", _validity(record.result), _validity_lead(record.result)
@@ -315,7 +316,7 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
 # The report of a loss map: its chapters.
 
 
-_WHITE = "White: no power is passed on, or the point failed."
+_WHITE = "White: no power is transmitted, or the point failed."
 _FOUND = re.compile(r"(Out of range: .*?) -?\d[^;]*;")
 _SMALL = "Out of range, each"  # Begins the warning that puts together what matters little.
 _QUANTITY = re.compile(r" -?\d.*")
@@ -366,7 +367,7 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
             "Over speed and torque",
             gallery(drawings, "loss-parts", "loss-over-speed", "loss-over-torque"),
         ),
-        Section("band", "How well it is known", band, MAP_BAND_LEAD),
+        Section("band", "Uncertainty", band, MAP_BAND_LEAD),
         Section("tables", "Values", tables, _further(data)),
         Section("validity", "Validity", validity_items(data)),
         Section("gears", "Gears", gallery(drawings, "gear-set")),
@@ -379,14 +380,15 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
 
 
 MAP_BAND_LEAD = (
-    "Inputs and models are off by the same at all points; 95 % of the samples lie within."
+    "Errors of inputs and models are the same at all points; 95 % of the samples lie within the "
+    "band."
 )
 
 
 def _further(data: xr.Dataset) -> str:
     """Which values of temperatures and further keys the tables and figures are for."""
     fewer = left_out_line(data)
-    lead = f"Tables and figures are {fewer}." if fewer else ""
+    lead = f"Tables and figures show {fewer}." if fewer else ""
     point = map_at(data)
     further = [f"{name} = {point[name].item()}" for name in data["total"].dims if name not in AXES]
     more = f"Tables and figures are for {', '.join(further)}." if further else ""
@@ -438,7 +440,7 @@ def _without_values(warning: str) -> list[str]:
         return [_FOUND.sub(r"\1;", warning).partition(" Share of the loss")[0]]
     parts = warning.partition(": ")[2].removesuffix(".").split("; ")
     return [
-        f"Out of range with little loss: {_QUANTITY.sub('', found)}; {limits}."
+        f"Out of range, with a small share of the loss: {_QUANTITY.sub('', found)}; {limits}."
         for found, limits in zip(parts[::2], parts[1::2], strict=False)
     ]
 
@@ -446,7 +448,7 @@ def _without_values(warning: str) -> list[str]:
 def _map_methods(data: xr.Dataset) -> tuple[Table | Listing, ...]:
     case = map_case(data)
     if case is None:
-        return (Listing(("The case of this map is none of this version of the program.",)),)
+        return (Listing(("The case of this map was not made by this version of the program.",)),)
     rows = tuple(
         (Cell(what), Cell(method), Cell(source))
         for what, (method, source) in methods_of(case).items()
@@ -463,7 +465,7 @@ def versions_of(data: xr.Dataset) -> Listing:
 
 
 MOST_ROWS = 12  # Most rows of the table of points.
-_POINTS_LEAD = "The points with the least total loss, and the one with the largest."
+_POINTS_LEAD = "The points with the least total loss and the one with the largest."
 
 
 def sweep_key_figures(data: xr.Dataset) -> list[KeyFigure]:
@@ -501,13 +503,13 @@ def _left_out(shown: xr.Dataset) -> str:
         return ""
     size = shown["total"].size
     return (
-        f"Of {size + left_out} points {size} are shown, at evenly spaced values of each key and "
-        f"those of the least loss; {left_out} are left out. Key figures, least losses and validity "
-        "are those of all points, which are in the file of the sweep."
+        f"Of {size + left_out} points {size} are shown, at evenly spaced values of each key, with "
+        f"the points of least loss; {left_out} are left out. Key figures, least losses and "
+        "validity cover all points, which are in the file of the sweep."
     )
 
 
-_MAP_INPUT_LEAD = "The case before anything was varied."
+_MAP_INPUT_LEAD = "The case before any variation."
 
 
 def _points(data: xr.Dataset) -> tuple[Table, ...]:

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 Unit = tuple[str, float]  # Its name in print and its size.
 _FLOW_NOTE = (
     "Speeds are positive in one common sense of rotation; torques act on the gear set from "
-    "outside; positive power enters."
+    "outside; power is positive where it enters."
 )
 _ROLES = {
     "lubrication": "lubrication",
@@ -267,7 +267,7 @@ def standing_items(result: Result) -> Iterator[Listing]:
         whose = f" of {', '.join(owners)}" if any(owners) else ""
         lines.append(f"{_ROLES[role]}{whose}: {phrase}")
     if lines:
-        yield Listing(tuple(lines), "Models, and how well they are known")
+        yield Listing(tuple(lines), "Models and their reliability")
 
 
 # Tables of the result of a train, for pages and terminals.
@@ -291,7 +291,7 @@ MOST_KINDS = 5
 """Kinds of losses beside each other in a table that also has room for shares of the total."""
 _TITLES = {
     "bearing": "Shaft bearings",
-    "seal": "Seals: loss after the chosen formula, and after every one",
+    "seal": "Seals: loss by the chosen formula and by every formula",
     "drag": "Other drags",
 }
 
@@ -344,11 +344,11 @@ def shafts_table(result: Result) -> Table:
         )
     heads = (f"speed, {speed}", f"torque, {torque[0]}", f"power, {power[0]}")
     note = (
-        "Speeds are positive in one common sense of rotation; torque and power are those from "
-        "outside, positive power enters; what a shaft passes on comes from sets, clutches and "
+        "Speeds are positive in one common sense of rotation; torque and power are external and "
+        "positive where power enters; what a shaft transmits comes from sets, clutches and "
         "outside."
     )
-    head = ("", *heads, f"passes on, {torque[0]}", "")
+    head = ("", *heads, f"transmits, {torque[0]}", "")
     return Table(head, tuple(rows), "Shafts", note=note)
 
 
@@ -422,8 +422,8 @@ def locking_text(train: Train) -> str:
         return f"Self-locking: {train.input} cannot turn the train, which stands still."
     if train.self_locking:
         return (
-            f"Self-locking: {train.input} cannot drive {train.output}; the losses take all "
-            f"power, and {train.output} must be driven too."
+            f"Self-locking: {train.input} cannot drive {train.output}; the losses consume all "
+            f"power, so {train.output} must be driven too."
         )
     return ""
 
@@ -438,7 +438,7 @@ def _circulation_text(rolling: Mapping[str, float], input_power: float) -> str:
     largest = max(most, key=lambda key: most[key])
     names, verb = ", ".join(map(in_words, most)), "pass" if len(most) > 1 else "passes"
     return (
-        f"Power circulates: {names} {verb} more than enters, {in_words(largest)} "
+        f"Power circulates: {names} {verb} more than the input power, {in_words(largest)} "
         f"{shown(most[largest] / input_power, 3)} times as much."
     )
 
@@ -447,8 +447,8 @@ def _circulation_text(rolling: Mapping[str, float], input_power: float) -> str:
 
 
 NOT_LOOKED_AT = (
-    "How warm the flanks get was not looked at: with models.friction = ehl-direct that takes "
-    "minutes. Ask with models.temperatures = flank."
+    "The flank temperatures were not computed: with models.friction = ehl-direct that takes "
+    "minutes. Set models.temperatures = flank to compute them."
 )
 
 
@@ -469,10 +469,10 @@ def _temperatures(heat: HeatBalance) -> Table:
             )
         )
     note = (
-        "Temperatures of gears are those of their bodies; where a part is not listed, it is as "
-        "warm as the oil, which takes its heat."
+        "Temperatures of gears are those of their bodies. A part that is not listed is as warm "
+        "as the oil, which absorbs its heat."
     )
-    head = ("", unit_text(CELSIUS.display), "over the oil, K", "heat of losses, W")
+    head = ("", unit_text(CELSIUS.display), "above the oil, K", "heat of losses, W")
     return Table(head, tuple(rows), "Temperatures", note=note)
 
 
@@ -526,8 +526,8 @@ def heat_path_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
 
 
 _SIGN = (
-    "Negative heat flows the other way. thermal.conductances changes a way by the name in the "
-    "first column."
+    "Negative heat flows in the other direction. thermal.conductances changes a path by the name "
+    "in the first column."
 )
 
 
@@ -586,8 +586,8 @@ def _beyond_text(beyond: BeyondRange, free: Result | str) -> str:
     unit = unit_text(CELSIUS.display)
     text = (
         f"{100 * beyond.share:.0f} % of the load-dependent loss arises in contacts whose oil is "
-        f"hotter than the range of its formula ({low} to {high} {unit}), where it is held at "
-        f"{high} {unit}; without holding "
+        f"hotter than the range of its formula ({low} to {high} {unit}) and is held at {high} "
+        f"{unit}; without this limit "
     )
     if isinstance(free, str):
         return f"{text}there is no result: {free}"

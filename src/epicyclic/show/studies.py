@@ -53,7 +53,7 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
     parts += [Text(f"• {note}") for note in notes]
     if any(mesh["transmission_error"].isnull().all() for mesh in meshes.values()):
         parts.append(
-            Text(f'"{MISSING}": this load distribution knows no deflection; compliance does.')
+            Text(f'"{MISSING}": this load distribution gives no deflection; compliance does.')
         )
     if any(mesh["film_ratio"].isnull().all() for mesh in meshes.values()):
         parts.append(Text(f'"{MISSING}": without motion there is no film and no friction power.'))
@@ -147,9 +147,9 @@ _ERRORS = ("power_difference", "mass_error")
 _EXTREMES_OF_POCKETS = (
     ("highest pressure", "pressure", np.nanargmax),
     ("lowest pressure", "pressure", np.nanargmin),
-    ("fastest, along the face", "axial_speed", None),
-    ("fastest, contact side", "contact_gap_speed", None),
-    ("fastest, backlash side", "backlash_gap_speed", None),
+    ("highest speed, along the face", "axial_speed", None),
+    ("highest speed, contact side", "contact_gap_speed", None),
+    ("highest speed, backlash side", "backlash_gap_speed", None),
     ("smallest section", "end_area", np.nanargmin),
     ("smallest backlash-side gap", "backlash_gap", np.nanargmin),
 )
@@ -287,8 +287,8 @@ def _percent(value: float) -> str:
 
 def _legend(comparison: MeasuredComparison) -> str:
     text = (
-        "mean: of the errors; size: mean of their magnitude; most: by magnitude, in W with its "
-        "line; %: over the measured loss."
+        "mean: mean error; size: mean magnitude of the errors; most: largest magnitude in W, "
+        "with its line; %: relative to the measured loss."
     )
     if comparison.load_dependent == AS_TESTED:
         text += (
@@ -298,7 +298,9 @@ def _legend(comparison: MeasuredComparison) -> str:
     if comparison.held_out.any():
         text += " Lines with * were held out."
     if comparison.fit is not None:
-        text += f" {CALIBRATED}: with values fitted to these measurements; that is no validation."
+        text += (
+            f" {CALIBRATED}: with values fitted to these measurements, which is not a validation."
+        )
     return text
 
 
@@ -342,14 +344,14 @@ def _fit_line(fit: Fit) -> str:
     text += f"; {fit.evaluations} computed points. {_about_intervals(fit)}"
     if fit.discrepancy > 0 and fit.widening > 1:
         text += (
-            f" Birge ratio {shown(fit.widening, 3)}: beyond the uncertainties of the measurements "
-            f"the model is off by about {shown(fit.discrepancy, 2)} W at these points. That "
-            "variance is in the intervals."
+            f" Birge ratio {shown(fit.widening, 3)}: beyond the uncertainties of the "
+            f"measurements, the model error is about {shown(fit.discrepancy, 2)} W at these "
+            "points. The intervals include that variance."
         )
     elif math.isfinite(fit.discrepancy) and math.isnan(fit.widening):
         text += (
-            f" The points scatter by {shown(fit.discrepancy, 2)} W about the fit, measurements and "
-            "model together."
+            f" The points scatter by {shown(fit.discrepancy, 2)} W about the fit, due to "
+            "measurements and model together."
         )
     return text
 
@@ -436,10 +438,9 @@ def _error_text(data: xr.Dataset, lost: float) -> str:
     largest = float(data["largest_deviation"])
     return (
         f"Interpolation adds {shown(error, 3)}{scatter} kJ{part}; largest deviation of a point "
-        f"{'-' if math.isnan(largest) else percent(largest, 2)}. "
-        f"By: {data.attrs['interpolation_error_method']}.\n"
-        f"Outside of the map: {float(data['share_outside']):.3g} of the duration, "
-        f"{data.attrs['points_outside']}."
+        f"{'-' if math.isnan(largest) else percent(largest, 2)}. By: "
+        f"{data.attrs['interpolation_error_method']}.\nOutside of the map: "
+        f"{float(data['share_outside']):.3g} of the duration, {data.attrs['points_outside']}."
     )
 
 
@@ -506,12 +507,13 @@ def _summary(data: xr.Dataset) -> str:
     lost = float(data["energy_lost"][-1])
     settled = float(data["energy_lost_settled"])
     if math.isnan(settled):
-        return f"It does not settle. Energy lost: {shown(lost)} kJ."
+        return f"No settled state is reached. Energy lost: {shown(lost)} kJ."
     texts = ", ".join(map(duration_text, constants[:_SHOWN_CONSTANTS]))
     lines = [
         f"time constants about the settled state: {texts}",
-        f"energy lost: {shown(lost)} kJ; settled from the start it would be {shown(settled)} kJ"
-        + (f" ({percent(lost / settled - 1, signed=True)} by warming up)" if settled else ""),
+        f"energy lost: {shown(lost)} kJ; in the settled state from the start it would be "
+        f"{shown(settled)} kJ"
+        + (f" ({percent(lost / settled - 1, signed=True)} due to warming up)" if settled else ""),
     ]
     return "\n".join(lines)
 

@@ -66,7 +66,7 @@ def case_template(kind: str) -> str:
     name, _ = _EXAMPLES[kind]
     head = [
         f"A case file of epicyclic, kind {kind}, filled in with the built-in case {name}.",
-        "Every dimensional value carries its unit. Keys behind a # have defaults.",
+        "Every dimensional value carries its unit. Commented-out keys have defaults.",
     ]
     # a case of one's own starts from the default models
     example = {key: table for key, table in library.builtin_case(name).items() if key != "models"}
@@ -85,7 +85,7 @@ def text_like(name: str) -> str:
             return library.case_source(name)
         return Path(name).read_text(encoding="utf-8")
     head = [f"A case file of epicyclic, kind {case.kind}, with the values of {name}."]
-    return case_text(case.given(), [*head, "Keys behind a # have defaults."])
+    return case_text(case.given(), [*head, "Commented-out keys have defaults."])
 
 
 def case_text(
@@ -238,8 +238,8 @@ def toml_value(value: Any) -> str:
 
 
 _LISTS = {
-    "shafts": "what turns together, always; members not named turn alone",
-    "positions": "of gears along their shafts, for the forces on bearings",
+    "shafts": "members that always turn together; members not named turn alone",
+    "positions": "positions of gears along their shafts, for the forces on bearings",
 }
 _DEFAULTS = (
     "lubrication",

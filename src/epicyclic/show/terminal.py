@@ -250,9 +250,9 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     """Friction models side by side, with the spread, what they leave, and which one suits."""
     meshes = list(rows[0].mean_friction)
     if all(math.isnan(row.mean_friction[mesh]) for row in rows for mesh in meshes):
-        return Text("There is no load or no motion: nothing slides, and no friction to compare.")
+        return Text("Without load or motion nothing slides, so there is no friction to compare.")
     columns = [f"μ {mesh.replace('_', ' ').replace('.', ': ')}" for mesh in meshes]
-    table = number_table("Friction models", "", *columns, "sliding W", "quick W", "to chosen", "")
+    table = number_table("Friction models", "", *columns, "sliding W", "quick W", "over chosen", "")
     table.columns[-1].justify = "left"
     chosen = next((row.sliding for row in rows if row.chosen), 0.0)
     for row in rows:
@@ -281,7 +281,7 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     )
     lists = [
         _list("Out of range, and for another oil", [it for row in rows for it in _left(row)]),
-        _list("How well they are known", [f"{row.name}: {row.standing}" for row in rows]),
+        _list("Reliability of the models", [f"{row.name}: {row.standing}" for row in rows]),
         _list("Sources", [f"{row.name}: {row.title}, {row.source}" for row in rows]),
     ]
     spaced = (part for item in lists for part in (Text(), item))

@@ -35,7 +35,7 @@ from epicyclic.units import format_number, known_text, percent, unit_text
 
 
 MOST = 3  # Inputs and models that are named after a band.
-LIMITS = "What limits the trust in it"
+LIMITS = "Limits of confidence"
 FEW = 2  # Limits that a short list names.
 WORTH = 0.98  # Part of the band above which a measurement is not worth while. [1]
 
@@ -53,7 +53,7 @@ def band_texts(known: Known | None) -> list[str | Listing]:
         f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST]
     )
     return [
-        f"{text}; most of it from {drivers}. Assumed where [uncertainty] of the case says nothing: "
+        f"{text}, mainly from {drivers}. Inputs without an entry in [uncertainty] are estimated: "
         "'epicyclic uncertainty' shows all.",
         Listing(tuple(advice_texts(known, brief=True)), LIMITS),
     ]
@@ -85,7 +85,7 @@ def _measurements(known: Known) -> Iterator[str]:
         before = known_text(known.width, unit=known.unit)
         lead = "" if best[0] is not None else "of the inputs "
         text = "; of the inputs ".join(parts)
-        yield f"Measured, this would narrow the band of {before} most: {lead}{text}."
+        yield f"A measurement of these would narrow the band of {before} most: {lead}{text}."
 
 
 def result_json(result: Result, known: Known | None) -> str:
@@ -227,11 +227,12 @@ def _drivers(data: xr.Dataset) -> Table:
         )
     known = float(data["explained"].min())
     note = (
-        "Shares of its variance, alone, by curves through the samples, the mean weighted with the "
-        f"loss; the curves explain {percent(known)} or more of it at every point."
+        "Shares of its variance from each input alone, from curves through the samples; the mean "
+        f"is weighted with the loss. The curves explain {percent(known)} or more of it at every "
+        "point."
     )
     head = ("", "mean share", "largest", "at")
-    return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
+    return Table(head, tuple(rows), "Causes of the uncertainty of the total loss", note=note)
 
 
 def _value(value: xr.DataArray) -> str:
@@ -284,9 +285,8 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     total = data.sel(result="total")
     notes = [
         f"Shared: {data.attrs['shared'] or 'nothing'}.",
-        f"Total loss: u of the difference {known_text(float(total['standard_uncertainty']))}; of "
-        "two results that know nothing of each other "
-        f"{known_text(float(total['unpaired_uncertainty']))}.",
+        f"Total loss: u of the difference {known_text(float(total['standard_uncertainty']))}; "
+        f"of two independent results {known_text(float(total['unpaired_uncertainty']))}.",
     ]
     if data.attrs["failed"]:
         notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")
@@ -369,12 +369,12 @@ def _budget(data: xr.Dataset) -> Table:
     heads = ("", "distribution", "value", f"per u_i, {_unit(data)}", "share", "with others")
     note = (
         "per u_i: change of the total loss for one standard deviation. Shares of its variance, "
-        "alone and with all interactions; values that are correlated share one."
+        "alone and with all interactions; correlated values share one share."
     )
     if len(orders) == 1:
         note = note.replace("alone and with all interactions; ", "each alone; ")
     head = heads[: len(heads) + len(orders) - 2]
-    return Table(head, tuple(rows), "What the uncertainty of the total loss is due to", note=note)
+    return Table(head, tuple(rows), "Causes of the uncertainty of the total loss", note=note)
 
 
 def _input_value(own: xr.Dataset) -> Cell:
@@ -397,14 +397,17 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
         )
     if data.attrs.get("left_out"):
         yield (
-            f"Left out, because one standard deviation away there is no solution: "
+            "Left out, because no solution exists one standard deviation away: "
             f"{data.attrs['left_out']}."
         )
     for key in map(str, data["input"].values):
         share = float(data["cut_off"].sel(input=key))
         if share > CUT_OFF:
             beyond = percent(share)
-            yield f"{key}: {beyond} of its distribution is beyond what it can be, and cut off."
+            yield (
+                f"{key}: {beyond} of its distribution lies outside its possible range and is "
+                "cut off."
+            )
     idle = [str(key) for key in data["input"].values if not _moves(data, str(key))]
     if idle:
         yield f"Without effect here: {', '.join(idle)}."
@@ -434,13 +437,13 @@ def _of_points(data: xr.Dataset) -> Iterator[str]:
         float(data["standard_uncertainty"].sel(result="total")),
     )
     if not error:
-        yield f"Cycle: {data.attrs['cycle']}, all solved with every sample."
+        yield f"Cycle: {data.attrs['cycle']}, all solved for every sample."
     else:
         yield (
-            f"Cycle: {data.attrs['cycle']}; {data.attrs['points']} points stand for it, by which "
-            f"u_c of the total may be off by {percent(error / spread, 0)} (standard error)."
+            f"Cycle: {data.attrs['cycle']}; {data.attrs['points']} points represent it, so u_c of "
+            f"the total has a standard error of {percent(error / spread, 0)}."
         )
     yield (
-        "Shares by curves through the samples, which explain "
+        "Shares from curves through the samples, which explain "
         f"{percent(float(data['curves_explain']))} of the variance of the total."
     )

@@ -116,7 +116,7 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     for row in own:
         if row.outside <= MOSTLY:
             if row.name == "mixed-ehl" and paired is not None and _differ(row, paired):
-                why = "it was made for this oil, and tells flanks of unequal roughness apart"
+                why = "it was made for this oil and accounts for unequal roughness of the flanks"
                 return paired, f"{why}; {_inside(paired)}"
             fitted = row.name == FittedOrSchlenk.name
             made = "fitted to simulated contacts of" if fitted else "made for"
@@ -125,9 +125,9 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     why = "it was fitted to gear tests with many oils"
     if own:
         outside = percent(own[0].outside, 0)
-        why += f", while {outside} of the loss is outside the range of {own[0].name}"
+        why += f", whereas {outside} of the loss is outside the range of {own[0].name}"
     else:
-        why += ", and no model was made for this oil ('epicyclic oil characterise' makes one)"
+        why += ", and no model was made for this oil ('epicyclic oil characterise' creates one)"
     return general, f"{why}; {_inside(general)}"
 
 
@@ -138,7 +138,7 @@ def _differ(row: FrictionComparison, paired: FrictionComparison) -> bool:
 
 def _inside(row: FrictionComparison) -> str:
     if not row.flagged:
-        return "all of the loss is within its range"
+        return "the whole loss is within its range"
     return f"{percent(1 - row.outside, 0)} of the loss is within its range"
 
 
@@ -155,7 +155,7 @@ def _models_for(owners: Sequence[SetCase]) -> Iterator[str]:
 def _reason(flag: ValidityFlag) -> str:
     """``"sun mesh: Hertz pressure 0.1 to 0.4 GPa; range from 0.5 GPa (...), 20 % of the loss"``."""
     left = range_left([flag]).removeprefix("Out of range: ").removesuffix(".")
-    instead = f", {flag.use.instead} takes over" if flag.use.instead else ""
+    instead = f", {flag.use.instead} is used instead" if flag.use.instead else ""
     return f"{flag.use.where}: {left}, {share_text(flag.share)} of the loss{instead}"
 
 

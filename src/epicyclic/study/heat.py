@@ -78,7 +78,7 @@ def with_network(case: Case) -> Case:
 
 def _check_oil(case: Case) -> None:
     if case.lubricant is None:
-        allowed = "needs a case that computes losses; all those of this one are given."
+        allowed = "needs a case with computed losses; all losses of this case are given."
         raise one_problem("models.temperatures", "network", allowed, "", case.source)
 
 
@@ -201,8 +201,8 @@ def solve_for(
 ) -> Found:
     """The cooling, flow or power with which the oil has a temperature, as `epicyclic.solve_for`."""
     if quantity not in QUANTITIES:
-        allowed = f"is none of {', '.join(QUANTITIES)}."
-        raise one_problem("quantity", written(quantity), allowed, "Name one of them.")
+        allowed = f"must be one of {', '.join(QUANTITIES)}."
+        raise one_problem("quantity", written(quantity), allowed, "Give one of them.")
     target = _temperature(temperature)
     _check_oil(case)
     search = QUANTITIES[quantity](case, target)
@@ -229,8 +229,8 @@ def solve_for(
     found = tried.get(number)
     if found is None or abs(_oil(found.result) - target) > 10 * CLOSE:
         raise ConvergenceError(
-            f"no {search.key} gives the oil {CELSIUS.text(target)}: near "
-            f"{search.unit.text(search.value(number))} its temperature jumps."
+            f"no {search.key} gives an oil temperature of {CELSIUS.text(target)}: the temperature "
+            f"jumps near {search.unit.text(search.value(number))}."
         )
     return found
 
@@ -280,13 +280,13 @@ def _bracket(
         f"oil at {CELSIUS.text(target)}",
         "",
         f"cannot be reached: {', '.join(ends)}.",
-        "Choose another temperature, or change other ways of the heat, [thermal].",
+        "Choose another temperature, or change other heat paths in [thermal].",
     )
 
 
 def _limit(search: _Search, number: float) -> str:
     if not number and search.start is not None:
-        return f"with {search.key} beyond all bounds"
+        return f"with unlimited {search.key}"
     return f"with {search.key} = {search.unit.text(search.value(number), 4)}"
 
 

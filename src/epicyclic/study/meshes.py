@@ -154,13 +154,14 @@ def _other_programs(mesh: Mesh, loads: LineLoads) -> Iterator[str]:
     """Where a user who compares with another program finds another number, and why."""
     if loads.elastic is not None:
         yield (
-            "Stiffness is that of the teeth in theory. ISO 6336-1 multiplies it by C_M = 0.8 and "
-            "by a factor of the gear blank: programs that follow it state 0.7 to 0.8 of this."
+            "The stiffness is the theoretical one of the teeth. ISO 6336-1 multiplies it by C_M "
+            "= 0.8 and by a factor of the gear blank: programs that follow it state 0.7 to 0.8 "
+            "of this."
         )
     yield (
-        "Films are those of smooth contacts with oil at the temperature of the case. ISO/TR 15144 "
-        "takes that of the flanks, under K_A K_gamma K_v: programs that follow it state thinner "
-        "ones."
+        "The film thickness is that of smooth contacts with oil at the temperature of the case. "
+        "ISO/TR 15144 uses the flank temperature, with K_A K_gamma K_v: programs that follow it "
+        "state thinner ones."
     )
     yield from loss_factor_notes(mesh)
 

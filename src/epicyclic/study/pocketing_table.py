@@ -183,7 +183,7 @@ def make_table_plan(
 def _table_plan(places: SweepPlan) -> TablePlan:
     case = places.case
     if case.numerics.pocket_interpolation == 0:
-        allowed = "must be more than 0: a table is interpolated."
+        allowed = "must be above 0, because a table is interpolated."
         raise one_problem("numerics.pocket_interpolation", "0", allowed, "Take 0.002.", case.source)
     flows = tuple(
         flow

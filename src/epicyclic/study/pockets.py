@@ -96,7 +96,7 @@ def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[st
             except ValueError as error:
                 raise _unsuitable(case, key, f"has no tooth outline: {error}.") from None
             if flow is None:
-                raise _unsuitable(case, key, "does not turn: its pockets keep their volume.")
+                raise _unsuitable(case, key, "does not turn, so its pockets keep their volume.")
             found[key] = _dataset(case.title, key, duty, flow, fluids, own.count)
     return found
 
@@ -389,11 +389,11 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
         "power_from_flow": (flow.power_from_flow, f"power, {origins[1]}", WATT),
         "power_other_end": (end.power, f"power, other end of the band ({other})", WATT),
         "power_difference": (flow.difference, *FLOW_NUMBERS["difference"]),
-        "mass_error": (flow.mass_error, "mass lost in a period, of what came in", NUMBER),
+        "mass_error": (flow.mass_error, "mass lost in a period over the mass that entered", NUMBER),
         "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
         "sound_speed": (
             sound_speed(fluids.mixed(oil_in_mesh(duty)), fluids.pressure),
-            "speed of sound of an even mixture",
+            "speed of sound of a homogeneous mixture",
             METRE_PER_SECOND,
         ),
         "speed_max": (flow.speed_max, *FLOW_NUMBERS["speed_max"]),

@@ -33,8 +33,8 @@ def build_computed(case: Case) -> Built:
         raise one_problem(
             "sets",
             "",
-            "have given efficiencies only: nothing is known of their teeth.",
-            "Give a set its gears (module, face widths, roughness) in place of its efficiency.",
+            "have given efficiencies only, so their teeth are unknown.",
+            "Give the gears of a set (module, face widths, roughness) instead of its efficiency.",
             case.source,
         )
     return built
@@ -66,8 +66,9 @@ def solve(
     bad = [term.name for term in result.terms if not math.isfinite(term.watts)]
     if bad:
         raise ConvergenceError(
-            f"{', '.join(bad)} came out as no finite number: the case is far outside the range of "
-            "the models; choose others (models.friction, models.rolling, models.bearing)."
+            f"{', '.join(bad)} did not give a finite number, because the case is far outside the "
+            "range of the models. Choose others (models.friction, models.rolling, "
+            "models.bearing)."
         )
     return judged(result)
 

@@ -41,12 +41,12 @@ if TYPE_CHECKING:
 @click.option(
     "--temperatures",
     is_flag=True,
-    help="The loaded tests only, with temperatures that follow from the losses: minutes.",
+    help="Only the loaded tests, with temperatures computed from the losses (minutes).",
 )
 @click.option(
     "--bands",
     is_flag=True,
-    help="The measured figures only, with the 95 % bands of the computed ones: a minute.",
+    help="Only the measured figures, with the 95 % bands of the computed ones (a minute).",
 )
 @click.option(
     "--measured",
@@ -63,7 +63,7 @@ if TYPE_CHECKING:
 )
 @json_option
 @plot_option("With --measured: draw computed against measured values, and errors over speed.")
-@output_option("A page with pictures and tables in place of the table: .html, or .pdf.", "FILE")
+@output_option("Write a page with pictures and tables instead of the table: .html or .pdf.", "FILE")
 def validate(
     temperatures: bool,
     bands: bool,
@@ -92,7 +92,7 @@ def validate(
         raise InputError(problems, "the command")
     if chosen and others:
         problems = [
-            Problem(name, "", f"does not go with {chosen[0]}.", "Leave one of them out.")
+            Problem(name, "", f"conflicts with {chosen[0]}.", "Remove one of them.")
             for name in others
         ]
         raise InputError(problems, "the command")
@@ -150,10 +150,10 @@ PAGE = "index.html"
     "chosen",
     metavar="NUMBER",
     multiple=True,
-    help="Only this figure, as in 3.5; may be given again. Default: all of the chapter.",
+    help="Only this figure, as in 3.5; repeatable. Default: all of the chapter.",
 )
 @picture_option
-@output_option("Folder of the results.", required=True)
+@output_option("Folder for the results.", required=True)
 @runner_options
 def reproduce(
     chapter: str, chosen: tuple[str, ...], picture: str, output: Path, runner: Runner
@@ -175,7 +175,12 @@ def reproduce(
 
     known = CHAPTERS[chapter]
     problems = [
-        Problem("--figure", name, f"is not computed: {', '.join(known)} are.", "Choose of these.")
+        Problem(
+            "--figure",
+            name,
+            f"is not available; the figures are {', '.join(known)}.",
+            "Choose one of these.",
+        )
         for name in chosen
         if name not in known
     ]
@@ -218,18 +223,18 @@ STUDY = "study"  # With which files of unfinished studies begin in their folder.
     "ranges",
     metavar="NAME=VALUES",
     multiple=True,
-    help='What a study goes over, as in "helix-angle=0:30:7 deg".',
+    help='Values of a study, as in "helix-angle=0:30:7 deg".',
 )
 @click.option(
     "--level",
     "levels",
     metavar="NAME=VALUES",
     multiple=True,
-    help='Curves and panels of the other studies, as in "speed=2000,4000 rpm".',
+    help='Values for the curves and panels of the other studies, as in "speed=2000,4000 rpm".',
 )
 @click.option("--mesh", metavar="MESH", help="sun_mesh (default) or ring_mesh of a planetary set.")
 @picture_option
-@output_option("Folder of the results.", required=True)
+@output_option("Folder for the results.", required=True)
 @shard_option
 @runner_options
 def study(
@@ -246,7 +251,7 @@ def study(
     """Study the pocketing loss of a mesh over its main parameters, and draw the figures.
 
     Each study NAME goes to NAME.nc, NAME.csv and a picture in the folder OUTPUT. An interrupted
-    study goes on where it stopped, as a sweep does.
+    study continues where it stopped, as a sweep does.
     """
     from epicyclic.study.sweeps.run import parse_vary
     from epicyclic.validation.pocketing import STUDIES, make_study

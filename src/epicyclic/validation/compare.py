@@ -198,7 +198,9 @@ def summary(
         held = (
             f"{sum(figure.holds(model) for figure in closures)} with {model}" for model in CLOSURES
         )
-        sentences.append(f"Of {len(closures)} open figures of pocketing hold {', '.join(held)}.")
+        sentences.append(
+            f"Of {len(closures)} open pocketing figures, the following agree: {', '.join(held)}."
+        )
     return " ".join(sentences)
 
 
@@ -208,15 +210,15 @@ def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:
     printed = sum(row.settled == "print" for row in agreeing)
     inferred = sum(bool(row.inferred) for row in counted)
     yield (
-        f"{len(agreeing)} of {len(counted)} figures agree: {printed} to the digits that are "
-        f"printed, {len(agreeing) - printed} within a tolerance that was settled with the computed "
-        f"figure in view (*). Differing: {len(counted) - len(agreeing)}."
+        f"{len(agreeing)} of {len(counted)} figures agree: {printed} to the printed digits, "
+        f"{len(agreeing) - printed} within a tolerance that was chosen with knowledge of the "
+        f"computed figure (*). Differing: {len(counted) - len(agreeing)}."
     )
     if inferred:
-        yield f"{inferred} of the {len(counted)} are not printed as such but inferred, as stated."
+        yield f"{inferred} of the {len(counted)} are not printed but inferred, as stated."
     calibrated = sum(row.role == "calibration" for row in rows)
     yield (
-        f"Not counted: {calibrated} that fixed an unknown input, and "
+        f"Not counted: {calibrated} that calibrated an unknown input, and "
         f"{sum(row.role == 'context' for row in rows)} without a verdict, for the reasons stated."
     )
 

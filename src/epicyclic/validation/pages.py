@@ -75,7 +75,7 @@ def closure_table(rows: Sequence[ClosureFigure]) -> Table:
             Cell(f"{row.what}, {row.unit}".rstrip(", ")),
             aligned(published_text(row)),
             *(
-                aligned(f"{shown(row.computed[name])} {'holds' if row.holds(name) else 'misses'}")
+                aligned(f"{shown(row.computed[name])} {'agrees' if row.holds(name) else 'differs'}")
                 for name in CLOSURES
             ),
         )
@@ -106,9 +106,9 @@ def settled_table(rows: Sequence[SettledFigure], estimates: Sequence[Estimate]) 
             f"{shown(row.low)} to {shown(row.high)}",
         )
     note = Text(
-        "By models.temperatures, nothing fitted to these tests, no verdict. As tested: total loss "
-        "less that without torque at the same speed and oil inlet temperature, each at its own "
-        "temperatures. Range of the network:"
+        "By models.temperatures; nothing was fitted to these tests, and no verdict is given. As "
+        "tested: total loss less that without torque at the same speed and oil inlet "
+        "temperature, each at its own temperatures. Range of the network:"
     )
     ranges = (
         Text(
@@ -150,9 +150,9 @@ def bands_table(rows: Sequence[MeasuredFigure]) -> RenderableType:
         table.add_row(*cells)
     inside = sum(row.is_inside for row in rows)
     note = (
-        f"{inside} of {len(rows)} measurements lie inside. Inputs and errors of models as they are "
-        "assumed where [uncertainty] says nothing, off by the same in all tests; the error of the "
-        "measurement is not in the band, and nothing is fitted."
+        f"{inside} of {len(rows)} measurements lie inside. Uncertainties of inputs and models are "
+        "the defaults without [uncertainty], with the same errors in all tests. The band does "
+        "not include the measurement error, and nothing was fitted."
     )
     return Group(table, Text(note))
 
@@ -283,10 +283,10 @@ def comparison_sections(
         key = topic.lower().replace(" ", "-").replace(",", "")
         yield Section(key, topic, tuple(_items(key, own)))
     text = (
-        "* The tolerance was settled with the computed figure in view. Without a star it is the "
-        "rounding of what is printed.",
-        "Calibrated figures fixed an unknown input; they, and those without a verdict, do not "
-        "count.",
+        "* The tolerance was chosen with knowledge of the computed figure. Without a star it is "
+        "the rounding of what is printed.",
+        "Calibrated figures were used to find an unknown input; they and those without a verdict "
+        "do not count.",
     )
     yield Section("signs", "Signs", (Listing(text),))
 
@@ -348,6 +348,6 @@ def chapter_html(chapter: str, figures: Sequence[Reproduced], rows: Sequence[Com
 
 
 _LEAD = (
-    "Curves are computed; marked are the numbers that the text of the source prints. Its curves "
-    "were not read off."
+    "Curves are computed. Markers show the numbers printed in the text of the source; its curves "
+    "were not digitised."
 )

@@ -112,7 +112,7 @@ def branch_figure(family: Family) -> Figure:
         ax.set_ylim(bottom=0)
         ax.legend(fontsize="small", frameon=False)
         if family.marks:
-            ax.set_title("published slopes drawn through the mean of the computed tests")
+            ax.set_title("published slopes, drawn through the mean of the computed tests")
     return figure
 
 
@@ -261,7 +261,7 @@ def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) ->
                 capsize=4,
                 lw=1.2,
                 zorder=3,
-                label=f"{SOURCE}, between ticks of its axes, {published.speed:g} rpm",
+                label=f"{SOURCE}, read between ticks of its axes, {published.speed:g} rpm",
             )
     held = [_described(study[name]) for name in study.coords if study[name].ndim == 0]
     ax.set(title=", ".join(held) or "Loss", xlabel=label_of(loss[over]), ylabel="pocketing loss, W")

@@ -132,7 +132,11 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
         return family.flow(speed, mixture, pressure)
     except ValueError as error:
         raise one_problem(
-            duty.gears.key, "", f"cannot be so: {error}.", "Vary over a smaller range.", "the study"
+            duty.gears.key,
+            "",
+            f"is impossible: {error}.",
+            "Vary over a smaller range.",
+            "the study",
         ) from None
 
 
@@ -291,7 +295,7 @@ class StudyPlan(Plan):
 
     def _solve(self, index: int) -> Row:
         flow = solve_variant(self.case, self.duty, self.points[index])
-        warning = "" if flow.periodic else "the flow does not repeat; the loss is a mean"
+        warning = "" if flow.periodic else "the flow is not periodic; the loss is a mean"
         figures = flow_figures(flow)
         numbers = {name: getattr(figures, own) for name, own in NUMBERS.items()}
         return Row(str(Status.CONVERGED), warnings=warning, numbers=numbers)
@@ -335,16 +339,16 @@ def make_study(
 
 def _unknown_studies(names: Sequence[str]) -> list[Problem]:
     if not names:
-        return [Problem("what", "", "names no study.", f"Choose of {', '.join(STUDIES)}.")]
+        return [Problem("what", "", "names no study.", f"Choose one of {', '.join(STUDIES)}.")]
     return [
-        Problem("what", written(name), "is no study.", _choice(name, list(STUDIES)))
+        Problem("what", written(name), "is not a study.", _choice(name, list(STUDIES)))
         for name in names
         if name not in STUDIES
     ]
 
 
 def _choice(name: str, known: Sequence[str]) -> str:
-    return did_you_mean(name, list(known)) or f"Choose of {', '.join(known)}."
+    return did_you_mean(name, list(known)) or f"Choose one of {', '.join(known)}."
 
 
 def _duty(case: Case, mesh: str | None) -> MeshDuty:
@@ -352,7 +356,7 @@ def _duty(case: Case, mesh: str | None) -> MeshDuty:
     key = next(iter(duties)) if mesh is None else mesh
     if key not in duties:
         allowed = f"must be {' or '.join(duties)}."
-        raise one_problem("mesh", written(key), allowed, "Name one of these.", "the study")
+        raise one_problem("mesh", written(key), allowed, "Give one of these.", "the study")
     if duties[key].speed1 == 0:
         raise one_problem(key, "", "does not turn.", "Change operation.speed.", case.source)
     return duties[key]
@@ -366,7 +370,7 @@ def _parsed(
     problems = []
     for name, values in given.items():
         if name not in PARAMETERS:
-            allowed = "is no parameter of the study."
+            allowed = "is not a parameter of the study."
             problems.append(Problem(what, written(name), allowed, _choice(name, known)))
             continue
         if name not in known:

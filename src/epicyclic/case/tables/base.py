@@ -75,7 +75,7 @@ def _known_fit(value: object) -> str:
     if fit is None:
         raise PydanticCustomError(
             "preset",
-            "is no series of DIN 3967; it must be a tolerance series from 21 to 30 with an "
+            "is not a series of DIN 3967; it must be a tolerance series from 21 to 30 with an "
             "allowance series a, ab, b, bc, c, cd, d, e, f, g or h",
             {"remedy": 'For example "25cd"'},
         )

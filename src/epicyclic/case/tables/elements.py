@@ -42,26 +42,26 @@ class PlanetBearing(Table):
     rollers_per_row: int = Field(ge=3, le=200)
     roller_diameter: Length
     roller_length: Length = Field(description="Effective length of one roller.")
-    pin_diameter: Length = Field(description="Inner race. The bore follows.")
+    pin_diameter: Length = Field(description="The inner race. The bore follows from it.")
     diametral_clearance: SmallLength
     roller_roughness: Roughness
     race_roughness: Roughness
     viscous_factor: Number | None = option(
-        "f0 of the viscous loss, of the whole bearing: caged cylindrical 2.2-4 a row, needle up "
-        "to 12. Default: 3 a row.",
+        "f0 of the viscous loss of the whole bearing: 2.2-4 per row for caged cylindrical "
+        "rollers, up to 12 for needles. Default: 3 per row.",
         ge=0,
         le=100,
     )
     cage: Literal["caged", "full-complement"] = "caged"
     palmgren_coefficient: Number | None = option(
-        "f1 of the method palmgren. Default: 0.0003 caged, 0.00055 full complement.", gt=0, le=0.05
+        "f1 of the palmgren method. Default: 0.0003 caged, 0.00055 full complement.", gt=0, le=0.05
     )
     crown_drop: SmallLength = option("Drop of the profile at the roller's end (estimate).", "3 um")
     crown_length_fraction: Number = option(
-        "Crowned part of the length, at each end.", 0.2, ge=0, le=0.5
+        "Length of the crowned part at each end.", 0.2, ge=0, le=0.5
     )
     row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
-    material: NamedMaterial = option("Of rollers and races.", "steel")
+    material: NamedMaterial = option("Material of rollers and races.", "steel")
 
 
 class Carrier(Table):
@@ -72,7 +72,7 @@ class Carrier(Table):
 
 
 class ThrustBearing(Table):
-    """A thrust bearing that carries no load worth counting, for its viscous loss."""
+    """A thrust bearing that carries negligible load, for its viscous loss."""
 
     mean_diameter: Length
     between: Literal[
@@ -120,14 +120,14 @@ class LossTableTable(PointsTable):
     speed: tuple[SpeedDifference, ...] | None = option(
         "Magnitudes of the speed difference, rising."
     )
-    temperature: tuple[Temperature, ...] | None = option("Of the oil, rising.")
+    temperature: tuple[Temperature, ...] | None = option("Temperatures of the oil, rising.")
     radial_force: tuple[Force, ...] | None = option("On a bearing, rising.")
     torque: Torques | None = option(
-        "Friction torque: one value, or one row, for each value of the first axis."
+        "Friction torque, with one value or one row for each value of the first axis."
     )
-    power: Powers | None = option("Power lost instead of the torque; needs the axis speed.")
+    power: Powers | None = option("Power loss instead of the torque; it needs the axis speed.")
     file: str | None = option(
-        "CSV file beside the case, its columns with units: speed [rpm],torque [N*m].",
+        "CSV file in the folder of the case, with units in the header: speed [rpm],torque [N*m].",
         max_length=1000,
     )
 
@@ -149,7 +149,7 @@ class ElementTable(Table):
         """What contradicts itself, or is missing; keys are relative to the table."""
         (_, first), (key, second) = self.bodies.items()
         if first == second:
-            reason = "is the same body twice: nothing moves between them."
+            reason = "names the same body twice, so there is no relative motion."
             yield Problem(key, written(second), reason, f'Name another shaft, or "{HOUSING}".')
 
     def points(self, folder: Path) -> LossTable | None:
@@ -182,7 +182,7 @@ class DragTable(ElementTable, LossTableTable):
 class BearingSealTable(Table):
     """Contact seals of a bearing after SKF, both together: K_S1 d_s^beta + K_S2."""
 
-    counterface_diameter: Length = Field(description="d_s, on which the lips run.")
+    counterface_diameter: Length = Field(description="d_s, the diameter on which the lips run.")
     factor: Number = Field(ge=0, le=10, description="K_S1, for mm and N mm.")
     exponent: Number = Field(ge=0, le=4, description="beta.")
     constant: DragTorque = option("K_S2.", "0 N*m")
@@ -217,19 +217,19 @@ class ShaftBearingTable(ElementTable):
         "C0, for ball bearings with harris and skf-2018."
     )
     contact_angle: ContactAngle | None = option(
-        "Of a tapered roller bearing, instead of axial_factor."
+        "Contact angle of a tapered roller bearing, instead of axial_factor."
     )
     axial_factor: Number | None = option(
         "Y of a tapered roller bearing, 0.4 cot of the angle.", gt=0, le=10
     )
-    position: Position | None = option("Along the shaft; for its reactions from the gear forces.")
-    locating: bool = option("True if it takes axial force.", False)
+    position: Position | None = option("Along the shaft, for its reactions to the gear forces.")
+    locating: bool = option("true: the bearing takes axial force.", False)
     axial_sense: Literal["both", "positive", "negative"] = option(
-        "In which sense of the shaft's axis a locating bearing holds the shaft.", "both"
+        "Direction along the axis in which a locating bearing holds the shaft.", "both"
     )
-    radial_force: Force | None = option("Instead of the reaction to the gear forces.")
+    radial_force: Force | None = option("Radial force instead of the reaction to the gear forces.")
     axial_force: Force | None = option(
-        "Beside radial_force. Default: none if radial_force is given."
+        "Axial force in addition to radial_force. Default: none if radial_force is given."
     )
     viscous_factor: Number | None = option(
         "f0 of palmgren and harris. Default: deep-groove 2, cylindrical 3 or 7.5 (full "
@@ -249,10 +249,10 @@ class ShaftBearingTable(ElementTable):
         le=0.05,
     )
     lubrication: Literal["jet", "oil-bath", "grease", "oil-air"] = option(
-        "For skf-2018: how soon the contacts starve.", "jet"
+        "For skf-2018: replenishment and starvation constant.", "jet"
     )
     oil_level: ShortLength = option(
-        "Above the lowest point of the outer raceway, for skf-2018; 0: no bath.", "0 mm"
+        "Level above the lowest point of the outer raceway, for skf-2018; 0: no bath.", "0 mm"
     )
     drag_variable: Number | None = option(
         "V_M of skf-2018 at this oil level. Default: 0.0012 times the immersed share (estimate).",
@@ -260,8 +260,8 @@ class ShaftBearingTable(ElementTable):
         le=0.01,
     )
     sliding_friction: Number | None = option(
-        "mu_EHL of skf-2018. Default: 0.02 cylindrical, 0.002 tapered; balls by the oil: 0.05 "
-        "mineral, 0.10 ATF, 0.04 others.",
+        "mu_EHL of skf-2018. Default: 0.02 cylindrical, 0.002 tapered; ball bearings by oil: "
+        "0.05 mineral, 0.10 ATF, 0.04 others.",
         ge=0,
         le=0.5,
     )
@@ -269,8 +269,8 @@ class ShaftBearingTable(ElementTable):
     minimum_load_factor: Number | None = option(
         "k_r of the product table. Default: 0.025 deep-groove, 0.15 cylindrical.", gt=0, le=10
     )
-    reference_speed: ReferenceSpeed | None = option("Of cylindrical rollers, for the minimum load.")
-    table: LossTableTable | None = option("For model = table.")
+    reference_speed: ReferenceSpeed | None = option("For the minimum load of cylindrical rollers.")
+    table: LossTableTable | None = option("Loss table for model = table.")
 
     def problems(self) -> Iterator[Problem]:
         # cases without bearings need it not
@@ -308,13 +308,13 @@ class SealTable(ElementTable):
 
     shaft: str = Field(description="The shaft under the lip.")
     against: str = option("The body that holds the seal.", "housing")
-    diameter: Length = Field(description="Of the shaft under the lip.")
+    diameter: Length = Field(description="Diameter of the shaft under the lip.")
     model: Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke", "table"] = (
         option(
             "The formulas differ by a factor of 2 and more; the figures show all.", "iso-14179-2"
         )
     )
-    table: LossTableTable | None = option("For model = table.")
+    table: LossTableTable | None = option("Loss table for model = table.")
 
     def problems(self) -> Iterator[Problem]:
         yield from super().problems()
@@ -334,11 +334,11 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
         for key in [*angles, *(key for key in _OF_TAPERED if getattr(table, key) is not None)]:
             yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
     elif table.model != "table" and not angles:
-        reason = "is missing; needed is axial_factor or contact_angle."
+        reason = "is missing; give axial_factor or contact_angle."
         remedy = "Add Y from the catalogue, or the contact angle."
         yield Problem("axial_factor", "", reason, remedy)
     elif table.model != "table" and len(angles) == 2:
-        reason = "is given beside contact_angle; either follows from the other."
+        reason = "is given together with contact_angle; each follows from the other."
         yield Problem("axial_factor", "", reason, "Delete one.")
     elif table.model == "zhou-hoeprich" and table.width is table.roller_length is None:
         reason = "is missing; it tells how long the rollers are."
@@ -348,10 +348,10 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
 def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
-        yield Problem("radial_force", "", "is missing; axial_force is given.", remedy)
+        yield Problem("radial_force", "", "is missing with axial_force.", remedy)
     if table.type == "needle":
-        reason = "is asked of a needle roller bearing, which takes no axial force."
-        remedy = "Let another bearing locate the shaft."
+        reason = "is not possible with a needle roller bearing, which carries no axial force."
+        remedy = "Locate the shaft by another bearing."
         if table.locating:
             yield Problem("locating", "true", reason, remedy)
         if table.axial_force:
@@ -364,11 +364,11 @@ def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     known = skf_series(table.type)
     choice = ", ".join(known)
     if table.cage == "caged" and table.series is None:
-        reason = f"is missing; SKF has a row for each: {choice}."
+        reason = f"is missing; SKF lists the series {choice}."
         yield Problem("series", "", reason, f"Give one of {choice}.")
     elif table.cage == "caged" and table.series not in known:
         remedy = did_you_mean(table.series or "", known) or 'Or choose model = "palmgren".'
-        reason = f"is not in the table; known of {table.type} bearings are {choice}."
+        reason = f"is not in the table; the series of {table.type} bearings are {choice}."
         yield Problem("series", written(table.series), reason, remedy)
     if table.oil_level > 0 and table.type != "deep-groove" and table.width is None:
         reason = "is missing; the drag of rollers in an oil bath needs it."
@@ -402,10 +402,14 @@ def loss_table_problems(table: LossTableTable, axes: Collection[str]) -> Iterato
         yield Problem(key, " and ".join(contents), reason, "Give one of them.")
         return
     for name in foreign:
-        yield Problem(name, "", "is no axis here: only bearings carry a load.", "Delete it.")
+        yield Problem(
+            name, "", "is not a valid axis here: only bearings carry a load.", "Delete it."
+        )
     if contents == ["file"]:
         for name in given:
-            yield Problem(name, "", "is given beside file, which has its own axes.", "Delete it.")
+            yield Problem(
+                name, "", "is given together with file, which has its own axes.", "Delete it."
+            )
     elif not foreign:
         yield from table_problems(table.quantity, given, getattr(table, table.quantity))
 
@@ -432,7 +436,7 @@ def between(
         Problem(
             key,
             written(body),
-            f"is not a shaft; known are {', '.join(dict.fromkeys(known.values()))}.",
+            f"is not a shaft; the shafts are {', '.join(dict.fromkeys(known.values()))}.",
             did_you_mean(body, known) or "Check the name.",
         )
         for key, body in names.items()
@@ -440,7 +444,7 @@ def between(
     )
     first, second = (known[name] for name in names.values())
     if first == second:
-        reason = f"is the same shaft, {first}, by another name: nothing moves between them."
+        reason = f"is the same shaft, {first}, under another name, so there is no relative motion."
         key, name = list(names.items())[1]
         raise one_problem(key, written(name), reason, "Name another shaft.")
     return first, second
@@ -462,6 +466,6 @@ def _loss_table(own: LossTableTable, folder: Path, prefix: str, axes: Collection
         ]
         raise InputError(Problem(key, shown, *what) for what in whole) from None
     if not set(found.names) <= set(axes):
-        reason = f"may have the axes {' and '.join(axes)} only."
+        reason = f"may only have the axes {' and '.join(axes)}."
         raise one_problem(key, shown, reason, "Delete the column radial_force.")
     return found

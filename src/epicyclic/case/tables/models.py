@@ -47,8 +47,8 @@ PRESSURE_NAMES: dict[type[PressureLaw], Any] = {law: name for name, law in PRESS
 USUAL = PRESETS[DEFAULT]
 PresetName = Literal["usual", "as-published"]
 PRESET = (
-    "Assumptions where a key is not given: as-published for those made before the comparison with "
-    "the dissertation."
+    "Assumptions for keys that are not given; as-published: those made before the comparison "
+    "with the dissertation."
 )
 """What the key says."""
 
@@ -86,7 +86,7 @@ class OilBehaviour(Table):
     """Viscosity under pressure and under shear."""
 
     pressure_law: Literal["roelands", "barus", "two-slope"] = option(
-        "Viscosity under pressure.", PRESSURE_NAMES[USUAL.pressure_law]
+        "Law of the viscosity under pressure.", PRESSURE_NAMES[USUAL.pressure_law]
     )
     slope_ratio: Number = option(
         "For two-slope: slope at high over that at ambient pressure (estimate).",
@@ -101,21 +101,21 @@ class OilBehaviour(Table):
         "For two-slope: where the slopes meet (estimate).", f"{TRANSITION * 1e-9:g} GPa"
     )
     eyring_stress: Stress = option(
-        "Of the default law: stress beyond which the oil thins (estimate; mineral oils 2 to 10 "
+        "For the default law: stress above which the oil thins (estimate; mineral oils 2 to 10 "
         "MPa).",
         stress_text(USUAL),
     )
     shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = option(
-        "Viscosity under shear.", "ree-eyring"
+        "Law of the viscosity under shear.", "ree-eyring"
     )
     shear_stress: Stress | None = option("For limiting-stress and carreau: the stress of the law.")
     shear_stress_slope: Number = option(
-        "Of ree-eyring and limiting-stress: rise of the stress with the pressure.",
+        "For ree-eyring and limiting-stress: rise of the stress with the pressure.",
         0.0,
         ge=0.0,
         le=1.0,
     )
-    shear_exponent: Number | None = option("For carreau: n.", gt=0.0, le=1.0)
+    shear_exponent: Number | None = option("For carreau: exponent n.", gt=0.0, le=1.0)
 
 
 def law_problems(section: str, table: OilBehaviour) -> list[Problem]:
@@ -126,14 +126,14 @@ def law_problems(section: str, table: OilBehaviour) -> list[Problem]:
     for key in sorted({key for keys in NEEDED.values() for key in keys}):
         given = getattr(table, key) is not None
         if key in needed and not given:
-            allowed = f"is missing; {needed[key]} needs it."
+            allowed = f"is missing, but {needed[key]} needs it."
             problems.append(Problem(f"{section}.{key}", "", allowed, "Give it."))
         elif given and key not in needed:
             laws = " and ".join(law for law, keys in NEEDED.items() if key in keys)
             remedy = "Choose such a law, or leave it out."
-            problems.append(Problem(f"{section}.{key}", "", f"is for {laws} only.", remedy))
+            problems.append(Problem(f"{section}.{key}", "", f"applies to {laws} only.", remedy))
     return problems + [
-        Problem(f"{section}.{key}", "", "is for two-slope only.", "Choose it, or leave it out.")
+        Problem(f"{section}.{key}", "", "applies to two-slope only.", "Choose it, or leave it out.")
         for key in OF_TWO_SLOPES
         if table.pressure_law != "two-slope" and getattr(table, key) != getattr(_USUAL_OIL, key)
     ]
@@ -170,8 +170,8 @@ class LoadSharing(Table):
     """How the planets share the load."""
 
     method: Literal["equal", "mesh-load-factor", "closed-form", "direct"] = option(
-        "mesh-load-factor: one planet takes more; closed-form, direct: from position_errors and "
-        "stiffness.",
+        "mesh-load-factor: one planet carries more; closed-form, direct: from position_errors "
+        "and stiffness.",
         "equal",
     )
     mesh_load_factor: Number = option(
@@ -181,16 +181,16 @@ class LoadSharing(Table):
         le=24,
     )
     position_errors: tuple[Deviation, ...] | None = option(
-        "Of each planet pin, against the sense in which a positive torque of the sun pushes it: a "
-        "positive error loads its planet more."
+        "Tangential position error of each planet pin, against the direction in which a "
+        "positive torque of the sun pushes it. A positive error loads its planet more."
     )
     floating_member: Literal["sun", "ring", "carrier", "none"] = option(
-        "The member that gives way in the transverse plane.", "sun"
+        "The member that can move in the transverse plane.", "sun"
     )
     support_stiffness: Stiffness = option("Radial, of the floating member; 0: it floats.", "0 N/um")
     pin_stiffness: _PinStiffness | None = option(
-        "Radial, of one planet pin in the carrier, in series with the planet bearing. Default: "
-        "rigid."
+        "Radial stiffness of one planet pin in the carrier, in series with the planet bearing. "
+        "Default: rigid."
     )
 
     def idle_keys(self) -> tuple[str, ...]:
@@ -247,7 +247,7 @@ class FrictionTable(PointsTable):
     hertz_pressure: tuple[HertzPressure, ...] | None = None
     rolling_speed: tuple[Speed, ...] | None = None
     friction: Coefficients = Field(
-        description="One value, or one row, for each value of the first axis."
+        description="One value or one row for each value of the first axis."
     )
 
     def shape(self) -> tuple[int, ...]:
@@ -270,11 +270,11 @@ class ContactSolver(OilBehaviour):
         "With heating. Default: that of the material of each gear."
     )
     asperity_film: SmallLength = option(
-        "Film below which flanks touch (estimate).", film_text(USUAL)
+        "Film thickness below which flanks touch (estimate).", film_text(USUAL)
     )
-    correlation_length: SmallLength = option("Of the roughness of both flanks (estimate).", "20 um")
-    seed: int = option("Of the generated profiles.", 1, ge=0)
-    error: Number = option("Mean error wanted at contacts that take no part.", 0.05, gt=0, le=1)
+    correlation_length: SmallLength = option("That of both flanks' roughness (estimate).", "20 um")
+    seed: int = option("Seed of the generated profiles.", 1, ge=0)
+    error: Number = option("Target for the mean error at contacts not solved.", 0.05, gt=0, le=1)
     most_contacts: int = option("Solved for one mesh at most.", 48, ge=12, le=5000)
 
     @model_validator(mode="before")
@@ -292,7 +292,7 @@ TemperatureModel = Literal["inlet", "flank", "network"]
 
 
 class GearPairModels(Table):
-    """Which method computes what."""
+    """Methods of computation."""
 
     preset: Literal["general", "talbot-2012"] = option(
         "What auto stands for: general: models for any oil; talbot-2012: the regressions of that "
@@ -341,7 +341,7 @@ class GearPairModels(Table):
         "K_A, in the load of the formula niemann-winter only.", 1.0
     )
     mesh_load_factor: LoadFactor = option(
-        "K_gamma, in the same place; what planets carry is up to load_sharing.", 1.0
+        "K_gamma, likewise; the load of the planets is set by load_sharing.", 1.0
     )
     rolling: Literal[
         "auto",
@@ -356,23 +356,23 @@ class GearPairModels(Table):
         "auto",
     )
     oil_model: str | None = option(
-        "For fitted and auto: a file of 'epicyclic oil characterise', from the folder of the "
-        "case. Default: the models built in for the oil."
+        "For fitted and auto: a file of 'epicyclic oil characterise', relative to the folder "
+        "of the case. Default: the models built in for the oil."
     )
     fitted_form: Literal["structured", "regression"] = option(
-        "For fitted: which form of the file.", "structured"
+        "For fitted: the form of the model in the file.", "structured"
     )
     load_distribution: Literal["uniform", "minimum-energy", "compliance"] = option(
-        "Along the contact lines: even, after a stiffness, or from elastic teeth.", "compliance"
+        "Along the contact lines: uniform, by stiffness, or from elastic teeth.", "compliance"
     )
     mesh_loads: Literal["with-losses", "without-losses"] = option(
-        "What the teeth carry: the torques in balance with all losses; or those of the set "
-        "without its own losses, at the given torque, as in the source.",
+        "Loads of the teeth: from the torques in balance with all losses, or from those of the "
+        "set without its own losses at the given torque, as in the source.",
         "with-losses",
     )
     load_dependent: Literal["computed", "as-tested"] = option(
-        "Which loss counts as load-dependent: each by its kind; or, as on a test rig, what torque "
-        "adds to the total.",
+        "Definition of the load-dependent loss: the sum of the load-dependent terms, or, as on "
+        "a test rig, the increase of the total due to torque.",
         "computed",
     )
     mesh: Literal["local", "loss-factor"] = option(
@@ -391,21 +391,21 @@ class GearPairModels(Table):
         "Absolute pressure of a void in the pockets, for pocketing = incompressible.", "0.01 bar"
     )
     pocketing_table: str | None = option(
-        "Read the flow through the pockets from this file of 'epicyclic pockets-table', from the "
-        "folder of the case."
+        "File of 'epicyclic pockets-table', relative to the folder of the case, with the flow "
+        "through the pockets."
     )
     pocket_end_length: Number = option(
         "Of the control volumes at the ends of the face, in normal modules.", 1.0, ge=0.1, le=10
     )
     drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
     temperatures: TemperatureModel = option(
-        "inlet: everything at the oil inlet temperature; flank: gears warmed by their own meshes; "
-        "network: heat flows between all parts, the oil and the surroundings.",
+        "inlet: all parts are at the oil inlet temperature; flank: gears are heated by their "
+        "own meshes; network: heat flows between all parts, the oil and the surroundings.",
         "inlet",
     )
     oil_beyond_range: Literal["held", "extrapolated"] = option(
-        "Viscosity and pressure-viscosity outside the range of the mixed-EHL regressions: held at "
-        "its limit, or the formula continued.",
+        "Viscosity and pressure-viscosity coefficient outside the range of the mixed-EHL "
+        "regressions: held at the limit of the range, or extrapolated.",
         "held",
     )
 
@@ -424,8 +424,8 @@ class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
     bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = option(
-        "auto: of caged rollers mixed-ehl for the fluid it was made for and fitted-or-palmgren "
-        "for an oil with fitted models, else palmgren.",
+        "auto: for caged rollers mixed-ehl with the fluid it was made for and "
+        "fitted-or-palmgren with an oil that has fitted models, else palmgren.",
         "auto",
     )
     bearing_viscous: Literal["harris"] = "harris"
@@ -441,15 +441,15 @@ GearPairModels.STAND_INS = PlanetaryModels.STAND_INS = dict.fromkeys(
 
 
 class Numerics(Table):
-    """Resolution."""
+    """Numerical resolution."""
 
     mesh_positions: int = Field(default=20, ge=4, le=1000)
     contact_segments: int = Field(default=20, ge=2, le=1000)
-    bearing_slices: int = option("On each roller.", 20, ge=3, le=500)
-    pocket_slices: int = option("Of the pockets, across the face; at least.", 24, ge=3, le=200)
+    bearing_slices: int = option("Slices along each roller.", 20, ge=3, le=500)
+    pocket_slices: int = option("Least number across the face.", 24, ge=3, le=200)
     pocket_steps: int = option("Time steps of the pocket flow in one pitch.", 32, ge=8, le=1000)
     pocket_interpolation: Number = option(
-        "Largest error of pocketing losses that sweeps interpolate; 0 solves each.",
+        "Largest error of interpolated pocketing losses in sweeps; 0: no interpolation.",
         0.002,
         ge=0,
         le=0.1,
@@ -457,7 +457,7 @@ class Numerics(Table):
 
 
 class LossOption(Table):
-    """What becomes of one loss term."""
+    """Options of one loss term."""
 
     include: bool = option("false leaves the term out.", True)
     factor: Number = option("Multiplies the term.", 1.0, ge=0, le=100)

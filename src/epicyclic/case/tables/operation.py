@@ -48,15 +48,15 @@ class PlanetaryOperation(Table):
     EXACTLY_ONE = (("fixed", "second_input+second_speed"),)
 
     input: Member = Field(description="The member to which torque and speed belong.")
-    fixed: Member | None = option("The member held still; the third one is the output.")
-    second_input: Member | None = option("Instead of fixed: a second member of given speed.")
+    fixed: Member | None = option("The member that is held; the third one is the output.")
+    second_input: Member | None = option("Instead of fixed: a second member with a given speed.")
     second_speed: RotationalSpeed | None = option(
-        "Speed of the second member; same sign = same sense of rotation."
+        "Speed of the second member; equal signs mean the same sense of rotation."
     )
     torque: Torque = Field(
-        description="On the input member; negative = coasting, power flows back through it."
+        description="Torque on the input member; negative: coasting, power flows back through it."
     )
-    speed: RotationalSpeed = Field(description="Of the input member.")
+    speed: RotationalSpeed = Field(description="Speed of the input member.")
     oil_inlet_temperature: Temperature = Field(description="Oil temperature at all contacts.")
 
 
@@ -65,8 +65,8 @@ class GearPairOperation(Table):
 
     STAND_INS = ANY_OPERATION
 
-    torque: Torque = Field(description="On the pinion; negative = coasting.")
-    speed: RotationalSpeed = Field(description="Of the pinion.")
+    torque: Torque = Field(description="Torque on the pinion; negative: coasting.")
+    speed: RotationalSpeed = Field(description="Speed of the pinion.")
     oil_inlet_temperature: Temperature = Field(description="Oil temperature at all contacts.")
 
 
@@ -87,7 +87,7 @@ class Lubricant(Table):
 class Surroundings(Table):
     """What surrounds the gears."""
 
-    oil_air_ratio: Number = option("Oil share by volume at ambient pressure.", 0.05, ge=0, le=1)
+    oil_air_ratio: Number = option("Share of oil by volume at ambient pressure.", 0.05, ge=0, le=1)
     pressure: Pressure = option("Ambient pressure.", "1.01325 bar")
 
 
@@ -102,29 +102,29 @@ class HousingTable(Table):
         "area.",
         "iso-14179-2",
     )
-    area: Area = Field(description="Outside, without fins.")
-    inner_area: Area | None = option("Wetted by oil. Default: area.")
-    height: Length | None = option("Default: that of a cube of the same area.")
-    length: Length | None = option("Along the air. Default: height.")
-    air_speed: Speed = option("Of the air past it; 0: free convection.", "0 m/s")
+    area: Area = Field(description="Outer surface without fins.")
+    inner_area: Area | None = option("Inner surface wetted by oil. Default: area.")
+    height: Length | None = option("Default: the height of a cube of this area.")
+    length: Length | None = option("Length along the air flow. Default: height.")
+    air_speed: Speed = option("Speed of the air past the housing; 0: free convection.", "0 m/s")
     emissivity: Number = option("0.9 painted, 0.15 to 0.25 bare aluminium.", 0.9, ge=0, le=1)
     fin_factor: Number = option(
-        "Multiplies the convection: area and effect of fins.", 1.0, ge=1, le=20
+        "Factor on the convection for area and efficiency of fins.", 1.0, ge=1, le=20
     )
     inner_coefficient: HeatTransfer = option("From the oil to the wall (splash).", "200 W/(m^2*K)")
     coefficient: HeatTransfer = option(
         "k of iso-14179-1, oil to air: 10-14 in small rooms, 17-20 in large ones, 19-24 outdoors.",
         "15 W/(m^2*K)",
     )
-    foundation: Conductance = option("To what it stands on, at ambient temperature.", "0 W/K")
-    mass: Mass | None = option("For warming up.")
+    foundation: Conductance = option("To the foundation, at ambient temperature.", "0 W/K")
+    mass: Mass | None = option("Mass of the housing, for warming up.")
     heat_capacity_ratio: Number = option(
-        "Of its material over that of steel, by mass: aluminium 1.95.", 1.0, gt=0, le=10
+        "Specific heat of its material over that of steel: 1.95 for aluminium.", 1.0, gt=0, le=10
     )
 
 
 class ConductanceTable(Table):
-    """One way of the heat, as 'epicyclic heat' names it."""
+    """One heat path, as 'epicyclic heat' names it."""
 
     value: Conductance | None = option("Instead of the computed one.")
     scale: Number = option("Multiplies it.", 1.0, ge=0, le=1000)
@@ -138,53 +138,51 @@ class CapacityTable(Table):
 
 
 class ThermalTable(Table):
-    """How heat arises and leaves, for models.temperatures other than inlet."""
+    """Generation and removal of heat, for models.temperatures other than inlet."""
 
     lubrication: Literal["spray", "dip", "spray-and-dip", "submerged"] = option(
-        "How oil gets to the gears.", "spray"
+        "How the oil reaches the gears.", "spray"
     )
     bulk: Literal["iso-6336-20", "iso-6336-22"] = option(
-        "For flank: iso-6336-20: from the flash temperature of each gear's meshes; iso-6336-22: "
-        "from their loss, both gears alike.",
+        "For flank; iso-6336-20: from the flash temperature of the meshes of each gear; "
+        "iso-6336-22: from their loss, equal for both gears.",
         "iso-6336-20",
     )
-    oil_flow: VolumeFlow | None = option(
-        "Of all oil that leaves for a tank or cooler and comes back."
-    )
+    oil_flow: VolumeFlow | None = option("Flow of the oil through a tank or cooler and back.")
     oil_outlet_temperature: Temperature | None = option(
-        "Instead of oil_flow, where it was measured: the flow follows."
+        "Measured temperature of the leaving oil, instead of oil_flow, which follows from it."
     )
     jet_effectiveness: Number = option(
-        "How far oil thrown on a gear reaches the temperature of the gear (estimate: 0.25 to 1).",
+        "Share of the temperature difference that oil on a gear takes up (estimate: 0.25 to 1).",
         0.5,
         ge=0,
         le=1,
     )
     jet_shares: dict[str, Number] = option(
-        "Share of oil_flow that meets a gear, pin or bearing; what is left meets the others. "
-        "Default: as much as its heat demands.",
+        "Shares of oil_flow that reach a gear, pin or bearing; the rest reaches the others. "
+        "Default: in proportion to their heat.",
         {},
     )
     bath_share: Number = option(
-        "Share of the surfaces of a gear that dips into oil (estimate), with dip.", 0.3, gt=0, le=1
+        "Immersed share of the surface of a gear, with dip (estimate).", 0.3, gt=0, le=1
     )
-    ambient_temperature: Temperature = option("Of the air around the housing.", "20 degC")
-    cooler_power: Power = option("That a cooler takes from the oil.", "0 W")
-    cooler_conductance: Conductance = option("Of a cooler in the sump, to its coolant.", "0 W/K")
-    coolant_temperature: Temperature = option("Of that coolant.", "40 degC")
+    ambient_temperature: Temperature = option("Air around the housing.", "20 degC")
+    cooler_power: Power = option("Heat that a cooler removes from the oil.", "0 W")
+    cooler_conductance: Conductance = option("From the oil in the sump to the coolant.", "0 W/K")
+    coolant_temperature: Temperature = option("That of the cooler in the sump.", "40 degC")
     press_fit: HeatTransfer = option(
         "Contact conductance of press fits and splines (1000 to 5000).", "2000 W/(m^2*K)"
     )
     shaft_conductance: Conductance = option(
-        "Along a shaft, from each gear or bearing on it: trains (estimate).", "1 W/K"
+        "Along a shaft from each gear or bearing on it, in trains (estimate).", "1 W/K"
     )
     conductances: dict[str, ConductanceTable] = option(
-        "Changes to single ways of the heat, by their names.", {}
+        "Changes to single heat paths, by their names.", {}
     )
     capacities: dict[str, CapacityTable] = option(
         "Changes to the heat capacities of single parts, by their names.", {}
     )
-    oil_volume: Volume | None = option("For warming up.")
+    oil_volume: Volume | None = option("Oil volume in the gearbox, for warming up.")
     housing: HousingTable | None = option("Default: no heat leaves through it.")
 
     def __hash__(self) -> int:  # the tables of names cannot be hashed
@@ -199,16 +197,16 @@ def check_thermal(thermal: ThermalTable) -> list[Problem]:
     problems = []
     if thermal.oil_flow is not None and thermal.oil_outlet_temperature is not None:
         key = "thermal.oil_flow, thermal.oil_outlet_temperature"
-        allowed = "determine each other, by the heat that the oil takes along."
+        allowed = "determine each other through the heat that the oil carries away."
         problems.append(Problem(key, "", allowed, "Give one of them."))
     for name, share in thermal.jet_shares.items():
         if not 0 <= share <= 1:
             allowed = "must be a number >= 0 and <= 1."
-            remedy = "Give the part of the oil flow that meets it."
+            remedy = "Give the share of the oil flow that reaches it."
             problems.append(Problem(f"thermal.jet_shares.{name}", f"{share:g}", allowed, remedy))
     whole = sum(thermal.jet_shares.values())
     if not problems and whole > 1 + ROUNDING:
-        allowed = f"add up to {whole:g}, more than all of the oil."
+        allowed = f"add up to {whole:g}, which exceeds the whole oil flow."
         remedy = f"Divide each by {whole:g}, or leave some out."
         problems.append(Problem("thermal.jet_shares", "", allowed, remedy))
     return problems
@@ -220,7 +218,7 @@ def check_outlet(thermal: ThermalTable, inlet: float | None) -> list[Problem]:
     if outlet is None or inlet is None or outlet > inlet:
         return []
     allowed = f"must be above operation.oil_inlet_temperature, {CELSIUS.text(inlet)}: the oil "
-    allowed += "takes the heat of the losses along."
+    allowed += "carries the heat of the losses away."
     remedy = "Correct one of them, or give thermal.oil_flow."
     return [Problem("thermal.oil_outlet_temperature", CELSIUS.text(outlet), allowed, remedy)]
 
@@ -233,7 +231,7 @@ def check_ways_out(
     ways = (thermal.oil_outlet_temperature, thermal.housing, thermal.cooler_conductance)
     if temperatures != "network" or flow or any(ways):
         return []
-    allowed = 'leaves no way out for the heat, which models.temperatures = "network" follows.'
+    allowed = 'leaves no path out for the heat, which models.temperatures = "network" needs.'
     remedy = "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] with its "
     remedy += "area, or thermal.cooler_conductance."
     return [Problem("thermal", "", allowed, remedy)]
@@ -258,7 +256,7 @@ _Level = Annotated[float, Quantity("a height", "m", "mm", low=-1e5, high=1e5)]
 
 
 class LubricationTable(Table):
-    """How oil gets to the gears: gives the share of oil around them, and their churning."""
+    """Oil supply of the gears: gives the share of oil around them, and their churning."""
 
     STAND_INS: ClassVar[dict[str, object]] = {
         "jet_speed": None,
@@ -268,39 +266,38 @@ class LubricationTable(Table):
     }
 
     method: Method = Field(
-        description="drained: mist only; flow: oil fed through shafts or carrier; dip: some of the "
-        "gears reach into the sump."
+        description="drained: mist only; flow: oil fed through shafts or carrier; dip: some of "
+        "the gears dip into the sump."
     )
-    oil_flow: VolumeFlow | None = option("That jet, spray or flow brings to the gears of one set.")
+    oil_flow: VolumeFlow | None = option("From jet, spray or flow to the gears of one set.")
     jet_speed: Speed = option(
-        "Of the oil of jets, along the teeth; 0: not known, or across.", "0 m/s"
+        "Speed of the jets in the direction of the teeth; 0: unknown, or across.", "0 m/s"
     )
     nozzle_side: Literal["in-mesh", "out-of-mesh", "radial"] = option(
-        "Jets with the teeth as they mesh, against them as they part, or radial.", "in-mesh"
+        "Jets into the mesh with the teeth, out of it against them, or radial.", "in-mesh"
     )
     oil_level: _Level | None = option(
-        "With dip: oil at rest above the axis of the set, or both axes of a pair; negative: below."
+        "With dip: level at rest above the axis of the set or both axes of a pair; negative: below."
     )
     immersion: dict[str, Length] = option(
         "With dip, instead of oil_level: depth of the lowest point of each gear, or of the "
-        "carrier, below the oil at rest.",
+        "carrier, below the level of the oil at rest.",
         {},
     )
-    oil_volume: _Sump | None = option("With dip: in the sump. Default: thermal.oil_volume.")
+    oil_volume: _Sump | None = option("With dip: oil in the sump. Default: thermal.oil_volume.")
     churning: Literal["changenet-velex", "iso-14179-1"] = option("With dip.", "changenet-velex")
     oil_share: Number | None = option(
-        "Share of oil by volume around the gears, where it is known. Default: an estimate by "
-        "method.",
+        "Share of oil by volume around the gears, if known. Default: an estimate by method.",
         ge=0,
         le=1,
     )
-    oil_share_factor: Number = option("Multiplies that estimate, at most to 1.", 1.0, gt=0, le=100)
+    oil_share_factor: Number = option("Factor on that estimate, at most to 1.", 1.0, gt=0, le=100)
 
     def __hash__(self) -> int:  # a table of names cannot be hashed
         return hash((self.method, self.oil_flow, self.oil_level, self.oil_share_factor))
 
 
-LUBRICATION: Any = option("With it surroundings.oil_air_ratio has no effect.")
+LUBRICATION: Any = option("If given, surroundings.oil_air_ratio has no effect.")
 """The field of a case."""
 
 _EVERY = {"method", "oil_share", "oil_share_factor"}
@@ -329,19 +326,19 @@ _CONDITIONS = (
     _Condition(
         "lubrication.oil_flow",
         lambda table: table.method == "flow" and table.oil_flow is None,
-        'is missing, and method = "flow" needs it.',
+        'is missing, but method = "flow" needs it.',
         'Give it, as "2 l/min".',
     ),
     _Condition(
         "lubrication.oil_level",
         lambda table: table.method == "dip" and table.oil_level is None and not table.immersion,
-        'is missing, and method = "dip" needs it, or immersion.',
+        'is missing, but method = "dip" needs it, or immersion.',
         'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.',
     ),
     _Condition(
         "lubrication.oil_share, lubrication.oil_share_factor",
         lambda table: table.oil_share is not None and "oil_share_factor" in _stated(table),
-        "exclude each other: the factor is of what follows from the method.",
+        "exclude each other, because the factor applies to the estimate of the method.",
         "Give one of them.",
     ),
     _Condition(
@@ -385,12 +382,12 @@ def check_sump(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:
     if table.method != "dip":
         return []
     if own is None and other is None:
-        allowed = 'is missing, and method = "dip" needs it.'
+        allowed = 'is missing, but method = "dip" needs it.'
         return [Problem("lubrication.oil_volume", "", allowed, 'Give it, as "1.5 l".')]
     if own is None or other is None or own == other:
         return []
     key = "lubrication.oil_volume, thermal.oil_volume"
-    reason = "are one volume, and differ."
+    reason = "are the same volume, but differ."
     return [Problem(key, f"{LITRE.text(own)}, {LITRE.text(other)}", reason, "Give one of them.")]
 
 
@@ -400,8 +397,8 @@ def check_wetting(table: LubricationTable, thermal: ThermalTable) -> list[Proble
     if "lubrication" not in thermal.model_fields_set or thermal.lubrication in wetting:
         return []
     fitting = " or ".join(f'"{name}"' for name in wetting)
-    allowed = f'contradicts lubrication.method = "{table.method}", with which it is {fitting}.'
-    remedy = "Remove it: it follows from the method."
+    allowed = f'contradicts lubrication.method = "{table.method}", for which it is {fitting}.'
+    remedy = "Remove it, because it follows from the method."
     return [Problem("thermal.lubrication", f'"{thermal.lubrication}"', allowed, remedy)]
 
 
@@ -412,7 +409,7 @@ def check_immersion(table: LubricationTable, parts: Collection[str]) -> list[Pro
         Problem(
             f"lubrication.immersion.{name}",
             "",
-            f"is no part whose churning is computed: {known}.",
+            f"is not a part whose churning is computed; these are {known}.",
             did_you_mean(name, parts) or "Name one of these; planets are left out.",
         )
         for name in table.immersion

@@ -29,21 +29,21 @@ Stated = str | Number
 
 
 class DistributionTable(Table):
-    """How well one value is known: by one of the keys down to `exact`."""
+    """Uncertainty of one value: by one of the keys down to `exact`."""
 
     EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
         ("normal", "uniform", "tolerance", "lognormal_factor", "exact"),
     )
 
     normal: Stated | None = option('Standard uncertainty about the value, "0.05 um" or "12 %".')
-    uniform: tuple[Stated, Stated] | None = option("Limits between which all values are alike.")
+    uniform: tuple[Stated, Stated] | None = option("Limits between equally likely values.")
     tolerance: tuple[Stated, Stated] | None = option(
-        "Limits as deviations from the value, between which all are alike."
+        "Limits as deviations from the value, between which all values are equally likely."
     )
     lognormal_factor: Number | None = option(
-        "Two thirds of all values lie between the value over and times this factor.", gt=1
+        "Two thirds of all values lie between value / factor and value * factor.", gt=1
     )
-    exact: bool | None = option("true: known, against the default.")
+    exact: bool | None = option("true: the value is exact, against the default.")
     correlated: dict[str, Number] = option(
         "Coefficients of correlation with other keys of this table, -1 to 1.", {}
     )
@@ -53,7 +53,7 @@ class DistributionTable(Table):
 
 
 UNCERTAINTY: Any = option(
-    "How well values are known, by their keys, and models, by model_form.KIND.", {}
+    "Uncertainty of values, by their keys, and of models, by model_form.KIND.", {}
 )
 """The field of a case."""
 
@@ -137,7 +137,7 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
     if problem := owner_without_keys(case.given(), key):
         return replace(problem, key=_name(key), value=_given(table))
     if not has_effect(case, key):
-        allowed = "has no effect: another key decides the share of oil."
+        allowed = "has no effect, because another key sets the share of oil."
         remedy = f"State {FACTOR_KEY}, or lubrication.oil_share where it is given."
         return Problem(_name(key), _given(table), allowed, remedy)
     if table.exact:
@@ -230,15 +230,15 @@ def _impossible(parameter: Parameter, kind: Kind, spread: tuple[float, ...]) -> 
     if kind == "normal" and spread[0] <= 0:
         return Problem(name, "", "must have a standard uncertainty above 0.", "Or exact = true.")
     if kind == "lognormal" and parameter.start <= 0:
-        allowed = f"is for values above 0, not {parameter.start:g}{unit}."
-        return Problem(name, "", allowed, "Take normal or uniform.")
+        allowed = f"applies to values above 0, not {parameter.start:g}{unit}."
+        return Problem(name, "", allowed, "Use normal or uniform.")
     if kind != "uniform":
         return None
     low, high = spread
     if low >= high:
-        return Problem(name, "", "must have the lower limit first.", "Exchange the limits.")
+        return Problem(name, "", "must give the lower limit first.", "Exchange the limits.")
     if high <= parameter.low or low >= parameter.high:
-        allowed = f"lies outside of what the key can hold, {parameter.low:g} to {parameter.high:g}."
+        allowed = f"lies outside the range of this key, {parameter.low:g} to {parameter.high:g}."
         return Problem(name, "", allowed, "Correct the limits.")
     return None
 
@@ -252,7 +252,7 @@ def _model_form(key: str, table: DistributionTable) -> UncertainValue | Problem 
     if table.exact:
         return None
     if table.lognormal_factor is None:
-        allowed = "needs lognormal_factor: the error of a model is a factor of its losses."
+        allowed = "needs lognormal_factor, because the error of a model is a factor on its losses."
         return Problem(_name(key), _given(table), allowed, "Give it, or exact = true.")
     return UncertainValue(
         key, "", 1.0, "lognormal", (table.lognormal_factor,), 0.0, source="given by the case",
@@ -269,7 +269,7 @@ def _correlation_problems(own: Mapping[str, DistributionTable]) -> Iterator[Prob
                 yield Problem(name, f"{coefficient:g}", allowed, "Name one that has a table there.")
             elif not -1 < coefficient < 1:
                 allowed = "must be a number > -1 and < 1."
-                yield Problem(name, f"{coefficient:g}", allowed, "Give such a coefficient.")
+                yield Problem(name, f"{coefficient:g}", allowed, "Correct it.")
 
 
 def _name(key: str) -> str:

@@ -183,7 +183,7 @@ def _with_members(
         if isinstance(gear, Mapping)
     }
     named = _names(key, _GEARS, table.model_fields[_MEMBERS], listed)
-    about = "The gears, and what they share." if shared else "The gears."
+    about = "The gears and their common properties." if shared else "The gears."
     return [replace(named, about=about, entries=shared.entries if shared else ()), *others]
 
 
@@ -318,7 +318,7 @@ def number_in(text: str) -> float | None:
 
 
 ENDINGS = (".toml", ".rexs", ".rexsj", ".rexsz")  # Endings of files that hold a case.
-_HEAD = "A case file of epicyclic, saved by its app. Keys behind a # have defaults."
+_HEAD = "A case file of epicyclic, saved by its app. Commented-out keys have defaults."
 
 
 @dataclass
@@ -403,7 +403,7 @@ class Desk:
         if set(name) & set('"\\') or not name.isprintable():
             return "Names have no quotation marks, backslashes or control characters."
         if value_at(self.current, [*key_parts(table), name]) is not None:
-            return f"{table} has {name} already. Choose another name."
+            return f"{table} already has {name}. Choose another name."
         return ""
 
     def _check(self) -> None:
@@ -453,7 +453,7 @@ def _elsewhere(tables: Any, path: tuple[str, ...] = ()) -> Iterator[Problem]:
         for item in tables:
             yield from _elsewhere(item, path)
     elif path and path[-1] in FILE_KEYS and not _is_name(tables):
-        allowed = "must be the name of a file beside the case: the app opens no others."
+        allowed = "must be the name of a file beside the case, because the app opens no others."
         remedy = "Upload the file together with the case, and give its name."
         yield Problem(dotted(path), written(tables), allowed, remedy)
 
@@ -520,7 +520,7 @@ def received(
 
 def _keep(folder: Path, name: str, content: bytes) -> None:
     """Write an uploaded file under its name."""
-    told = "is no name of a file" if name in ("", "..") or not name.isprintable() else ""
+    told = "is not a valid file name" if name in ("", "..") or not name.isprintable() else ""
     try:
         if not told:
             (folder / name).write_bytes(content)
@@ -533,7 +533,7 @@ def _keep(folder: Path, name: str, content: bytes) -> None:
 def built_in(name: str) -> Desk:
     """The desk of a built-in case, and of nothing else."""
     if name not in library.case_files():
-        raise InputError([Problem("CASE", name, "is no built-in case.", "Choose one.")])
+        raise InputError([Problem("CASE", name, "is not a built-in case.", "Choose one.")])
     return opened(name)
 
 

@@ -13,8 +13,8 @@ EXAMPLE = "talbot-2012"
 
 @click.command()
 @click.argument("case", metavar="[CASE]", default=EXAMPLE)
-@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen at.")
-@click.option("--port", type=click.IntRange(0, 65535), default=0, help="Default: one that is free.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="Server address.")
+@click.option("--port", type=click.IntRange(0, 65535), default=0, help="Default: a free port.")
 @click.option("--browser/--no-browser", default=True, help="Open the address, or only print it.")
 def app(case: str, host: str, port: int, browser: bool) -> None:
     """Work on a case in the browser: forms, gears that turn, losses, maps.
@@ -31,7 +31,7 @@ def app(case: str, host: str, port: int, browser: bool) -> None:
     if host not in LOOPBACK:
         click.echo(
             f"Everyone who can reach {host} and knows the token can compute on this machine and "
-            "see the case. The connection is not encrypted: who listens on the way sees the token.",
+            "see the case. The connection is not encrypted, so the token can be read on the way.",
             err=True,
         )
 

@@ -85,13 +85,13 @@ class Guard:
             name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]
         }
         if not self._is_own(headers):
-            await _refuse(scope, receive, send, _FORBIDDEN, "This address is not that of the app.")
+            await _refuse(scope, receive, send, _FORBIDDEN, "This is not the address of the app.")
         elif scope["type"] == "http" and self._has_token(scope):
             await _answer(send, _SEE_OTHER, "", {"location": "/", "set-cookie": self._cookie()})
         elif self._has_cookie(headers):
             await self._hand_on(scope, receive, send, headers)
         else:
-            text = "Open the address with its token, as the command has printed it."
+            text = "Open the address with its token, as printed by the command."
             await _refuse(scope, receive, send, _FORBIDDEN, text)
 
     def _is_own(self, headers: Mapping[str, str]) -> bool:
@@ -180,7 +180,7 @@ async def _answer(send: Any, status: int, text: str, headers: Mapping[str, str])
 
 
 RESULTS = {
-    ".nc": "Result with all its fields",
+    ".nc": "Result with all fields",
     ".json": "Result as JSON",
     ".html": "Report",
     ".rexs": "REXS file with the results",
@@ -217,9 +217,9 @@ def ask_for_case(
                 ui.button(name, on_click=lambda name=name: take(lambda: built_in(name))).props(
                     "outline no-caps dense"
                 )
-        ui.label(
-            f"Or a file of your own, {', '.join(ENDINGS)}, with the files that it names:"
-        ).classes("soft")
+        ui.label(f"Or your own file, {', '.join(ENDINGS)}, with the files that it names:").classes(
+            "soft"
+        )
         ui.upload(
             label="Drop files here, or choose them",
             multiple=True,
@@ -239,7 +239,7 @@ def save_menu(desk: Callable[[], Desk], do: Do) -> None:
     async def save(ending: str) -> None:
         now = desk()
         if now.case is None:
-            ui.notify("The case has problems: mend them first.")
+            ui.notify("The case has problems. Correct them first.")
             return
         original = now.original if ending == ".rexs" else None
         suffix = Path(original).suffix if original else ending
@@ -421,7 +421,7 @@ class Page:
 
     def _show_command(self) -> None:
         with ui.dialog() as dialog, ui.card().classes("command"):
-            ui.label("The same on the command line")
+            ui.label("Equivalent command")
             for verb, more in _VERBS.items():
                 ui.code(self.desk.command(verb, *more), language="bash").classes("wrapped")
         dialog.open()
@@ -507,7 +507,9 @@ def _leave(number: int, frame: object) -> NoReturn:
 def _listening(host: str, port: int) -> socket.socket:
     """A socket that listens at an address, before anything else is started."""
     if not host:
-        raise _not_listening(host, port, "no address would be every address of this machine")
+        raise _not_listening(
+            host, port, "an empty address would mean every address of this machine"
+        )
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     try:
@@ -521,7 +523,9 @@ def _listening(host: str, port: int) -> socket.socket:
 
 def _not_listening(host: str, port: int, told: str) -> InputError:
     address = one_line(f"{host}:{port}")
-    problem = Problem("--host", address, f"cannot be listened at: {told}.", "Take another.")
+    problem = Problem(
+        "--host", address, f"cannot be used as a server address: {told}.", "Choose another."
+    )
     return InputError([problem], "the command")
 
 
@@ -556,8 +560,8 @@ async def show(shelves: Shelves) -> None:
     known[_OF_TAB] = tab  # the storage is copied with a tab that is duplicated
     if shelf is None:
         ui.label(
-            f"{shelves.most} tabs with this app are open, and no more can be: each computes by "
-            "itself. Close one, and load this page again."
+            f"{shelves.most} tabs with this app are open, which is the limit because each "
+            "computes separately. Close one and reload this page."
         ).classes("problem full")
         return
     page.on_delete(lambda: shelves.leave(tab, page.id))

@@ -291,8 +291,8 @@ class TurningView:
 
 
 MAP_STEPS = {"speed": 9, "torque": 7}
-SHOWN_TWICE = {"losses": "Where do the watts go?", "loss-sum": "How do the losses add up?"}
-_TOLD = "Keep the case, change it, and come back: both stand side by side here."
+SHOWN_TWICE = {"losses": "Where is the power lost?", "loss-sum": "How do the losses add up?"}
+_TOLD = "Keep the case, change it, and come back. Both are shown here side by side."
 
 
 class MapView:
@@ -350,7 +350,7 @@ class MapView:
 
     async def _compute(self) -> None:
         if self._desk().case is None:
-            ui.notify("The case has problems: mend them first.")
+            ui.notify("The case has problems. Correct them first.")
             return
         self._is_asked = True
         await self.follow()
@@ -440,7 +440,7 @@ class CompareView:
     async def show(self) -> None:
         """Buttons that set the other case, and both side by side."""
         with ui.row():
-            ui.button("Keep the case as it is now beside it", on_click=self._keep).props(
+            ui.button("Keep the current case for comparison", on_click=self._keep).props(
                 "outline no-caps dense"
             )
             ui.button("Another case", on_click=lambda: self._choose(self._set)).props(
@@ -471,7 +471,7 @@ class CompareView:
         if self._body.is_deleted or now.case is None:
             return
         if other is None or other.case is None:
-            told = _TOLD if other is None else "The other case has problems of its own."
+            told = _TOLD if other is None else "The other case has problems."
             self._body.clear()
             with self._body:
                 ui.label(told).classes("soft")

@@ -88,7 +88,7 @@ class Ended(Exception):  # noqa: N818  no error: the user has asked for it
     """The work was ended before it was done."""
 
     def __str__(self) -> str:
-        return "Ended before it was done."
+        return "Stopped before it was finished."
 
 
 class WorkError(EpicyclicError):

@@ -111,7 +111,9 @@ class Design:
             box = SOLVER_BOX.get(name, (-math.inf, math.inf))
             low, high = (limit * scale + offset for limit in box)
             if self.size is not None and name in LOGARITHMIC and min(values) <= 0:
-                allowed = "must be above zero: it is filled evenly in the logarithm."
+                allowed = (
+                    "must be above zero, because it is filled uniformly on a logarithmic scale."
+                )
                 lowest = format_number(min(values))
                 problems.append(Problem(f"{self.part}.{name}", lowest, allowed, "Raise it."))
             slack = 1e-9 * max(abs(value) for value in values)
@@ -121,7 +123,7 @@ class Design:
                     Problem(
                         f"{self.part}.{name}",
                         f"{format_number(min(values))} to {format_number(max(values))}{unit}",
-                        f"leaves what the solver is tested for, {format_number(low)} to "
+                        f"exceeds the tested range of the solver, {format_number(low)} to "
                         f"{format_number(high)}{unit}.",
                         "Give a smaller range.",
                     )
@@ -137,15 +139,15 @@ class Design:
         if highest > limit:
             yield Problem(
                 f"{self.part}.roughness1, roughness2", f"up to {highest:.3g} um together",
-                f"leaves what the solver is tested for, {limit:g} um.", "Give smaller ranges.",
+                f"exceeds the tested range of the solver, {limit:g} um.", "Give smaller ranges.",
             )  # fmt: skip
 
 
 def quantity_of_axis(name: str) -> Quantity:
     """Unit and range of an axis; raises `InputError` if there is no such axis."""
     if name not in AXES:
-        remedy = did_you_mean(name, list(AXES)) or f"Axes are {', '.join(AXES)}."
-        raise InputError([Problem("--range", name, "is no axis of a design.", remedy)])
+        remedy = did_you_mean(name, list(AXES)) or f"The axes are {', '.join(AXES)}."
+        raise InputError([Problem("--range", name, "is not an axis of a design.", remedy)])
     field = find_field(ContactCase, AXES[name])
     assert field is not None
     return quantity_of(*field) or NUMBER
@@ -180,7 +182,9 @@ def parse_ranges(options: Iterable[str]) -> dict[str, tuple[float, float]]:
             problems.append(Problem(f"--range {name}", f'"{option}"', f"{error}.", "Change it."))
             continue
         if not low < high:
-            problems.append(Problem(f"--range {name}", f'"{option}"', "must rise.", "Swap them."))
+            problems.append(
+                Problem(f"--range {name}", f'"{option}"', "must be rising.", "Swap them.")
+            )
         ranges[name] = (low, high)
     raise_any(problems, "the command")
     return ranges
@@ -434,7 +438,7 @@ def _check_changes(changes: Mapping[str, Any]) -> None:
         elif key in SEEDS:
             allowed, remedy = "varies from contact to contact.", "Give --seed instead."
         elif key in PROFILES:
-            allowed = "is for a single contact: here every contact has profiles of its own."
+            allowed = "applies to a single contact, but here every contact has its own profiles."
             remedy = "Give correlation length, skewness and kurtosis of the measured one."
         else:
             continue
@@ -553,11 +557,12 @@ class CampaignFolder:
         simulated = any(self.path.glob(f"{SIMULATIONS}.*"))  # first: shards may begin at once
         if not plan.exists():
             if simulated:
-                raise _folder_error(self.path, "holds simulations without their campaign.json.")
+                raise _folder_error(self.path, "contains simulations without their campaign.json.")
             write_file(plan, json.dumps(self.campaign.describe(), indent=2) + "\n")
         elif _read_json(plan) != json.loads(json.dumps(self.campaign.describe())):
             raise _folder_error(
-                self.path, "holds another campaign: other oil, points, seed, settings or version."
+                self.path,
+                "contains a different campaign: other oil, points, seed, settings or version.",
             )
 
     def run(self, runner: Runner = HERE) -> None:
@@ -586,7 +591,7 @@ class CampaignFolder:
         if len(frame) != self.campaign.size or "status" not in frame:
             raise _folder_error(self.table, "does not have one line for each simulation.")
         if "friction" not in frame:
-            remedy = "See why in its column of messages, and name another folder."
+            remedy = "See the reason in its column of messages, and give another folder."
             raise _folder_error(self.table, "has no simulation with a solution.", remedy)
         self._check_columns(frame)
         return frame
@@ -637,7 +642,7 @@ def open_folder(path: Path) -> CampaignFolder:
             raise _folder_error(path, f"has files of version {data['schema']}, not {SCHEMA}.")
         return CampaignFolder(path, Campaign.again(data))
     except (KeyError, TypeError, AttributeError):
-        raise _folder_error(path / "campaign.json", "is no plan of a campaign.") from None
+        raise _folder_error(path / "campaign.json", "is not a plan of a campaign.") from None
 
 
 def column_of(name: str) -> str:
@@ -656,10 +661,10 @@ def _read_json(path: Path) -> Any:
     except InputError as error:
         raise _folder_error(path, error.problems[0].allowed) from None
     except (RecursionError, ValueError):
-        raise _folder_error(path, "is no JSON.") from None
+        raise _folder_error(path, "is not JSON.") from None
 
 
 def _folder_error(
-    path: Path, allowed: str, remedy: str = "Name another folder, or mend this one."
+    path: Path, allowed: str, remedy: str = "Give another folder, or repair this one."
 ) -> InputError:
     return InputError([Problem("DIR", str(path), allowed, remedy)], "the campaign")

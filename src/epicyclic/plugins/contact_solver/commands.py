@@ -40,13 +40,13 @@ ANIMATION = ".gif"
 CONTACT_OPTIONS = {
     "radius": ("contact.radius", "Equivalent radius, as in '10 mm'."),
     "load": ("contact.line_load", "Load per length, as in '500 N/mm'."),
-    "pressure": ("contact.hertz_pressure", "Instead of the load: Hertz pressure, as in '1 GPa'."),
+    "pressure": ("contact.hertz_pressure", "Hertz pressure instead of the load, as in '1 GPa'."),
     "speed": ("contact.rolling_speed", "Mean surface speed, as in '10 m/s'."),
     "slip": ("contact.slide_to_roll_ratio", "Slide-to-roll ratio, 0 to 2."),
-    "oil": ("lubricant.oil", "A name of 'epicyclic oils'."),
-    "temperature": ("lubricant.temperature", "Of the oil at the inlet, as in '90 degC'."),
+    "oil": ("lubricant.oil", "A name from 'epicyclic oils'."),
+    "temperature": ("lubricant.temperature", "Oil inlet temperature, as in '90 degC'."),
     "roughness1": ("surface1.roughness", "Rq, as in '0.4 um', or the name of a finish."),
-    "roughness2": ("surface2.roughness", "Of the other surface."),
+    "roughness2": ("surface2.roughness", "Roughness of the other surface."),
     "preset": ("preset", "Assumptions: usual, as-published."),
 }
 
@@ -64,7 +64,7 @@ def contact_options(command: Any) -> Any:
 @contact_set_option
 @json_option
 @plot_option(
-    "Draw pressure, film, shear stress (.png, .svg, .pdf); a rough contact moves in a .gif.",
+    "Draw pressure, film and shear stress (.png, .svg, .pdf), or animate a rough contact (.gif).",
     (*PICTURES, ANIMATION),
 )
 def contact(
@@ -124,7 +124,7 @@ def oil() -> None:
 
 @oil.command(short_help="Simulate contacts of an OIL and fit models.")
 @click.argument("source", metavar="OIL")
-@output_option("Folder of simulations and models.", "DIR", required=True)
+@output_option("Folder for simulations and models.", "DIR", required=True)
 @click.option(
     "--size",
     type=click.IntRange(1),
@@ -135,7 +135,7 @@ def oil() -> None:
     type=click.IntRange(0),
     help="Bearing contacts likewise; default: his 2,880, or none with --size.",
 )
-@click.option("--seed", type=click.IntRange(0), default=0, help="Of points and profiles.")
+@click.option("--seed", type=click.IntRange(0), default=0, help="Seed of points and profiles.")
 @click.option(
     "--range",
     "ranges",
@@ -160,7 +160,7 @@ def characterise(
 ) -> None:
     """Simulate contacts of OIL, a name of 'epicyclic oils' or a TOML file, and fit models.
 
-    Finished simulations are kept in DIR at once; the same command goes on where it stopped.
+    Finished simulations are kept in DIR at once; the same command continues where it stopped.
 
     \b
     epicyclic oil characterise atf-talbot-2012 --size 512 --seed 1 -o atf
@@ -188,14 +188,14 @@ def characterise(
         write = campaign_writer(campaign, output)
         compute(campaign, output / SIMULATIONS, runner, write, "contacts")
         return
-    click.echo(f"{campaign.size} contacts, {folder.finished} of them simulated before.", err=True)
+    click.echo(f"{campaign.size} contacts, {folder.finished} of them already simulated.", err=True)
     try:
         with progress_bar("contacts") as progress:
             folder.run(replace(runner, progress=progress))
     except (KeyboardInterrupt, Exception):
         click.echo(
             f"{folder.finished} of {campaign.size} simulations kept in {output}; give the same "
-            "command again to go on.",
+            "command again to continue.",
             err=True,
         )
         raise
@@ -221,7 +221,9 @@ def campaign_writer(campaign: Campaign, output: Path) -> Write:
 @click.argument(
     "folders", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@output_option("The models; default: model.json in DIR; needed for more than one.", "FILE")
+@output_option(
+    "Output file of the models; default: model.json in DIR; required for more than one DIR.", "FILE"
+)
 @plot_models
 def fit(folders: tuple[Path, ...], output: Path | None, plot: Path | None) -> None:
     """Fit models again to the simulations in DIR, or to those in several folders together.
@@ -231,7 +233,7 @@ def fit(folders: tuple[Path, ...], output: Path | None, plot: Path | None) -> No
     from epicyclic.plugins.contact_solver.campaign import open_folder
 
     if output is None and len(folders) > 1:
-        raise click.UsageError("For more than one DIR give the FILE of the models with -o.")
+        raise click.UsageError("For more than one DIR, give the output FILE with -o.")
     campaigns = [open_folder(folder) for folder in folders]
     _fit(campaigns, output or campaigns[0].model, plot)
 

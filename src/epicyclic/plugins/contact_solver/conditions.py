@@ -155,7 +155,7 @@ class LineContact:
         if not self.oil.eyring_stress > 0:
             value = f"{self.oil.eyring_stress:g}"
             problems.append(
-                Problem("oil.eyring_stress", value, "must be above zero.", "Use inf for none.")
+                Problem("oil.eyring_stress", value, "must be above zero.", "Use inf for no limit.")
             )
         problems += [
             Problem(f"oil.shear_law.{name}", f"{value:g}", allowed, "Change it.")

@@ -103,7 +103,7 @@ class Contact(Table):
     radius: Length = Field(description="Equivalent radius of curvature.")
     line_load: LineLoad | None = Field(default=None, description="Normal load per length.")
     hertz_pressure: LoadPressure | None = Field(
-        default=None, description="Instead of line_load: the pressure of Hertz it causes."
+        default=None, description="Hertz pressure instead of line_load."
     )
     rolling_speed: RollingSpeed = Field(description="Mean of both surface speeds.")
     slide_to_roll_ratio: Number = Field(
@@ -115,9 +115,9 @@ class ContactLubricant(OilBehaviour):
     """The oil in the contact."""
 
     oil: NamedOil = Field(
-        description="A name of the oil library (epicyclic oils) or a table of properties."
+        description="A name from the oil library (epicyclic oils) or a table of properties."
     )
-    temperature: Temperature = Field(description="Of the oil at the inlet.")
+    temperature: Temperature = Field(description="Oil temperature at the inlet.")
 
 
 class Surface(Table):
@@ -130,20 +130,21 @@ class Surface(Table):
         default=None, description="Rq; a measured profile is scaled to it. Smooth by default."
     )
     correlation_length: SmallLength = Field(
-        default=as_stated("20 um"), description="Where the autocorrelation has fallen to 1/e."
+        default=as_stated("20 um"),
+        description="Distance at which the autocorrelation has fallen to 1/e.",
     )
     skewness: Number = Field(default=0.0, ge=-5.0, le=5.0, description="Rsk.")
     kurtosis: Number = Field(default=3.0, ge=1.0, le=50.0, description="Rku.")
     seed: int = Field(default=1, ge=0, description="Of the generated profile.")
     profile: str | None = Field(
         default=None,
-        description="A measured one instead: X3P, or CSV of position in mm and height in um.",
+        description="A measured profile instead: X3P, or CSV with position in mm and height in um.",
     )
     cutoff: Length | None = Field(
-        default=None, description="Of a measured profile: longer waves are taken off."
+        default=None, description="For a measured profile: longer waves are removed."
     )
     short_cutoff: Length | None = Field(
-        default=None, description="Of a measured profile: shorter waves are taken off."
+        default=None, description="For a measured profile: shorter waves are removed."
     )
 
 
@@ -158,10 +159,13 @@ class Asperities(Table):
 
     film: SmallLength = Field(
         default=as_stated(film_text(USUAL)),
-        description="Film below which surfaces touch (estimate).",
+        description="Film thickness below which surfaces touch (estimate).",
     )
     friction: Number = Field(
-        default=USUAL.friction, ge=0.0, le=1.0, description="Friction where they touch (estimate)."
+        default=USUAL.friction,
+        ge=0.0,
+        le=1.0,
+        description="Coefficient of friction where they touch (estimate).",
     )
 
 
@@ -183,14 +187,16 @@ class ContactNumerics(Table):
     nodes: int = Field(default=NODES, ge=128, le=4096, description="In the rough contact.")
     most_blocks: int = Field(
         default=MOST_BLOCKS, ge=4, le=100_000,
-        description="Times half-width over rolling speed after which a rough contact is given up.",
+        description="Multiples of half-width over rolling speed after which a rough contact is "
+                    "abandoned.",
     )  # fmt: skip
     friction_tolerance: Number = Field(
         default=STATIONARY, ge=1e-3, le=0.5,
-        description="Standard error over the mean friction at which a rough contact is solved.",
+        description="Standard error over the mean friction at which a rough contact counts as "
+                    "solved.",
     )  # fmt: skip
     frozen_roughness: bool = Field(
-        default=False, description="Hold the roughness still: the steady rough contact."
+        default=False, description="Keep the roughness at rest: the steady rough contact."
     )
 
 
@@ -290,12 +296,12 @@ def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
 def _check_surface(name: str, surface: Surface) -> list[Problem]:
     """A measured profile must be sound, a generated one possible, and nothing be without effect."""
     if surface.profile is not None:
-        idle, allowed = OF_GENERATED, "is for a generated profile, not for a measured one."
+        idle, allowed = OF_GENERATED, "applies to a generated profile, not to a measured one."
     elif surface.roughness is not None:
-        idle, allowed = OF_MEASURED, "is for a measured profile."
+        idle, allowed = OF_MEASURED, "applies to a measured profile."
     else:
         idle, allowed = (*OF_GENERATED, *OF_MEASURED), "has no effect on a smooth surface."
-    remedy = "Give profile or roughness to suit, or leave it out."
+    remedy = "Give a matching profile or roughness, or leave it out."
     usual = type(surface)()
     problems = [
         Problem(f"{name}.{key}", "", allowed, remedy)
@@ -370,7 +376,7 @@ ROUGH_RANGES = (
     solver_range("composite_roughness", "composite roughness", MICROMETRE),
 )
 HIGHEST_RISE = Range(
-    "temperature_rise", "temperature rise", 0.0, 50.0, KELVIN, "thinning by heat, linear in it"
+    "temperature_rise", "temperature rise", 0.0, 50.0, KELVIN, "linear thinning by heat"
 )
 """Beyond it the estimate of heat thins the oil too much."""
 FEWEST_POINTS = 16  # Points of a profile in the width of the contact, below which it is hardly one.
@@ -411,21 +417,21 @@ def contact_notes(
         return
     if case.numerics.frozen_roughness:
         yield (
-            "The roughness stands still: all is of one place of the profiles, whatever the "
-            "standard error, and the rolling loss has no meaning for surfaces that move."
+            "The roughness is at rest, so all results apply to one position of the profiles, "
+            "whatever the standard error. The rolling loss has no meaning for moving surfaces."
         )
     speed = model.contact.rolling_speed
     if speed < DRY_SPEED:
         yield (
             f"At {format_number(speed, 2)} m/s, below {DRY_SPEED:g} m/s, oil leaks out of the "
-            "valleys of real surfaces; ridges that run across, as here, trap it: load and friction "
-            "of the surfaces that touch are too small, and no result to use."
+            "valleys of real surfaces, but transverse ridges, as here, trap it. Load and "
+            "friction of the touching surfaces are then too small to be used."
         )
     ratio = film_ratio(model, smooth)
     if ratio < VALIDATED_FILM_RATIO:
         yield (
             f"At a film ratio of {format_number(ratio, 2)}, below {VALIDATED_FILM_RATIO:g}, "
-            "friction, load on asperities and rolling loss are not validated: vary "
+            "friction, load on asperities and rolling loss are not validated. Vary "
             "asperities.film, asperities.friction and the correlation lengths."
         )
     spacing = float(rough.x[1] - rough.x[0])
@@ -450,17 +456,17 @@ def _profile_notes(
     if left < FEWEST_KEPT:
         yield (
             f"The nodes, {shown['spacing']} um apart, resolve {percent(left, 0)} of the Rq of "
-            f"{name}: shorter waves are lost. Raise numerics.nodes."
+            f"{name}; shorter waves are lost. Raise numerics.nodes."
         )
     if FEWEST_POINTS * surface.spacing > 2 * model.contact.half_width:
         yield (
             f"The points of {name} are {shown['own']} um apart, in a contact {shown['width']} mm "
-            "wide: a finer profile is needed, or its positions are not in mm."
+            "wide. A finer profile is needed, or its positions are not in mm."
         )
     if surface.length < 2 * model.contact.half_width:
         yield (
-            f"The profile of {name}, {shown['length']} mm long, repeats itself within the contact, "
-            f"{shown['width']} mm wide: give a longer one."
+            f"The profile of {name}, {shown['length']} mm long, repeats itself within the "
+            f"contact, {shown['width']} mm wide. Give a longer profile."
         )
 
 

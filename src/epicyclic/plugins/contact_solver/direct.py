@@ -210,7 +210,7 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
     if not (few or np.isfinite(error)) or np.mean(~found) > LARGEST_LEFT_OUT:
         raise ConvergenceError(
             f"{np.count_nonzero(~found)} of {found.size} contacts of the {contact.mesh.name} have "
-            "no solution: use another models.friction."
+            "no solution. Use another models.friction."
         )
     return _Solved(
         contact.force,
@@ -219,7 +219,7 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
         limits,
         f"models.friction ehl-direct: {found.size} contacts of the {contact.mesh.name} solved, "
         f"{np.count_nonzero(~found)} of them without convergence and left out; "
-        + ("these are all that differ." if few else _errors(error, bias, settings.error))
+        + ("these are all the different ones." if few else _errors(error, bias, settings.error))
         + _limits_left(contact, power)
         + _unresolved(kept),
     )
@@ -227,7 +227,7 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
 
 def _errors(error: float, bias: float, wanted: float) -> str:
     """What to say of the error of interpolated contacts."""
-    missed = "" if error <= wanted else f", more than the {percent(wanted)} wanted"
+    missed = "" if error <= wanted else f", above the target of {percent(wanted)}"
     return (
         f"error of interpolated contacts {percent(error)} on average{missed}, of their power "
         f"{percent(bias, signed=True)}."
@@ -245,8 +245,8 @@ def _limits_left(contact: MeshContact, power: FloatArray) -> str:
         ),
         (
             contact.rolling_speed < DRY_SPEED,
-            f"at less than {DRY_SPEED:g} m/s, where oil leaks out of the valleys of real "
-            "surfaces: their friction is larger.",
+            f"at less than {DRY_SPEED:g} m/s, where oil leaks out of the valleys of real surfaces "
+            "and increases their friction.",
         ),
     ):
         # no share of no power
@@ -261,7 +261,7 @@ def _unresolved(kept: float) -> str:
     if kept >= FEWEST_KEPT:
         return ""
     return (
-        f" In the widest contact solved the nodes resolve {percent(kept, 0)} of the Rq: shorter "
+        f" In the widest contact solved the nodes resolve {percent(kept, 0)} of the Rq; shorter "
         "waves are lost. Raise contact_solver.correlation_length, if the finish allows it."
     )
 

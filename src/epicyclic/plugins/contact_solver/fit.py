@@ -265,7 +265,7 @@ def fit_campaigns(
             fits[quantity] = fit_quantity(quantity, unit, states, target, weight)
         except ValueError as error:
             given = f"{target.size} simulations"
-            remedy = "Simulate more, with a larger --size in another folder."
+            remedy = "Simulate more contacts, with a larger --size in another folder."
             reasons.append(Problem(quantity, given, f"not fitted: {error}.", remedy))
     if reasons:
         raise InputError(reasons, str(folders[0].path))
@@ -284,7 +284,7 @@ def fit_campaigns(
                 np.any([_good(frame, part, column) for part, column, _ in parts], axis=0).sum()
             ),
         },
-        notes=("Errors are those against the simulations, not against measurements.",),
+        notes=("Errors are relative to the simulations, not to measurements.",),
         equivalent_modulus=_modulus(campaigns[0]),
         fits=fits,
     )

@@ -536,11 +536,13 @@ def _failure(run: _Simulation, judged: Estimate, tolerance: float) -> str:
     """Why there is no result to rely on; empty if there is."""
     unsolved = run.unsolved
     if not math.isfinite(judged.value):
-        return "a time step broke down"
+        return "a time step failed"
     if not judged.within(tolerance):
         what = "friction" if run.contact.sliding_speed else "rolling loss"
         share = judged.error / abs(judged.value)
-        return f"{what} is known to {percent(share)} only after {run.tried} time steps"
+        return (
+            f"{what} reaches an uncertainty of {percent(share)} only after {run.tried} time steps"
+        )
     if unsolved > LARGEST_UNSOLVED_SHARE * run.tried:
         return f"{unsolved} of {run.tried} time steps did not converge"
     return ""

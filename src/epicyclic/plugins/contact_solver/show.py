@@ -115,7 +115,7 @@ def oil_model_tables(model: OilModel) -> RenderableType:
     ]
     for quantity, fit in model.fits.items():
         title = f"{quantity.replace('_', ' ').capitalize()}, {fit.contacts} contacts"
-        parts += [_errors(f"{title}: errors of unseen ones", quantity, fit)]
+        parts += [_errors(f"{title}: errors at contacts not used in the fit", quantity, fit)]
         parts += [Text(f"{name} left out: {why}.\n") for name, why in fit.left_out.items()]
         if fit.domain not in [other.domain for other in _before(model, quantity)]:
             parts.append(_domain(f"Domain of these {fit.contacts} contacts", model, quantity))
@@ -312,7 +312,7 @@ def _plot_both(
 def _over_x(result: ContactResult, ax: Axes, label: str) -> Axes:
     width = result.smooth.contact.half_width / MILLIMETRE
     ax.set_xlim(SHOWN_WIDTHS[0] * width, SHOWN_WIDTHS[1] * width)
-    ax.set_xlabel("place along the rolling direction, mm")
+    ax.set_xlabel("position along the rolling direction, mm")
     ax.set_ylabel(label)
     return ax
 
@@ -330,8 +330,8 @@ LABELS = {
 }
 BAND = 0.25  # Half-width of the lines beside equality. [1]
 CAPTION = (
-    f"Lines: fitted as simulated, and {percent(BAND, 0)} more or less. "
-    "The fit has seen these contacts; its errors at others are larger, and stand in the table."
+    f"Lines: fitted equal to simulated, and {percent(BAND, 0)} more or less. The fit used these "
+    "contacts; its errors at others are larger and are given in the table."
 )
 PANEL = (4.0, 3.4)  # Width and height of one of the Axes. [inch]
 SLIPS = (0.05, 0.2, 0.8)

@@ -194,7 +194,7 @@ def _with_moments(normal: FloatArray, skewness: float, kurtosis: float) -> Float
     if np.abs(found.fun).max() > 0.01:
         value = f"skewness {skewness:g}, kurtosis {kurtosis:g}"
         raise InputError(
-            [Problem("roughness", value, "cannot be reached.", "Bring them nearer to 0 and 3.")],
+            [Problem("roughness", value, "cannot be reached.", "Choose values closer to 0 and 3.")],
             "the roughness",
         )
     return transformed(found.x)
@@ -265,7 +265,7 @@ def _read(
     profile = Profile(heights - heights.mean(), spacing)
     if profile.rms < FLAT:
         remedy = "Give another file, or none for a smooth surface."
-        problem = Problem("profile", str(path), "has no roughness that is left.", remedy)
+        problem = Problem("profile", str(path), "has no roughness left.", remedy)
         raise InputError([problem], str(path))
     return profile
 
@@ -273,7 +273,7 @@ def _read(
 def _csv_points(path: Path) -> _Points:
     lines = read_text(path, "profile", LARGEST_FILE).splitlines()
     if len(lines) > MOST_POINTS:
-        refuse(f"has more than {MOST_POINTS} lines.", "Cut it.")
+        refuse(f"has more than {MOST_POINTS} lines.", "Shorten it.")
     rows, numbers = [], []
     for number, line in enumerate(lines, 1):
         if _is_data(line):
@@ -284,7 +284,7 @@ def _csv_points(path: Path) -> _Points:
                 rows.append([])
             if len(rows[-1]) != 2:
                 remedy = "Write position in mm, height in um."
-                refuse(f"has something else than two numbers in line {number}.", remedy)
+                refuse(f"must have two numbers in line {number}.", remedy)
             numbers.append(number)
     table = np.array(rows, dtype=float).reshape(-1, 2)
     return _Points(table[:, 0] * MILLIMETRE, table[:, 1] * MICROMETRE, "line", numbers)
@@ -313,14 +313,14 @@ def _x3p_points(path: Path) -> _Points:
     try:
         file = x3pio.read(io.BytesIO(content))
     except Exception as error:  # the reader raises whatever its parsers do
-        refuse(f"is no sound X3P file: {' '.join(str(error).split())[:200]}.", "Save it again.")
+        refuse(f"is not a valid X3P file: {' '.join(str(error).split())[:200]}.", "Save it again.")
     if not isinstance(file, x3pio.Profile) or len(file.layers) != 1:
         kind = type(file).__name__.lower()
         remedy = "Extract one profile along the motion and save that."
         refuse(f"is a {kind} of {len(file.layers)} layer(s), not one profile.", remedy)
     layer = file.layers[0]
     if layer.z.size > MOST_POINTS:
-        refuse(f"has more than {MOST_POINTS} points.", "Cut it.")
+        refuse(f"has more than {MOST_POINTS} points.", "Shorten it.")
     x, heights = np.array(layer.x_values, dtype=float), np.array(layer.z, dtype=float)
     return _Points(x, heights, "point", range(1, heights.size + 1))
 
@@ -334,19 +334,19 @@ def _spacing(points: _Points) -> float:
     if gaps.size:
         more = f" and {gaps.size - 1} more" if gaps.size > 1 else ""
         where = f"at {points.place(gaps[0])}{more}"
-        refuse(f"has gaps: no number {where}.", "Fill or cut them out.")
+        refuse(f"has gaps: a number is missing {where}.", "Fill or cut them out.")
     steps = np.diff(points.x)
     usual = float(np.median(steps))
     uneven = np.flatnonzero(~(np.abs(steps - usual) < EVEN * abs(usual)))
     if uneven.size:
         first = int(uneven[0])
         found = (
-            f"has uneven positions: after {points.place(first)} the next is "
+            f"has positions at unequal distances: after {points.place(first)} the next is "
             f"{steps[first] / MILLIMETRE:.4g} mm away, elsewhere {usual / MILLIMETRE:.4g} mm."
         )
-        refuse(found, "Fill the gap, or resample it evenly.")
+        refuse(found, "Fill the gap, or resample it at equal distances.")
     if not usual > 0:
-        refuse("has falling positions.", "Turn it round.")
+        refuse("has falling positions.", "Reverse it.")
     return float(steps.mean())
 
 
@@ -357,7 +357,7 @@ def _check_cutoffs(
     problems = [
         Problem(
             key, f"{value / MILLIMETRE:g} mm",
-            f"must be from two distances of points, {2 * spacing / MILLIMETRE:.4g} mm, to the "
+            f"must be between two point distances, {2 * spacing / MILLIMETRE:.4g} mm, and the "
             f"length of the profile, {length / MILLIMETRE:.4g} mm.",
             "Change it or leave it out.",
         )

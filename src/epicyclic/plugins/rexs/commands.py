@@ -66,13 +66,13 @@ component_option = click.option(
 
 @click.group()
 def rexs() -> None:
-    """Gears from REXS files, and results into them (.rexs, .rexsj, .rexsz)."""
+    """Import gears from REXS files, export results to them (.rexs, .rexsj, .rexsz)."""
 
 
 @rexs.command("import")
 @click.argument("file")
 @output_option(
-    "The case file to write. Default: FILE with the ending .toml, in this folder.", "CASE.toml"
+    "Output case file. Default: FILE with the ending .toml, in this folder.", "CASE.toml"
 )
 @component_option
 @click.option("--load-case", type=int, metavar="ID", help="A load case of the load spectrum.")
@@ -88,8 +88,8 @@ def import_(
 
     Several stages become one train, unless --component names one of them.
 
-    Every value stands beside the REXS attribute that it comes from. If the case needs more than
-    the file has, it is written all the same, with these keys marked NEEDED, and the command ends
+    Every value is shown with the REXS attribute it comes from. If the case needs more than
+    the file has, it is written anyway, with these keys marked NEEDED, and the command ends
     with exit code 5.
     """
     from epicyclic.plugins.rexs.files import stem
@@ -98,7 +98,7 @@ def import_(
 
     target = output or Path(f"{stem(file)}.toml")
     if target.exists():
-        problem = Problem("--output", str(target), "exists already.", "Name another file.")
+        problem = Problem("--output", str(target), "already exists.", "Name another file.")
         raise InputError([problem], "the command")
     parsed = parse_changes(changes)
     found = read_rexs(file, component, load_case)
@@ -118,7 +118,7 @@ def import_(
 @rexs.command()
 @case_argument
 @click.argument("original", required=False)
-@output_option("The file to write: .rexs, .rexsj or .rexsz.", "FILE", required=True)
+@output_option("Output file: .rexs, .rexsj or .rexsz.", "FILE", required=True)
 @component_option
 @set_option
 def export(

@@ -127,7 +127,7 @@ class Draft:
         number, unit, raw, component = found[0]
         for other, other_unit, _, where in found[1:]:
             if other_unit != unit or not math.isclose(other, number, rel_tol=SAME, abs_tol=1e-12):
-                self.wrong(key, raw, component, f"is another one in {where}; they must be alike")
+                self.wrong(key, raw, component, f"differs in {where}; they must be equal")
                 return None
         return Amount(number, unit, f"{raw.id} of {at([item[3] for item in found])}")
 
@@ -173,7 +173,7 @@ class Draft:
                 place,
                 f'"{attribute.text()}"',
                 f"{what}.",
-                "Correct the file." + (f" It is for {key}." if key else ""),
+                "Correct the file." + (f" It is used for {key}." if key else ""),
             )
         )
 
@@ -195,7 +195,7 @@ _VISCOSITIES = {
 _DENSITY = "density_at_15_degree_celsius"
 _ALPHA = "pressure_viscosity_coefficient_at_38_degrees_celsius"
 _AGMA = "parameter_{}_for_calculation_of_pressure_viscosity_coefficient_agma_925_2003"
-_OR_NAME = "Or name an oil of the library in its place: lubricant.oil."
+_OR_NAME = "Or give an oil of the library instead: lubricant.oil."
 
 
 def lubricant_table(draft: Draft, model: Model, stages: Sequence[Component]) -> None:
@@ -209,7 +209,7 @@ def lubricant_table(draft: Draft, model: Model, stages: Sequence[Component]) -> 
         return
     oil = next(iter(oils.values()))
     if len(oils) > 1:
-        draft.notes.append(f"The file has {len(oils)} lubricants for this set; {oil} is taken.")
+        draft.notes.append(f"The file has {len(oils)} lubricants for this set; {oil} is used.")
     name = oil.get("name")
     draft.give("lubricant.oil.title", name.text() if name else str(oil), f"{oil}")
     _kind(draft, oil)
@@ -388,9 +388,9 @@ def speed_and_torque(draft: Draft, parts: Sequence[Component], shafts: Sequence[
     torque = _torque(draft, loads)
     if torque is not None:
         backward = speed is not None and torque.number * speed.number < 0
-        sense = " (against the speed: power flows out here)" if backward else ""
+        sense = " (against the speed: power leaves here)" if backward else ""
         if speed is None:
-            sense = " (its magnitude, as driving: without a speed the sign tells nothing)"
+            sense = " (its magnitude, as driving; without a speed the sign is meaningless)"
         sign = -1.0 if backward else 1.0
         draft.give(
             "operation.torque",

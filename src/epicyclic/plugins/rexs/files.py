@@ -43,7 +43,7 @@ class JsonContent:
             raise refuse("is not UTF-8 text.", "Save it as UTF-8 text.") from None
         except ValueError as error:
             message = one_line(str(error), 200)
-            raise refuse(f"is not sound JSON: {message}.", "Export it again.") from None
+            raise refuse(f"is not valid JSON: {message}.", "Export it again.") from None
         if not isinstance(data, dict) or not isinstance(data.get("model"), dict):
             raise refuse('is not REXS: it has no object "model".', "Name a REXS file.")
         return cls(data)
@@ -167,9 +167,9 @@ class XmlContent:
             root = etree.fromstring(data, parser)
         except (etree.XMLSyntaxError, ValueError, LookupError) as error:
             message = one_line(str(error).removesuffix(" (<string>, line 1)"), 200)
-            raise refuse(f"is not sound XML: {message}.", "Export it again.") from None
+            raise refuse(f"is not valid XML: {message}.", "Export it again.") from None
         if root.getroottree().docinfo.doctype:
-            raise refuse("has a document type, which REXS has not.", "Remove it.")
+            raise refuse("has a document type, which REXS does not allow.", "Remove it.")
         if _name(root) != "model":
             raise refuse("is not REXS: its first element is not model.", "Name a REXS file.")
         encoding = root.getroottree().docinfo.encoding or "UTF-8"
@@ -393,7 +393,7 @@ def _from_archive(data: bytes, with_others: bool) -> Document:
         raise
     except Exception as error:  # what a broken archive raises has no common base
         message = one_line(str(error), 200)
-        raise refuse(f"is not a sound archive: {message}.", "Pack it again.") from None
+        raise refuse(f"is not a valid archive: {message}.", "Pack it again.") from None
 
 
 def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
@@ -406,9 +406,7 @@ def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
         parts = info.filename.replace("\\", "/").split("/")
         if ".." in parts or parts[0] == "" or ":" in parts[0]:
             shown = one_line(info.filename)
-            raise refuse(
-                f"is an archive with a member that leads out of it: {shown}.", "Repack it."
-            )
+            raise refuse(f"is an archive with a member outside of it: {shown}.", "Repack it.")
     model = _member(archive, members[0], LARGEST)
     if len(model) > LARGEST:
         raise refuse(
@@ -422,7 +420,7 @@ def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
             others.append((info, _member(archive, info, left)))
             left -= len(others[-1][1])
             if left < 0:
-                raise refuse("is an archive with too much beside the model.", "Take that out.")
+                raise refuse("is an archive with too many files beside the model.", "Remove them.")
     return Document(content, members[0].filename, tuple(others))
 
 

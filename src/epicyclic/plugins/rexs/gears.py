@@ -67,7 +67,7 @@ def shared_table(
             magnitudes.setdefault(text, found.origin)
     if len(magnitudes) > 1:
         shown = ", ".join(map(str, magnitudes))
-        draft.notes.append(f"The gears have different helix angles: {shown}. The first is taken.")
+        draft.notes.append(f"The gears have different helix angles: {shown}. The first is used.")
     if magnitudes:
         draft.give("gears.helix_angle", *next(iter(magnitudes.items())))
     else:
@@ -293,7 +293,7 @@ def micro_geometry(draft: Draft, model: Model, key: str, gears: Sequence[Compone
     for kind, name in _NOT_TAKEN.items():
         items = _of_type(model, flanks, kind)
         if items and (kind not in _AMOUNTS or any(_amount(i, _AMOUNTS[kind]) != 0 for i in items)):
-            _leave(draft, key, name, items, "its sign or form is not the same here")
+            _leave(draft, key, name, items, "its sign or shape is not supported here")
 
 
 def _of_type(model: Model, flanks: Sequence[Component], kind: str) -> list[Component]:
@@ -327,7 +327,10 @@ def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flank
 def _leave(draft: Draft, key: str, name: str, items: Sequence[Component], reason: str) -> None:
     full = f"{key}.micro_geometry.{name}"
     draft.lacks[full] = Lack(
-        full, f"{items[0]} is there, but {reason}", False, "Not taken: set the key yourself."
+        full,
+        f"{items[0]} is there, but {reason}",
+        False,
+        "It was not imported; set the key yourself.",
     )
 
 
@@ -388,7 +391,7 @@ def bearing_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
     rolling = [item for item in bearings if item.type in _ROLLING and _has_rollers(item)]
     if not rolling or len(rolling) < len(bearings):
         others = [item for item in bearings if item not in rolling]
-        what = f"; {others[0]} is none" if others else ""
+        what = f"; {others[0]} is not one" if others else ""
         where = f"roller bearing with its geometry between planet and pin{what}"
         draft.lacks[key] = Lack(key, where, False, _LEFT_OUT)
         return
@@ -645,8 +648,8 @@ def shift_notes(
     if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):
         yield (
             f"The profile shift {format_number(shift)} of the {member2} fits the centre distance "
-            f"with the other sign only; if so, set {place}{member2}.profile_shift_coefficient = "
-            f"{format_number(-shift)}."
+            "only with the other sign. If that is correct, set "
+            f"{place}{member2}.profile_shift_coefficient = {format_number(-shift)}."
         )
 
 
@@ -715,5 +718,5 @@ def _shifts(draft: Draft, place: str, member1: str, member2: str, changed: str) 
         shift = draft.tables[own].get(_SHIFT)
         is_too_much = isinstance(shift, float) and 0 < shift - shown <= ROUNDING
         if own == changed and is_too_much:
-            origin = f"{draft.origins[key]}: {shift}, less what the printed digits are too much"
+            origin = f"{draft.origins[key]}: {shift}, less the excess of the printed digits"
             draft.give(key, shown, origin)

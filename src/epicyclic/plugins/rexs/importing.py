@@ -97,11 +97,11 @@ class RexsImport:
             tables = changed_tables(tables, changes)
             for key, value in changes.items():
                 about = {name: told for name, told in about.items() if not _is_below(name, key)}
-                about[key] = "Taken out by the user." if value is None else "Set by the user."
+                about[key] = "Removed by the user." if value is None else "Set by the user."
         head = [
             f"Case of epicyclic, imported from {one_line(self.source, 200)}: {self.component}.",
-            f"REXS {self.version}. Beside each value stands the attribute that it comes from.",
-            "Keys behind a # have the default that is shown or told, or are NEEDED.",
+            f"REXS {self.version}. Each value is shown with the attribute it comes from.",
+            "Commented-out keys have the default shown or described, or are NEEDED.",
             *self.notes,
         ]
         return case_text(tables, [one_line(line, 400) for line in head], about)
@@ -191,7 +191,7 @@ def _draft(model: Model, chosen: PlanetaryParts | Pair | Train) -> Draft:
     draft = train_draft(model, chosen) if isinstance(chosen, Train) else _set_draft(model, chosen)
     if len(model.load_cases) > 0:
         cases = ", ".join(map(str, list(model.load_cases)[:12]))
-        draft.notes.append(f"The file has load cases: {cases}. One is read with --load-case.")
+        draft.notes.append(f"The file has load cases: {cases}. Choose one with --load-case.")
     raise_any(draft.problems)
     return draft
 

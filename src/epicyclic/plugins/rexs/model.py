@@ -131,7 +131,7 @@ class Coded:
         """The numbers; ValueError if there are none."""
         kind = _CODES.get(self.code)
         if kind is None:
-            raise ValueError("is an array of unknown code")
+            raise ValueError("is an array of unknown encoding")
         try:
             content = base64.b64decode("".join(self.text.split()), validate=True)
             return tuple(np.frombuffer(content, kind).astype(float).tolist())
@@ -335,7 +335,7 @@ def build_model(content: Content) -> Model:
         key = _id(number, "load_case", load_cases, problems)
         changes = _components(changed, problems)
         problems += [
-            _problem(f"load_case {number}", f"changes component {other}, which is not there.")
+            _problem(f"load_case {number}", f"changes component {other}, which does not exist.")
             for other in changes.keys() - components.keys()
         ]
         if key is not None:
@@ -382,7 +382,7 @@ def _relations(
             if component is not None and component in components:
                 refs.append((role, component))
             else:
-                what = f"leads to component {one_line(str(other))}, which is not there."
+                what = f"refers to component {one_line(str(other))}, which does not exist."
                 problems.append(_problem(f"relation {one_line(str(item.id))}", what))
         if number is not None:
             seen[number] = None
@@ -392,9 +392,9 @@ def _relations(
 def _id(given: Any, noun: str, known: Mapping[int, Any], problems: list[Problem]) -> int | None:
     number = _whole(given)
     if number is None:
-        problems.append(_problem(f"{noun} {one_line(str(given))}", "has no whole number as id."))
+        problems.append(_problem(f"{noun} {one_line(str(given))}", "has no integer id."))
     elif number in known:
-        problems.append(_problem(f"{noun} {number}", "is there twice."))
+        problems.append(_problem(f"{noun} {number}", "appears twice."))
     return number
 
 

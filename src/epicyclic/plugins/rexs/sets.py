@@ -452,7 +452,7 @@ def chosen_train(model: Model) -> Train | None:
 
 
 def _too_many(found: str, most: int) -> InputError:
-    allowed = f"has {found}; up to {most} are read as one train."
+    allowed = f"has {found}, but at most {most} are read as one train."
     remedy = "Import one stage with --component, or export fewer."
     return InputError([Problem("", "", f"the file {allowed}", remedy)])
 

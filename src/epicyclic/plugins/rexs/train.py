@@ -40,7 +40,7 @@ _TYPES = {
 }
 _SENSES = {"both_directions": "both", "positive": "positive", "negative": "negative"}
 _OPPOSITE = {"both": "both", "positive": "negative", "negative": "positive"}
-_ABOUT_FORCE = "Needed for the force on the bearings; or give their radial_force."
+_ABOUT_FORCE = "Needed for the forces on the bearings; or give their radial_force."
 _SHORTEST, _FARTHEST = 1e-6, 1e8
 """Bounds of the length of an axis vector and of the coordinates of parts. [mm]"""
 
@@ -218,7 +218,7 @@ def _ends(
         shaft = train.shaft_of(side)
         is_casing = model.components[side].type == "gear_casing"
         if shaft is None and not is_casing:
-            draft.notes.append(f"{joint.component} is on no shaft of the train and is left out.")
+            draft.notes.append(f"{joint.component} is not on a shaft of the train and is left out.")
             return None
         held = shaft is None or set(shaft.members) <= set(still)
         names.append(HOUSING if held else shaft.name if shaft is not None else "")
@@ -273,7 +273,7 @@ def _type(draft: Draft, key: str, bearing: Component) -> str | None:
         draft.give(f"{key}.type", kind, f"bearing_type {stated.text()} of {bearing}")
     else:
         shown = "" if stated is None else f" that is covered ({stated.text()} is not)"
-        hint = f"Choose a type, or take the bearing out: {key}=."
+        hint = f"Choose a type, or remove the bearing: {key}=."
         draft.need(f"{key}.type", f"bearing_type{shown}", [bearing], hint)
     return kind
 
@@ -284,7 +284,10 @@ def _locating(draft: Draft, key: str, bearing: Component, sense: float) -> None:
     stated = bearing.get(name)
     text = "" if stated is None else stated.text()
     if stated is None or (text not in _SENSES and text != "no_direction"):
-        instead = "Default: it takes no axial force unless it is the first of a shaft without."
+        instead = (
+            "Default: it takes no axial force, unless it is the first on a shaft without "
+            "locating bearing."
+        )
         draft.lack(f"{key}.locating", name, [bearing], instead)
         return
     origin = f"{name} {text} of {bearing}"
@@ -310,7 +313,7 @@ def _supports(draft: Draft, train: Train, shaft: Shaft, names: Sequence[str]) ->
     ordered = sorted(names, key=place)
     alone = ordered if len(names) == 1 and is_pushed else []
     for name in ordered[1:-1] if len(names) > _SUPPORTS else alone:
-        hint = f"Statics gives the forces of two bearings; {shaft.name} has {len(names)}."
+        hint = f"Statics gives the forces of only two bearings; {shaft.name} has {len(names)}."
         draft.need(f"bearings.{name}.radial_force", "force that is read here", [], hint)
 
 
@@ -363,7 +366,7 @@ def _whole(draft: Draft, train: Train) -> None:
     loose = [part for shaft in train.shafts.values() if not shaft.components
              for part in shaft.parts.values()]  # fmt: skip
     apart = " and ".join(", ".join(piece) for piece in pieces)
-    hint = f"Nothing joins {apart}: name what turns together in [shafts]."
+    hint = f"Nothing joins {apart}. Name the members that turn together in [shafts]."
     draft.need("shafts", "relation assembly with a shaft, or coupling of shafts,", loose, hint)
 
 
@@ -425,7 +428,7 @@ def _input(draft: Draft, free: Mapping[str, Shaft]) -> str | None:
     driven = next(iter([*driving, *known, *loaded]))
     if len(loaded) > 1:
         others = ", ".join(origin for name, origin in loaded.items() if name != driven)
-        draft.notes.append(f"{driven} is taken as the input; a load is stated by {others} too.")
+        draft.notes.append(f"{driven} is used as the input; {others} also has a load.")
     draft.give("operation.input", driven, loaded[driven])
     return driven
 
@@ -462,7 +465,7 @@ def _output(draft: Draft, train: Train, free: Mapping[str, Shaft], driven: str |
 def _choices(shafts: Mapping[str, Shaft]) -> str:
     """The shafts that could be meant; those with one gear first."""
     ends = [name for name, shaft in shafts.items() if len(shaft.members) == 1]
-    return f"Shafts of one set only are {', '.join(ends)}." if ends else ""
+    return f"The shafts of a single set are {', '.join(ends)}." if ends else ""
 
 
 def _sense(draft: Draft, shaft: Shaft) -> float:
@@ -563,7 +566,7 @@ def _temperature(draft: Draft, model: Model, stages: Sequence[Component]) -> Non
         temperature(draft, model, stages)
         return
     draft.give(key, stated[0].text, stated[0].origin)
-    draft.notes.append(f"The stages have different {name}; that of the first is taken.")
+    draft.notes.append(f"The stages have different {name}; that of the first is used.")
 
 
 def _notes(model: Model, train: Train) -> Iterator[str]:
@@ -577,4 +580,4 @@ def _notes(model: Model, train: Train) -> Iterator[str]:
     counts = Counter(gear.id for gear in gears)
     for number, count in counts.items():
         if count > 1:
-            yield f"{model.components[number]} stands in {count} sets, with its drag in each."
+            yield f"{model.components[number]} appears in {count} sets, with its drag in each."

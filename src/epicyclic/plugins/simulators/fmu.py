@@ -47,12 +47,12 @@ _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 _MODEL = "loss_map"
 _ABOUT = {
     "speed": "speed of the {shaft}",
-    "torque": "torque on the {shaft}; against the speed it coasts",
+    "torque": "torque on the {shaft}; coasting if against the speed",
     "temperature": "oil inlet temperature",
     STATE: "number of the state",
     "torque_loss": "power loss over the magnitude of the speed of the {shaft}",
     "power_loss": "loss of the whole gear set",
-    "efficiency": "power that leaves over power that enters; 0 where none leaves",
+    "efficiency": "output power over input power; 0 without output power",
 }
 _UNITS = {
     "speed": ("rad/s", "rpm"),
@@ -72,11 +72,13 @@ def fmu_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
     missing = [name for name in _LIBRARIES if find_spec(name) is None]
     problems = []
     if missing:
-        allowed = f"needs {' and '.join(missing)}, not installed."
-        remedy = 'Install them by: python -m pip install "epicyclic[fmu]".'
+        allowed = f"needs {' and '.join(missing)}, which is not installed."
+        remedy = 'Install with: python -m pip install "epicyclic[fmu]".'
         problems.append(Problem("--format", "fmu", allowed, remedy))
     if not any(axes["speed"]):
-        problems.append(Problem("speed", "", "is zero only.", "Give other values too."))
+        problems.append(
+            Problem("speed", "", "has only the value zero.", "Give other values as well.")
+        )
     return problems
 
 
@@ -261,8 +263,8 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
         about[STATE] += f": {_states_text(data)}"
     about |= {name: f"loss: {name.replace('_', ' ')}" for name in lookup.components}
     if lumped:
-        about[SURROUNDINGS] = "temperature of what takes up the heat"
-        about["temperature"] = "temperature of the gearbox, which follows from its losses"
+        about[SURROUNDINGS] = "temperature of the heat sink"
+        about["temperature"] = "temperature of the gearbox, computed from its losses"
     start = _start(lookup.names, axes, lumped)
     variables = []
     for number, (name, text) in enumerate(about.items()):
@@ -295,7 +297,7 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
         variability="discrete",
         causality="output",
         initial="calculated",
-        description="false: the point is outside of the map and taken at its border",
+        description="false: the point is outside the map and evaluated at its boundary",
     )
     return [*variables, inside]
 

@@ -55,12 +55,14 @@ def _script(data: xr.Dataset) -> Iterator[str]:
         names = (str(name).replace("'", "''") for name in data[STATE].values)
         quoted = ", ".join(f"'{name}'" for name in names)
         yield f"state_names = {{{quoted}}};"
-        yield from _vector("ratio", data["ratio"].values.ravel(), "of each state, in over out")
+        yield from _vector(
+            "ratio", data["ratio"].values.ravel(), "of each state, input over output"
+        )
     efficiency = data["efficiency"].fillna(0).clip(_LEAST_EFFICIENCY, 1)
     shaft = data["torque_loss"]
     yield from _table("torque_loss_tbl", shaft, order, "N*m, at the reference shaft")
     yield from _table("power_loss_tbl", data["total"], order, "W")
-    about = f"1; {format_number(_LEAST_EFFICIENCY)} where no power is passed on"
+    about = f"1; {format_number(_LEAST_EFFICIENCY)} where no power is transmitted"
     yield from _table("eta_tbl", efficiency, order, about)
 
 
@@ -112,7 +114,7 @@ def vecto_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
     if not min(axes["torque"]) < 0 < max(axes["torque"]):
         problems.append(_torques("must have negative and positive values"))
     if len(axes["speed"]) * len(axes["torque"]) < _LEAST_VECTO_ROWS:
-        allowed = f"and torque must make {_LEAST_VECTO_ROWS} points or more."
+        allowed = f"and torque must give {_LEAST_VECTO_ROWS} points or more."
         problems.append(Problem("speed", "", allowed, "Give more values."))
     return problems
 
@@ -158,7 +160,7 @@ def modelica_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
     """What a loss table cannot be fitted to."""
     problems = _negative_speeds(axes)
     if 0 not in axes["speed"] or len(axes["speed"]) < 2:
-        allowed = "must have zero and one other value: the table begins at rest."
+        allowed = "must have zero and one other value, because the table starts at rest."
         problems.append(Problem("speed", "", allowed, "Add them."))
     if not min(axes["torque"]) < 0 < max(axes["torque"]):
         problems.append(_torques("must have negative and positive values"))
@@ -198,7 +200,7 @@ def write_modelica(data: xr.Dataset, path: Path) -> None:
     name = _identifier(path.stem)
     i, j = np.unravel_index(np.abs(deviation).argmax(), deviation.shape)
     worst = (
-        f"The table is off by up to {abs(deviation[i, j]):.3g} N.m (at "
+        f"The table has an error of up to {abs(deviation[i, j]):.3g} N.m (at "
         f"{data['speed'].values[i]:.6g} rpm and {data['torque'].values[j]:.6g} N.m), "
         f"{np.sqrt(np.mean(deviation**2)):.3g} N.m rms"
     )

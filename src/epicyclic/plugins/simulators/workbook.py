@@ -28,7 +28,7 @@ def workbook_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
     count = int(np.prod([len(values) for name, values in axes.items() if name != STATE]))
     if count <= _MOST_ROWS:
         return []
-    allowed = f"have {count} points; a sheet of Excel holds {_MOST_ROWS}."
+    allowed = f"have {count} points; an Excel sheet holds {_MOST_ROWS}."
     return [Problem("all axes", "", allowed, "Give fewer values, or write .parquet.")]
 
 

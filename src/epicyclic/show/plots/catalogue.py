@@ -234,18 +234,14 @@ def _heat(stored: Stored) -> list[Panel]:
 PLOTS: dict[str, Plot] = {
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
     "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
-    "losses": Plot("Where do the watts go?", _of_result(losses.plot_losses)),
+    "losses": Plot("Where is the power lost?", _of_result(losses.plot_losses)),
     "loss-sum": Plot("How do the losses add up?", _of_result(losses.plot_loss_sum)),
     "power-flow": Plot(
-        "Where does the power flow, what circulates, what is lost?", _power_flow, size=SLIDE
+        "Where does the power flow, circulate and get lost?", _power_flow, size=SLIDE
     ),
-    "drivers": Plot(
-        "What is the uncertainty of the total loss due to?", _drivers, size=losses.WIDE
-    ),
-    "band": Plot("How well are total loss and efficiency known?", _band),
-    "heat-network": Plot(
-        "How warm is every part, and where does its heat flow?", _heat, size=SLIDE
-    ),
+    "drivers": Plot("What causes the uncertainty of the total loss?", _drivers, size=losses.WIDE),
+    "band": Plot("How uncertain are total loss and efficiency?", _band),
+    "heat-network": Plot("How warm is each part, and where does its heat flow?", _heat, size=SLIDE),
     "line-load": Plot(
         "How is the load distributed over the flanks?",
         _of_group("meshes", mesh.plot_plane_of_action, "line_load"),
@@ -255,7 +251,7 @@ PLOTS: dict[str, Plot] = {
         _of_group("meshes", mesh.plot_plane_of_action, "hertz_pressure"),
     ),
     "pair-load": Plot(
-        "How does one tooth pair carry through its engagement?",
+        "How does the load of one tooth pair change through its engagement?",
         _of_group("meshes", mesh.plot_pair_loads),
     ),
     "transmission-error": Plot(
@@ -279,7 +275,7 @@ PLOTS: dict[str, Plot] = {
         _of_group("meshes", mesh.plot_plane_of_action, "friction_power"),
     ),
     "roller-loads": Plot(
-        "Which rollers of the planet bearing carry?",
+        "Which rollers of the planet bearing carry load?",
         _of_group("bearings", mesh.plot_roller_loads),
         projection="polar",
     ),
@@ -291,13 +287,14 @@ PLOTS: dict[str, Plot] = {
         "How does the pressure in a pocket change through its life?", _pocket_pressure
     ),
     "pocket-volume": Plot(
-        "How do the pockets change in volume?", _of_group("pockets", plot_volumes)
+        "How does the volume of the pockets change?", _of_group("pockets", plot_volumes)
     ),
     "pocket-power": Plot(
-        "How much power do the pockets take over a mesh period?", _of_group("pockets", plot_power)
+        "How much power do the pockets absorb over a mesh period?", _of_group("pockets", plot_power)
     ),
     "efficiency-map": Plot(
-        "How efficient is it over speed and torque?", _of_map(loss_map.plot_map, "efficiency")
+        "How does the efficiency depend on speed and torque?",
+        _of_map(loss_map.plot_map, "efficiency"),
     ),
     "loss-map": Plot(
         "How much power is lost over speed and torque?", _of_map(loss_map.plot_map, "total")
@@ -315,23 +312,23 @@ PLOTS: dict[str, Plot] = {
         "Which components make up the loss?", _of_map(loss_map.plot_map_parts, "total")
     ),
     "loss-band": Plot(
-        "How well is the loss known over speed and torque?",
+        "How uncertain is the loss over speed and torque?",
         _of_band(loss_map.plot_half_width, loss_map.limits_of_half_width),
     ),
     "loss-band-lines": Plot(
-        "How far may the loss be off along a line?",
+        "How uncertain is the loss along a line?",
         _of_band(loss_map.plot_band_lines, loss_map.limits_of_band, "torque"),
     ),
     "lines": Plot(
-        "How do loss and efficiency follow the keys that are sweep.varied?",
+        "How do loss and efficiency depend on the varied keys?",
         _of_sweep(sweep.plot_sweep_lines, sweep.varied, 1),
     ),
     "contours": Plot(
-        "Where over two keys is the least loss?",
+        "Which values of two keys give the least loss?",
         _of_sweep(sweep.plot_sweep_field, sweep.fields_of, 2),
     ),
     "parallel": Plot(
-        "Which values of all keys go with a small loss?", _sweep_points, size=losses.WIDE
+        "Which values of all keys give a small loss?", _sweep_points, size=losses.WIDE
     ),
 }
 """By the names that ``epicyclic plot`` takes."""

@@ -399,8 +399,8 @@ def _legend(ax: Axes, layout: _Layout) -> None:
     write(x=0.82 + 0.06 * steps, s=f"{high:.0f} {unit}")
     write(
         x=3.4,
-        s="arrows: heat, as wide as its power;  + W: heat of losses;  dashed: outside, of given "
-        "temperature",
+        s="arrows: heat flow, width by power;  + W: heat of losses;  dashed: surroundings at "
+        "given temperature",
     )
 
 

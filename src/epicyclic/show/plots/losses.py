@@ -171,10 +171,10 @@ def plot_shares(
     colours = [COLOURS[4 if key.startswith(MODEL_FORM) else 0] for key in drivers]
     middle = 100 * mean.to_numpy()
     ax.barh(range(len(drivers)), middle, color=colours, edgecolor="black", linewidth=0.5)
-    ax.hlines(range(len(drivers)), low, high, color="black", lw=1.2, label="least to most")
+    ax.hlines(range(len(drivers)), low, high, color="black", lw=1.2, label="minimum to maximum")
     ax.set_yticks(range(len(drivers)), [_name(key) for key in drivers])
     ax.set(
-        title="What the uncertainty of the total loss is due to",
+        title="Causes of the uncertainty of the total loss",
         xlabel="share of its variance over the map, weighted with the loss, %",
     )
     for place, label in ((0, "inputs"), (4, "models")):
@@ -212,7 +212,7 @@ def plot_drivers(
     ax.set_yticks(range(len(names)), names)
     ax.axvline(0.0, color="black", lw=0.8)
     ax.set(
-        title="What the uncertainty of the total loss is due to",
+        title="Causes of the uncertainty of the total loss",
         xlabel=f"change for one standard deviation up (dark) and down, {_unit(data, 'total')}",
     )
     legend_below(ax, ncols=2)

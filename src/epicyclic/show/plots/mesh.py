@@ -222,7 +222,7 @@ def _plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
         pitch = float(mesh.attrs["pitch_angle_deg"])
         ax.plot(*closed_period(angles, values, pitch), marker=".", ms=3)
     else:
-        _say(ax, "not known with this load distribution")
+        _say(ax, "not available with this load distribution")
     ax.set(
         title=str(mesh[name].attrs["long_name"]).capitalize(),
         xlabel=label_of(mesh["roll_angle"]),
@@ -246,7 +246,9 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
             for pick in (np.min, np.mean, np.max)
         )
         if name == FRICTION and np.ptp(values) <= SAME * abs(values).max():
-            ax.plot(middle, mean, label="one mean for the whole mesh: the model has no other")
+            ax.plot(
+                middle, mean, label="one mean value for the whole mesh; the model gives no other"
+            )
         else:
             ax.fill_between(middle, low, high, alpha=0.25, lw=0, label="range across the face")
             ax.plot(middle, mean, label="mean across the face")

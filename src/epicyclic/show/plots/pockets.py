@@ -215,7 +215,7 @@ def _name_members(mesh: xr.Dataset, ax: Axes) -> None:
 def _legend(mesh: xr.Dataset) -> list[Patch | Line2D]:
     one, two = map(of_gear, mesh["tooth"].to_numpy())
     return [
-        Patch(color=FOLLOWED, label="pocket that is followed"),
+        Patch(color=FOLLOWED, label="pocket followed over time"),
         Patch(color=KINDS[0], label=f"tooth {one} in a space {two}"),
         Patch(color=KINDS[1], label=f"tooth {two} in a space {one}"),
         Line2D([], [], color=CONTACT, marker=".", label="gap, contact side"),

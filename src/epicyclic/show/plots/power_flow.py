@@ -551,9 +551,9 @@ def _draw_legend(ax: Axes, layout: _Layout, entering: float) -> None:
     notes = []
     if rolling:
         bars = "bars: rolling power of the meshes"
-        notes.append(f"{bars}, orange beyond the input power" if beyond else bars)
+        notes.append(f"{bars}, orange above the input power" if beyond else bars)
     if layout.taps:
-        notes.append("down from shafts: bearings, seals, drags")
+        notes.append("below the shafts: bearings, seals, drags")
     idle = [
         key.replace("_", " ")
         for key, stage in flow.stages.items()

@@ -158,9 +158,9 @@ def _warnings(result: Result) -> Iterator[str]:
         if watts >= CONCERNED * result.total
     ]
     if told:
-        yield f"Warnings that matter, with the loss that they concern: {'; '.join(told)}."
+        yield f"Important warnings, with the affected loss: {'; '.join(told)}."
     elif flags:
-        yield f"No warning concerns more than {percent(CONCERNED, 0)} of the loss."
+        yield f"No warning affects more than {percent(CONCERNED, 0)} of the loss."
 
 
 def _friction(case: Case, brief: bool) -> Iterator[str]:
@@ -171,5 +171,5 @@ def _friction(case: Case, brief: bool) -> Iterator[str]:
         best, why = recommended(compare_friction(case, brief=True))
     except ConvergenceError:  # of a model that is not that of the case
         return
-    does = "suits" if best.chosen else "would suit better than that of the case"
+    does = "suits" if best.chosen else "would suit this case better"
     yield f"Friction: {best.name} {does}: {why}."

@@ -54,7 +54,7 @@ def remedy_for(key: str) -> tuple[str, str]:
     for entry in table["model_form"]:
         if key == f"{MODEL_FORM}{entry['kind']}":
             return entry["name"], entry["advice"]
-    return key, "state it better in [uncertainty], once it is measured"
+    return key, "state it in [uncertainty] once it is measured"
 
 
 @cache
@@ -125,7 +125,7 @@ def _assumed_slope(case: CaseTable, key: str, limit: float) -> UncertainValue:
     """The slope of a flank, anywhere within its tolerance."""
     value = (value_of(case, key) or 0.0) / _MICROMETRE
     spread = limit / _MICROMETRE
-    source = "tolerance of the accuracy class, ISO 1328-1:2013; all values within it alike"
+    source = "tolerance of the accuracy class, ISO 1328-1:2013; all values within it equally likely"
     return UncertainValue(
         key, MICROMETRE.display, value, "uniform", (value - spread, value + spread), source=source
     )

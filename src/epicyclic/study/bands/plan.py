@@ -444,8 +444,8 @@ def _values_at(
         Problem(
             f"uncertainty.{key}",
             "",
-            f"has a distribution at some operating points only, and none at {dict(point)}.",
-            "State it for all of them, as exact = true if it is known.",
+            f"has a distribution only at some operating points, and none at {dict(point)}.",
+            "State it for all of them; use exact = true for an exact value.",
         )
         for key in sorted(frozenset.union(*keys) - everywhere)
         for point in [next(it for it, own in zip(points, keys, strict=True) if key not in own)]

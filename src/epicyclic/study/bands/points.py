@@ -260,13 +260,13 @@ def cycle_study(
     check_samples(count)
     problems = []
     if celsius is not None and len(celsius) > 1:
-        allowed = "must be one for an uncertainty."
-        problems.append(Problem("temperature", "", allowed, "Give the command for each."))
+        allowed = "must be a single value for an uncertainty analysis."
+        problems.append(Problem("temperature", "", allowed, "Run the command for each value."))
     if points is not None and points < 2:
         problems.append(Problem("points", str(points), "must be 2 or more.", f"Take {POINTS}."))
     case = map_case(data, further_values(data))
     if case is None:
-        allowed = "is none of this version of the program."
+        allowed = "was not made by this version of the program."
         problems.append(Problem("case", "", allowed, "Compute the map again."))
     if problems or case is None:
         raise InputError(problems, "the command")
@@ -282,7 +282,7 @@ def _energies(sums: Sums, outputs: Outputs) -> Energies:
     lookup, (totals,), (sample,) = sums.lookup, sums.totals, sums.samples
     rows, chance = sample.drawn()
     if not len(rows):
-        raise ConvergenceError("nothing is lost in the cycle, and nothing can be uncertain.")
+        raise ConvergenceError("the cycle has no loss, so no uncertainty can be computed.")
     axes = [rows[:, number] for number in range(len(lookup.names))]
     nodes, weights = lookup.corners(*axes)
     speed, torque = axes[:2]
@@ -326,7 +326,7 @@ class CycleStudy(Study):
             sets, energies.of(nominal)[:, 0], self._contributions(nominal), self.sampled, rows, "kJ"
         )
         indices, explained = self._indices(np.concatenate([*sets], axis=1))
-        error = {"long_name": "standard error of u_c by the choice of points", "units": "kJ"}
+        error = {"long_name": "standard error of u_c due to the choice of points", "units": "kJ"}
         return data.assign(
             **indices,
             curves_explain=((), explained, {"long_name": CYCLE_EXPLAINED, "units": "1"}),

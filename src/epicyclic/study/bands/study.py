@@ -267,14 +267,14 @@ def about_inputs(values: Sequence[UncertainValue]) -> dict[str, Any]:
         "input_value": ([value.value for value in values], "value of the input"),
         "input_unit": ([value.unit or "1" for value in values], "unit of the input"),
         "distribution": ([value.text for value in values], "distribution of the input"),
-        "distribution_source": ([value.source for value in values], "where that is from"),
+        "distribution_source": ([value.source for value in values], "source of the distribution"),
         "input_uncertainty": (
             [standard_uncertainty(value) for value in values],
             "standard uncertainty of the input",
         ),
-        "input_name": ([name for name, _ in remedies], "what it is called"),
-        "input_advice": ([advice for _, advice in remedies], "how to know it better"),
-        "cut_off": ([cut_off(value) for value in values], "probability of what cannot be"),
+        "input_name": ([name for name, _ in remedies], "name of the input"),
+        "input_advice": ([advice for _, advice in remedies], "how to reduce its uncertainty"),
+        "cut_off": ([cut_off(value) for value in values], "probability of impossible values"),
     }
     return {
         name: ("input", np.array(column), {"long_name": label, "units": "see input_unit"})

@@ -238,8 +238,8 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     worst = int(np.nanargmax(error))
     return {
         "torque_interpolation_error": float(f"{error[worst]:.2g}"),
-        "torque_interpolation": "linear in the torque, the total loss is off by "
-        f"{100 * error[worst]:.2g} % at most, at {format_number(float(middles[worst]), 3)} "
+        "torque_interpolation": "linear in the torque; the largest error of the total loss is "
+        f"{100 * error[worst]:.2g} %, at {format_number(float(middles[worst]), 3)} "
         f"{unit_text(NEWTON_METRE.display)}: {np.isfinite(error).sum()} points between torques "
         f"solved directly, at {format_number(speed)} rpm",
     }
@@ -301,10 +301,10 @@ _SUMS = (
     "power_ratio",
 )
 _TEMPERATURES = {
-    "inlet": "everything is at the temperature of the oil inlet",
-    "flank": "temperature is that of the oil; flanks are as hot as their own losses make them",
-    "network": "temperature is that of the oil inlet; the oil in the gearbox and all parts are as "
-    "hot as the losses make them in the long run",
+    "inlet": "all parts are at the oil inlet temperature",
+    "flank": "temperature is that of the oil; the flank temperatures follow from their own losses",
+    "network": "temperature is that of the oil inlet; the temperatures of the oil in the gearbox "
+    "and of all parts are those of the settled state",
 }
 """What the axis of temperatures means, by ``models.temperatures``."""
 _CREEP = 1e-9
@@ -408,8 +408,8 @@ def map_plan(
     chosen, found = _states(case, states)
     problems += found
     if temperature is not None and not case.computed:
-        allowed = "has no effect: every loss of the train is given."
-        problems.append(Problem("temperature", "", allowed, "Leave it out."))
+        allowed = "has no effect, because every loss of the train is given."
+        problems.append(Problem("temperature", "", allowed, "Remove it."))
     raise_any(problems, "the map")
     given: dict[str, Iterable[Any]] = {}
     if chosen:
@@ -433,7 +433,7 @@ def stored_plan(data: xr.Dataset) -> MapPlan:
     check_map(data)
     case = map_case(data)
     if case is None:
-        allowed = "is none of this version of the program."
+        allowed = "was not made by this version of the program."
         raise one_problem("case", "", allowed, "Compute the map again.", "the map")
     values = {str(name): written_values(data[name]) for name in data["torque_loss"].dims}
     own = {name: values.pop(name, None) for name in (*AXES, STATE)}
@@ -449,8 +449,8 @@ def _own_option(key: str) -> Problem:
 
 
 def _shaft_key(key: str) -> Problem:
-    allowed = "decides which shaft is which, and stays the same in a map."
-    return Problem(key, "", allowed, "Make a map of each.")
+    allowed = "defines the shafts and cannot vary within a map."
+    return Problem(key, "", allowed, "Compute one map for each value.")
 
 
 def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[Problem]]:
@@ -459,8 +459,8 @@ def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[P
     if not known:
         if chosen is None:
             return [], []
-        allowed = "cannot be chosen: the case has none."
-        return [], [Problem("states", "", allowed, "Leave them out.")]
+        allowed = "cannot be chosen, because the case has none."
+        return [], [Problem("states", "", allowed, "Remove them.")]
     if chosen is None:
         left_out = states_left_out(case)
         able = [name for name in known if name not in left_out]
@@ -470,8 +470,8 @@ def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[P
         Problem(
             "states",
             written(name),
-            "is no state of the train.",
-            did_you_mean(name, known) or f"Known are: {', '.join(known)}.",
+            "is not a state of the train.",
+            did_you_mean(name, known) or f"Choose one of {', '.join(known)}.",
         )
         for name in dict.fromkeys(names)
         if name not in known
@@ -593,16 +593,16 @@ def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
         "sign_convention": f"speed and torque are those of the {reference}; speeds are positive in "
         "one common sense of rotation, torques act on the gear set from outside; torque times "
         "speed > 0: the shaft drives, < 0: it is driven (coasting); losses are never negative",
-        "torque_loss_definition": f"power loss over the magnitude of the speed of the {reference}: "
-        f"the torque passed on, at the {reference}, is torque - sign(speed) * torque_loss, in both "
-        "directions of the power",
+        "torque_loss_definition": "power loss over the magnitude of the speed of the "
+        f"{reference}: the transmitted torque at the {reference} is torque - sign(speed) * "
+        "torque_loss, in both directions of the power",
         "zero_speed": "powers are 0; torque loss, torques and efficiency are the limits of slow "
         "motion in positive direction, without friction of rest",
-        "zero_torque": "efficiency is 0, there and wherever the loss takes all of the power; the "
-        "torque loss is that of drag and of teeth that drive it",
+        "zero_torque": "efficiency is 0 there and wherever the loss consumes all of the power; "
+        "the torque loss is that of drag and of teeth that drive it",
         "temperatures": _TEMPERATURES[plan.case.models.temperatures],
-        "conventions": "losses in W of the whole gear set, summed over planets; efficiency: power "
-        "that leaves over power that enters, 0 if the loss takes all of it",
+        "conventions": "losses in W of the whole gear set, summed over planets; efficiency: "
+        "output power over input power, 0 if the loss consumes all of it",
         "pocketing": given["pocketing"],
         "versions": given["versions"],
         "case": given["case"],
@@ -645,9 +645,9 @@ def with_temperature_state(data: xr.Dataset, case: Case) -> xr.Dataset:
     """
     check_axis(data.sizes.get("temperature", 0))
     if map_inputs(data).get("models", {}).get("temperatures") == "network":
-        allowed = "must be inlet: the map is to hold the losses at the temperature of the oil."
+        allowed = "must be inlet, because the map has to give the losses at the oil temperature."
         raise one_problem(
-            "models.temperatures", '"network"', allowed, "Make the map anew.", "the map"
+            "models.temperatures", '"network"', allowed, "Compute the map again.", "the map"
         )
     return data.assign_attrs(lumped(case))
 
@@ -655,7 +655,7 @@ def with_temperature_state(data: xr.Dataset, case: Case) -> xr.Dataset:
 def check_axis(count: int) -> None:
     """Raise `InputError` unless a map has several temperatures."""
     if count < 2:
-        allowed = "must have two or more values, so that it can change."
+        allowed = "must have two or more values."
         raise one_problem("temperature", "", allowed, 'Give more, as "20,60,100 degC".', "the map")
 
 
@@ -666,8 +666,8 @@ def lumped(case: Case) -> dict[str, float]:
     known.
     """
     if not case.computed:
-        allowed = "has losses that are all given: no temperature follows from them."
-        raise one_problem("case", "", allowed, "Choose one with an oil.")
+        allowed = "has given losses only, from which no temperatures can be computed."
+        raise one_problem("case", "", allowed, "Choose a case with an oil.")
     warm = case.updated({"models.temperatures": "network"})
     model = build(warm).thermal
     assert isinstance(model, NetworkModel)
@@ -677,7 +677,7 @@ def lumped(case: Case) -> dict[str, float]:
     leaving = [(heat.given[path.into], path.watts) for path in heat.ways if path.into in heat.given]
     whole = sum(watts for _, watts in leaving)
     if not whole > 0:
-        allowed = "loses no power at its operating point, which tells the way of the heat."
+        allowed = "has no loss at its operating point, so the heat paths cannot be found."
         raise one_problem("operation", "", allowed, "Give a speed.")
     around = sum(kelvin * watts for kelvin, watts in leaving) / whole
     conductance = whole / (heat.temperatures[OIL] - around)

@@ -72,7 +72,7 @@ def _readable(name: str) -> Iterator[None]:
         yield
     except (pa.ArrowException, OSError, UnicodeDecodeError, csv.Error) as error:
         reason = sentence(f"cannot be read: {one_line(str(error), 200)}", capital=False)
-        raise _unreadable(name, reason, "Write it anew, as UTF-8 if it is text.") from None
+        raise _unreadable(name, reason, "Write it again, as UTF-8 if it is text.") from None
 
 
 def _from_memory(table: Any) -> Source:
@@ -150,7 +150,7 @@ def _csv_head(path: Path) -> tuple[tuple[str, ...], int]:
     with path.open("rb") as file:
         start = file.read(_LONGEST_HEAD)
     if b"\0" in start:
-        allowed = "is not UTF-8 text; it holds zero bytes."
+        allowed = "is not UTF-8 text; it contains zero bytes."
         raise _unreadable(str(path), allowed, "Save it as CSV in UTF-8.")
     head = start if len(start) < _LONGEST_HEAD else start[: start.rfind(b"\n")]
     lines = head.decode("utf-8-sig").splitlines()
@@ -158,11 +158,11 @@ def _csv_head(path: Path) -> tuple[tuple[str, ...], int]:
     while comments < len(lines) and lines[comments].startswith("#"):
         comments += 1
     if comments == len(lines):
-        allowed = "has no line with the names of the columns."
-        raise _unreadable(str(path), allowed, 'Begin it with "time [s],speed [rpm],torque [N*m]".')
+        allowed = "has no line with the column names."
+        raise _unreadable(str(path), allowed, 'Start it with "time [s],speed [rpm],torque [N*m]".')
     names = next(csv.reader([lines[comments]]))
     if len(names) == 1 and ";" in names[0]:
-        allowed = "has columns that are separated by semicolons."
+        allowed = "has columns separated by semicolons."
         raise _unreadable(str(path), allowed, "Separate them by commas, with decimal points.")
     return tuple(name.strip() for name in names), comments + 1
 
@@ -333,7 +333,7 @@ def _column(header: str, unit: str | None, quantity: Quantity | None) -> Column:
 
 def _repeated(name: str, headers: list[str]) -> Problem:
     shown = ", ".join(f'"{one_line(header)}"' for header in headers)
-    return Problem(name, shown, "is there more than once.", "Leave one.")
+    return Problem(name, shown, "appears more than once.", "Keep one.")
 
 
 def _unit_problem(name: str, header: str, error: PydanticCustomError) -> Problem:
@@ -358,8 +358,8 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
         remedy = 'Name a column "time [s]" in a time series; "duration [s]" or "share" otherwise.'
         problems.append(Problem("time, duration, share", "", allowed, remedy))
     if len(weightings) > 1:
-        allowed = "are there together."
-        problems.append(Problem(" and ".join(weightings), "", allowed, "Leave one of them."))
+        allowed = "exclude each other."
+        problems.append(Problem(" and ".join(weightings), "", allowed, "Keep one of them."))
     return problems
 
 
@@ -440,8 +440,8 @@ class _Checks:
             self._note(bad, column, _Fault(name, "must be a finite number.", "Correct the row."))
             if name == TIME:
                 early = values <= np.append(self._last_time, values[:-1])
-                allowed = "must be later than in the row before."
-                remedy = "Sort the rows, and give each time once."
+                allowed = "must be later than in the previous row."
+                remedy = "Sort the rows and give each time once."
                 self._note(early, column, _Fault(name, allowed, remedy))
                 self._last_time = values[-1] if values.size else self._last_time
             if name in (DURATION, SHARE):

@@ -131,10 +131,12 @@ def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple
         except PydanticCustomError as error:
             problems.append(refused(error, "temperature", written(text)))
     if "temperature" in cycle.ranges:
-        allowed = "is a column of the cycle too."
-        problems.append(Problem("temperature", "", allowed, "Leave one of them."))
+        allowed = "is also a column of the cycle."
+        problems.append(Problem("temperature", "", allowed, "Keep one of them."))
     if not texts or len(set(values)) < len(values):
-        problems.append(Problem("temperature", "", "must name each value once.", "Name others."))
+        problems.append(
+            Problem("temperature", "", "must give each value once.", "Give different values.")
+        )
     raise_any(problems, "the command")
     return tuple(values)
 
@@ -254,8 +256,8 @@ def _temperatures(
     """The oil temperatures at which to run a cycle; None stands for that of its column."""
     if "temperature" not in lookup.names:
         if celsius is not None:
-            allowed = "has no effect: every loss of the train is given."
-            raise one_problem("temperature", "", allowed, "Leave it out.", "the command")
+            allowed = "has no effect, because every loss of the train is given."
+            raise one_problem("temperature", "", allowed, "Remove it.", "the command")
         return (None,)
     if "temperature" in cycle.ranges:
         return (None,)
@@ -263,8 +265,8 @@ def _temperatures(
         return celsius
     axis = lookup.axes[lookup.names.index("temperature")]
     if axis.size > 1:
-        allowed = f"is not a column of the cycle, and the map has {axis.size} of them."
-        remedy = f'Choose some, as "{format_number(float(axis[0]))} degC".'
+        allowed = f"is not a column of the cycle, but the map has {axis.size} values of it."
+        remedy = f'Choose one or more, as "{format_number(float(axis[0]))} degC".'
         raise one_problem("temperature", "", allowed, remedy, "the command")
     return (float(axis[0]),)
 
@@ -273,20 +275,20 @@ def check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
     """Raise `InputError` unless a cycle has a column of states, all of them `known`."""
     text = ", ".join(known)
     if not cycle.states:
-        allowed = f"is not among the columns, and there are several: {text}."
+        allowed = f"is not among the columns, but the map has several: {text}."
         raise one_problem(
             STATE,
             "",
             allowed,
-            f"Name a column {STATE}, or make a map of one state.",
+            f"Name a column {STATE}, or compute a map of one state.",
             cycle.source.name,
         )
     problems = [
         Problem(
             STATE,
             written(name),
-            f"is none of {text}.",
-            did_you_mean(name, known) or "Correct these rows, or make a map of this state too.",
+            f"must be one of {text}.",
+            did_you_mean(name, known) or "Correct these rows, or include this state in the map.",
         )
         for name in cycle.states
         if name not in known
@@ -358,13 +360,14 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
         low, high = (format_number(value) for value in ranges[name])
         first, last = (format_number(float(value)) for value in (axis[0], axis[-1]))
         if ranges[name][0] < axis[0] or ranges[name][1] > axis[-1]:
-            allowed = f"leaves the map, which has {first} to {last} {unit.display}."
+            allowed = f"lies outside the map, which covers {first} to {last} {unit.display}."
             problems.append(
                 Problem(
                     name,
                     f"{low} to {high} {unit.display}",
                     allowed,
-                    f"Make a larger map, or clamp; {share:.3g} of the duration is outside.",
+                    f"Compute a larger map, or use --clamp; {share:.3g} of the duration is "
+                    "outside.",
                 )
             )
     return InputError(problems, "the cycle")
@@ -382,15 +385,15 @@ def _to_dataset(lookup: Lookup, totals: Totals, error: Deviation) -> xr.Dataset:
     of_mode, of_both = ("mode",), ("mode", "component")
     table = (
         ("duration", of_mode, duration, seconds, "duration"),
-        ("energy_in", of_mode, entering * kilo, energy, "energy that enters"),
-        ("energy_out", of_mode, leaving * kilo, energy, "energy that leaves"),
+        ("energy_in", of_mode, entering * kilo, energy, "energy input"),
+        ("energy_out", of_mode, leaving * kilo, energy, "energy output"),
         ("energy_lost", of_both, by_component * kilo, energy, "energy lost"),
         ("efficiency", of_mode, _ratio(leaving, entering), pure, "efficiency"),
         ("total_efficiency", (), _ratio(leaving.sum(), entering.sum()), pure,
          "efficiency over the cycle"),
         ("share_outside", (), outside, pure, "share of the duration outside of the map"),
         ("interpolation_error", (), error.energy * kilo, energy,
-         "energy lost that interpolation adds, estimate"),
+         "energy lost added by interpolation, estimate"),
         ("interpolation_standard_error", (), error.standard_error * kilo, energy,
          "standard error of the estimate"),
         ("largest_deviation", (), error.largest, pure, "largest deviation of a checked point"),
@@ -423,8 +426,8 @@ def _of_states(
     energy = KILOJOULE.display
     of_state = (STATE,)
     yield "state_duration", of_state, totals.duration.sum(axis=0), SECOND.display, "duration"
-    yield "state_energy_in", of_state, entering * kilo, energy, "energy that enters"
-    yield "state_energy_out", of_state, leaving * kilo, energy, "energy that leaves"
+    yield "state_energy_in", of_state, entering * kilo, energy, "energy input"
+    yield "state_energy_out", of_state, leaving * kilo, energy, "energy output"
     yield "state_energy_lost", (STATE, "component"), lost * kilo, energy, "energy lost"
     yield "state_efficiency", of_state, _ratio(leaving, entering), "1", "efficiency"
 
@@ -437,7 +440,7 @@ def _ratio(part: Any, whole: Any) -> Any:
 def _attributes(data: xr.Dataset, cycle: Cycle, clamp: bool) -> dict[str, str]:
     shaft, output = data.attrs["reference_shaft"], data.attrs["output_shaft"]
     basis = {"time": "time series, trapezoidal rule over time", "duration": "histogram"}
-    outside = "taken at its border" if clamp else "any would be refused"
+    outside = "evaluated at its boundary" if clamp else "none; points outside are refused"
     return {
         "title": data.attrs["title"],
         "source": data.attrs.get("source", ""),
@@ -510,5 +513,5 @@ def check_same(plan: DutyPlan, cycle: Path) -> None:
     except OSError as error:
         allowed = f"cannot be read: {error.strerror}."
     if allowed:
-        remedy = "Put back the cycle of which the shards were computed."
+        remedy = "Restore the cycle from which the shards were computed."
         raise one_problem("CYCLE", str(cycle), allowed, remedy, "the command")

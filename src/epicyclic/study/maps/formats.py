@@ -104,14 +104,14 @@ def check_map_output(path: Path, format: str | None, axes: Coordinates, held: st
         check_place(file)
     problems = chosen.problems(axes)
     if len(set(files.values())) < len(files):
-        allowed = "have names that make the same file."
+        allowed = "have names that lead to the same file."
         problems.append(Problem("states", "", allowed, "Choose them one by one."))
     if chosen.axes is not None:
         several = (*chosen.axes, STATE) if chosen.each_state else chosen.axes
         problems = _several(axes, several) + problems
         if not held:
             problems.append(
-                tables.driven_problem("the format holds gears of one input and one output")
+                tables.driven_problem("the format covers gears with one input and one output")
             )
     raise_any(problems, f"the map for {chosen.about}")
     return chosen
@@ -141,7 +141,10 @@ def _several(axes: Coordinates, allowed: tuple[str, ...]) -> list[Problem]:
     """Axes of which the format can hold one value only."""
     return [
         Problem(
-            name, "", f"has {len(values)} values; the format holds one.", "Write one file for each."
+            name,
+            "",
+            f"has {len(values)} values, but the format holds one.",
+            "Write one file for each.",
         )
         for name, values in axes.items()
         if name not in allowed and len(values) > 1

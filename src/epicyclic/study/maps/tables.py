@@ -42,7 +42,7 @@ _LONGEST_STATEMENT = 1000
 _NEEDED = ("title", "reference_shaft", "output_shaft", "held_shaft", "case")
 """Attributes without which a dataset is no map."""
 _OPERATING = {name: part.quantity for name, part in OPERATING.items()}
-_MAKE_AGAIN = "Give what epicyclic map or loss_map made."
+_MAKE_AGAIN = "Give a map from 'epicyclic map' or loss_map."
 
 
 def statements(data: xr.Dataset) -> dict[str, str]:
@@ -76,7 +76,7 @@ def stated(data: xr.Dataset, axes: Sequence[str] = PLANE) -> dict[str, str]:
         if name not in axes
     }
     if "ratio" in data and data["ratio"].size == 1:
-        single["ratio"] = f"{data['ratio'].item():.15g}, speed of the input over that of the output"
+        single["ratio"] = f"{data['ratio'].item():.15g}, input speed over output speed"
     return statements(data) | single
 
 
@@ -100,8 +100,8 @@ def check_map(data: xr.Dataset, source: str = "the map") -> None:
         dims = data["torque_loss"].dims
         lacks += [f"axis {name}" for name in axes if name not in dims or name not in data.coords]
     if lacks:
-        allowed = f"is no loss map; it lacks {', '.join(lacks)}."
-        remedy = "Give what epicyclic map or loss_map made, all of its axes kept."
+        allowed = f"is not a loss map; it lacks {', '.join(lacks)}."
+        remedy = "Give a map from 'epicyclic map' or loss_map with all its axes."
         raise one_problem("", "", f"This dataset {allowed}", remedy, source)
     raise_any([*_axis_problems(data), *_value_problems(data)], source)
 
@@ -117,11 +117,11 @@ def _axis_problems(data: xr.Dataset) -> Iterator[Problem]:
             allowed = f"must be in {quantity.display}."
             yield Problem(name, one_line(str(unit)), allowed, _MAKE_AGAIN)
         if axis.dtype.kind not in "fiu" or axis.ndim != 1 or not axis.size:
-            yield Problem(name, "", "must be numbers along itself.", _MAKE_AGAIN)
+            yield Problem(name, "", "must be numbers along its own axis.", _MAKE_AGAIN)
         elif not np.isfinite(axis.values).all():
             yield Problem(name, "", "must have finite values.", _MAKE_AGAIN)
         elif (np.diff(axis.values) <= 0).any():
-            yield Problem(name, "", "must rise.", "Sort the map, as with .sortby.")
+            yield Problem(name, "", "must be rising.", "Sort the map, as with .sortby.")
 
 
 def _value_problems(data: xr.Dataset) -> Iterator[Problem]:
@@ -154,7 +154,7 @@ def check_gaps(data: xr.Dataset) -> None:
         return
     reasons = data["message"].values[gaps] if "message" in data else []
     reason = next((f" The first: {one_line(str(text))}" for text in reasons if text), "")
-    allowed = f"is missing at {int(gaps.sum())} points; all are needed.{reason}"
+    allowed = f"is missing at {int(gaps.sum())} points, but all are needed.{reason}"
     raise one_problem("torque_loss", "", allowed, "Leave these points out.", "the map")
 
 
@@ -324,7 +324,7 @@ def _check_usable(data: xr.Dataset) -> None:
         Problem(
             str(name),
             "",
-            f"has {data.sizes[name]} values; a single one can be used.",
+            f"has {data.sizes[name]} values, but only one can be used.",
             f"Select one, as with .isel({name}=[0]).",
         )
         for name in data["torque_loss"].dims
@@ -333,5 +333,7 @@ def _check_usable(data: xr.Dataset) -> None:
     if not data.attrs["held_shaft"]:
         problems.append(driven_problem("only one speed and one torque can be looked up"))
     if not data["speed"].values.any():
-        problems.append(Problem("speed", "", "is zero only.", "Make a map with other speeds."))
+        problems.append(
+            Problem("speed", "", "has only the value zero.", "Compute a map with other speeds.")
+        )
     raise_any(problems, "the map")

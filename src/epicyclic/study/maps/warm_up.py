@@ -328,8 +328,8 @@ def _knots(low: float, high: float) -> list[float]:
 def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
     """Duration [s] and temperature at the start [K]; raises `InputError` for all that is wrong."""
     if not case.computed:
-        allowed = "has losses that are all given: no temperature follows from them."
-        raise one_problem("case", "", allowed, "Choose one with an oil.")
+        allowed = "has given losses only, from which no temperatures can be computed."
+        raise one_problem("case", "", allowed, "Choose a case with an oil.")
     found, problems = [], []
     if start is None:
         start = CELSIUS.exact_text(case.thermal.ambient_temperature)
@@ -342,7 +342,7 @@ def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
         except PydanticCustomError as error:
             problems.append(refused(error, name, written(value)))
     if case.thermal.oil_outlet_temperature is not None:
-        allowed = "tells the flow of oil in one settled state only."
+        allowed = "determines the oil flow in a single steady state only."
         remedy = "Give thermal.oil_flow instead."
         problems.append(Problem("thermal.oil_outlet_temperature", "", allowed, remedy))
     raise_any(problems)
@@ -550,8 +550,8 @@ def _runaway(tables: HeatTables, course: Course) -> ConvergenceError:
     row = int(np.argmax(course.temperatures.max(axis=0) > HOTTEST))
     node = list(tables.capacities)[int(course.temperatures[:, row].argmax())]
     return ConvergenceError(
-        f"the gearbox runs away: within {SECOND.text(course.times[row], 3)} {node} gets hotter "
-        f"than {CELSIUS.text(HOTTEST, 4)}. Take more heat away: thermal.oil_flow, "
+        f"thermal runaway: within {SECOND.text(course.times[row], 3)} {node} exceeds "
+        f"{CELSIUS.text(HOTTEST, 4)}. Remove more heat: thermal.oil_flow, "
         "thermal.cooler_conductance, a larger [thermal.housing]."
     )
 
@@ -596,7 +596,7 @@ def _to_dataset(
         ("time_constant", ("order",), constants, SECOND.display,
          "time constant of small changes about the settled state"),
         ("energy_lost_settled", (), settled_loss * seconds * kilo, energy,
-         "energy lost if it were in the settled state from the start"),
+         "energy lost if the settled state held from the start"),
     )  # fmt: skip
     coords = {
         "time": (over, course.times, {"long_name": "time", "units": SECOND.display}),

@@ -173,15 +173,17 @@ def _tested_problems(case: Case, table: Measurements, load_dependent: str) -> It
         return
     key = "load_dependent"
     if load_dependent != AS_TESTED:
-        allowed = f"is neither {COMPUTED} nor {AS_TESTED}."
+        allowed = f"must be {COMPUTED} or {AS_TESTED}."
         yield Problem(key, load_dependent, allowed, f"Give {AS_TESTED}.")
     if not any(LOAD_DEPENDENT in parts_of(component) for component in table.component):
-        allowed = "is about load-dependent losses, and none was measured."
+        allowed = "concerns load-dependent losses, but none were measured."
         yield Problem(key, load_dependent, allowed, f"Name the component {LOAD_DEPENDENT}.")
     outlets = [case.thermal.oil_outlet_temperature, *(row.get(_OUTLET) for row in table.changes)]
     if any(outlet is not None for outlet in outlets):
-        allowed = "is not known without torque, where less oil would follow from the same."
-        yield Problem(_OUTLET, "", allowed, "Give thermal.oil_flow in its place.")
+        allowed = (
+            "is unknown without torque: the same outlet temperature would imply a smaller oil flow."
+        )
+        yield Problem(_OUTLET, "", allowed, "Give thermal.oil_flow instead.")
 
 
 # Measured losses beside computed ones, with or without a fit of uncertain inputs.
@@ -284,7 +286,7 @@ def _fit_problems(
     keys: tuple[str, ...], hold_out: str | float | None, confidence: float
 ) -> Iterator[Problem]:
     if hold_out is not None and not keys:
-        allowed = "keeps points from a fit, and there is none."
+        allowed = "excludes points from a fit, but no keys are fitted."
         yield Problem("hold_out", str(hold_out), allowed, "Name the keys to fit.")
     if not 0 < confidence < 1:
         yield Problem("confidence", f"{confidence:g}", "must be > 0 and < 1.", "Give 0.95.")
@@ -311,8 +313,8 @@ def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> B
     chosen = np.array([_same(cell, wanted) for cell in table.labels[column]])
     if not chosen.any():
         values = ", ".join(dict.fromkeys(table.labels[column]))
-        allowed = f"holds for no row; {column} has {values[:200]}."
-        raise one_problem("hold_out", str(hold_out), allowed, "Name one of them.", "the comparison")
+        allowed = f"matches no row; {column} has {values[:200]}."
+        raise one_problem("hold_out", str(hold_out), allowed, "Give one of them.", "the comparison")
     return chosen
 
 

@@ -43,26 +43,27 @@ def fit_warnings(
             beyond = "there is no interval" if math.isnan(item.low) else "its interval ends there"
             yield (
                 f"{item.key} ended at the bound {format_number(item.value)} {item.unit}".rstrip()
-                + f": the measurements ask for a value beyond it, and {beyond}."
+                + f": the measurements require a value beyond it, and {beyond}."
             )
         elif is_idle:
             yield (
-                f"{item.key} has no influence at its calibrated value, where the models hold it or "
-                "what follows from it at the limit of their range: the value means nothing."
+                f"{item.key} has no influence at its calibrated value, because the models hold "
+                "it, or a quantity that depends on it, at the limit of their range; the value is "
+                "meaningless."
             )
         elif item.high - item.low > 2 * abs(item.value):
-            yield f"{item.key} is hardly determined: its interval is wider than twice its value."
+            yield f"{item.key} is poorly determined: its interval is wider than twice its value."
     if not found.is_separable:
-        yield "these points cannot tell the inputs apart: fix some of them."
+        yield "these points cannot separate the inputs: fix some of them."
     correlation = found.correlation()
     for i, j in itertools.combinations(range(len(fitted)), 2):
         if abs(correlation[i, j]) >= ALIKE:
             yield (
-                f"{fitted[i].key} and {fitted[j].key} can hardly be told apart (correlation "
+                f"{fitted[i].key} and {fitted[j].key} cannot be separated reliably (correlation "
                 f"{correlation[i, j]:.3f}): fix one of them."
             )
     if found.freedom == 0:
-        yield "there are as many inputs as points: the fit cannot fail, and proves nothing."
+        yield "there are as many inputs as points, so the fit cannot fail and proves nothing."
     if found.weighted and found.spread > 1:
         yield (
             f"the points scatter {found.spread:.2f} times as much about the fit as their "
@@ -83,7 +84,9 @@ def _skewed(
         if math.isnan(half):
             continue
         if not item.profiled:
-            yield f"no ends were found of the profile of {item.key}: take its interval as rough."
+            yield (
+                f"the ends of the profile of {item.key} were not found, so its interval is rough."
+            )
         ends = [end for end in (item.low, item.high) if end not in (parameter.low, parameter.high)]
         if all(1 / CURVED <= (abs(end - item.value) / half) ** 2 <= CURVED for end in ends):
             continue
@@ -92,8 +95,9 @@ def _skewed(
             for one in (item.value - item.low, item.high - item.value, half)
         )
         yield (
-            f"the losses are far from linear within the interval of {item.key}: it reaches {down} "
-            f"down and {up} up, where a linear model has {linear}. Bands take it as symmetric."
+            f"the losses are far from linear within the interval of {item.key}, which reaches "
+            f"{down} down and {up} up, where a linear model gives {linear}. Bands assume it to be "
+            "symmetric."
         )
 
 
@@ -115,7 +119,8 @@ def _curved(residuals: Residuals, found: Linearised) -> Iterator[str]:
             yield (
                 "the losses are far from linear within the interval of "
                 f"{residuals.parameters[parameter].key}: at its ends the sum of squares grows "
-                f"{grown[0]:.2g} and {grown[1]:.2g} times as much as it should. Take it as rough."
+                f"{grown[0]:.2g} and {grown[1]:.2g} times as much as expected, so the interval is "
+                "rough."
             )
 
 
@@ -160,7 +165,7 @@ def fit_parameters(
     count, size = int(used.sum()), len(parameters)
     if count < size:
         allowed = f"{size} inputs cannot be fitted to {count} usable points."
-        raise one_problem("fit", "", allowed, "Fit fewer, or give more points.", "the fit")
+        raise one_problem("fit", "", allowed, "Fit fewer keys, or give more points.", "the fit")
     residuals = Residuals(points.shared(), parameters, used)
     names = ", ".join(item.key for item in parameters)
     tell(f"fit: {count} points, {names}")
@@ -192,7 +197,7 @@ def _solution(residuals: Residuals, exact: Residuals, confidence: float, tell: T
         )
         root = math.sqrt(float(np.mean(deviations**2)))
         unit = "W rms" if residuals.uncertainty is None else "of the uncertainties, rms"
-        tell(f"fit: off by {format_number(root, 3)} {unit}, at {values}")
+        tell(f"fit: error of {format_number(root, 3)} {unit}, at {values}")
         return deviations
 
     ends = residuals.bounds

@@ -446,12 +446,12 @@ class Combination:
         effect = f"changes the losses by {format_number(self.change, 2)} of their scatter"
         if len(self.keys) == 1:
             return (
-                f"these points hardly see {self.text}, which {effect}: do not fit it, or add "
-                "points at which it matters."
+                f"these points depend too little on {self.text}, which {effect}. Do not fit it, "
+                "or add points at which it matters."
             )
         return (
-            f"these points cannot tell apart: {self.text} {effect}. Fix all but one of them, or "
-            "add points at which they act differently."
+            f"these points cannot separate some inputs: {self.text} {effect}. Fix all but one of "
+            "them, or add points at which their effects differ."
         )
 
 

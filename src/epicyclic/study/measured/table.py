@@ -75,20 +75,23 @@ def _checked(rows: Iterator[tuple[int, list[str]]], source: str) -> Grid:
     if not header:
         refuse("has no columns.", "Give a header such as: speed [rpm],torque [N*m],...")
     if len(header) > _MOST_COLUMNS:
-        refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep those that are compared.")
+        refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep the columns that are compared.")
     kept = []
     for line, cells in rows:
         if any(cells):
             kept.append((line, tuple(_without_end(cells, len(header)))))
         if len(kept) > MOST_ROWS:
-            refuse(f"has more than {MOST_ROWS} rows.", "Average what was recorded at one point.")
+            refuse(f"has more than {MOST_ROWS} rows.", "Average the records of each point.")
     if not kept:
         refuse("has no rows below its header.", "Give one row for each measurement.")
     ragged = [(line, len(cells)) for line, cells in kept if len(cells) != len(header)]
     if ragged:
         shown = first_of([f"line {line} has {count}" for line, count in ragged], _SHOWN_LINES)
         allowed = f"has {len(header)} columns, but {shown}."
-        refuse(allowed, "Give every row as many cells; quote cells that contain the separator.")
+        refuse(
+            allowed,
+            "Give every row the same number of cells; quote cells that contain the separator.",
+        )
     return Grid(tuple(header), tuple(kept), source)
 
 
@@ -120,7 +123,7 @@ def _excel_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
     except InputError:
         raise
     except Exception as error:  # the reader raises whatever its parsers do
-        refuse(f"is no sound workbook: {one_line(str(error))}.", "Save it again, or as CSV.")
+        refuse(f"is not a valid workbook: {one_line(str(error))}.", "Save it again, or as CSV.")
 
 
 def _parquet_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
@@ -131,12 +134,14 @@ def _parquet_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
         about = file.metadata
         groups = [about.row_group(number) for number in range(about.num_row_groups)]
         if about.num_rows > MOST_ROWS or sum(g.total_byte_size for g in groups) > _LARGEST_FILE:
-            refuse(f"has more than {MOST_ROWS} rows or 10 MB.", "Average what was recorded.")
+            refuse(f"has more than {MOST_ROWS} rows or 10 MB.", "Average the records.")
         table = file.read().to_pandas()
     except InputError:
         raise
     except Exception as error:  # the reader raises whatever its parsers do
-        refuse(f"is no sound Parquet file: {one_line(str(error))}.", "Write it again, or as CSV.")
+        refuse(
+            f"is not a valid Parquet file: {one_line(str(error))}.", "Write it again, or as CSV."
+        )
     yield from _frame_rows(table)
 
 
@@ -381,7 +386,9 @@ def _read(column: _Column, problems: _Problems, parse: Callable[[str], float]) -
             continue
         if column.unit and _NUMBER_WITH_UNIT.fullmatch(cell):
             remedy = "Give units in the header or in every cell."
-            problems.cell(column, row, f"has a unit, and the header has [{column.unit}].", remedy)
+            problems.cell(
+                column, row, f"has a unit, but the header already has [{column.unit}].", remedy
+            )
             continue
         try:
             numbers[row] = parse(cell)
@@ -423,14 +430,14 @@ def _components(
     column: _Column | None, given: str, case: Case, grid: Grid, problems: _Problems
 ) -> tuple[str, ...]:
     names = loss_names(case)
-    remedy = f"Known are {', '.join(names)}; join several with +."
+    remedy = f"The losses are {', '.join(names)}; join several with +."
     if column is None:
         if not _is_sum_of(names, given):
-            problems.found.append(Problem("component", one_line(given), "is no loss.", remedy))
+            problems.found.append(Problem("component", one_line(given), "is not a loss.", remedy))
         return (given,) * len(grid.rows)
     for row, cell in enumerate(column.cells):
         if not _is_sum_of(names, cell):
-            problems.cell(column, row, "is no loss.", remedy)
+            problems.cell(column, row, "is not a loss.", remedy)
     return column.cells
 
 
@@ -464,11 +471,11 @@ def _check_repeats(grid: Grid, problems: _Problems) -> None:
     repeats = []
     for line, cells in grid.rows:
         if cells in seen:
-            repeats.append(f"line {line} is line {seen[cells]}")
+            repeats.append(f"line {line} repeats line {seen[cells]}")
         seen.setdefault(cells, line)
     if repeats:
         remedy = "Delete them; number repeated measurements in a column of their own, such as run."
-        problems.found.append(Problem("rows", first_of(repeats), "are the same twice.", remedy))
+        problems.found.append(Problem("rows", first_of(repeats), "appear twice.", remedy))
 
 
 def _refused(

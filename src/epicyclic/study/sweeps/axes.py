@@ -165,7 +165,7 @@ def _columns(
         return [], [Problem("", "", "names no keys.", "Give keys and their values.")]
     known = len(known_keys(case))
     if len(columns) > known:
-        allowed = f"names {len(columns)} keys; such a case has {known}."
+        allowed = f"names {len(columns)} keys; a case of this kind has {known}."
         return [], [Problem("", "", allowed, "Give a table with one column for each key.")]
     axes: list[Axis] = []
     problems: list[Problem] = []
@@ -177,7 +177,7 @@ def _columns(
     count = len(columns[leading])
     for key, values in columns.items():
         if values and len(values) != count:
-            allowed = f"has {len(values)} values, and {leading} has {count}; they change together."
+            allowed = f"has {len(values)} values, but {leading} has {count}; they vary together."
             problems.append(Problem(key, "", allowed, "Give each the same number of values."))
     return axes, problems
 
@@ -274,7 +274,7 @@ def _read(path: Path) -> dict[str, Sequence[Any]]:
             skipinitialspace=True,
         )
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        refuse(f"is not a table: {str(error).strip()}.", "Give every row as many cells.")
+        refuse(f"is not a table: {str(error).strip()}.", "Give every row the same number of cells.")
     header = [str(name).strip() for name in cells.iloc[0]]
     repeated = {name for name in header if header.count(name) > 1}
     if repeated:
@@ -400,7 +400,7 @@ def parse_expression(text: str) -> Expression:
         tree = ast.parse(text.strip(), mode="eval").body
         keys = tuple(dict.fromkeys(_checked(tree)))
     except (SyntaxError, RecursionError, MemoryError):
-        raise ValueError("is no expression") from None
+        raise ValueError("is not an expression") from None
     return Expression(tree, keys)
 
 
@@ -427,10 +427,12 @@ def _checked_call(node: ast.Call) -> Iterator[str]:
         raise ValueError(f"has a part that is not allowed: {ast.unparse(node)}")
     if name == _CASE:
         if len(node.args) != 1 or not _key(node.args[0]):
-            raise ValueError(f"has {_CASE}() of something other than one key")
+            raise ValueError(f"has {_CASE}() with something other than one key")
         return
     if name not in FUNCTIONS:
-        raise ValueError(f"has an unknown function, {ast.unparse(node.func)}; known are {_KNOWN}")
+        raise ValueError(
+            f"has an unknown function, {ast.unparse(node.func)}; the functions are {_KNOWN}"
+        )
     for argument in node.args:
         yield from _checked(argument)
 
@@ -514,7 +516,7 @@ class Point:
                 return self._number(name, self.changes[name])
             if _is_found(self.case, name):
                 raise ValueError(
-                    f"takes {name}, which the case leaves out and which follows from other keys"
+                    f"uses {name}, which the case leaves out and which follows from other keys"
                 )
             return self._in_case(name)
 
@@ -536,7 +538,7 @@ class Point:
         value = value_of(self.case, key)
         quantity = quantity_of(*_field(self.case, key))
         if value is None:
-            raise ValueError(f"takes {key}, which has no value in the case")
+            raise ValueError(f"uses {key}, which has no value in the case")
         if quantity is not None:
             return with_unit(value, quantity.si)
         return _plain_number(key, value)
@@ -567,7 +569,7 @@ class Point:
             return number
         if abs(number - round(number)) > _WHOLE:
             shown = format_number(number, 6)
-            raise ValueError(f"gives {shown}, and {key} is a whole number: use round()")
+            raise ValueError(f"gives {shown}, but {key} is a whole number; use round()")
         return round(number)
 
 
@@ -585,7 +587,7 @@ def check_links(case: Case, links: Links, varied: set[str]) -> list[Problem]:
         TopologicalSorter(behind).prepare()
     except CycleError as error:
         ring = " follows from ".join(reversed(error.args[1]))
-        problems.append(Problem("link", "", f"goes in a circle: {ring}.", "Leave one out."))
+        problems.append(Problem("link", "", f"is circular: {ring}.", "Remove one of them."))
     return problems
 
 
@@ -594,9 +596,11 @@ def _problem_of(case: Case, key: str, text: str, varied: set[str]) -> Problem | 
     if unsuitable is not None:
         return unsuitable
     if key in varied:
-        return Problem(key, "", "is varied and linked.", "Do one of the two.")
+        return Problem(key, "", "is both varied and linked.", "Either vary or link it.")
     if not _is_number(case, key):
-        return Problem(key, "", "holds no number.", "Link keys that do; vary this one together.")
+        return Problem(
+            key, "", "is not a number.", "Link numbers only; vary this key together with others."
+        )
     try:
         named = parse_expression(text).keys
     except ValueError as error:
@@ -617,7 +621,7 @@ def keys_behind(key: str, links: Links) -> set[str]:
 def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
     field = field_at(case, key)
     if field is None:
-        raise ValueError(f"takes {key}, which is not a known key")
+        raise ValueError(f"uses {key}, which is not a known key")
     return field
 
 
@@ -634,7 +638,7 @@ def _is_found(case: Case, key: str) -> bool:
 
 def _plain_number(key: str, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"takes {key}, which is not a number")
+        raise TypeError(f"uses {key}, which is not a number")
     return float(value)
 
 

@@ -335,7 +335,7 @@ def make_plan(
 def _repeated(keys: Iterable[str]) -> list[Problem]:
     counts = Counter(map(str, keys))
     again = (key for key, count in counts.items() if count > 1)
-    return [Problem(key, "", "is varied twice.", "Name a key once.") for key in again]
+    return [Problem(key, "", "is varied twice.", "Give each key once.") for key in again]
 
 
 def _check_first(plan: SweepPlan) -> None:
@@ -379,7 +379,7 @@ def parse_vary(
             continue
         if key in vary:
             problems.append(
-                Problem(name, f'"{option}"', f"varies {key} again.", "Name a key once.")
+                Problem(name, f'"{option}"', f"varies {key} again.", "Give each key once.")
             )
             continue
         try:

@@ -160,7 +160,7 @@ class Journal:
         except OSError as error:
             raise self._error(f"cannot be read: {error.strerror}.") from None
         if not own and strange:
-            raise self._error("holds something else than points of this sweep.")
+            raise self._error("contains something other than points of this sweep.")
 
     def begin(self, content: Mapping[str, Any]) -> None:
         """Say in the file what the study is, unless it does."""
@@ -198,7 +198,7 @@ class Journal:
                 "journal",
                 str(self.path),
                 f"cannot be written: {reason}.",
-                "Finished points are kept; make room, and give the same command again.",
+                "Finished points are kept; free some space and give the same command again.",
                 "the sweep",
             )
 
@@ -234,7 +234,7 @@ def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
                 strange += 1 + len(line) // _LONG
     except OSError as error:
         raise _error(path, f"cannot be read: {error.strerror}.") from None
-    raise _error(path, "does not say of which study it holds points.")
+    raise _error(path, "does not state the study of its points.")
 
 
 _CHECK = b',"check":"%08x"}'
@@ -264,7 +264,7 @@ def _parse_heading(line: bytes) -> _Heading | None:
 
 
 def _error(path: Path, allowed: str) -> InputError:
-    remedy = "Move it away or delete it, and give the command again."
+    remedy = "Move or delete it, and give the command again."
     return one_problem("journal", str(path), allowed, remedy, "the sweep")
 
 
@@ -597,7 +597,7 @@ def _solve_there(indices: Sequence[int], plan: Plan, version: str) -> Batch:
     """Points in a worker of a cluster, which must have this version of the package."""
     own = metadata.version("epicyclic")
     if own != version:
-        raise RuntimeError(f"its workers have version {own} of epicyclic, this is {version}")
+        raise RuntimeError(f"its workers have version {own} of epicyclic, but this is {version}")
     return _solve_batch(plan, indices, None)
 
 
@@ -650,8 +650,10 @@ def gather(
     for file in files:
         own, said = read_heading(file)
         if own != mark:
-            allowed = f"holds points of another study than {first}: another case or other values."
-            raise _shard_error(file, allowed, "Name the files of one study.")
+            allowed = (
+                f"holds points of a different study from {first}: another case or other values."
+            )
+            raise _shard_error(file, allowed, "Give the files of one study.")
         for point, row in Journal(file, mark).points():
             if rows.status[point] == NOT_COMPUTED:
                 rows.add(point, row)
@@ -666,7 +668,7 @@ def _plan_of(
     """The plan in the heading of a file, which must be that of this version."""
     version = metadata.version("epicyclic")
     if content.get("version") != version:
-        allowed = f"was made by version {content.get('version')}, this is {version}."
+        allowed = f"was made by version {content.get('version')}, but this is {version}."
         raise _shard_error(file, allowed, "Merge it with that version.")
     try:
         plan = kinds[content["kind"]].again(content["plan"], content["source"])
@@ -687,11 +689,13 @@ def _check_whole(rows: Rows, shares: Mapping[Path, Sequence[int]]) -> None:
         lacks = len(missing.intersection(share))
         if lacks:
             allowed = f"lacks {lacks} of its {len(share)} points."
-            problems.append(Problem("FILE", str(file), allowed, "Give its command again."))
+            problems.append(Problem("FILE", str(file), allowed, "Run its command again."))
     without = len(missing.difference(*shares.values()))
     if without:
-        allowed = f"{without} of {len(rows)} points are of shards that are not named."
-        problems.append(Problem("FILE", "", allowed, "Name the files of all shards."))
+        allowed = (
+            f"{without} of {len(rows)} points belong to shards that are missing from the command."
+        )
+        problems.append(Problem("FILE", "", allowed, "Give the files of all shards."))
     raise_any(problems, "the command")
 
 
