@@ -111,7 +111,7 @@ nan,500,90,400 W,0,4,total
         '"inf W" in line 5',
         '"0" in line 2: must be > 0',
         '"totl" in line 4: is not a loss',
-        "line 6 is line 3",
+        "line 6 repeats line 3",
     ):
         assert words in found, words
 
