@@ -94,8 +94,9 @@ def case_notes(
         *backlash_notes(case.gearing),
         *(
             f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
-            f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed what the "
-            "teeth deflection of the teeth. Contact that begins or ends beyond the path of contact is not modelled."
+            f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed the "
+            "deflection of the teeth. Contact that begins or ends beyond the path of contact is "
+            "not modelled."
             for name, mesh in found.figures.items()
             if isinstance(mesh, MeshFigures) and mesh.contact_share < LEAST_CONTACT
         ),
@@ -509,9 +510,9 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
         )
     if settled.change > AGREEMENT:
         yield (
-            f"Temperatures and losses agree to {settled.change:.1g} K only, because a loss scatters from "
-            "one evaluation to the next, such as that of a flow through pockets that is not "
-            "periodic."
+            f"Temperatures and losses agree to {settled.change:.1g} K only, because a loss "
+            "scatters from one evaluation to the next, such as that of a flow through pockets "
+            "that is not periodic."
         )
 
 

@@ -370,7 +370,7 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
     allowed = f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
     allowed += f"centre distance of {millimetres(mesh.center_distance)} (negative backlash)."
     remedy = f"Without backlash {fits} fits{_distance(mesh, distance_key)}; "
-    remedy += f"{less:.4f} less of one x leaves {micrometres(usual)}, recommended by ISO/TR "
+    remedy += f"{less:.4f} less of one x gives {micrometres(usual)}, recommended in ISO/TR "
     remedy += f"10064-2.{_other_sign(gearing, mesh)}"
     return [Problem(", ".join(keys), "", allowed, remedy)]
 

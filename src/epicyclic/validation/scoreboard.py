@@ -22,12 +22,13 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case, TrainCase, read_case
+from epicyclic.case.keys import value_of
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.tables.models import GearPairModels
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.files import read_text
 from epicyclic.result.result import versions
-from epicyclic.schema.fields import choices_of, value_of
+from epicyclic.schema.fields import choices_of
 from epicyclic.study.bands.plan import INPUT_POWER, nearby_at
 from epicyclic.study.bands.samples import sample_summary
 from epicyclic.study.bands.study import quick_band
