@@ -71,7 +71,7 @@ def test_json_result_keeps_the_contract(epicyclic, tmp_path):
     assert result["status"] == "converged"
     assert all(isinstance(warning, str) for warning in result["warnings"])
     assert result["versions"]["epicyclic"]
-    assert result["models"]["friction"] == "mixed-ehl"
+    assert result["models"]["friction"] == "mixed-lubrication"
     file = tmp_path / "result.json"
     assert epicyclic("run", "talbot-2012", "--json", str(file)).returncode == 0
     assert json.loads(file.read_text()) == result
@@ -295,8 +295,8 @@ def test_friction_models_side_by_side(epicyclic):
     done = epicyclic("friction", "talbot-2012")
     assert done.returncode == 0
     for name in (
-        "mixed-ehl", "schlenk", "niemann-winter", "benedict-kelley", "matsumoto", "doleschel",
-        "xu-2007", "constant",
+        "mixed-lubrication", "mixed-ehl", "schlenk", "niemann-winter", "benedict-kelley",
+        "matsumoto", "doleschel", "xu-2007", "constant",
     ):  # fmt: skip
         assert name in done.stdout
     assert "Spread" in done.stdout

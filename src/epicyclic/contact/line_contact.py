@@ -24,6 +24,7 @@ Real = TypeVar("Real", float, FloatArray)
 
 STEEL_EFFUSIVITY = 12.4e3
 """Of case-hardened steel, ISO/TS 6336-20: for contacts that do not say. [W s^0.5/(m^2 K)]"""
+LEAST_SPEED = np.finfo(float).tiny  # With which quotients of speeds are formed, at least.
 CONDITIONS = (
     "slide_to_roll_ratio",
     "rolling_speed",
@@ -82,7 +83,8 @@ class LineContacts:
     @cached_property
     def slide_to_roll_ratio(self) -> FloatArray:
         """abs(u_s)/u_r. Theory (C4). [1]"""
-        return np.abs(self.sliding_speed) / self.rolling_speed
+        ratio: FloatArray = np.abs(self.sliding_speed) / np.maximum(self.rolling_speed, LEAST_SPEED)
+        return ratio
 
     @cached_property
     def hertz_pressure(self) -> FloatArray:
@@ -158,7 +160,10 @@ class LineContacts:
     @property
     def moes_load(self) -> FloatArray:
         """M = W/sqrt(2 U), the load parameter of Moes. Theory (R8). [1]"""
-        return self.load_number / np.sqrt(2 * self.speed_number)
+        number: FloatArray = self.load_number / np.sqrt(
+            2 * np.maximum(self.speed_number, LEAST_SPEED)
+        )
+        return number
 
     @cached_property
     def minimum_film(self) -> FloatArray:

@@ -75,6 +75,7 @@ def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> R
     return force
 
 
+MARTIN_FILM = 4.895  # h_0 W'/(mu u R) of rigid cylinders at constant viscosity, Martin (1916). [1]
 MARTIN_FORCE = 2.0796
 """F_r/sqrt(mu u W') of rigid cylinders, by quadrature of Martin's pressure. [1]"""
 

@@ -28,7 +28,7 @@ from epicyclic.gears.flanks import (
     RA_OVER_RQ,
     RUNNING_IN,
 )
-from epicyclic.kernels.line_contact import pan_hamrock_central_film
+from epicyclic.kernels.line_contact import MARTIN_FILM, pan_hamrock_central_film
 from epicyclic.kernels.mixed_lubrication import film_stress
 from epicyclic.oil.oil import OilState
 
@@ -38,6 +38,7 @@ FILM_EXPONENT = 0.705  # Of the speed number in the film of Masjedi and Khonsari
 MEAN_FLASH = 2 / 3
 """Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
 MEAN_PRESSURE = math.pi / 4  # Mean over largest pressure of Hertz. [1]
+LEAST_NUMBER = 1e-40  # Speed and load number below which flanks stand and carry nothing. [1]
 LEAST_FILM_SHARE = 0.1
 """Least numerator of (Y1), which heavy load and strong heat would bring below zero. [1]"""
 
@@ -109,13 +110,24 @@ def inlet_heating(contact: LineContacts) -> FloatArray:
     return factor
 
 
-def central_film(contact: LineContacts) -> FloatArray:
-    """Film of the smooth contact, thinned by heat at its inlet. Theory (Y2). [m]"""
+def elastic_film(contact: LineContacts) -> FloatArray:
+    """Film of the smooth elastic contact, thinned by heat at its inlet. Theory (Y2). [m]"""
     film = pan_hamrock_central_film(
         contact.speed_number, contact.material_number, contact.load_number
     )
     thinned: FloatArray = contact.radius * film * inlet_heating(contact)
-    return thinned
+    return np.maximum(thinned, LEAST_NUMBER)
+
+
+def central_film(contact: LineContacts) -> FloatArray:
+    """The elastic film, or that of rigid flanks where that is thicker, under light load. [m]
+
+    Theory (Y9). H. M. Martin, Engineering 102 (1916) 119: 4.895 mu u_r R/W'.
+    """
+    squeezed = contact.dynamic_viscosity * contact.rolling_speed * contact.radius
+    rigid = MARTIN_FILM * squeezed / np.maximum(contact.line_load, LEAST_NUMBER)
+    film: FloatArray = np.maximum(elastic_film(contact), rigid)
+    return film
 
 
 def asperity_share(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
@@ -124,11 +136,14 @@ def asperity_share(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
     Masjedi and Khonsari, J. Tribol. 134 (2012) 011503, second hand: a fit to solutions of the
     Reynolds equation with elasto-plastic asperities of statistically described height,
     0.005 W^-0.408 U^-0.088 G^0.103 ln(1 + 4470 s^6.015 V^1.168 W^0.485 U^-3.741 G^-2.898) in per
-    cent, with s = sigma/R and V = hardness/E. Heat at the inlet acts as a lower speed.
+    cent, with s = sigma/R and V = hardness/E. Heat at the inlet acts as a lower speed; a film that
+    is thicker than the elastic one, as a roughness that is smaller by as much.
     """
     speed = contact.speed_number * inlet_heating(contact) ** (1 / FILM_EXPONENT)
-    load, material = contact.load_number, contact.material_number
+    speed = np.maximum(speed, LEAST_NUMBER)
+    load, material = np.maximum(contact.load_number, LEAST_NUMBER), contact.material_number
     rough = acting_roughness(contact, surfaces) / contact.radius
+    rough = rough * elastic_film(contact) / central_film(contact)
     hard = surfaces.hardness / contact.flanks.equivalent_modulus
     touching = (
         np.log(4470.0) + 6.015 * np.log(rough) + 1.168 * math.log(hard) + 0.485 * np.log(load)
@@ -148,7 +163,7 @@ def mixed_friction(
     boundary = oil.boundary_friction if boundary is None else boundary
     share = asperity_share(contact, surfaces)
     film = central_film(contact)
-    pressure = MEAN_PRESSURE * contact.hertz_pressure
+    pressure = np.maximum(MEAN_PRESSURE * contact.hertz_pressure, LEAST_NUMBER)
     slip = np.abs(contact.sliding_speed)
     # flank temperature for a coefficient of friction of 1
     flash = MEAN_FLASH * flash_temperature(

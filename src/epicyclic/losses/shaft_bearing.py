@@ -763,7 +763,7 @@ def tapered_moments(
     speed: float,  # Speed of one ring against the other. [rad/s]
     oil: OilState,  # In the bearing.
 ) -> TaperedMoments:
-    """Friction moments of a tapered roller bearing. Theory (J21) to (J25)."""
+    """Friction moments of a tapered roller bearing. Theory (J21), (J24), (J26)."""
     thrust = max(load.axial, load.radial / (2 * bearing.axial_factor))
     if thrust == 0:
         return TaperedMoments(0.0, 0.0, math.inf)
