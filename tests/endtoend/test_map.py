@@ -65,8 +65,9 @@ def test_no_loss_is_negative_and_powers_are_zero_at_rest(data):
 
 
 def test_torque_loss_at_rest_is_the_limit_of_slow_motion(case, data):
-    slow = ep.loss_map(case, ["1e-5 rpm"], TORQUE, TEMPERATURE, jobs=1)
-    # the loss over the speed differs from its limit by terms of the order of the speed
+    slow = ep.loss_map(case, ["1e-8 rpm"], TORQUE, TEMPERATURE, jobs=1)
+    # the loss over the speed differs from its limit by the rolling loss, of the order of the speed
+    # to the power of 0.66: 2e-5 at 1e-5 rpm
     for name in ("torque_loss", "efficiency", "carrier_torque"):
         np.testing.assert_allclose(
             data[name].sel(speed=0).values, slow[name].isel(speed=0).values, rtol=1e-6

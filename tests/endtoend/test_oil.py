@@ -426,8 +426,8 @@ def test_laws_of_the_contact_solver_have_all_they_need():
         )
     found = {problem.key: problem.allowed for problem in caught.value.problems}
     assert found == {
-        "contact_solver.shear_stress": "is missing; limiting-stress needs it.",
-        "contact_solver.shear_exponent": "is for carreau only.",
+        "contact_solver.shear_stress": "is missing, but limiting-stress needs it.",
+        "contact_solver.shear_exponent": "applies to carreau only.",
     }
 
 

@@ -117,7 +117,7 @@ KEY: list[Edit] = [
         '    factor: Number = option("Multiplies the term."',
     ),
     (
-        "build/models.py",
+        "build/gear_sets.py",
         "LossChoice(option.include, option.factor)",
         "LossChoice(option.include, option.factor * option.share)",
     ),

@@ -95,8 +95,11 @@ def test_estimated_mass_is_told_where_it_matters(case):
 
 
 def test_defaults_of_the_models_follow_the_oil(case):
-    assert set_of(case).chosen["friction"] == "mixed-ehl"
     keys = ("friction", "rolling", "bearing")
+    general = set_of(case).chosen
+    assert [general[key] for key in keys[:2]] == ["mixed-lubrication", "goksem-hargreaves"]
+    case = case.updated({"models.preset": "talbot-2012"})
+    assert set_of(case).chosen["friction"] == "mixed-ehl"
     formulas = ["schlenk", "goksem-hargreaves", "palmgren"]
     fitted = set_of(case.updated({"lubricant.oil": "iso-vg-100-mineral"})).chosen
     assert [fitted[key] for key in keys] == [f"fitted-or-{name}" for name in formulas]
@@ -257,7 +260,7 @@ def test_friction_table_of_the_user(case):
 
 def test_comparison_of_friction_models_repeats_their_own_solutions(case):
     rows = {row.name: row for row in compare_friction(case)}
-    assert [name for name, row in rows.items() if row.chosen] == ["mixed-ehl"]
+    assert [name for name, row in rows.items() if row.chosen] == ["mixed-lubrication"]
     assert "table" not in rows
     own = solve(case, models__friction="schlenk")
     assert rows["schlenk"].sliding == pytest.approx(

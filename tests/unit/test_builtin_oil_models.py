@@ -21,7 +21,7 @@ from epicyclic.contact.line_contact import contacts_at
 from epicyclic.files import sealed, unsealed
 from epicyclic.losses.friction import FRICTION_MODELS, SIMULATED
 from epicyclic.losses.reliability import RELIABILITY, reliability
-from epicyclic.losses.rolling import REACH, ROLLING_MODELS, weight_of_fit
+from epicyclic.losses.rolling import CONTAINED, REACH, ROLLING_MODELS, weight_of_fit
 from epicyclic.plugins.contact_solver.fit import fit_quantity
 from epicyclic.schema.read import plain
 from epicyclic.show.result_tables import standing_items
@@ -99,7 +99,8 @@ def case(model, tmp_path, monkeypatch):
     file.write_text(model.to_text())
     files = {OIL: file, SIMULATED: library.oil_model_file(SIMULATED)}
     monkeypatch.setattr(library, "oil_model_file", files.get)
-    return ep.load_case("talbot-2012").updated({"lubricant.oil": OIL, "planet.count": 4})
+    changes = {"lubricant.oil": OIL, "planet.count": 4, "models.preset": "talbot-2012"}
+    return ep.load_case("talbot-2012").updated(changes)
 
 
 def test_auto_takes_the_built_in_models(case):
@@ -219,7 +220,7 @@ def test_what_is_left_and_what_takes_over_is_said(case, model):
     told = next(text for text in slow.warnings if "rolling speed" in text)
     low, high = model.fits["friction"].domain["rolling_speed"]
     assert f"range {low:.4g} to {high:.4g} m/s" in told
-    assert "fitted-or-schlenk (sun mesh; schlenk takes over) 100 %" in told
+    assert "fitted-or-schlenk (sun mesh; schlenk is used instead) 100 %" in told
     formula = [flag for flag in slow.flags if flag.use.model == "schlenk"]
     assert {flag.quantity for flag in formula} == {"pitch-line speed"}
     assert slow.losses["planet_bearing_mechanical"] == pytest.approx(
@@ -277,7 +278,7 @@ def test_models_of_a_train_are_named_once_for_all_sets():
 
 def test_every_model_has_a_standing():
     assert set(RELIABILITY["friction"]) == {*FRICTION_MODELS, "ehl-direct"}
-    assert set(RELIABILITY["rolling"]) == set(ROLLING_MODELS)
+    assert set(RELIABILITY["rolling"]) == {*ROLLING_MODELS, CONTAINED.name}
     for role, models in RELIABILITY.items():
         assert [reliability(role, name) for name in models] == list(models.values())
 

@@ -41,9 +41,12 @@ def test_a_rolling_model_asked_for_counts_twice_with_its_watts(case):
 
 
 @pytest.mark.parametrize("friction", ["mixed-ehl", "constant", "benedict-kelley"])
-def test_other_friction_does_not_contain_it(case, friction):
-    result = ep.solve(case.updated({"models.friction": friction}))
-    assert result.models["rolling"] == "mixed-ehl"
+@pytest.mark.parametrize(
+    ("preset", "rolling"), [("general", "goksem-hargreaves"), ("talbot-2012", "mixed-ehl")]
+)
+def test_other_friction_does_not_contain_it(case, friction, preset, rolling):
+    result = ep.solve(case.updated({"models.friction": friction, "models.preset": preset}))
+    assert result.models["rolling"] == rolling
     assert result.losses["sun_mesh_rolling"] > 0
     assert not told(result, "counts twice")
 

@@ -104,7 +104,7 @@ def test_a_map_is_explored_over_all_axes(pair_map):
     [
         (200, "single losses", "further results are left out"),
         (36, "sums", "further results are left out"),
-        (35, "nothing", "12 points are too many for an explorer within a page; 11 are the most"),
+        (35, "nothing", "12 points are too many for an explorer within a page; the limit is 11"),
     ],
 )
 def test_what_does_not_fit_into_a_page_is_left_out_and_told(data, monkeypatch, most, kept, told):

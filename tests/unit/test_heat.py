@@ -28,6 +28,7 @@ RUNNING = {
     "operation.torque": "100 N*m",
     "operation.speed": "2000 rpm",
     "losses.mesh_pocketing.include": False,
+    "models.preset": "talbot-2012",
 }
 FLOW = {"thermal.oil_flow": "2.3 l/min"}
 HOUSING = {"thermal.housing.area": "0.31 m^2"}

@@ -58,15 +58,15 @@ HOSTILE = {
     "which exceeds": (changed("efficiency", (1, 1, 0), 1.07), "efficiency: must not exceed 1."),
     "nowhere": (changed("speed", 1, np.nan), "speed: must have finite values."),
     "endless": (changed("temperature", 1, np.inf), "temperature: must "),
-    "unsorted": (swapped, "torque: must rise."),
-    "twice": (changed("torque", 1, -100.0), "torque: must rise."),
+    "unsorted": (swapped, "torque: must be rising."),
+    "twice": (changed("torque", 1, -100.0), "torque: must be rising."),
     "other unit": (with_attribute("speed", "units", "rad/s"), "speed = rad/s: must be in rpm."),
     "times": (with_attribute("temperature", "units", "days since 1970-01-01"), "must be in degC."),
     "unit of losses": (with_attribute("total", "units", "kW"), "total = kW: must be in W."),
     "endless loss": (changed("mesh_sliding", (1, 1, 1), -np.inf), "mesh_sliding: must be finite."),
     "junk case": (with_attribute("", "case", "{}"), "must name the kind of the case"),
     "no json": (with_attribute("", "case", "junk"), "case: "),
-    "bomb": (bomb, "holds more than"),
+    "bomb": (bomb, "contains more than"),
     "bomb of texts": (bomb_of_texts, "contains more than"),
 }
 
@@ -99,7 +99,7 @@ def test_a_dataset_in_memory_is_checked_as_well(pair_map):
     cycle = {"speed [rpm]": [900.0], "torque [N*m]": [40.0], "duration [s]": [7.0]}
     for axis in ("speed", "torque"):
         backwards = pair_map.isel({axis: slice(None, None, -1)})
-        with pytest.raises(ep.InputError, match=f"{axis}: must rise"):
+        with pytest.raises(ep.InputError, match=f"{axis}: must be rising"):
             ep.duty_cycle(backwards, cycle, ["60 degC"])
 
 

@@ -65,7 +65,7 @@ def test_it_matters_which_flank_is_faster_not_how_they_are_called():
 
 
 def test_the_models_are_chosen_by_name():
-    case = ep.load_case("talbot-2012-n6-polished")
+    case = ep.load_case("talbot-2012-n6-polished").updated({"models.preset": "talbot-2012"})
     paired = case.updated(
         {"models.friction": "mixed-ehl+pairing", "models.rolling": "mixed-ehl+pairing"}
     )

@@ -64,9 +64,9 @@ GAP = np.where(np.arange(100) == 50, math.nan, np.sin(np.arange(100)))
 @pytest.mark.parametrize(
     ("x", "heights", "told"),
     [
-        (X[:100], GAP, "gaps: no number at line 53"),
+        (X[:100], GAP, "gaps: a number is missing at line 53"),
         (np.delete(X[:100], 50), np.delete(GAP, 50), "after line 52 the next is 0.002 mm away"),
-        (X[:100] ** 2, np.sin(X[:100]), "uneven"),
+        (X[:100] ** 2, np.sin(X[:100]), "positions at unequal distances"),
         (-X[:100], np.sin(X[:100]), "falling"),
         (X[:10], X[:10], "10 points"),
         (X[:100], 3 * X[:100], "no roughness"),
@@ -125,7 +125,7 @@ def test_x3p_files_without_one_whole_profile_are_refused(tmp_path):
     with pytest.raises(InputError, match="2 layer"):
         read_profile(file)
     x3pio.write(file, 1e-6 * GAP, x_scale=1e-6)
-    with pytest.raises(InputError, match="no number at point 51"):
+    with pytest.raises(InputError, match="a number is missing at point 51"):
         read_profile(file)
     file.write_bytes(file.read_bytes()[:-40])
     with pytest.raises(InputError, match="X3P file"):
