@@ -148,11 +148,11 @@ def test_keys_without_effect_are_refused(epicyclic, tmp_path):
     assert done.returncode == 2
     assert done.stderr.startswith("5 problems")
     for told in (
-        "second_slope: is for two-slope only",
-        "slope_ratio: is for two-slope only",
+        "second_slope: applies to two-slope only",
+        "slope_ratio: applies to two-slope only",
         "shear_stress: is for limiting-stress and carreau only",
         "surface1.skewness: has no effect on a smooth surface",
-        "surface2.correlation_length: is for a generated profile",
+        "surface2.correlation_length: applies to a generated profile",
     ):
         assert told in done.stderr
 

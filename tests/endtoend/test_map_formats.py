@@ -338,7 +338,7 @@ def test_a_stored_map_takes_no_options_of_what_is_computed(data, tmp_path, epicy
     done = epicyclic("map", str(stored), "-o", str(output), "--speed", "1 rpm", "--jobs", "2")
     assert done.returncode == 2
     for option in ("--speed", "--jobs"):
-        assert f"{option}: says what is computed, and a stored map is computed" in done.stderr
+        assert f"{option}: selects what is computed, but a stored map already" in done.stderr
     assert not output.exists()
 
 

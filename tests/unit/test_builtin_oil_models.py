@@ -217,7 +217,7 @@ def test_what_is_left_and_what_takes_over_is_said(case, model):
     told = next(text for text in slow.warnings if "rolling speed" in text)
     low, high = model.fits["friction"].domain["rolling_speed"]
     assert f"range {low:.4g} to {high:.4g} m/s" in told
-    assert "fitted-or-schlenk (sun mesh; schlenk takes over) 100 %" in told
+    assert "fitted-or-schlenk (sun mesh; schlenk is used instead) 100 %" in told
     formula = [flag for flag in slow.flags if flag.use.model == "schlenk"]
     assert {flag.quantity for flag in formula} == {"pitch-line speed"}
     assert slow.losses["planet_bearing_mechanical"] == pytest.approx(

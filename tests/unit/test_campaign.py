@@ -149,7 +149,7 @@ def test_what_cannot_be_simulated_is_refused(oil, given, told):
 
 
 def test_ranges_without_effect_are_refused():
-    with pytest.raises(InputError, match="no axis"):
+    with pytest.raises(InputError, match="not an axis"):
         make_campaign(ATF, size=4, ranges={"hertz_presure": (1.0, 2.0)})
     with pytest.raises(InputError, match="Give a size"):
         make_campaign(ATF, ranges={"hertz_pressure": (1.0, 2.0)})
@@ -188,7 +188,7 @@ def test_a_folder_keeps_one_campaign(tmp_path):
     with pytest.raises(InputError, match="cannot be read"):
         open_folder(tmp_path)
     (tmp_path / "atf" / "campaign.json").write_text("{}")
-    with pytest.raises(InputError, match="no plan"):
+    with pytest.raises(InputError, match="not a plan"):
         open_folder(tmp_path / "atf")
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="cannot hold a folder"):

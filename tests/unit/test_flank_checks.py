@@ -219,7 +219,7 @@ def test_a_rim_thinner_than_its_teeth_is_reported(talbot):
     def notes(thickness):
         return " ".join(ep.solve(talbot.updated({"ring.rim_thickness": thickness})).notes)
 
-    assert "less than the height of the teeth, 3.815 mm" in notes("3 mm")
+    assert "less than the tooth height, 3.815 mm" in notes("3 mm")
     assert "tooth height" not in notes("10 mm")
 
 

@@ -154,7 +154,7 @@ def test_points_that_cannot_be_say_why(pair):
     )["backlash"].squeeze()
     assert list(found["status"].to_numpy()) == ["converged", "failed"]
     assert np.isnan(found["pocketing_loss"][1])
-    assert "mesh: cannot be so" in str(found["message"][1].item())
+    assert "mesh: is impossible" in str(found["message"][1].item())
 
 
 def test_every_mistake_is_named(pair):
@@ -170,7 +170,7 @@ def test_every_mistake_is_named(pair):
         "Did you mean 'helix-angle'?",
         'range = "backlash": has no range in this study',
         'range speed = "0 rpm": is out of range',
-        'range = "width": is no parameter',
+        'range = "width": is not a parameter',
         'level helix-angle = "50 deg": is out of range',
         'level = "oil-fraction": has no level',
         "level speed: has no values",
