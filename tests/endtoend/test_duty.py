@@ -409,7 +409,7 @@ def test_temperatures_are_asked_for_once(data):
         ep.duty_cycle(data, cycle | {"temperature [degC]": [50]}, ["40 degC"])
     with pytest.raises(ep.InputError, match="each value once"):
         ep.duty_cycle(data, cycle, ["40 degC", "40 degC"])
-    with pytest.raises(ep.InputError, match="something other"):
+    with pytest.raises(ep.InputError, match="something else"):
         ep.duty_cycle(data, cycle, ["40 bar"])
 
 

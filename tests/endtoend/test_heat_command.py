@@ -21,7 +21,7 @@ FLOW = ("--set", "thermal.oil_flow=2.3 l/min")
 def test_heat_prints_temperatures_and_where_the_heat_goes(epicyclic):
     done = epicyclic("heat", *CASE, *FLOW)
     assert done.returncode == 0
-    assert "models.temperatures = network in place of inlet" in done.stderr
+    assert "models.temperatures = network instead of inlet" in done.stderr
     for words in ("pinion", "above the oil, K", "Where the heat leaves", "flow of oil", "100.0 %"):
         assert words in done.stdout, words
     assert "pinion-jet" in done.stdout

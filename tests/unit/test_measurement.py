@@ -278,7 +278,7 @@ def test_a_parameter_at_its_bound_has_an_interval_on_one_side(case, tests):
         ({"fit": KEYS, "hold_out": "1.5"}, "share"),
         ({"hold_out": 0.3}, "no keys are fitted"),
         ({"group": "rig"}, "not a column"),
-        ({"component": "mesh_slidng"}, "no loss"),
+        ({"component": "mesh_slidng"}, "is not a loss"),
     ],
 )
 def test_what_cannot_be_done_is_refused(case, tests, options, words):
@@ -433,7 +433,7 @@ def test_a_point_without_torque_that_fails_is_told(case):
 @pytest.mark.parametrize(
     ("options", "key", "word"),
     [
-        ({"load_dependent": "tested"}, "load_dependent", "neither"),
+        ({"load_dependent": "tested"}, "load_dependent", "must be"),
         ({"component": "total"}, "load_dependent", "none were measured"),
         ({"outlet": "80 degC"}, "thermal.oil_outlet_temperature", "without torque"),
     ],

@@ -66,7 +66,7 @@ HOSTILE = {
     "endless loss": (changed("mesh_sliding", (1, 1, 1), -np.inf), "mesh_sliding: must be finite."),
     "junk case": (with_attribute("", "case", "{}"), "must name the kind of the case"),
     "no json": (with_attribute("", "case", "junk"), "case: "),
-    "bomb": (bomb, "holds more than"),
+    "bomb": (bomb, "contains more than"),
     "bomb of texts": (bomb_of_texts, "contains more than"),
 }
 
@@ -99,7 +99,7 @@ def test_a_dataset_in_memory_is_checked_as_well(pair_map):
     cycle = {"speed [rpm]": [900.0], "torque [N*m]": [40.0], "duration [s]": [7.0]}
     for axis in ("speed", "torque"):
         backwards = pair_map.isel({axis: slice(None, None, -1)})
-        with pytest.raises(ep.InputError, match=f"{axis}: must rise"):
+        with pytest.raises(ep.InputError, match=f"{axis}: must be rising"):
             ep.duty_cycle(backwards, cycle, ["60 degC"])
 
 
