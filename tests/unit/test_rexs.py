@@ -451,7 +451,7 @@ def test_ball_bearings_are_left_out(read):
         parts.set(70 + number, bearing_type=no_unit("radial_grooved_ball_bearing"))
     found = read(parts)
     lack = next(lack for lack in found.missing if lack.key == "planet_bearing")
-    assert 'bearing 0" is none' in lack.attribute
+    assert 'bearing 0" is not one' in lack.attribute
     assert found.case().planet_bearing is None
 
 
