@@ -262,7 +262,7 @@ def test_formats_say_what_they_need(data, tmp_path, select, format, words):
 def test_gaps_are_refused_and_backward_rotation_too(data, tmp_path):
     gap = data.copy(deep=True)
     gap["torque_loss"][0, 0] = np.nan
-    with pytest.raises(ep.InputError, match="missing at 1 points; all are needed"):
+    with pytest.raises(ep.InputError, match="missing at 1 points, but all are needed"):
         ep.write_map(gap, tmp_path / "map.vtlm")
     backwards = data.assign_coords(speed=[-1.0, 0.0, 1.0])
     with pytest.raises(ep.InputError, match="speed: must not be negative"):
@@ -316,7 +316,7 @@ def test_the_command_writes_by_suffix_or_name(
         "-o", str(tmp_path / name), *options, *coarse_options,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert done.stderr == "" or done.stderr.startswith("Interpolated linear in the torque, ")
+    assert done.stderr == "" or done.stderr.startswith("Interpolated linear in the torque; ")
     assert (tmp_path / name).read_bytes().startswith(start)
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
@@ -338,7 +338,7 @@ def test_a_stored_map_takes_no_options_of_what_is_computed(data, tmp_path, epicy
     done = epicyclic("map", str(stored), "-o", str(output), "--speed", "1 rpm", "--jobs", "2")
     assert done.returncode == 2
     for option in ("--speed", "--jobs"):
-        assert f"{option}: says what is computed, and a stored map is computed" in done.stderr
+        assert f"{option}: selects what is computed, but a stored map already" in done.stderr
     assert not output.exists()
 
 

@@ -233,7 +233,7 @@ def test_notes_on_flanks_and_rings_carry_the_key_of_their_gear():
         gears__sun__micro_geometry={"lead_crown": "3 um"},
     )
     notes = " ".join(ep.solve(ep.load_case(case)).notes)
-    assert "S: gears.ring.rim_thickness is less than the height of the teeth" in notes
+    assert "S: gears.ring.rim_thickness is less than the tooth height" in notes
     assert "S: models.load_distribution = uniform ignores micro-geometry" in notes
 
 
@@ -331,7 +331,7 @@ def test_alike_planets_are_preferred_to_single_ones_and_these_to_unequal_spacing
 
 def test_planets_that_must_be_made_one_by_one_are_told():
     notes = " ".join(ep.solve(ep.load_case(listed_trains.plus(3))).notes)
-    assert "3 equally spaced planets cannot be alike" in notes
+    assert "3 equally spaced planets cannot be identical" in notes
     assert "82/3 is no integer" in notes
     assert "if there are 1 or 2." in notes
 
@@ -420,7 +420,7 @@ def test_centre_distances_that_put_one_pin_at_two_places():
     )
     assert "sun-wide 52.5 mm, narrow-ring 52.9 mm" in problem.allowed
     # a = a_d needs no shift in sum
-    assert "coefficients of 0.0000 in sum (now -0.0200)" in problem.remedy
+    assert "coefficients add up to 0.0000 (now -0.0200)" in problem.remedy
 
 
 def test_profile_shift_that_would_fit_a_centre_distance_leaves_no_backlash():
@@ -494,7 +494,7 @@ def test_planets_for_which_there_are_no_places():
     problem = only(problems_of(ep.load_case, tables))
     assert problem.key == "sets.S.planets"
     assert "multiples of 360/2 deg" in problem.allowed
-    assert problem.remedy.startswith("Take 1 or 2,")
+    assert problem.remedy.startswith("Use 1 or 2,")
 
 
 def test_number_of_planets_missing_or_needless():

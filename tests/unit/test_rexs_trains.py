@@ -319,10 +319,10 @@ def test_stages_that_are_not_read_are_told(read):
     parts = eaxle()
     shaft(parts, 25, "end", 0.0, 122.8)
     with_pair(parts, THIRD, "next", (25, 21), 40.0, (122.8, 61.4))
-    assert not any("stands in" in note for note in read(parts).notes)
+    assert not any("appears in" in note for note in read(parts).notes)
     parts.relations = [item for item in parts.relations if item[1].get("stage") != THIRD]
     parts.relate("stage", stage=THIRD, gear_1=FIRST + 2, gear_2=THIRD + 1)
-    assert any("stands in 2 sets" in note for note in read(parts).notes)
+    assert any("appears in 2 sets" in note for note in read(parts).notes)
 
 
 def test_files_of_too_many_parts_are_refused(read):

@@ -98,7 +98,7 @@ def test_the_last_line_counts_what_the_rows_are(rows):
     )
     assert f"{len(agreeing) - len(printed)} within a tolerance that was chosen" in text
     assert f"Differing: {len(KNOWN_DIFFERENCES)}." in text
-    assert "7 that fixed an unknown input" in text
+    assert "7 that calibrated an unknown input" in text
 
 
 def test_open_figures_are_counted_apart(rows):
@@ -115,7 +115,7 @@ def test_open_figures_are_counted_apart(rows):
     worse = replace(figure, computed=figure.computed | {"talbot-2012": 120.5})
     told = summary(rows, (figure, worse))
     assert told.startswith(summary(rows))
-    assert "Of 2 open pocketing figures, the following agree 0 with incompressible" in told
+    assert "Of 2 open pocketing figures, the following agree: 0 with incompressible" in told
     assert "1 with talbot-2012." in told
 
 

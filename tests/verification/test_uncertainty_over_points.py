@@ -311,7 +311,7 @@ def test_the_command_on_a_map(plain_map, over_map, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["talbot-2012", "--speed", "900 rpm"], "--speed: needs the other"),
+        (["talbot-2012", "--speed", "900 rpm"], "--speed: needs both"),
         (["talbot-2012", "--points", "9"], "--points: requires a cycle"),
         (["talbot-2012", "--temperature", "50 degC"], "--temperature: requires"),
         (["map.nc", "--set", "a=1", "--speed", "900 rpm"], "--speed: applies to a case alone"),
