@@ -239,7 +239,7 @@ def test_notes_on_flanks_and_rings_carry_the_key_of_their_gear():
 
 def test_models_of_a_listed_set_are_shown():
     models = ep.solve(ep.load_case(listed_trains.ravigneaux())).models
-    assert models["S.friction"] == "fitted-or-schlenk"
+    assert models["S.friction"] == "mixed-lubrication"
     assert models["S.bearing"] == "fitted-or-palmgren"
     assert "S.bearing" not in ep.solve(ep.load_case(listed_trains.layshaft())).models
 
@@ -332,7 +332,7 @@ def test_alike_planets_are_preferred_to_single_ones_and_these_to_unequal_spacing
 def test_planets_that_must_be_made_one_by_one_are_told():
     notes = " ".join(ep.solve(ep.load_case(listed_trains.plus(3))).notes)
     assert "3 equally spaced planets cannot be identical" in notes
-    assert "82/3 is no integer" in notes
+    assert "82/3 is not an integer" in notes
     assert "if there are 1 or 2." in notes
 
 

@@ -256,7 +256,7 @@ def test_what_cannot_be_told_apart_is_said(case, tests):
 
 
 def test_a_parameter_at_its_bound_has_an_interval_on_one_side(case, tests):
-    table = tests.assign(**{"loss [W]": tests["loss [W]"] * 20})
+    table = tests.assign(**{"loss [W]": tests["loss [W]"] * 25})
     sticky = case.updated({"models.friction": "constant", "models.constant_friction": 0.9})
     fit = ep.compare_measured(sticky, table, fit=["models.constant_friction"]).fit
     (item,) = fit.parameters

@@ -353,10 +353,15 @@ def test_units_of_the_case_do_not_change_the_loss(pair):
     assert ep.solve(pair.updated(changes)).losses == pytest.approx(ep.solve(pair).losses, rel=1e-9)
 
 
-def test_loss_goes_to_zero_with_the_load(pair):
+@pytest.mark.parametrize(
+    ("preset", "least"),
+    [({"models.preset": "talbot-2012"}, 1e-9), ({}, 1e-15)],  # rolling of rigid films: root of load
+)
+def test_loss_goes_to_zero_with_the_load(pair, preset, least):
+    pair = pair.updated(preset)
     mesh_terms = ("mesh_sliding", "mesh_rolling")
     previous = None
-    for torque in (10.0, 1.0, 0.1, 1e-3, 1e-6, 1e-9):
+    for torque in (10.0, 1.0, 0.1, 1e-3, 1e-6, least):
         losses = ep.solve(pair.updated({"operation.torque": f"{torque!r} N*m"})).losses
         now = sum(losses[term] for term in mesh_terms)
         assert now > 0

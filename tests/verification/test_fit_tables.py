@@ -33,7 +33,9 @@ def looked_up(request, monkeypatch):
     tables, oil = CASES[request.param]
     case = ep.load_case(tables())
     models = (
-        {} if case.kind == "train" else {"models.friction": "fitted", "models.rolling": "fitted"}
+        {"models.preset": "talbot-2012"}
+        if case.kind == "train"
+        else {"models.friction": "fitted", "models.rolling": "fitted"}
     )
     ep.solve(case.updated({"lubricant": {"oil": oil}, **models}))
     return seen

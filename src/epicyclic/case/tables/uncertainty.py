@@ -137,6 +137,8 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
     if problem := owner_without_keys(case.given(), key):
         return replace(problem, key=_name(key), value=_given(table))
     if not has_effect(case, key):
+        if key.rpartition(".")[2] in OF_ROUGH_FLANKS:
+            return None  # stays while other models are tried
         allowed = "has no effect, because another key sets the share of oil."
         remedy = f"State {FACTOR_KEY}, or lubrication.oil_share where it is given."
         return Problem(_name(key), _given(table), allowed, remedy)
