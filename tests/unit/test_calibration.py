@@ -215,7 +215,9 @@ def test_points_that_are_alike_are_named_before_the_fit(case):
     assert all(key in named[0] for key in keys)
     assert " up (" in named[0]
     assert " down (" in named[0]
-    assert heard.index(named[0]) < next(i for i, text in enumerate(heard) if "fit: error of" in text)
+    assert heard.index(named[0]) < next(
+        i for i, text in enumerate(heard) if "fit: error of" in text
+    )
     assert named[0] in fit.warnings
 
 

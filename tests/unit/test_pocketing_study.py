@@ -154,7 +154,9 @@ def test_points_that_cannot_be_say_why(pair):
     )["backlash"].squeeze()
     assert list(found["status"].to_numpy()) == ["converged", "failed"]
     assert np.isnan(found["pocketing_loss"][1])
-    assert "mesh: is impossible: the teeth of the pinion become pointed" in str(found["message"][1].item())
+    assert "mesh: is impossible: the teeth of the pinion become pointed" in str(
+        found["message"][1].item()
+    )
 
 
 def test_every_mistake_is_named(pair):

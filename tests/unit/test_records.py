@@ -163,7 +163,10 @@ HOSTILE = {
     "missing-variable": (_renamed("views/sun_mesh", "path_x"), "views/sun_mesh/path_x: is missing"),
     "no-label": (_unlabelled, "meshes/ring_mesh/line_load: has no label or no unit"),
     "other-dimensions": (_other_dimensions, "must be numbers over mesh_position, contact_line"),
-    "nowhere": (_value("gears/sun/center_x", float("nan")), "center_x: must not have missing values"),
+    "nowhere": (
+        _value("gears/sun/center_x", float("nan")),
+        "center_x: must not have missing values",
+    ),
     "endless": (_value("meshes/sun_mesh/line_load", float("inf")), "line_load: must not exceed"),
     "without-size": (_value("gears/ring/tip_diameter", 0.0), "tip_diameter: must be positive"),
     "endless-teeth": (_gear(teeth=10**9), "gears/sun/teeth = 1000000000"),

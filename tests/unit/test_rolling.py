@@ -221,10 +221,7 @@ def test_regression_falls_with_the_load_below_its_range(mesh):
 @pytest.mark.parametrize("celsius", [40, 60, 90])
 def test_regression_is_a_small_part_of_the_power(talbot, celsius):
     """With the prefactor printed in the source it would exceed the power passed on."""
-    changes = {
-        "models.preset": "talbot-2012",
-        "operation.oil_inlet_temperature": f"{celsius} degC",
-    }
+    changes = {"models.preset": "talbot-2012", "operation.oil_inlet_temperature": f"{celsius} degC"}
     result = ep.solve(talbot.updated(changes))
     rolling = result.losses["sun_mesh_rolling"] + result.losses["ring_mesh_rolling"]
     # Talbot (2012) about 0.14 % of the power, two digits of "about"
