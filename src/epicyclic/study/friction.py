@@ -106,11 +106,15 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
 def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison, str]:
     """The model that suits the oil and the conditions, and why.
 
-    A model made for the oil comes first, if most of the loss lies where it was made; then the
+    The model for any oil stays where it is chosen. Else a model made for the oil comes first, if most of the loss lies where it was made; then the
     formulas of gear tests, which many oils stand behind; of these the one that leaves its range
     least.
     """
     by_name = {row.name: row for row in rows}
+    any_oil = by_name.get("mixed-lubrication")
+    if any_oil is not None and any_oil.chosen:
+        why = "it holds for any oil and is nearer to measured gears than the others"
+        return any_oil, f"{why} ('epicyclic validate --measured'); {_inside(any_oil)}"
     own = [by_name[name] for name in _FOR_ONE_OIL if name in by_name and by_name[name].own_oil]
     paired = by_name.get(PAIRED)
     for row in own:
