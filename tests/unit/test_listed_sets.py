@@ -331,7 +331,7 @@ def test_alike_planets_are_preferred_to_single_ones_and_these_to_unequal_spacing
 def test_planets_that_must_be_made_one_by_one_are_told():
     notes = " ".join(ep.solve(ep.load_case(listed_trains.plus(3))).notes)
     assert "3 equally spaced planets cannot be identical" in notes
-    assert "82/3 is no integer" in notes
+    assert "82/3 is not an integer" in notes
     assert "if there are 1 or 2." in notes
 
 
