@@ -141,7 +141,7 @@ def shards(call, tmp_path):
 def test_missing_shards_and_points_are_told(call, tmp_path, shards):
     code, _, errors = call("merge", shards[0], "-o", tmp_path / "s.csv")
     assert code == 2
-    assert "3 of 6 points are of shards that are not named" in errors
+    assert "3 of 6 points belong to shards that are missing from the command" in errors
     lines = shards[1].read_bytes().splitlines(keepends=True)
     shards[1].write_bytes(b"".join(lines[:-1]) + lines[-1][:50])  # killed while it wrote
     code, _, errors = call("merge", *shards, "-o", tmp_path / "s.csv")

@@ -345,8 +345,8 @@ def test_computed_losses_of_a_cycle_are_checked_by_solutions(computed):
     ("states", "words"),
     [
         (None, "state: is not among the columns, but the map has several: 1, 2"),
-        (["1", "2", "9", "8"], 'state = "9": is none of 1, 2'),
-        (["1", "", "2", "8"], 'state = "": is none of 1, 2'),
+        (["1", "2", "9", "8"], 'state = "9": must be one of 1, 2'),
+        (["1", "", "2", "8"], 'state = "": must be one of 1, 2'),
     ],
 )
 @pytest.mark.parametrize("source", ["map", "case"])
@@ -435,7 +435,7 @@ def test_measurements_have_states_and_losses_of_sets(gearbox, tmp_path, epicycli
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"state": ["1", "N"]}, 'operation.state = "N": is no state'),
+        ({"state": ["1", "N"]}, 'operation.state = "N": is not a state'),
         ({"component": ["total", "P4.sun_mush"]}, "is not a loss. The losses are P1.sun_mesh"),
         ({"sets.P1.eficiency": [0.9, 0.9]}, "Did you mean 'sets.P1.efficiency'"),
     ],

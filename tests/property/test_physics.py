@@ -150,9 +150,11 @@ def assert_sensible(result):
 
 
 def flattened(result):
-    """Whether teeth are pressed flat over more than their radius: Hertz, p = E' b / (4 R)."""
+    """Whether contacts are pressed flat over more than their radius: Hertz, p = E' b / (4 R)."""
     modulus = 207e9 / (1.0 - 0.3**2)
-    return any(4.0 * mesh.hertz_pressure_max > modulus for mesh in result.meshes.values())
+    bearings = [result.bearing] if result.bearing is not None else []
+    contacts = [*result.meshes.values(), *bearings]
+    return any(4.0 * contact.hertz_pressure_max > modulus for contact in contacts)
 
 
 def assert_rolling_is_bounded(result):

@@ -84,7 +84,16 @@ def test_updated_changes_single_keys():
 def test_a_train_of_one_set_is_that_set():
     alone = ep.load_case("talbot-2012")
     tables = alone.given()
-    own = ("gears", "sun", "planet", "ring", "planet_bearing", "carrier", "thrust_bearing")
+    own = (
+        "gears",
+        "sun",
+        "planet",
+        "ring",
+        "planet_bearing",
+        "carrier",
+        "thrust_bearing",
+        "models",
+    )
     train = ep.load_case(
         {
             "kind": "train",

@@ -128,12 +128,19 @@ def test_the_states_of_a_gearbox_are_a_table_of_ratios_and_steps():
 def test_friction_of_all_sets_is_compared():
     from epicyclic.study.friction import compare_friction
 
-    rows = compare_friction(small_axle())
+    rows = compare_friction(small_axle(**{"models.preset": "talbot-2012"}))
     assert [row.name for row in rows if row.chosen] == ["fitted-or-schlenk"]
     own = next(row for row in rows if row.chosen)
     assert set(own.mean_friction) == {"pair.mesh", "planets.sun_mesh", "planets.ring_mesh"}
     mixed = compare_friction(
-        small_axle(**{"sets.pair.models.friction": "doleschel", "sets.pair.models.mesh": "local"})
+        small_axle(
+            **{
+                "models.preset": "talbot-2012",
+                "sets.pair.models.preset": "talbot-2012",
+                "sets.pair.models.friction": "doleschel",
+                "sets.pair.models.mesh": "local",
+            }
+        )
     )
     assert not any(row.chosen for row in mixed)
     fitted = next(row for row in mixed if row.name == "fitted-or-schlenk")

@@ -76,7 +76,7 @@ def test_energy_balances_where_no_direction_agrees_with_itself(monkeypatch):
         return converged(branch)
 
     monkeypatch.setattr(machine_solve, "_converged", spied)
-    result = ep.solve(ep.load_case(E_AXLE))
+    result = ep.solve(ep.load_case(E_AXLE).updated({"models.preset": "talbot-2012"}))
     assert str(result.status) == "converged"
     assert braking[-1] == frozenset({".sun_mesh"})
     (note,) = floats(result)

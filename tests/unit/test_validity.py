@@ -139,6 +139,12 @@ REGRESSIONS = {f"models.{key}": "mixed-ehl" for key in ("friction", "rolling", "
 # --- through the case -----------------------------------------------------------------------------
 
 
+@pytest.fixture(scope="module")
+def talbot(talbot):
+    """With the regressions that were made for its fluid."""
+    return talbot.updated({"models.preset": "talbot-2012"})
+
+
 def quantities(result):
     return {flag.quantity for flag in result.flags}
 

@@ -17,7 +17,7 @@ TORQUES = (1000.0, -340.0, 7.0, 0.5, 0.02, 1e-3, 0.0, -1e-3, -0.3, -12.0)
 
 @pytest.fixture(scope="module")
 def talbot():
-    return ep.load_case("talbot-2012")
+    return ep.load_case("talbot-2012").updated({"models.preset": "talbot-2012"})
 
 
 def stated_at(case, member, result):

@@ -198,7 +198,7 @@ def test_no_way_for_the_heat_is_an_error():
     with pytest.raises(ep.InputError, match="no path out"):
         case.updated({"models.temperatures": "network"})
     dry = {"thermal.jet_effectiveness": 0, "losses.sun_drag.include": True}
-    with pytest.raises(ep.InputError, match=r"heat of ring has no way out"):
+    with pytest.raises(ep.InputError, match=r"heat of ring has no path out"):
         ep.solve(case.updated(FLOW | dry))
 
 

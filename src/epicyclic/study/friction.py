@@ -106,9 +106,9 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
 def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison, str]:
     """The model that suits the oil and the conditions, and why.
 
-    The model for any oil stays where it is chosen. Else a model made for the oil comes first, if most of the loss lies where it was made; then the
-    formulas of gear tests, which many oils stand behind; of these the one that leaves its range
-    least.
+    The model for any oil stays where it is chosen. Else a model made for the oil comes first, if
+    most of the loss lies where it was made; then the formulas of gear tests, which many oils stand
+    behind; of these the one that leaves its range least.
     """
     by_name = {row.name: row for row in rows}
     any_oil = by_name.get("mixed-lubrication")
