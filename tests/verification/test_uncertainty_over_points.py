@@ -276,7 +276,7 @@ def test_what_cannot_be_sampled_is_told(case, plain_map):
         (case, {"cycle": CYCLE, "temperature": ["40 degC", "50 degC"]}, "must be a single value"),
         (case, {"cycle": CYCLE, "points": 1}, "must be 2 or more"),
         (plain_map, {"samples": 20}, "power of 2"),
-        (plain_map.assign_attrs(case="{}"), {}, "none of this version"),
+        (plain_map.assign_attrs(case="{}"), {}, "not made by this version"),
         (xr.Dataset(), {}, "not a loss map"),
     ):
         with pytest.raises(InputError, match=message):

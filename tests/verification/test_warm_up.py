@@ -223,6 +223,7 @@ def test_a_short_time_is_told_though_it_would_run_away():
 def test_light_load_of_a_cycle_is_resolved():
     """Torques far below the largest of the cycle, near where rolling loss rises like a root."""
     case = ep.load_case("talbot-2012-pair").updated({
+        "models.preset": "talbot-2012",
         "numerics.mesh_positions": 8,
         "numerics.contact_segments": 6,
         "losses.mesh_pocketing.include": False,
