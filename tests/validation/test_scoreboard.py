@@ -224,4 +224,4 @@ def test_options_of_measured_need_it():
         run = CliRunner().invoke(cli, ["validate", *arguments])
         assert "goes with --measured" in str(run.exception)
     run = CliRunner().invoke(cli, ["validate", "--measured", "--bands"])
-    assert "does not go with" in str(run.exception)
+    assert "conflicts with --bands" in str(run.exception)

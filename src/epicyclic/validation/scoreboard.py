@@ -452,7 +452,7 @@ def model_runs(case: Case) -> dict[str, Keys]:
         return {
             kind: {f"bearings.{name}.model": kind for name in case.bearings}
             for kind in kinds
-            if kind != "table" and case.bearings
+            if kind not in ("auto", "table") and case.bearings
         }
     names = choices_of(GearPairModels.model_fields["friction"].annotation)
     stated = ("auto", "constant", "table", "fitted", "ehl-direct")
