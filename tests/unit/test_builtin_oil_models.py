@@ -34,6 +34,7 @@ def set_of(case):
     return set_cases(case)[""]
 
 
+FORMER = {"models.preset": "talbot-2012"}
 OIL = "iso-vg-220-mineral"
 STEEL = 227.47e9
 GEAR = {
@@ -300,7 +301,7 @@ def test_comparison_gives_reasons_and_a_recommendation(case):
 
 def test_xu_is_recommended_for_its_oil_in_full_films_only():
     """75W-90 without fitted models, smooth flanks and thick oil, then rough ones."""
-    case = ep.load_case("talbot-2012").updated({"lubricant.oil": "75w-90-gear-oil"})
+    case = ep.load_case("talbot-2012").updated({"lubricant.oil": "75w-90-gear-oil", **FORMER})
     table = library.oil_table("75w-90-gear-oil")
     table["name"] = "own"
     smooth = {f"{gear}.roughness": "0.08 um" for gear in ("sun", "planet", "ring")}
@@ -321,13 +322,19 @@ def test_shaft_bearings_have_a_standing():
 
 
 def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil():
-    best, why = recommended(compare_friction(ep.load_case("talbot-2012")))
+    case = ep.load_case("talbot-2012")
+    best, why = recommended(compare_friction(case))
+    assert best.name == "mixed-lubrication"
+    assert "nearer to measured gears" in why
+    best, why = recommended(compare_friction(case.updated(FORMER)))
     assert best.name == "mixed-ehl"
     assert "made for this oil" in why
-    best, why = recommended(compare_friction(ep.load_case("talbot-2012-n6-polished")))
+    polished = ep.load_case("talbot-2012-n6-polished").updated(FORMER)
+    best, why = recommended(compare_friction(polished))
     assert best.name == "mixed-ehl+pairing"
     assert "unequal roughness" in why
-    other = ep.load_case("talbot-2012-pair").updated({"lubricant.oil": "iso-vg-46-pao"})
+    pair = ep.load_case("talbot-2012-pair")
+    other = pair.updated({"lubricant.oil": "iso-vg-46-pao", **FORMER})
     best, why = recommended(compare_friction(other))
     assert best.name == "schlenk"
     assert "no model was made for this oil" in why

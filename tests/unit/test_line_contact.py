@@ -12,6 +12,7 @@ from epicyclic.kernels.line_contact import (
     goksem_hargreaves_force,
     hertz_half_width,
     hertz_pressure,
+    inlet_film_factor,
     line_load_at_pressure,
     pan_hamrock_central_film,
     pan_hamrock_minimum_film,
@@ -142,3 +143,12 @@ def test_inlet_heating_lowers_the_rolling_force():
     assert goksem_hargreaves_force(1e-11, 3000.0, 1e-4, 10.0) == pytest.approx(
         cold / (1 + 0.29 * 10**0.78), rel=ROUNDING
     )
+
+
+def test_heat_at_the_inlet_thins_the_film():
+    """By hand; the numerator is held where load and heat would make it negative."""
+    assert inlet_film_factor(0.0, 0.004, 0.25) == 1.0
+    assert inlet_film_factor(1.0, 0.0, 0.0) == pytest.approx(1 / 1.213, rel=1e-12)
+    hot = (1 - 13.2 * 0.004) / (1 + 0.213 * (1 + 2.23 * 0.25**0.83))
+    assert inlet_film_factor(1.0, 0.004, 0.25) == pytest.approx(hot, rel=1e-12)
+    assert inlet_film_factor(1e4, 0.01, 0.5) > 0

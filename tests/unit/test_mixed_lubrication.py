@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +9,6 @@ import pytest
 
 import epicyclic as ep
 from contacts import STEEL
-from contacts import oil as oil_with
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.kernels.mixed_lubrication import eyring_stress, film_stress
 from epicyclic.losses import mixed_lubrication as model
@@ -58,14 +56,14 @@ def test_creeping_flanks_have_boundary_friction(contact):
         rolling_speed=1e-9 * contact.rolling_speed,
         sliding_speed=1e-9 * contact.sliding_speed,
     )
-    assert model.asperity_share(slow, RUN_IN) == pytest.approx(1.0)
+    assert model.asperity_share(slow, RUN_IN, model.films(slow)) == pytest.approx(1.0)
     assert mixed_friction(slow, RUN_IN) == pytest.approx(contact.oil.boundary_friction)
     assert mixed_friction(slow, RUN_IN, 0.11) == pytest.approx(0.11)
 
 
 def test_smooth_flanks_have_the_friction_of_the_film(contact):
     smooth = rough(contact, 1e-9, 2e-9)
-    assert (model.asperity_share(smooth, RUN_IN) < 1e-6).all()
+    assert (model.asperity_share(smooth, RUN_IN, model.films(smooth)) < 1e-6).all()
     friction = mixed_friction(smooth, RUN_IN)
     assert (friction < contact.oil.limiting_traction).all()
     assert (friction > 0).all()
@@ -121,7 +119,9 @@ def test_share_of_the_asperities_as_printed(contact):
     v = RUN_IN.hardness / cold.flanks.equivalent_modulus
     inner = 1 + 4470 * s**6.015 * v**1.168 * w**0.485 * u**-3.741 * g**-2.898
     percent = 0.005 * w**-0.408 * u**-0.088 * g**0.103 * np.log(inner)
-    assert model.asperity_share(cold, RUN_IN) == pytest.approx(np.minimum(percent / 100, 1))
+    assert model.asperity_share(cold, RUN_IN, model.films(cold)) == pytest.approx(
+        np.minimum(percent / 100, 1)
+    )
 
 
 def test_kind_and_additives_decide(pair):
@@ -150,17 +150,3 @@ def test_running_in_smooths(pair):
         )
     ]
     assert losses[0] < losses[1] < losses[2]
-
-
-def test_inlet_heating_by_hand():
-    """L = 2, S = 0.5, p/E = 0.005."""
-
-    class Contact:
-        oil = oil_with(viscosity=0.02, thermoviscosity=0.04, thermal_conductivity=0.144)
-        rolling_speed = np.array([math.sqrt(2 * 0.144 / (0.02 * 0.04))])
-        hertz_pressure = np.array([0.005 * STEEL])
-        flanks = Flanks(STEEL, 1e-7, 1e-7)
-        slide_to_roll_ratio = np.array([0.5])
-
-    expected = (1 - 13.2 * 0.005 * 2**0.42) / (1 + 0.213 * (1 + 2.23 * 0.5**0.83) * 2**0.64)
-    assert model.inlet_heating(Contact()) == pytest.approx([expected])

@@ -31,7 +31,6 @@ from epicyclic.losses.shaft_bearing import (
     friction_load,
     full_film_friction,
     harris_coefficient,
-    inlet_heating,
     load_moment,
     minimum_load,
     roller_loads,
@@ -176,13 +175,6 @@ def test_rolling_grows_as_the_printed_solutions():
     assert rolling_force(1e-10, 3745, 2e-4) == pytest.approx(
         29.2 * 3.745e-7**0.648 * 2e-4**0.246, rel=1e-12
     )
-
-
-def test_inlet_heating():
-    assert inlet_heating(0.0) == 1.0
-    assert inlet_heating(1.0) == pytest.approx(1 / 1.213, rel=1e-12)
-    hot = (1 - 13.2 * 0.004) / (1 + 0.213 * (1 + 2.23 * 0.25**0.83))
-    assert inlet_heating(1.0, 0.004, 0.25) == pytest.approx(hot, rel=1e-12)
 
 
 def test_half_of_the_rollers_carry_at_the_printed_ratio():

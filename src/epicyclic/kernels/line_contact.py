@@ -75,6 +75,27 @@ def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> R
     return force
 
 
+LEAST_FILM_SHARE = 0.1
+"""Least numerator of `inlet_film_factor`, which heavy load and strong heat bring below zero. [1]"""
+
+
+def inlet_film_factor(thermal_load: Real, pressure: Real, slip: Real) -> Real:
+    """phi_T, film over that without heat at its inlet. Theory (Y1). [1]
+
+    (1 - 13.2 (p_h/E_eq) L^0.42)/(1 + 0.213 (1 + 2.23 S^0.83) L^0.64), L = mu beta u^2/k, S sliding
+    over rolling speed. Gupta, Cheng, Zhu, Forster, Schrand, J. Tribol. 114 (1992) 55, second hand;
+    in Zhou and Hoeprich, J. Tribol. 113 (1991) 590, read, as that of Zhu and Cheng.
+
+    Examples
+    --------
+    >>> round(inlet_film_factor(2.0, 0.005, 0.5), 4)
+    0.5398
+    """
+    numerator = np.maximum(1 - 13.2 * pressure * thermal_load**0.42, LEAST_FILM_SHARE)
+    factor: Real = numerator / (1 + 0.213 * (1 + 2.23 * slip**0.83) * thermal_load**0.64)
+    return factor
+
+
 MARTIN_FILM = 4.895  # h_0 W'/(mu u R) of rigid cylinders at constant viscosity, Martin (1916). [1]
 MARTIN_FORCE = 2.0796
 """F_r/sqrt(mu u W') of rigid cylinders, by quadrature of Martin's pressure. [1]"""

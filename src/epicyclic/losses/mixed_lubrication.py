@@ -28,7 +28,7 @@ from epicyclic.gears.flanks import (
     RA_OVER_RQ,
     RUNNING_IN,
 )
-from epicyclic.kernels.line_contact import MARTIN_FILM, pan_hamrock_central_film
+from epicyclic.kernels.line_contact import MARTIN_FILM, inlet_film_factor, pan_hamrock_central_film
 from epicyclic.kernels.mixed_lubrication import film_stress
 from epicyclic.oil.oil import OilState
 
@@ -39,8 +39,6 @@ MEAN_FLASH = 2 / 3
 """Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
 MEAN_PRESSURE = math.pi / 4  # Mean over largest pressure of Hertz. [1]
 LEAST_NUMBER = 1e-40  # Speed and load number below which flanks stand and carry nothing. [1]
-LEAST_FILM_SHARE = 0.1
-"""Least numerator of (Y1), which heavy load and strong heat would bring below zero. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,49 +86,39 @@ def usual_cutoff(
     return PROFILE_CUTOFF * math.sqrt(RA_OVER_RQ * roughness / MIDDLE_OF_CLASS)
 
 
-def inlet_heating(contact: LineContacts) -> FloatArray:
-    """phi_T, film over that without heat at its inlet. Theory (Y1). [1]
+@dataclass(frozen=True, slots=True, eq=False)
+class Films:
+    """Films at the contacts, shape (n,)."""
 
-    Gupta, Cheng, Zhu, Forster, Schrand, J. Tribol. 114 (1992) 55, second hand:
-    (1 - 13.2 (p_h/E) L^0.42)/(1 + 0.213 (1 + 2.23 S^0.83) L^0.64) with L = mu beta u_r^2/k and
-    the slide-to-roll ratio S.
+    heating: FloatArray  # phi_T, film over that without heat at its inlet. [1]
+    elastic: FloatArray  # [m]
+    central: FloatArray  # The elastic one, or that of rigid flanks where it is thicker. [m]
+
+
+def films(contact: LineContacts) -> Films:
+    """Films of smooth flanks, thinned by heat at the inlet. Theory (Y2), (Y9).
+
+    Under light load flanks stay rigid: H. M. Martin, Engineering 102 (1916) 119, 4.895 mu u_r R/W'.
     """
-    oil = _state(contact)
-    heat = (
-        oil.dynamic_viscosity
-        * oil.thermoviscosity
-        * contact.rolling_speed**2
-        / oil.thermal_conductivity
+    heating = inlet_film_factor(
+        _state(contact).thermal_load(contact.rolling_speed),
+        contact.hertz_pressure / contact.flanks.equivalent_modulus,
+        contact.slide_to_roll_ratio,
     )
-    pressure = contact.hertz_pressure / contact.flanks.equivalent_modulus
-    slip = 1 + 2.23 * contact.slide_to_roll_ratio**0.83
-    factor: FloatArray = np.maximum(1 - 13.2 * pressure * heat**0.42, LEAST_FILM_SHARE) / (
-        1 + 0.213 * slip * heat**0.64
+    elastic = (
+        contact.radius
+        * heating
+        * pan_hamrock_central_film(
+            contact.speed_number, contact.material_number, contact.load_number
+        )
     )
-    return factor
-
-
-def elastic_film(contact: LineContacts) -> FloatArray:
-    """Film of the smooth elastic contact, thinned by heat at its inlet. Theory (Y2). [m]"""
-    film = pan_hamrock_central_film(
-        contact.speed_number, contact.material_number, contact.load_number
-    )
-    thinned: FloatArray = contact.radius * film * inlet_heating(contact)
-    return np.maximum(thinned, LEAST_NUMBER)
-
-
-def central_film(contact: LineContacts) -> FloatArray:
-    """The elastic film, or that of rigid flanks where that is thicker, under light load. [m]
-
-    Theory (Y9). H. M. Martin, Engineering 102 (1916) 119: 4.895 mu u_r R/W'.
-    """
     squeezed = contact.dynamic_viscosity * contact.rolling_speed * contact.radius
     rigid = MARTIN_FILM * squeezed / np.maximum(contact.line_load, LEAST_NUMBER)
-    film: FloatArray = np.maximum(elastic_film(contact), rigid)
-    return film
+    elastic = np.maximum(elastic, LEAST_NUMBER)
+    return Films(heating, elastic, np.maximum(elastic, rigid))
 
 
-def asperity_share(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
+def asperity_share(contact: LineContacts, surfaces: Surfaces, film: Films) -> FloatArray:
     """Share xi of the load that asperities carry, 0 to 1. Theory (Y5). [1]
 
     Masjedi and Khonsari, J. Tribol. 134 (2012) 011503, second hand: a fit to solutions of the
@@ -139,14 +127,12 @@ def asperity_share(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
     cent, with s = sigma/R and V = hardness/E. Heat at the inlet acts as a lower speed; a film that
     is thicker than the elastic one, as a roughness that is smaller by as much.
     """
-    speed = contact.speed_number * inlet_heating(contact) ** (1 / FILM_EXPONENT)
-    speed = np.maximum(speed, LEAST_NUMBER)
+    speed = np.maximum(contact.speed_number * film.heating ** (1 / FILM_EXPONENT), LEAST_NUMBER)
     load, material = np.maximum(contact.load_number, LEAST_NUMBER), contact.material_number
-    rough = acting_roughness(contact, surfaces) / contact.radius
-    rough = rough * elastic_film(contact) / central_film(contact)
+    rough = acting_roughness(contact, surfaces) / contact.radius * film.elastic / film.central
     hard = surfaces.hardness / contact.flanks.equivalent_modulus
     touching = (
-        np.log(4470.0) + 6.015 * np.log(rough) + 1.168 * math.log(hard) + 0.485 * np.log(load)
+        math.log(4470) + 6.015 * np.log(rough) + 1.168 * math.log(hard) + 0.485 * np.log(load)
     ) - (3.741 * np.log(speed) + 2.898 * np.log(material))
     share = 5e-5 * load**-0.408 * speed**-0.088 * material**0.103 * np.logaddexp(0.0, touching)
     held: FloatArray = np.minimum(share, 1.0)
@@ -161,8 +147,8 @@ def mixed_friction(
     """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]"""
     oil = _state(contact)
     boundary = oil.boundary_friction if boundary is None else boundary
-    share = asperity_share(contact, surfaces)
-    film = central_film(contact)
+    film = films(contact)
+    share = asperity_share(contact, surfaces, film)
     pressure = np.maximum(MEAN_PRESSURE * contact.hertz_pressure, LEAST_NUMBER)
     slip = np.abs(contact.sliding_speed)
     # flank temperature for a coefficient of friction of 1
@@ -176,10 +162,12 @@ def mixed_friction(
     )
     stress = film_stress(
         pressure,
-        slip / film,
+        slip / film.central,
         flash * share * boundary,
         flash * (1 - share) / pressure,
-        slip * film / (12 * oil.thermal_conductivity),  # mean across the film, heated evenly
+        slip
+        * film.central
+        / (12 * oil.thermal_conductivity),  # mean across the film, heated evenly
         oil.limiting_traction,
         _oil_constants(oil),
     )

@@ -110,14 +110,11 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
     takes over.
     """
     oil = contact.oil
-    heating = (
-        oil.dynamic_viscosity
-        * oil.thermoviscosity
-        * contact.rolling_speed**2
-        / oil.thermal_conductivity
-    )
     number = goksem_hargreaves_force(
-        contact.speed_number, contact.material_number, contact.load_number, heating
+        contact.speed_number,
+        contact.material_number,
+        contact.load_number,
+        oil.thermal_load(contact.rolling_speed),
     )
     elastic = number * contact.radius / oil.pressure_viscosity
     rigid = martin_force(contact.line_load, contact.rolling_speed, oil.dynamic_viscosity)

@@ -8,9 +8,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
@@ -267,6 +268,8 @@ def _fault(place: tuple[str | int, ...], given: str, what: str, remedy: str) -> 
 # ==================== =========================================================================
 
 
+Real = TypeVar("Real", float, NDArray[np.float64])
+
 ROELANDS_PRESSURE = 1.96e8  # Pole pressure of Roelands' viscosity law. [Pa]
 ROELANDS_OFFSET = 9.67
 """ln of Roelands' limiting viscosity 6.31e-5 Pa s, with its sign changed. [1]"""
@@ -299,6 +302,13 @@ class OilState:
     pressure_viscosity_exponent: float  # d(ln alpha)/d(ln nu). [1]
     limiting_traction: float  # Lambda, of the shear stress at high pressure. [1]
     boundary_friction: float  # mu_b, of asperities. [1]
+
+    def thermal_load(self, speed: Real) -> Real:
+        """mu beta u^2/k of an inlet with this rolling speed. Theory (R6). [1]"""
+        load: Real = (
+            self.dynamic_viscosity * self.thermoviscosity * speed**2 / self.thermal_conductivity
+        )
+        return load
 
 
 @dataclass(frozen=True, slots=True)
