@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -31,6 +32,12 @@ def contact(pair):
     """Contacts of a loaded pair in motion."""
     case = pair.updated({"operation.torque": "133 N*m", "operation.speed": "2400 rpm"})
     return mesh_contacts(case)["mesh"]
+
+
+def stress_at(temperature, pressure, rate, oil):
+    """Of the film at a temperature."""
+    log_rate = math.log(rate * oil[4] * oil[5] / 0.047)
+    return eyring_stress(temperature, pressure, log_rate, 0.047, oil)[0]
 
 
 def rough(contact, one, two):
@@ -71,20 +78,29 @@ def test_smooth_flanks_have_the_friction_of_the_film(contact):
 
 def test_the_film_is_as_hot_as_its_stress_makes_it(contact):
     pressure, rate = np.array([0.6e9, 0.9e9]), np.array([1e6, 4e6])
-    warm, flash, heating = np.array([3.0, 7.0]), np.array([4e-7, 6e-7]), np.array([1e-7, 2e-7])
+    warm, heating = np.array([3.0, 7.0]), np.array([5e-7, 8e-7])
     oil = model._oil_constants(contact.oil)
-    stress = film_stress(pressure, rate, warm, flash, heating, 0.047, oil)
+    stress = film_stress(pressure, rate, warm, heating, 0.047, oil)
     for i in range(2):
-        hot = oil[0] + warm[i] + (flash[i] + heating[i]) * stress[i]
-        assert stress[i] == pytest.approx(
-            eyring_stress(hot, pressure[i], rate[i], 0.047, oil), rel=1e-10
+        hot = oil[0] + warm[i] + heating[i] * stress[i]
+        assert stress[i] == pytest.approx(stress_at(hot, pressure[i], rate[i], oil), rel=1e-9)
+        assert stress[i] < stress_at(oil[0], pressure[i], rate[i], oil)
+
+
+def test_derivative_of_the_stress_to_the_temperature(contact):
+    oil = model._oil_constants(contact.oil)
+    for pressure, log_rate in ((0.0, -9.0), (0.4e9, -6.0), (1.5e9, -4.0)):
+        low, high = (
+            eyring_stress(oil[0] + d, pressure, log_rate, 0.047, oil)[0] for d in (-1e-3, 1e-3)
         )
-        assert stress[i] < eyring_stress(oil[0], pressure[i], rate[i], 0.047, oil)
+        slope = eyring_stress(oil[0], pressure, log_rate, 0.047, oil)[1]
+        assert slope == pytest.approx((high - low) / 2e-3, rel=1e-6)
+        assert slope < 0
 
 
 def test_stress_over_pressure_tends_to_the_limiting_traction(contact):
     oil = model._oil_constants(contact.oil)
-    over = [eyring_stress(oil[0], p, 1e6, 0.047, oil) / p for p in (1e9, 1e10, 1e12)]
+    over = [stress_at(oil[0], p, 1e6, oil) / p for p in (1e9, 1e10, 1e12)]
     assert over[0] < over[1] < over[2]
     assert over[2] == pytest.approx(0.047, rel=1e-3)
 
@@ -93,7 +109,7 @@ def test_viscosity_of_the_film_is_that_of_the_oil():
     """At little stress the fluid is Newtonian, with the viscosity of ASTM D341 when warm."""
     oil = ep.load_case("talbot-2012-pair").lubricant.oil
     cold, hot = oil_state(oil, 363.15), oil_state(oil, 373.15)
-    stress = eyring_stress(373.15, 0.0, 1.0, 0.047, model._oil_constants(cold))
+    stress = stress_at(373.15, 0.0, 1.0, model._oil_constants(cold))
     # density falls by 0.7 % in between, which is left out
     assert stress == pytest.approx(hot.dynamic_viscosity, rel=0.012)
 

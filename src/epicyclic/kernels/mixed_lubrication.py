@@ -11,72 +11,82 @@ from epicyclic.kernels.compiling import kernel
 
 FloatArray = NDArray[np.float64]
 
-LARGE = 20.0  # From here on arsinh(exp(x)) is x + ln 2 to the last digit.
-LEAST_VISCOSITY = 1e-8  # Kinematic viscosity that no heat goes below: thinner than any oil. [m^2/s]
+SMALL = 0.01  # From here on arsinh is a logarithm that keeps 14 digits. [1]
+LARGE = 20.0  # From here on arsinh(exp(x)) is x + ln 2 to the last digit. [1]
+OFFSET = 0.7  # Of ASTM D341. [mm^2/s]
+LEAST_VISCOSITY = 0.01  # That no heat goes below: thinner than any oil. [mm^2/s]
 STEPS = 100
-CLOSE = 1e-12  # Relative width of the bracket at which the stress counts as found. [1]
+CLOSE = 1e-12  # Residual over the stress without heat at which the stress counts as found. [1]
 
 
 @kernel
 def eyring_stress(
-    temperature: float, pressure: float, rate: float, limit: float, oil: FloatArray
-) -> float:
+    temperature: float, pressure: float, log_rate: float, limit: float, oil: FloatArray
+) -> tuple[float, float]:
     """tau_E arsinh(eta rate/tau_E) with tau_E = Lambda/alpha, eta of Barus. Theory (Y6). [Pa]
 
-    `pressure` [Pa], shear `rate` [1/s], `limit` Lambda [1]; `oil` holds T0 [K], ordinate and slope
-    of ASTM D341, density [kg/m^3], alpha at T0 [1/Pa], nu at T0 [m^2/s] and d(ln alpha)/d(ln nu).
+    With its derivative to the temperature [Pa/K]. `pressure` [Pa]; `log_rate` of the shear rate
+    times rho alpha/Lambda at T0 and 1 mm^2/s; `limit` Lambda [1]; `oil` holds, at its temperature
+    T0 [K], ln(nu + 0.7) and ln(nu) with nu in mm^2/s, the slope of ASTM D341, density times
+    1 mm^2/s [Pa s], alpha [1/Pa] and d(ln alpha)/d(ln nu).
     """
-    ordinate = oil[1] - oil[2] * math.log10(temperature / oil[0])
-    viscosity = max((10.0 ** (10.0**ordinate) - 0.7) * 1e-6, LEAST_VISCOSITY)
-    alpha = oil[4] * (viscosity / oil[5]) ** oil[6]
-    x = math.log(oil[3] * viscosity * rate * alpha / limit) + alpha * pressure
-    stress: float = limit / alpha * (x + math.log(2.0) if x > LARGE else math.asinh(math.exp(x)))
-    return stress
+    log_shifted = oil[1] * (oil[0] / temperature) ** oil[3]
+    shifted = math.exp(log_shifted)
+    viscosity = max(shifted - OFFSET, LEAST_VISCOSITY)
+    log_viscosity = math.log(viscosity)
+    fall = -oil[3] * shifted * log_shifted / (temperature * viscosity)  # d(ln nu)/dT
+    exponent = oil[6]
+    log_alpha = exponent * (log_viscosity - oil[2])  # over alpha at T0
+    alpha = oil[5] * math.exp(log_alpha)
+    x = log_viscosity + log_alpha + log_rate + alpha * pressure
+    arsinh, share = x + math.log(2.0), 1.0
+    if x < LARGE:
+        ratio = math.exp(x)
+        root = math.sqrt(1.0 + ratio * ratio)
+        arsinh = math.log(ratio + root) if ratio > SMALL else math.asinh(ratio)
+        share = ratio / root
+    stress = limit / alpha * arsinh
+    rise = share * (1.0 + exponent * (1.0 + alpha * pressure)) - exponent * arsinh
+    return stress, limit / alpha * fall * rise
 
 
 @kernel
 def film_stress(
-    pressure: FloatArray, rate: FloatArray, warm: FloatArray, flash: FloatArray,
-    heating: FloatArray, limit: float, oil: FloatArray,
+    pressure: FloatArray, rate: FloatArray, warm: FloatArray, heating: FloatArray,
+    limit: float, oil: FloatArray,
 ) -> FloatArray:  # fmt: skip
-    """Stress tau of each film at the temperature T0 + warm + (flash + heating) tau. Theory (Y7).
+    """Stress tau of each film at the temperature T0 + warm + heating tau. Theory (Y7). [Pa]
 
     Parameters
     ----------
     pressure, rate : ndarray, shape (n,)
         Mean pressure [Pa], shear rate [1/s].
-    warm, flash, heating : ndarray, shape (n,)
-        Rise by the friction of asperities [K]; rises per stress of the film: of both flanks, and
-        of the oil above them [K/Pa].
+    warm, heating : ndarray, shape (n,)
+        Rise by the friction of asperities [K]; rise per stress of the film [K/Pa].
     limit, oil
         As for `eyring_stress`.
     """
     found = np.zeros(pressure.size)
+    ratio = 1.0  # stress over that without heat at the last point, where the next begins
     for i in range(pressure.size):
         if rate[i] <= 0.0:
             continue
-        base, slope = oil[0] + warm[i], flash[i] + heating[i]
-        low, high = 0.0, eyring_stress(base, pressure[i], rate[i], limit, oil)
-        above, below = high, eyring_stress(base + slope * high, pressure[i], rate[i], limit, oil)
-        below -= high
-        side = 0
-        for _ in range(STEPS):
-            if high - low <= CLOSE * high:
+        base, p = oil[0] + warm[i], pressure[i]
+        log_rate = math.log(rate[i] * oil[4] * oil[5] / limit)
+        full = eyring_stress(base, p, log_rate, limit, oil)[0]
+        low, high, stress = 0.0, full, ratio * full
+        for _ in range(STEPS):  # Newton, bisection where that leaves what is known
+            hot, slope = eyring_stress(base + heating[i] * stress, p, log_rate, limit, oil)
+            left = hot - stress
+            if abs(left) <= CLOSE * full:
                 break
-            # regula falsi, with half the weight of an end that stays (Illinois)
-            middle = (low * below - high * above) / (below - above)
-            left = eyring_stress(base + slope * middle, pressure[i], rate[i], limit, oil) - middle
             if left > 0.0:
-                low, above = middle, left
-                if side == 1:
-                    below /= 2.0
-                side = 1
-            elif left < 0.0:
-                high, below = middle, left
-                if side == -1:
-                    above /= 2.0
-                side = -1
+                low = stress
             else:
-                low = high = middle
-        found[i] = (low + high) / 2.0
+                high = stress
+            stress -= left / (heating[i] * slope - 1.0)
+            if not low <= stress <= high:
+                stress = (low + high) / 2.0
+        found[i] = stress
+        ratio = stress / full
     return found

@@ -30,7 +30,7 @@ from epicyclic.gears.flanks import (
 )
 from epicyclic.kernels.line_contact import MARTIN_FILM, inlet_film_factor, pan_hamrock_central_film
 from epicyclic.kernels.mixed_lubrication import film_stress
-from epicyclic.oil.oil import OilState
+from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState
 
 FloatArray = NDArray[np.float64]
 
@@ -160,14 +160,13 @@ def mixed_friction(
         contact.hertz_half_width,
         *contact.flanks.effusivities,
     )
+    # rises for each pascal of the film: of both flanks, and the mean across it, evenly heated
+    heating = flash * (1 - share) / pressure + slip * film.central / (12 * oil.thermal_conductivity)
     stress = film_stress(
         pressure,
         slip / film.central,
         flash * share * boundary,
-        flash * (1 - share) / pressure,
-        slip
-        * film.central
-        / (12 * oil.thermal_conductivity),  # mean across the film, heated evenly
+        heating,
         oil.limiting_traction,
         _oil_constants(oil),
     )
@@ -183,23 +182,18 @@ def _state(contact: LineContacts) -> OilState:
 @lru_cache(maxsize=64)
 def _oil_constants(oil: OilState) -> FloatArray:
     """As `eyring_stress` takes them: the line of ASTM D341 that touches at this temperature."""
-    shifted = oil.kinematic_viscosity * 1e6 + 0.7
-    ordinate = math.log10(math.log10(shifted))
-    # d(log log(nu + 0.7))/d(log T) from beta = -d(ln nu)/dT
-    slope = (
-        oil.thermoviscosity
-        * oil.temperature
-        * (shifted - 0.7)
-        / (shifted * math.log(10) * math.log10(shifted))
-    )
+    viscosity = oil.kinematic_viscosity / MM2_PER_S
+    shifted = viscosity + D341_OFFSET
+    # -d(log log(nu + 0.7))/d(log T) from beta = -d(ln nu)/dT
+    slope = oil.thermoviscosity * oil.temperature * viscosity / (shifted * math.log(shifted))
     return np.array(
         [
             oil.temperature,
-            ordinate,
+            math.log(shifted),
+            math.log(viscosity),
             slope,
-            oil.density,
+            oil.density * MM2_PER_S,
             oil.pressure_viscosity,
-            oil.kinematic_viscosity,
             oil.pressure_viscosity_exponent,
         ]
     )
