@@ -68,8 +68,7 @@ def advice_texts(known: Known, *, brief: bool = False) -> Iterator[str]:
         width = known_text(limit.width, unit=known.unit, beside=known.width)
         yield f"{limit.name}: {width} of the band; {limit.advice}."
     yield from _measurements(known)
-    if known.remarks:
-        yield from [" ".join(known.remarks)] if brief else known.remarks
+    yield from known.remarks
 
 
 def _measurements(known: Known) -> Iterator[str]:

@@ -21,7 +21,7 @@ from epicyclic.machine.planets import SHARING_METHODS
 from epicyclic.machine.pocket_flow import POCKETING_SOURCE, pocketing_method
 from epicyclic.result.result import Result, in_words
 from epicyclic.study.solve import build_computed, solve
-from epicyclic.units import percent
+from epicyclic.units import known_text, percent
 
 # Friction models side by side on one case, and which of them suits it.
 
@@ -35,6 +35,10 @@ _FOR_ONE_OIL = ("mixed-ehl", FittedOrSchlenk.name, "xu-2007")
 """Models made for an oil, the one that is known best first."""
 _OF_ALL_OILS = ("schlenk", "niemann-winter")
 """Fitted to gear tests with many oils, the one recommended first."""
+_ANY_OIL = "mixed-lubrication"
+_STANDARD = "schlenk"  # ISO/TR 14179-2.
+PARTED = 1.25
+"""Ratio of two losses from which a reason for their difference is given. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,15 +69,17 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
 
     The model ``table`` takes part if the case has a friction table, ``fitted-or-schlenk`` if there
     are fitted models of the oil, ``fitted`` and ``ehl-direct`` if the case chooses them. With
-    `brief` only those that `recommended` looks at, without the quick method, whose loss is NaN.
+    `brief` only those that `recommended` and `standard_beside` look at, without the quick method,
+    whose loss is NaN.
     Raises `InputError` if the case is a train of given efficiencies.
     """
     built = build_computed(case)
     owners = list(built.set_cases.values())
     chosen = {own.chosen["friction"] for own in owners}
+    suiting = (_STANDARD,) if _ANY_OIL in chosen else (*_FOR_ONE_OIL, PAIRED, *_OF_ALL_OILS)
     rows = []
     for name in dict.fromkeys([*_models_for(owners), *sorted(chosen)]):
-        if brief and name not in (*_FOR_ONE_OIL, PAIRED, *_OF_ALL_OILS, *chosen):
+        if brief and name not in (*suiting, *chosen):
             continue
         local = solve(_with(case, {"friction": name, "mesh": "local"}))
         quick_case = _with(case, {"friction": name, "mesh": "loss-factor"})
@@ -111,7 +117,7 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     behind; of these the one that leaves its range least.
     """
     by_name = {row.name: row for row in rows}
-    any_oil = by_name.get("mixed-lubrication")
+    any_oil = by_name.get(_ANY_OIL)
     if any_oil is not None and any_oil.chosen:
         why = "it holds for any oil and is nearer to measured gears than the others"
         return any_oil, f"{why} ('epicyclic validate --measured'); {_inside(any_oil)}"
@@ -133,6 +139,32 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     else:
         why += ", and no model was made for this oil ('epicyclic oil characterise' creates one)"
     return general, f"{why}; {_inside(general)}"
+
+
+def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str | None:
+    """What ISO/TR 14179-2 gives for the meshes of a result, and why it differs if it does.
+
+    The friction of the standard contains the rolling loss. None if the standard was used itself.
+    """
+    standard = next(row for row in rows if row.name == _STANDARD)
+    if standard.chosen:
+        return None
+    own = _sliding(result) + math.fsum(result.losses[f"{key}_rolling"] for key in result.meshes)
+    ratio = standard.sliding / own
+    told = (
+        f"ISO/TR 14179-2 gives {known_text(standard.sliding)} for the meshes under load, "
+        f"{ratio:.2f} times this result"
+    )
+    if 1 / PARTED < ratio < PARTED:
+        return f"{told}."
+    if standard.outside > MOSTLY:
+        return f"{told}; most of the loss is outside the range of its tests: {standard.reasons[0]}."
+    low = min(mesh.film_ratio_min for mesh in result.meshes.values())
+    high = max(mesh.film_ratio_max for mesh in result.meshes.values())
+    return (
+        f"{told}; it does not depend on the film ratio, which is {low:.2g} to {high:.2g} here, and "
+        "takes the roughness as drawn, without running-in."
+    )
 
 
 def _differ(row: FrictionComparison, paired: FrictionComparison) -> bool:

@@ -17,7 +17,7 @@ from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.ranges import range_text
 from epicyclic.result.result import Result
-from epicyclic.study.friction import compare_friction, recommended
+from epicyclic.study.friction import compare_friction, recommended, standard_beside
 from epicyclic.units import known_text, percent
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def model_remarks(case: Case, result: Result, *, brief: bool = False) -> list[st
 
     With `brief` only what takes a fraction of a second.
     """
-    return [*_warnings(result), *_friction(case, brief)]
+    return [*_warnings(result), *_friction(case, result, brief)]
 
 
 def _warnings(result: Result) -> Iterator[str]:
@@ -163,13 +163,17 @@ def _warnings(result: Result) -> Iterator[str]:
         yield f"No warning affects more than {percent(CONCERNED, 0)} of the loss."
 
 
-def _friction(case: Case, brief: bool) -> Iterator[str]:
-    quick = case.kind != "train" and case.models.temperatures == "inlet"
+def _friction(case: Case, result: Result, brief: bool) -> Iterator[str]:
+    quick = case.models.temperatures == "inlet"
     if not layout_of(case).meshes or not case.operation.torque or (brief and not quick):
         return
     try:
-        best, why = recommended(compare_friction(case, brief=True))
+        rows = compare_friction(case, brief=True)
     except ConvergenceError:  # of a model that is not that of the case
         return
+    best, why = recommended(rows)
     does = "suits" if best.chosen else "would suit this case better"
     yield f"Friction: {best.name} {does}: {why}."
+    beside = standard_beside(rows, result)
+    if beside:
+        yield beside
