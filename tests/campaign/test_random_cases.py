@@ -32,6 +32,7 @@ def check(counts):
     assert sum(number for (name, *_), number in counts.outcomes.items() if name == "solved") > 0
 
 
+@pytest.mark.slow
 def test_a_quick_share_ends_in_results_or_outcomes():
     # beyond those that the documentation counts: five designs at four points each
     check(solved(10_000_000 + 30 * design + point for design in range(5) for point in (0, 3, 4, 7)))

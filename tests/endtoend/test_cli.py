@@ -343,6 +343,7 @@ def test_version_and_help(started):
     assert "talbot-2012" in started("--help").stdout
 
 
+@pytest.mark.slow
 def test_mesh_prints_and_draws(epicyclic, tmp_path):
     coarse = ("--set", "numerics.mesh_positions=5", "--set", "numerics.contact_segments=5")
     done = epicyclic("mesh", "talbot-2012", *coarse, "--plot", str(tmp_path / "teeth.png"))

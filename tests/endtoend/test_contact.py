@@ -46,6 +46,7 @@ def test_contact_by_options_prints_films_and_friction(epicyclic):
         assert words in done.stdout, words
 
 
+@pytest.mark.slow
 def test_contact_by_file_gives_json_and_a_figure(epicyclic, tmp_path):
     file, figure = tmp_path / "contact.toml", tmp_path / "contact.png"
     file.write_text(FILE, encoding="utf-8")

@@ -451,6 +451,7 @@ def test_the_command_on_a_map(data, map_file, tmp_path, epicyclic):
     assert len(stored["rows"]) == len(rows)
 
 
+@pytest.mark.slow
 def test_the_command_on_a_case_keeps_its_map(tmp_path, epicyclic):
     (tmp_path / "cycle.csv").write_text("share,speed [rpm],torque [Nm]\n1,100,50\n2,3000,-200\n")
     changes = [word for key in POCKETS for word in ("--set", f"{key}=false")]

@@ -67,6 +67,7 @@ def slow(*arguments):
     return pytest.param(arguments, marks=pytest.mark.slow, id=arguments[0])
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 @pytest.mark.parametrize(
     "arguments",

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
 
+
+@pytest.mark.slow
 def test_pockets_prints_power_and_draws_the_mesh(epicyclic, tmp_path):
     done = epicyclic(
         "pockets", "talbot-2012-pair", "--set", "numerics.pocket_steps=8",

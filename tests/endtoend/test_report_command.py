@@ -9,6 +9,7 @@ import pytest
 MESH = ("--set", "operation.torque=100 N*m", "--set", "losses.mesh_pocketing.include=false")
 
 
+@pytest.mark.slow
 def test_a_result_is_stored_shown_and_drawn(epicyclic, tmp_path):
     file, folder = "result.nc", tmp_path / "elsewhere"
     run = epicyclic("run", "talbot-2012-pair", *MESH, "--save", file, "--json", "-")

@@ -468,6 +468,7 @@ def test_what_is_not_for_shards_of_a_cycle_is_told(
     assert [file.name for file in tmp_path.iterdir()] == ["cycle.csv"]
 
 
+@pytest.mark.slow
 def test_a_calibration_and_a_duty_cycle_go_on(call, cluster, tmp_path):
     case = ep.load_case("talbot-2012-pair").updated({"losses.mesh_pocketing.include": False})
     lines = ["speed [rpm],torque [N*m],temperature [degC],loss [W]"]

@@ -62,6 +62,7 @@ def test_given_efficiencies_end_in_one_clear_error(epicyclic, command):
     assert "given efficiencies only" in done.stderr
 
 
+@pytest.mark.slow
 def test_meshes_of_a_train_are_drawn_one_by_one(epicyclic, tmp_path):
     done = epicyclic("mesh", "train-eaxle", *SMALL, "--plot", "m.png")
     assert done.returncode == 0, done.stderr

@@ -26,6 +26,7 @@ def test_it_prints_writes_and_draws(epicyclic, tmp_path):
     assert (tmp_path / "warm.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_a_cycle_and_another_start(epicyclic, tmp_path):
     rows = "time [s],speed [rpm],torque [N*m]\n0,0,0\n60,2000,60\n240,2000,60\n300,500,-30\n"
     (tmp_path / "cycle.csv").write_text(rows, encoding="utf-8")

@@ -249,6 +249,7 @@ def test_signs_of_torque_and_speed_do_not_matter(talbot, changes):
     assert ep.solve(positive).losses == pytest.approx(losses, rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.slow
 @given(changes=PLANETARY, count=st.integers(2, 6))
 def test_planets_at_the_same_branch_torque_lose_the_same(talbot, changes, count):
     torque = float(changes["operation.torque"].split()[0])

@@ -88,13 +88,12 @@ def test_rules_name_every_package():
     assert sorted(listed.split()) == sorted(packages)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "gallery",
     [
         pytest.param("plot_gallery=0", id="without its gallery"),
-        pytest.param(
-            "sphinx_gallery_conf.run_stale_examples=1", id="gallery", marks=pytest.mark.slow
-        ),
+        pytest.param("sphinx_gallery_conf.run_stale_examples=1", id="gallery"),
     ],
 )
 def test_documentation_builds_without_warnings(tmp_path, gallery):

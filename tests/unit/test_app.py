@@ -680,6 +680,7 @@ def test_a_saved_case_is_the_same_case(name, tmp_path):
 # --- the worker -----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_worker_tells_progress_and_errors_and_can_be_ended():
     told = []
 

@@ -309,6 +309,7 @@ def calibration(case):
     return ep.compare_measured(case, table, fit=KEYS)
 
 
+@pytest.mark.slow
 def test_bands_of_a_calibrated_case_follow_from_the_covariance(calibration):
     """With all else exact the band is that of the linear model."""
     calibrated = calibration.calibrated_case

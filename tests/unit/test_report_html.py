@@ -108,6 +108,7 @@ def test_a_stored_file_gives_the_same_page(talbot_record, page, tmp_path):
     assert ep.report_html(ep.open_result(tmp_path / "result.nc")) == page
 
 
+@pytest.mark.slow
 def test_a_stored_map_gives_the_same_page(pair_map, map_page, tmp_path):
     ep.write_map(pair_map, tmp_path / "map.nc")
     assert ep.report_html(ep.open_result(tmp_path / "map.nc")) == map_page

@@ -94,6 +94,7 @@ def test_pictures_of_a_result_have_the_size_that_is_asked_for(result):
         result.plot("colours")
 
 
+@pytest.mark.slow
 def test_files_of_a_result(result, tmp_path):
     result.save(tmp_path / "kept.nc")
     assert ep.open_result(tmp_path / "kept.nc").result.total == result.total

@@ -167,6 +167,7 @@ for name, make in files.items():
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="each file is read in a process of its own")
 def test_hostile_files_end_in_time_and_memory(tmp_path):
     """Within 5 s of processor time and 500 MB, libraries included."""

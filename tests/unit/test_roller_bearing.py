@@ -263,6 +263,7 @@ def test_roller_under_the_load_is_not_skewed_by_the_mesh_moment():
 # --- robustness -----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("load", [(9804.0, 0.0, 0.0, 55.3), (3000.0, -2000.0, 10.0, 25.0)])
 def test_solution_does_not_depend_on_the_start(load):
     half_width = TALBOT.half_width

@@ -37,6 +37,7 @@ def solve(
     )
 
 
+@pytest.mark.slow
 def test_rigid_teeth_with_elastic_contact_load_all_lines_evenly():
     length = np.array([[1e-3] * 5, [2e-3] * 5, [0.0] * 5])
     forces, _, _, iterations = solve(9000.0, np.zeros((3, 5, 5)), length, 2e-11, 3e-12)

@@ -194,6 +194,7 @@ def test_slow_flow_is_incompressible(pair, model, beta):
     assert flow.power == pytest.approx(incompressible.power, rel=0.012)
 
 
+@pytest.mark.slow
 def test_slow_oil_is_incompressible_and_fast_oil_cavitates(pair):
     slow = solve(pair(0.0), 500.0, 1.0)
     exact = solve(pair(0.0), 500.0, 1.0, model="incompressible")
@@ -363,6 +364,7 @@ def box_mesh(module, beta, backlash, teeth, internal, width):
 TRACES_OF_AIR = st.floats(-6.0, -1.0).map(lambda power: 1 - 10**power)
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(
     rpm=st.floats(math.log(10.0), math.log(20000.0)),

@@ -116,6 +116,7 @@ def test_bands_hold_the_truth_as_often_as_they_say():
     assert 0.93 <= held / 1000 <= 0.97
 
 
+@pytest.mark.slow
 def test_small_uncertainties_add_up_as_in_the_gum(case):
     """Linear limit: u_c from contributions of single inputs, to 1 %."""
     small = {

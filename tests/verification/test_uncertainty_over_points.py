@@ -134,6 +134,7 @@ def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path)
     assert "95 % band of the total loss" not in report_html(plain_map)
 
 
+@pytest.mark.slow
 def test_energies_are_sums_of_the_same_samples_at_all_points(case):
     cycle = {name: [*column[:2], column[3]] for name, column in CYCLE.items()}
     over_cycle = ep.uncertainty(case, cycle, samples=16, jobs=1)
@@ -271,6 +272,7 @@ def test_a_key_without_a_distribution_at_some_points_is_told(case):
     assert (found["high"] > found["low"]).sel(result="total").all()
 
 
+@pytest.mark.slow
 def test_what_cannot_be_sampled_is_told(case, plain_map):
     for source, options, message in (
         (case, {"cycle": CYCLE, "temperature": ["40 degC", "50 degC"]}, "must be a single value"),

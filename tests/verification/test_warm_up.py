@@ -220,6 +220,7 @@ def test_a_short_time_is_told_though_it_would_run_away():
     assert float(data["energy_lost"][-1]) > 0
 
 
+@pytest.mark.slow
 def test_light_load_of_a_cycle_is_resolved():
     """Torques far below the largest of the cycle, near where rolling loss rises like a root."""
     case = ep.load_case("talbot-2012-pair").updated({
