@@ -2,55 +2,133 @@
 
     python scripts/update_scoreboard.py
 
-Takes some minutes.
+Takes some ten minutes.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
+from epicyclic.oil.oil import LIMITING_TRACTION as LIMITS
+from epicyclic.schema.read import plain
 from epicyclic.show.plots.style import figure_bytes
 from epicyclic.units import percent
 from epicyclic.validation.pages import score_markdown
 from epicyclic.validation.plots import scores_figure
-from epicyclic.validation.scoreboard import DEFAULTS, Score, read_sets, scoreboard
+from epicyclic.validation.scoreboard import (
+    DEFAULTS,
+    MeasuredSet,
+    Score,
+    model_factor,
+    read_sets,
+    scoreboard,
+    scored,
+)
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, PICTURE = DOCS / "validation.md", DOCS / "_static" / "measured.svg"
+LIMITING_TRACTION = "limiting traction"
+RANGES: dict[str, tuple[float, float]] = {
+    "models.boundary_friction": (0.065, 0.08),  # Arana et al. (2019), with and without additives.
+    "models.hurst_exponent": (0.5, 0.8),  # Estimate: ground steel.
+    "models.running_in_factor": (0.5, 0.8),  # Estimate.
+    LIMITING_TRACTION: (0.9, 1.1),  # Times that of the oil; estimate.
+}
+"""Ends of what parameters of mixed lubrication may be. [1]"""
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of Markdown."""
+    lines = [head, ("---",) * len(head), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
 def matrix(head: str, scores: Sequence[Score]) -> str:
     """Mean errors, a row for each model and a column for each set."""
     names = list(dict.fromkeys(score.set.name for score in scores))
     errors = {(score.run, score.set.name): score.mean_error for score in scores}
-    rows = [(head, *names), ("---",) * (len(names) + 1)]
-    for run in dict.fromkeys(score.run for score in scores):
-        found = (errors.get((run, name)) for name in names)
-        rows.append((run, *("-" if it is None else percent(it, 0) for it in found)))
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+    runs = dict.fromkeys(score.run for score in scores)
+    found = ((run, [errors.get((run, name)) for name in names]) for run in runs)
+    rows = ((run, *("-" if it is None else percent(it, 0) for it in row)) for run, row in found)
+    return table((head, *names), rows)
+
+
+def sensitivity(scores: Sequence[Score]) -> str:
+    """By how many points the bias of each set moves at both ends of each parameter."""
+    head = ("parameter", "from", "to", *(score.set.name for score in scores))
+    return table(head, (row for name in RANGES for row in _moves(name, scores)))
+
+
+def _moves(name: str, scores: Sequence[Score]) -> Iterator[Sequence[str]]:
+    cells = []
+    for score in scores:
+        own = score.set
+        if name == "models.running_in_factor" and own.case.models.running_in == "as-made":
+            cells.append("-")
+            continue
+        biases = [scored(own, name, _changed(own, name, end)).bias for end in RANGES[name]]
+        cells.append(" / ".join(f"{100 * (it - score.bias):+.0f}" for it in biases))
+    key = f"`{name}`" if "." in name else f"{name}, times"
+    yield key, *(f"{end:g}" for end in RANGES[name]), *cells
+
+
+def _changed(own: MeasuredSet, name: str, value: float) -> dict[str, Any]:
+    if name != LIMITING_TRACTION:
+        return {name: value}
+    oil = plain(own.case.lubricant.oil)
+    stated = own.case.lubricant.oil.limiting_traction or LIMITS[own.case.lubricant.oil.kind]
+    changed = {"value": value * stated.value, "source": stated.source}
+    return {"lubricant.oil": {**oil, "limiting_traction": changed}}
+
+
+def factors(scores: Sequence[Score], kind: str) -> Iterator[Sequence[str]]:
+    """For each set the factor of its model that the other sets give, and what lies inside it."""
+    for score in scores:
+        own, others = score.set, [it for it in scores if it is not score]
+        factor = model_factor(others)
+        given = plain(own.case.given()).get("uncertainty", {})
+        uncertain = given | {f"model_form.{kind}": {"lognormal_factor": factor}}
+        again = scored(own, "", {"uncertainty": uncertain}, banded=True)
+        yield (
+            own.name, kind, f"{model_factor([score]):.2f}", f"{factor:.2f}",
+            f"{again.inside} of {len(own.points)}",
+        )  # fmt: skip
+
+
+def of_defaults(scores: Sequence[Score]) -> tuple[str, str]:
+    """Tables of parameters, and of factors of models."""
+    bearings = [it for it in scores if hasattr(it.set.case, "bearings")]
+    gears = [it for it in scores if it not in bearings]
+    rows: list[Sequence[str]] = []
+    for kind, own in (("sliding", gears), ("shaft-bearings", bearings)):
+        rows += factors(own, kind)
+        rows.append(("none", kind, "", f"{model_factor(own):.2f}", ""))
+    head = ("set left out", "model", "its own factor", "factor of the others", "inside with it")
+    return sensitivity(gears), table(head, rows)
 
 
 def main() -> None:
-    write(scoreboard(read_sets(), others=True))
-
-
-def write(scores: Sequence[Score]) -> None:
     """The tables of all scores; by model those of points alone, slopes are formed of many."""
+    parameters, left_out = of_defaults(scoreboard(read_sets()))
+    scores = scoreboard(read_sets(), others=True)
     ours = [score for score in scores if score.run in (DEFAULTS, *score.set.runs)]
     models = [it for it in scores if it not in ours or it.run == DEFAULTS]
     bearings = [score for score in models if hasattr(score.set.case, "bearings")]
     gears = [it for it in models if it not in bearings and not it.set.tests]
     text = PAGE.read_text(encoding="utf-8")
-    for head, table in (
+    for head, content in (
         ("measured set", score_markdown(ours)),
         ("friction model", matrix("friction model", gears)),
         ("bearing model", matrix("bearing model", bearings)),
+        ("parameter", parameters),
+        ("set left out", left_out),
     ):
         pattern = re.compile(rf"^\| {head} \|.*?\n\n", re.DOTALL | re.MULTILINE)
         assert pattern.search(text), head
-        text = pattern.sub(f"{table}\n\n", text, count=1)
+        text = pattern.sub(f"{content}\n\n", text, count=1)
     PAGE.write_text(text, encoding="utf-8")
     PICTURE.write_bytes(figure_bytes(scores_figure(scores), "svg"))
 

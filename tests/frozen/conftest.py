@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from epicyclic.build import models
 from epicyclic.case.tables import uncertainty
+from epicyclic.study.bands import inputs
+
+BOUNDARY = uncertainty.DistributionTable(uniform=(0.08, 0.13))
 
 
 @pytest.fixture(autouse=True)
@@ -13,3 +18,13 @@ def former_models(monkeypatch):
     """Cases as with the preset talbot-2012, without a key for it."""
     monkeypatch.setattr(models, "preset_of", lambda models: "talbot-2012")
     monkeypatch.setattr(uncertainty, "has_rough_flanks", lambda models: False)
+
+
+@pytest.fixture(autouse=True)
+def former_boundary_friction(monkeypatch):
+    """What was assumed of it then did not lie about the value that a case states."""
+    assumed = tuple(
+        replace(it, table=BOUNDARY) if it.holds_for("models.boundary_friction") else it
+        for it in inputs._assumptions()
+    )
+    monkeypatch.setattr(inputs, "_assumptions", lambda: assumed)

@@ -13,14 +13,18 @@ from click.testing import CliRunner
 
 import epicyclic as ep
 from epicyclic.cli.main import cli
+from epicyclic.library import uncertainty_table
+from epicyclic.losses.shaft_bearing import TAPERED_ERRORS
 from epicyclic.study.sweeps.runner import Runner
 from epicyclic.validation import pages, plots
 from epicyclic.validation.scoreboard import (
     DEFAULTS,
     GRADES,
+    model_factor,
     model_runs,
     read_sets,
     scoreboard,
+    scored,
     to_json,
 )
 
@@ -80,6 +84,28 @@ def test_slopes_and_bands_of_all_sets(sets, scores):
     everything = [*scores.values(), *slopes]
     assert sum(score.inside for score in everything) >= INSIDE[0]
     assert sum(len(score.set.points) for score in everything) == INSIDE[1]
+
+
+@pytest.mark.slow
+def test_errors_that_notes_name_are_those_of_the_measured_bearings(sets):
+    tapered = [own for name, own in sets.items() if name.startswith("tapered")]
+    for model, error in TAPERED_ERRORS.items():
+        found = [
+            scored(own, model, {f"bearings.{key}.model": model for key in own.case.bearings})
+            for own in tapered
+        ]
+        assert max(score.mean_error for score in found) == pytest.approx(error, abs=0.01)
+
+
+@pytest.mark.slow
+def test_the_model_form_factors_are_those_of_the_residuals(sets, scores):
+    """Shipped are the factors that all measured sets give together, to two digits."""
+    shipped = {it["kind"]: it["lognormal_factor"] for it in uncertainty_table()["model_form"]}
+    bearings = [it for it in scores.values() if hasattr(it.set.case, "bearings")]
+    gears = [it for it in scores.values() if it not in bearings]
+    gears += [scored(own, "", {}) for name, own in sets.items() if name not in QUICK]
+    assert shipped["sliding"] == pytest.approx(model_factor(gears), abs=0.01)
+    assert shipped["shaft-bearings"] == pytest.approx(model_factor(bearings), abs=0.01)
 
 
 def test_a_score_follows_from_its_points(scores):
@@ -194,16 +220,16 @@ def test_sets_of_others_are_read(folder):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("efficiency [%]", "noise [dB]", "nothing that can be compared"),
+        ("efficiency [%]", "noise [dB]", "but cannot be compared"),
         ("efficiency [%]", "loss [%]", "columns = loss [%]"),
         ("[1000, 100, 99.2]", "[1000, 99.2]", "has 2 values for 3 columns"),
         ("99.2", '"99.2"', "has text for what was measured"),
         ("efficiency [%]", "mean_friction", "loss_factor"),
         ("efficiency [%]", "branch_slope [%]", "belongs to branch_slope"),
-        ('"load_dependent"', '"sliding"', "is no loss of the case: mesh_sliding"),
+        ('"load_dependent"', '"sliding"', "is not a loss of the case; its losses are mesh_sliding"),
         ('grade = "P"', 'grade = "X"', "grade"),
         ("speed [rpm]", "sped [rpm]", "sped"),
-        ("[[set]]", "[[set", "is no TOML"),
+        ("[[set]]", "[[set", "is not valid TOML"),
         ('read = "as printed"', 'read = "as printed"\ncolour = 1', "colour"),
     ],
 )

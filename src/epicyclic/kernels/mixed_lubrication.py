@@ -16,7 +16,7 @@ LARGE = 20.0  # From here on arsinh(exp(x)) is x + ln 2 to the last digit. [1]
 OFFSET = 0.7  # Of ASTM D341. [mm^2/s]
 LEAST_VISCOSITY = 0.01  # That no heat goes below: thinner than any oil. [mm^2/s]
 STEPS = 100
-CLOSE = 1e-12  # Residual over the stress without heat at which the stress counts as found. [1]
+SMALL_STEP = 1e-6  # Over the stress: what Newton's method leaves then is its square. [1]
 
 
 @kernel
@@ -67,26 +67,25 @@ def film_stress(
         As for `eyring_stress`.
     """
     found = np.zeros(pressure.size)
-    ratio = 1.0  # stress over that without heat at the last point, where the next begins
+    coefficient = limit  # stress over pressure at the last point, where the next begins
     for i in range(pressure.size):
         if rate[i] <= 0.0:
             continue
         base, p = oil[0] + warm[i], pressure[i]
         log_rate = math.log(rate[i] * oil[4] * oil[5] / limit)
-        full = eyring_stress(base, p, log_rate, limit, oil)[0]
-        low, high, stress = 0.0, full, ratio * full
+        low, high, stress = 0.0, math.inf, coefficient * p
         for _ in range(STEPS):  # Newton, bisection where that leaves what is known
             hot, slope = eyring_stress(base + heating[i] * stress, p, log_rate, limit, oil)
-            left = hot - stress
-            if abs(left) <= CLOSE * full:
-                break
-            if left > 0.0:
+            step = (hot - stress) / (1.0 - heating[i] * slope)
+            if hot > stress:
                 low = stress
             else:
                 high = stress
-            stress -= left / (heating[i] * slope - 1.0)
+            stress += step
+            if abs(step) <= SMALL_STEP * stress:
+                break
             if not low <= stress <= high:
                 stress = (low + high) / 2.0
         found[i] = stress
-        ratio = stress / full
+        coefficient = stress / p
     return found

@@ -60,11 +60,12 @@ def acting_roughness(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
     A self-affine profile has an rms height that grows with the length L that is looked at as L^H;
     what is longer than the contact is wide leaves both flanks parallel and breaks no film.
     """
-    width = 2 * contact.hertz_half_width
+    exponent = surfaces.hurst_exponent
+    grown = (2 * contact.hertz_half_width) ** exponent
     heights = []
     for roughness in contact.roughness:
         cutoff = usual_cutoff(roughness) if surfaces.cutoff is None else surfaces.cutoff
-        heights.append(roughness * np.minimum(width / cutoff, 1.0) ** surfaces.hurst_exponent)
+        heights.append(roughness * np.minimum(grown / cutoff**exponent, 1.0))
     sigma: FloatArray = surfaces.running_in * np.hypot(*heights)
     return sigma
 

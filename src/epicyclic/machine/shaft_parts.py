@@ -28,7 +28,16 @@ from epicyclic.machine.element import (
     State,
     figure,
 )
-from epicyclic.units import METRE_PER_SECOND, NEWTON, NEWTON_METRE, NUMBER, RPM, WATT, format_number
+from epicyclic.units import (
+    METRE_PER_SECOND,
+    NEWTON,
+    NEWTON_METRE,
+    NUMBER,
+    RPM,
+    WATT,
+    format_number,
+    percent,
+)
 
 # A loss between two bodies that the user gives as a table: clutch, brake, pump or other drag.
 
@@ -344,11 +353,13 @@ class ShaftBearing:
                 f"of {format_number(least, 3)} N (SKF, second hand). The rolling elements may "
                 "slip; the loss is that of the actual load without slip."
             )
-        if self.bearing.type == "tapered" and self.model.name in TAPERED_ERRORS:
+        best, error = TAPERED_ERRORS["zhou-hoeprich"], TAPERED_ERRORS.get(self.model.name, 0.0)
+        if self.bearing.type == "tapered" and error > best:
             notes.append(
-                f"{self.key}: {WATT.text(watts, 3)} after {self.model.name}, which is off by "
-                f"{TAPERED_ERRORS[self.model.name]} in the mean of two sets of measured tapered "
-                "bearings; with its width given, zhou-hoeprich is off by 10 and 14 %."
+                f"{self.key}: {WATT.text(watts, 3)} after {self.model.name}, which is off by up to "
+                f"{percent(error, 0)} in the mean of a set of measured "
+                "tapered bearings; give the width of the bearing for zhou-hoeprich, which is off "
+                f"by up to {percent(best, 0)}."
             )
         skf = self.model.skf if isinstance(self.model, TaperedModel) else self.model
         if isinstance(skf, SkfModel) and skf.drag_is_estimated:

@@ -97,7 +97,9 @@ LIMITING_TRACTION = {
 }
 """What an oil has that states none, by its kind."""
 BOUNDARY_FRICTION = {
-    "gear-oil": Traction(value=0.065, source=f"FZG gears in gear oils, {ARANA}"),
+    "gear-oil": Traction(
+        value=0.0675, source=f"middle of 0.065 to 0.07 of FZG gears in gear oils, {ARANA}"
+    ),
     "none": Traction(value=0.08, source=f"Robbe-Valloire, {ARANA}"),
 }
 """Friction of flanks that touch, by the level of additives. [1]"""

@@ -195,7 +195,7 @@ def _sets_of(path: Path) -> Iterator[MeasuredSet]:
             for it in error.errors(include_url=False)
         ]) from None  # fmt: skip
     except tomllib.TOMLDecodeError as error:
-        raise one_problem("", "", f"is no TOML: {error}.", "Correct it.") from None
+        raise one_problem("", "", f"is not valid TOML: {error}.", "Correct it.") from None
     given = file.case
     beside = path.parent / given if isinstance(given, str) else path
     case = read_case(beside if isinstance(given, str) and beside.is_file() else given)
@@ -230,7 +230,7 @@ def _problems(table: _SetTable, quantity: str, unit: str, case: Case) -> Iterato
     """What cannot be in a set, beside keys of its case."""
     key = f"set {table.name}"
     if quantity not in _QUANTITIES:
-        allowed = "is the last column, and nothing that can be compared."
+        allowed = "is the last column but cannot be compared."
         yield Problem(key, quantity, allowed, f"End with one of {', '.join(_QUANTITIES)}.")
         return
     try:
@@ -240,8 +240,8 @@ def _problems(table: _SetTable, quantity: str, unit: str, case: Case) -> Iterato
     known = loss_names(case)
     for part in parts_of(table.component):
         if part not in known:
-            allowed = f"is no loss of the case: {', '.join(known)} are."
-            yield Problem(f"{key}: component", part, allowed, "Choose of these.")
+            allowed = f"is not a loss of the case; its losses are {', '.join(known)}."
+            yield Problem(f"{key}: component", part, allowed, "Choose one of these.")
     ends = [place for place, head in enumerate(table.columns[:-1]) if _column(head)[0] in _ENDS]
     for number, row in enumerate(table.points, 1):
         if len(row) != len(table.columns):
@@ -371,21 +371,28 @@ def scoreboard(
     asked: list[tuple[MeasuredSet, str, Keys]] = [(own, DEFAULTS, {}) for own in sets]
     if others:
         asked += [(own, *run) for own in sets for run in own.runs.items()]
-        asked += [(own, *run) for own in sets for run in model_runs(own.case).items()]
+        points = [own for own in sets if not own.tests]  # slopes are formed of too many
+        asked += [(own, *run) for own in points for run in model_runs(own.case).items()]
     found = []
     for number, (own, name, keys) in enumerate(asked):
         progress(number, len(asked))
         is_model = name not in (DEFAULTS, *own.runs)
-        try:
-            case = own.case.updated(keys) if keys else own.case
-        except InputError:
-            if is_model:
-                continue  # it is not for this case
-            raise
         banded = name == DEFAULTS or not (is_model or own.tests)  # those of many tests take long
-        found.append(Score(own, name, *_computed(own, case, runner, banded=banded)))
+        try:
+            found.append(scored(own, name, keys, runner, banded=banded))
+        except InputError:
+            if not is_model:
+                raise  # else the model is not for this case
     progress(len(asked), len(asked))
     return tuple(sorted(found, key=lambda score: sets.index(score.set)))
+
+
+def scored(
+    own: MeasuredSet, run: str, keys: Keys, runner: Runner = HERE, *, banded: bool = False
+) -> Score:
+    """One set with changed keys; `run` is what that is called."""
+    case = own.case.updated(keys) if keys else own.case
+    return Score(own, run, *_computed(own, case, runner, banded=banded))
 
 
 def _computed(
@@ -462,6 +469,12 @@ def model_runs(case: Case) -> dict[str, Keys]:
     rolling = [term for term in type(case.losses).model_fields if term.endswith("_rolling")]
     without = {f"losses.{term}.include": False for term in rolling}
     return runs | {"schlenk, no rolling": {"models.friction": "schlenk", **without}}
+
+
+def model_factor(scores: Sequence[Score]) -> float:
+    """Lognormal factor of a model: exp of the rms of ln(computed/measured), all sets alike."""
+    squares = [np.nanmean(np.log1p(score.errors) ** 2) for score in scores]
+    return float(np.exp(np.sqrt(np.mean(squares))))
 
 
 def in_band(scores: Sequence[Score]) -> str:
