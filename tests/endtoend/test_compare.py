@@ -109,7 +109,7 @@ def test_a_fit_tells_how_it_gets_on_and_carries_its_uncertainty(call, tmp_path, 
     done = call(*arguments)
     assert done.returncode == 0, done.stderr
     assert re.search(
-        r"^fit: off by .* of the uncertainties, rms, at surroundings", done.stderr, re.M
+        r"^fit: error of .* of the uncertainties, rms, at surroundings", done.stderr, re.M
     )
     assert re.search(r"^ +4 +3700 +0 +40 ", done.stdout, re.M)
     assert "profiles of the likelihood" in done.stdout
