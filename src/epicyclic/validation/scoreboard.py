@@ -309,11 +309,9 @@ class Score:
         points, found = self.set.points, []
         keys = [key for key in points[0] if key.endswith(_ROLES[role])]
         values = _numbers(self.set.case, points, keys[0]) if keys else []
-        others = [
-            str({key: it for key, it in point.items() if key not in keys}) for point in points
-        ]
+        others = [tuple(it for key, it in point.items() if key not in keys) for point in points]
         for other in dict.fromkeys(others) if keys else ():
-            alike = [number for number, text in enumerate(others) if text == other]
+            alike = [number for number, it in enumerate(others) if it == other]
             low, high = (pick(alike, key=values.__getitem__) for pick in (min, max))
             if values[low] < values[high]:
                 found.append(self.errors[high] - self.errors[low])
