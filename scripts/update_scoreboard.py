@@ -78,10 +78,11 @@ def _moves(name: str, scores: Sequence[Score]) -> Iterator[Sequence[str]]:
 def _changed(own: MeasuredSet, name: str, value: float) -> dict[str, Any]:
     if name != LIMITING_TRACTION:
         return {name: value}
-    oil = plain(own.case.lubricant.oil)
-    stated = own.case.lubricant.oil.limiting_traction or LIMITS[own.case.lubricant.oil.kind]
+    assert own.case.lubricant is not None
+    oil = own.case.lubricant.oil
+    stated = oil.limiting_traction or LIMITS[oil.kind]
     changed = {"value": value * stated.value, "source": stated.source}
-    return {"lubricant.oil": {**oil, "limiting_traction": changed}}
+    return {"lubricant.oil": {**plain(oil), "limiting_traction": changed}}
 
 
 def factors(scores: Sequence[Score], kind: str) -> Iterator[Sequence[str]]:
