@@ -14,10 +14,9 @@ __all__ = ["TEXTS", "changed_words", "differing", "frozen_texts", "improved", "w
 
 TEXTS = Path(__file__).with_name("texts.json.xz")
 IMPROVED = Path(__file__).with_name("improved_texts.toml")
-PAIRS = tuple(
-    (pair["old"], pair["new"])
-    for pair in tomllib.loads(IMPROVED.read_text(encoding="utf-8")).get("text", [])
-)
+_TABLES = tomllib.loads(IMPROVED.read_text(encoding="utf-8"))
+PAIRS = tuple((pair["old"], pair["new"]) for pair in _TABLES["text"])
+PATTERNS = tuple((re.compile(it["old"]), it["new"]) for it in _TABLES["pattern"])
 
 
 def frozen_texts() -> dict[str, Any]:
@@ -42,6 +41,8 @@ def improved(content: Any) -> Any:
     """The words of a frozen text, or of lists and tables of them, as they read now."""
     if isinstance(content, str):
         content = words(content)
+        for pattern, new in PATTERNS:
+            content = pattern.sub(new, content)
         for old, new in PAIRS:
             content = content.replace(old, new)
         return content
