@@ -10,12 +10,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-__all__ = ["TEXTS", "changed_words", "differing", "frozen_texts", "improved", "words"]
+__all__ = ["TEXTS", "changed_words", "differing", "frozen_texts", "improved", "kept", "words"]
 
 TEXTS = Path(__file__).with_name("texts.json.xz")
 IMPROVED = Path(__file__).with_name("improved_texts.toml")
 _TABLES = tomllib.loads(IMPROVED.read_text(encoding="utf-8"))
 PAIRS = tuple((pair["old"], pair["new"]) for pair in _TABLES["text"])
+ADDED = tuple(re.compile(it["pattern"]) for it in _TABLES["added"])
 PATTERNS = tuple((re.compile(it["old"]), it["new"]) for it in _TABLES["pattern"])
 
 
@@ -51,9 +52,21 @@ def improved(content: Any) -> Any:
     return [improved(item) for item in content] if isinstance(content, list) else content
 
 
+def kept(content: Any) -> Any:
+    """The words of a text, or of lists and tables of them, without what was added since."""
+    if isinstance(content, dict):
+        return {key: kept(item) for key, item in content.items()}
+    if isinstance(content, list):
+        return [kept(item) for item in content]
+    content = words(content)
+    for pattern in ADDED if isinstance(content, str) else ():
+        content = pattern.sub("", content)
+    return content
+
+
 def differing(frozen: Any, found: Any) -> Iterator[tuple[str, str]]:
     """Pairs of texts in the same place that differ, beside the improved ones."""
-    yield from _differing(improved(frozen), words(found))
+    yield from _differing(improved(frozen), kept(found))
 
 
 def _differing(frozen: Any, found: Any) -> Iterator[tuple[str, str]]:
