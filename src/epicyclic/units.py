@@ -224,7 +224,19 @@ def _convert(number: float, unit: str, si: str) -> float:
 @lru_cache(maxsize=4096)
 def _parsed_text(quantity: Quantity, text: str) -> float:
     """A text that `quantity` reads: the cases of a sweep have most of theirs in common."""
-    return quantity._checked(quantity._converted(*quantity._split_text(text)))
+    if len(text) > _LONGEST_TEXT:
+        raise quantity._error("is not a number with a unit", quantity._form())
+    text = text.strip().translate(_PLAIN_SIGNS)
+    comma = _DECIMAL_COMMA.fullmatch(text)
+    if comma is not None:
+        remedy = f"write {comma['whole']}.{comma['digits']}, with a decimal point"
+        raise quantity._error("has a decimal comma", remedy)
+    match = _NUMBER_AND_UNIT.fullmatch(text)
+    if match is None:
+        raise quantity._error("is not a number with a unit", quantity._form())
+    if not match["unit"]:
+        raise quantity._error("has no unit", f'write "{text} {quantity.display}"')
+    return quantity._checked(quantity._converted(float(match["number"]), match["unit"]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,21 +326,6 @@ class Quantity:
     def describe(self) -> str:
         """What is allowed, in words: ``"a length > 0 mm"``."""
         return describe_range(self.noun, self.low, self.high, self.display, open_low=self.open_low)
-
-    def _split_text(self, text: str) -> tuple[float, str]:
-        if len(text) > _LONGEST_TEXT:
-            raise self._error("is not a number with a unit", self._form())
-        text = text.strip().translate(_PLAIN_SIGNS)
-        comma = _DECIMAL_COMMA.fullmatch(text)
-        if comma is not None:
-            remedy = f"write {comma['whole']}.{comma['digits']}, with a decimal point"
-            raise self._error("has a decimal comma", remedy)
-        match = _NUMBER_AND_UNIT.fullmatch(text)
-        if match is None:
-            raise self._error("is not a number with a unit", self._form())
-        if not match["unit"]:
-            raise self._error("has no unit", f'write "{text} {self.display}"')
-        return float(match["number"]), match["unit"]
 
     def _form(self, number: float | None = None) -> str:
         """How to write it; with the user's `number` if that is short enough to repeat."""

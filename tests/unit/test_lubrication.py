@@ -12,9 +12,9 @@ from click.testing import CliRunner
 import asymmetric
 import epicyclic as ep
 import listed_trains
+from epicyclic import library
 from epicyclic.cli.main import cli
 from epicyclic.gears.gearing import outside_radius
-from epicyclic.library import lubrication_methods
 from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
 from epicyclic.oil.oil import mixture_state, oil_state
 from epicyclic.study.bands.inputs import uncertain_values
@@ -72,7 +72,7 @@ def sump(case, volume=1.9e-3):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_share_and_band_of_each_method(method):
-    known = lubrication_methods()[method]
+    known = library.named("lubrication")[method]
     case = pair(METHODS[method] | {"method": method, "oil_share_factor": 0.9})
     supply = ep.solve(case).lubrication[""]
     middle = 0.9 * known["oil_share"]

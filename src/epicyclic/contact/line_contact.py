@@ -176,7 +176,7 @@ class LineContacts:
     @cached_property
     def film_ratio(self) -> FloatArray:
         """Lambda = h_min/sqrt(Rq1^2 + Rq2^2). Theory (C14). [1]"""
-        ratio: FloatArray = self.minimum_film / self.composite_roughness
+        ratio: FloatArray = self.minimum_film / self.flanks.composite_roughness
         return ratio
 
     def conditions(self) -> dict[str, Any]:

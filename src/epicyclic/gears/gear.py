@@ -129,23 +129,17 @@ class Gear:
         """Transverse tooth thickness, an arc, at `radius`. ISO 21771. Theory (G11). [m]"""
         return 2 * radius * self.half_angle_at(radius)
 
-    @property
-    def tip_involute_length(self) -> float:
-        """Radius of curvature of the involute at the tip circle, transverse. Theory (G12). [m]"""
-        return math.sqrt(max(0.0, self.tip_radius**2 - self.base_radius**2))
+    def roll_length_at(self, radius: float) -> float:
+        """Transverse radius of curvature of the involute at `radius`; 0 inside the base circle.
+
+        Theory (G12), (G42). [m]
+        """
+        return math.sqrt(max(0.0, radius**2 - self.base_radius**2))
 
     @property
     def tip_form_radius(self) -> float:
         """r_Fa, where the involute ends and the tip chamfer begins. ISO 21771. Theory (G41). [m]"""
         return self.tip_radius + (self.tip_chamfer if self.internal else -self.tip_chamfer)
-
-    @property
-    def tip_form_involute_length(self) -> float:
-        """Radius of curvature of the involute at the tip form circle, transverse. [m]
-
-        Theory (G42).
-        """
-        return math.sqrt(max(0.0, self.tip_form_radius**2 - self.base_radius**2))
 
     @property
     def tip_half_angle(self) -> float:

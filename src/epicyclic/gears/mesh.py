@@ -101,12 +101,13 @@ class Mesh:
 
         Theory (G17).
         """
-        return self.side * (self.line_of_action - self.gear2.tip_form_involute_length)
+        tip2 = self.gear2.roll_length_at(self.gear2.tip_form_radius)
+        return self.side * (self.line_of_action - tip2)
 
     @cached_property
     def path_end(self) -> float:
         """Radius of curvature of member 1 at its own tip form circle. Theory (G17). [m]"""
-        return self.gear1.tip_form_involute_length
+        return self.gear1.roll_length_at(self.gear1.tip_form_radius)
 
     @cached_property
     def pitch_point(self) -> float:
@@ -119,25 +120,18 @@ class Mesh:
         return min(self.gear1.face_width, self.gear2.face_width)
 
     @cached_property
-    def tip_contact_ratio1(self) -> float:
-        """epsilon_1: the path from the pitch point to the tip of member 1, in base pitches. [1]
+    def tip_contact_ratios(self) -> tuple[float, float]:
+        """epsilon_1 and epsilon_2: the paths from the pitch point to both tips, in base pitches.
 
-        Theory (G19).
+        Theory (G19). [1]
         """
-        return (self.path_end - self.pitch_point) / self.gear1.rack.transverse_base_pitch
-
-    @cached_property
-    def tip_contact_ratio2(self) -> float:
-        """epsilon_2: the path from the tip of member 2 to the pitch point, in base pitches. [1]
-
-        Theory (G19).
-        """
-        return (self.pitch_point - self.path_start) / self.gear1.rack.transverse_base_pitch
+        pitch, point = self.gear1.rack.transverse_base_pitch, self.pitch_point
+        return (self.path_end - point) / pitch, (point - self.path_start) / pitch
 
     @property
     def transverse_contact_ratio(self) -> float:
         """epsilon_alpha = epsilon_1 + epsilon_2. ISO 21771. Theory (G19). [1]"""
-        return self.tip_contact_ratio1 + self.tip_contact_ratio2
+        return sum(self.tip_contact_ratios)
 
     @cached_property
     def mean_contact_length(self) -> float:
@@ -171,28 +165,28 @@ class Mesh:
         return self.backlash * normal * math.cos(self.gear1.rack.base_helix_angle)
 
     @property
-    def tip_clearance1(self) -> float:
-        """Gap between the tip of member 1 and the root of member 2. Theory (G22). [m]"""
+    def tip_clearances(self) -> tuple[float, float]:
+        """Gaps between the tip of each member and the root of the other. Theory (G22). [m]"""
+        one, two, distance = self.gear1, self.gear2, self.center_distance
         if self.internal:
-            return self.gear2.root_radius - self.center_distance - self.gear1.tip_radius
-        return self.center_distance - self.gear1.tip_radius - self.gear2.root_radius
+            into2 = two.root_radius - distance - one.tip_radius
+            return into2, two.tip_radius - distance - one.root_radius
+        return (
+            distance - one.tip_radius - two.root_radius,
+            distance - two.tip_radius - one.root_radius,
+        )
 
     @property
-    def tip_clearance2(self) -> float:
-        """Gap between the tip of member 2 and the root of member 1. Theory (G22). [m]"""
-        if self.internal:
-            return self.gear2.tip_radius - self.center_distance - self.gear1.root_radius
-        return self.center_distance - self.gear2.tip_radius - self.gear1.root_radius
+    def inner_radii(self) -> tuple[float, float]:
+        """Radius on each member where contact with the tip of the other one ends.
 
-    @property
-    def radius1_at_start(self) -> float:
-        """Radius on member 1 where contact with the tip of member 2 begins. Theory (G23). [m]"""
-        return math.hypot(self.gear1.base_radius, self.path_start)
-
-    @property
-    def radius2_at_end(self) -> float:
-        """Radius on member 2 where contact with the tip of member 1 ends. Theory (G23). [m]"""
-        return math.hypot(self.gear2.base_radius, self.curvature2(self.path_end))
+        Theory (G23). [m]
+        """
+        end2 = self.curvature2(self.path_end)
+        return (
+            math.hypot(self.gear1.base_radius, self.path_start),
+            math.hypot(self.gear2.base_radius, end2),
+        )
 
     @property
     def tip_passage(self) -> float:

@@ -12,15 +12,13 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 __all__ = [
     "builtin_case",
     "case_files",
     "case_variants",
-    "finishes",
-    "lubrication_methods",
-    "materials",
+    "named",
     "oil_model_file",
     "oil_names",
     "oil_table",
@@ -61,19 +59,12 @@ def oil_model_file(name: str) -> Path | None:
 
 
 @cache
-def materials() -> Mapping[str, Mapping[str, Any]]:
-    """Built-in gear and bearing steels by name."""
-    return _read_only("materials.toml")
+def named(kind: Literal["materials", "finishes", "lubrication"]) -> Mapping[str, Mapping[str, Any]]:
+    """Built-in steels of gears and bearings, surface finishes, or shares of oil, by name.
 
-
-@cache
-def finishes() -> Mapping[str, Mapping[str, Any]]:
-    """Built-in surface finishes by name."""
-    return _read_only("finishes.toml")
-
-
-def _read_only(file: str) -> Mapping[str, Mapping[str, Any]]:
-    tables = _read(_ROOT.joinpath(file))
+    The shares are those around gears by how they are lubricated, and how well they are known.
+    """
+    tables = _read(_ROOT.joinpath(f"{kind}.toml"))
     return MappingProxyType({name: MappingProxyType(table) for name, table in tables.items()})
 
 
@@ -131,9 +122,3 @@ def builtin_case(name: str) -> dict[str, Any]:
 def uncertainty_table() -> dict[str, Any]:
     """What is assumed of values and models whose uncertainty a case does not state."""
     return _read(_ROOT.joinpath("uncertainty.toml"))
-
-
-@cache
-def lubrication_methods() -> Mapping[str, Mapping[str, Any]]:
-    """Share of oil around gears by how they are lubricated, and how well it is known."""
-    return _read_only("lubrication.toml")

@@ -149,11 +149,6 @@ class RollerBearing:
         return roller * race / (race - roller)
 
     @property
-    def composite_roughness(self) -> float:
-        """Composite roughness of roller and race, rms. [m]"""
-        return math.hypot(self.race_roughness, self.roller_roughness)
-
-    @property
     def slice_width(self) -> float:
         """[m]"""
         return self.roller_length / self.slices
@@ -373,7 +368,7 @@ def mixed_ehl_rolling_loss(
         held.dynamic_viscosity,
         held.pressure_viscosity,
         held.radius,
-        held_in_range(bearing.composite_roughness, _COMPOSITE),
+        held_in_range(contacts.flanks.composite_roughness, _COMPOSITE),
         bearing.equivalent_modulus,
     )
     local = bearing.slice_width * density * beyond_data(contacts, held)

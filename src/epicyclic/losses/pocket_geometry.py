@@ -161,7 +161,7 @@ def _flank(gear: Gear, tool: Tool | None) -> tuple[NDArray[np.complex128], Float
     base = gear.base_radius
     form = math.sqrt(max(0.0, outline.form_radius**2 - base**2))
     at_base = gear.thickness_half_angle + outward * involute(gear.rack.transverse_pressure_angle)
-    figures = np.array([base, at_base, form, gear.tip_form_involute_length, outward])
+    figures = np.array([base, at_base, form, gear.roll_length_at(gear.tip_form_radius), outward])
     return points, np.array([root, fillet, involute_end], dtype=np.float64), figures
 
 

@@ -155,7 +155,8 @@ def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRe
     for duty in duties:
         if duty.gears.models.pockets.include and duty.speed1 != 0:
             request = flow_request(duty, fluids)
-            if _stored_figures(duty.gears.models.pockets, request) is None and not _scales(request):
+            stored = _stored_figures(duty.gears.models.pockets, request)
+            if stored is None and not request[0].scales(*request[1:]):
                 yield request
 
 
@@ -179,7 +180,7 @@ def mesh_flows(
             continue
         request = flow_request(duty, fluids)
         figures = _stored_figures(settings, request)
-        if figures is None and not _scales(request):
+        if figures is None and not request[0].scales(*request[1:]):
             if request[0] in settings.tables:
                 figures = settings.tables[request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
@@ -201,14 +202,6 @@ def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
     mixture = fluids.mixed(oil_in_mesh(duty))
     speed = abs(duty.speed1) / (duty.gears.mesh.ratio if _exchanged(duty) else 1.0)
     return flow_family(duty), speed, mixture, fluids.pressure - lowest
-
-
-def _scales(request: FlowRequest) -> bool:
-    """Whether the flow is another one times density and powers of the speed."""
-    try:
-        return request[0].scales(FlowFamily.number(*request[1:]))
-    except ValueError:  # no tooth outline: the solution says so
-        return False
 
 
 def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:

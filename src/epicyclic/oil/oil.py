@@ -103,16 +103,15 @@ BOUNDARY_FRICTION = {
 """Friction of flanks that touch, by the level of additives. [1]"""
 
 
-def _factor(value: float, kind: str) -> LubricantFactor:
-    return LubricantFactor(value=value, source=f"X_L of ISO/TR 14179-2 for {kind}, second hand")
-
-
 LUBRICANT_FACTORS = {
-    "mineral": _factor(1.0, "mineral oils"),
-    "pao": _factor(0.8, "polyalphaolefins and esters"),
-    "ester": _factor(0.8, "polyalphaolefins and esters"),
-    "pag": _factor(0.75, "polyglycols"),
-    "atf": _factor(1.0, "mineral oils, taken over for transmission fluids"),
+    kind: LubricantFactor(value=value, source=f"X_L of ISO/TR 14179-2 for {oils}, second hand")
+    for kind, value, oils in (
+        ("mineral", 1.0, "mineral oils"),
+        ("pao", 0.8, "polyalphaolefins and esters"),
+        ("ester", 0.8, "polyalphaolefins and esters"),
+        ("pag", 0.75, "polyglycols"),
+        ("atf", 1.0, "mineral oils, taken over for transmission fluids"),
+    )
 }
 """X_L by the kind of an oil that does not state it. Theory (F15). The standard has 1.3 for
 phosphoric esters and 1.5 for traction fluids too, which are no kinds here."""
@@ -327,23 +326,26 @@ class MixtureState:
 
 @lru_cache(maxsize=256)
 def oil_state(oil: Oil, temperature: float) -> OilState:
-    """Properties of `oil` at `temperature` in kelvin. Theory (L3)."""
+    """Properties of `oil` at `temperature` in kelvin. Theory (L3), (L6)."""
     nu = _kinematic_viscosity(oil, temperature)
     rho = _density(oil, temperature)
+    alpha, exponent = _pressure_viscosity(oil, temperature, nu, rho * nu)
+    colder = _kinematic_viscosity(oil, temperature - SLOPE_STEP)
+    warmer = _kinematic_viscosity(oil, temperature + SLOPE_STEP)
     return OilState(
         temperature=temperature,
         kinematic_viscosity=nu,
         density=rho,
         dynamic_viscosity=rho * nu,
-        pressure_viscosity=_pressure_viscosity(oil, temperature, nu, rho * nu),
-        thermoviscosity=_thermoviscosity(oil, temperature),
+        pressure_viscosity=alpha,
+        thermoviscosity=math.log(colder / warmer) / (2 * SLOPE_STEP),
         thermal_conductivity=(
             DEFAULT_CONDUCTIVITY
             if oil.thermal_conductivity is None
             else oil.thermal_conductivity.value
         ),
         lubricant_factor=oil.lubricant_factor.value,
-        pressure_viscosity_exponent=_pressure_viscosity_exponent(oil, rho * nu),
+        pressure_viscosity_exponent=exponent,
         limiting_traction=(oil.limiting_traction or LIMITING_TRACTION[oil.kind]).value,
         boundary_friction=BOUNDARY_FRICTION[oil.additives].value,
     )
@@ -377,25 +379,13 @@ def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
 
 def extrapolated_viscosity(oil: Oil, temperature: float) -> float:
     """ASTM D341 between neighbouring points, and beyond the outermost two. Theory (L1). [m^2/s]"""
-    y = _piecewise_line(math.log10(temperature), *_viscosity_points(oil))
-    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
-
-
-@lru_cache(maxsize=64)
-def _viscosity_points(oil: Oil) -> tuple[list[float], list[float]]:
-    """Logarithm of the temperature, and ordinate of D341, of the points of an oil. Theory (L1)."""
     points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
-    return (
+    y = _piecewise_line(
+        math.log10(temperature),
         [math.log10(point.temperature) for point in points],
         [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points],
     )
-
-
-def _thermoviscosity(oil: Oil, temperature: float) -> float:
-    """-d(ln nu)/dT by central difference. Theory (L6). [1/K]"""
-    colder = _kinematic_viscosity(oil, temperature - SLOPE_STEP)
-    warmer = _kinematic_viscosity(oil, temperature + SLOPE_STEP)
-    return math.log(colder / warmer) / (2 * SLOPE_STEP)
+    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
 
 
 def _density(oil: Oil, temperature: float) -> float:
@@ -408,20 +398,17 @@ def _density(oil: Oil, temperature: float) -> float:
     )
 
 
-def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> float:
-    """Pressure-viscosity coefficient. Theory (L4). [1/Pa]"""
+def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> tuple[float, float]:
+    """Pressure-viscosity coefficient alpha and d(ln alpha)/d(ln nu), density and index z held.
+
+    Theory (L4), (L5). [1/Pa], [1]
+    """
     law = oil.pressure_viscosity
     if isinstance(law, GoldLaw):
-        return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9
+        return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9, law.t
     # z, linear between the points of the law and constant beyond them: (L5)
     index = float(np.interp(temperature, *_roelands_points(oil, law)))
-    return index * roelands_slope(mu)
-
-
-def _pressure_viscosity_exponent(oil: Oil, mu: float) -> float:
-    """d(ln alpha)/d(ln nu), density and index z held. Theory (L4), (L5). [1]"""
-    law = oil.pressure_viscosity
-    return law.t if isinstance(law, GoldLaw) else 1 / (math.log(mu) + ROELANDS_OFFSET)
+    return index * roelands_slope(mu), 1 / (math.log(mu) + ROELANDS_OFFSET)
 
 
 def roelands_slope(mu: float) -> float:

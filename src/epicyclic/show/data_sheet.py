@@ -97,8 +97,8 @@ _MESH_ROWS: tuple[_MeshRow, ...] = (
     ("normal backlash j_bn", "um", lambda one: f"{UM * one.mesh.normal_backlash:z.1f}"),
     ("circumferential backlash j_wt", "um", lambda one: f"{UM * one.mesh.backlash:z.1f}"),
     ("least j_bn, ISO/TR 10064-2", "um", lambda one: f"{UM * one.recommended_backlash:.1f}"),
-    ("clearance at tip 1", "mm", lambda one: _mm(one.mesh.tip_clearance1)),
-    ("clearance at tip 2", "mm", lambda one: _mm(one.mesh.tip_clearance2)),
+    ("clearance at tip 1", "mm", lambda one: _mm(one.mesh.tip_clearances[0])),
+    ("clearance at tip 2", "mm", lambda one: _mm(one.mesh.tip_clearances[1])),
     ("specific sliding at root 1", "", lambda one: _ratio(one.specific_sliding[0])),
     ("specific sliding at root 2", "", lambda one: _ratio(one.specific_sliding[1])),
 )

@@ -42,7 +42,7 @@ class _Roughness(Quantity):
     """A length, also with its parameter, ``"Ra 0.4 um"``, or the name of a built-in finish."""
 
     def parse(self, value: object) -> float:
-        finishes = library.finishes()
+        finishes = library.named("finishes")
         named = _PARAMETER.fullmatch(value) if isinstance(value, str) else None
         if named is not None:
             return self._checked(rq_of(named[1], super().parse(named[2])))
@@ -53,7 +53,7 @@ class _Roughness(Quantity):
         return super().parse(value)
 
     def describe(self) -> str:
-        finishes = ", ".join(library.finishes())
+        finishes = ", ".join(library.named("finishes"))
         return f"{super().describe()}, also as Ra or Rz, or one of the finishes {finishes}"
 
     def __get_pydantic_json_schema__(
@@ -61,7 +61,7 @@ class _Roughness(Quantity):
     ) -> dict[str, Any]:
         length = super().__get_pydantic_json_schema__(schema, handler)
         stated = {"type": "string", "pattern": r"^\s*R[aqz]\b"}
-        return {"anyOf": [length, {"enum": list(library.finishes())}, stated]}
+        return {"anyOf": [length, {"enum": list(library.named("finishes"))}, stated]}
 
 
 Roughness = Annotated[
@@ -122,7 +122,7 @@ class Material(Table):
 
 @cache
 def _material(name: str) -> Material:
-    return Material.model_validate(library.materials()[name])
+    return Material.model_validate(library.named("materials")[name])
 
 
 @cache
@@ -131,8 +131,8 @@ def _oil(name: str) -> Oil:
 
 
 _MATERIALS = Named(
-    lambda: tuple(library.materials()),
-    lambda: f"a table of properties or one of {', '.join(library.materials())}",
+    lambda: tuple(library.named("materials")),
+    lambda: f"a table of properties or one of {', '.join(library.named('materials'))}",
 )
 _OILS = Named(
     library.oil_names,
