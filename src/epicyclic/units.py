@@ -298,7 +298,9 @@ class Quantity:
 
     def to_display(self, value: float) -> float:
         """SI `value` in the display unit."""
-        return _convert_back(value, self.si, self.display)
+        factor, zero = _scale(self.si, self.display)
+        # 139.23 mm -> m -> mm must read 139.23 again, not 139.23000000000002
+        return float(f"{value * factor + zero if zero else value * factor:.14g}")
 
     def from_display(self, value: float) -> float:
         """A number in the display unit in SI."""
@@ -370,22 +372,10 @@ def _as_float(number: float) -> float:
 
 
 @cache
-def _factor(si: str, display: str) -> float | None:
-    """What a number in one unit is multiplied by for another; None if their zeros differ."""
-    if registry().Quantity(0.0, si).to(display).magnitude != 0:
-        return None
-    return float(registry().Quantity(1.0, si).to(display).magnitude)
-
-
-@lru_cache(maxsize=4096)
-def _convert_back(value: float, si: str, display: str) -> float:
-    factor = _factor(si, display)
-    if factor is None:
-        converted = float(registry().Quantity(value, si).to(display).magnitude)
-    else:
-        converted = value * factor
-    # 139.23 mm -> m -> mm must read 139.23 again, not 139.23000000000002
-    return float(f"{converted:.14g}")
+def _scale(si: str, display: str) -> tuple[float, float]:
+    """What a number in one unit is multiplied by for another, and where the zero of it lies."""
+    zero, one = (float(registry().Quantity(it, si).to(display).magnitude) for it in (0.0, 1.0))
+    return one - zero, zero
 
 
 # Kinds of values that are only shown; a case does not read them, so that they have no bounds.

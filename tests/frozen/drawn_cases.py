@@ -35,7 +35,7 @@ COMMON: dict[str, tuple[Any, ...]] = {
     "rolling": ("auto", "mixed-ehl", "goksem-hargreaves", None),
     "distribution": ("uniform", "minimum-energy", "compliance", "compliance", None),
     "mesh": ("local", "local", None, "loss-factor"),
-    "oil": (*library.oil_names(), *["table"] * 10),
+    "oil": (*library.names("oils"), *["table"] * 10),
     "pocketing": (None, None, *CLOSURES, None, None, None, None, None, None),
     "torque": (1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 0),
     "speed": (1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 0),

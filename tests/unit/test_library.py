@@ -16,7 +16,7 @@ TALBOT_WORDS = [[*group["words"]] for group in library.case_variants()["talbot-2
 
 def test_cases_and_their_variants_are_found():
     names = ("talbot-2012", "talbot-2012-pair", "train-8hp70", "train-eaxle")
-    assert library.case_files() == names
+    assert library.names("cases") == names
     assert TALBOT_WORDS == [["n3", "n4", "n5", "n6"], ["shaved", "polished"], ["40C", "60C", "90C"]]
 
 
@@ -57,7 +57,7 @@ def test_tables_are_handed_out_afresh_or_read_only():
         library.named("materials")["steel"] = {}
 
 
-@pytest.mark.parametrize("name", library.oil_names())
+@pytest.mark.parametrize("name", library.names("oils"))
 def test_every_oil_is_sound_and_sourced(name):
     oil = Oil.model_validate(library.oil_table(name), strict=False)
     assert oil.name == name

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +80,30 @@ class LineContacts:
     flanks: Flanks[Any]  # The surfaces, alike for all contacts or with one roughness for each.
     oil: OilState | InletOil  # At the temperature of these contacts.
 
+    if TYPE_CHECKING:  # what oil and surfaces say, by the names that ranges and fits have for it
+        temperature: float = field(init=False)  # Of the oil at the contacts. [K]
+        dynamic_viscosity: Any = field(init=False)  # Of the oil at the inlet. [Pa s]
+        pressure_viscosity: Any = field(init=False)  # alpha. [1/Pa]
+        material_number: Any = field(init=False)  # G = alpha E_eq. [1]
+        roughness1: Any = field(init=False)  # rms. [m]
+        roughness2: Any = field(init=False)  # rms. [m]
+        roughness: tuple[Any, Any] = field(init=False)  # Both. [m]
+        composite_roughness: Any = field(init=False)  # [m]
+
+    def __post_init__(self) -> None:
+        """The properties of oil and surfaces, and their G. Theory (C8)."""
+        oil, flanks = self.oil, self.flanks
+        vars(self).update(
+            temperature=oil.temperature,
+            dynamic_viscosity=oil.dynamic_viscosity,
+            pressure_viscosity=oil.pressure_viscosity,
+            material_number=oil.pressure_viscosity * flanks.equivalent_modulus,
+            roughness1=flanks.roughness1,
+            roughness2=flanks.roughness2,
+            roughness=(flanks.roughness1, flanks.roughness2),
+            composite_roughness=flanks.composite_roughness,
+        )
+
     @cached_property
     def slide_to_roll_ratio(self) -> FloatArray:
         """abs(u_s)/u_r. Theory (C4). [1]"""
@@ -102,41 +126,6 @@ class LineContacts:
         half = self.sliding_speed / 2
         return self.rolling_speed + half, self.rolling_speed - half
 
-    @property
-    def temperature(self) -> float:
-        """Temperature of the oil at the contacts. [K]"""
-        return self.oil.temperature
-
-    @property
-    def dynamic_viscosity(self) -> Any:
-        """Dynamic viscosity of the oil at the inlet of the contacts. [Pa s]"""
-        return self.oil.dynamic_viscosity
-
-    @property
-    def pressure_viscosity(self) -> Any:
-        """Pressure-viscosity coefficient of the oil. [1/Pa]"""
-        return self.oil.pressure_viscosity
-
-    @property
-    def roughness1(self) -> Any:
-        """rms roughness of the first surface. [m]"""
-        return self.flanks.roughness1
-
-    @property
-    def roughness2(self) -> Any:
-        """rms roughness of the second surface. [m]"""
-        return self.flanks.roughness2
-
-    @property
-    def roughness(self) -> tuple[Any, Any]:
-        """rms roughness of both surfaces. [m]"""
-        return self.flanks.roughness1, self.flanks.roughness2
-
-    @property
-    def composite_roughness(self) -> Any:
-        """sqrt(Rq1^2 + Rq2^2). [m]"""
-        return self.flanks.composite_roughness
-
     @cached_property
     def speed_number(self) -> FloatArray:
         """U = u_r mu/(E_eq R_eq). Theory (C7). [1]"""
@@ -146,11 +135,6 @@ class LineContacts:
             / (self.flanks.equivalent_modulus * self.radius)
         )
         return number
-
-    @property
-    def material_number(self) -> Any:
-        """G = alpha E_eq. Theory (C8). [1]"""
-        return self.pressure_viscosity * self.flanks.equivalent_modulus
 
     @cached_property
     def load_number(self) -> FloatArray:
@@ -176,7 +160,7 @@ class LineContacts:
     @cached_property
     def film_ratio(self) -> FloatArray:
         """Lambda = h_min/sqrt(Rq1^2 + Rq2^2). Theory (C14). [1]"""
-        ratio: FloatArray = self.minimum_film / self.flanks.composite_roughness
+        ratio: FloatArray = self.minimum_film / self.composite_roughness
         return ratio
 
     def conditions(self) -> dict[str, Any]:

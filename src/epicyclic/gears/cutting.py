@@ -132,11 +132,7 @@ class RackCut:
     # Centre of the rounding, below the pitch line and from the middle of the rack tooth. [m]
     center_depth: float
     center_offset: float
-
-    @property
-    def root_angle(self) -> float:
-        """Half the angle of the root arc. [rad]"""
-        return self.center_offset / self.pitch_radius
+    root_angle: float  # Half the angle of the root arc. [rad]
 
     def fillet(self, normal: Floats) -> tuple[Floats, Floats]:
         """Radius, and angle from the middle of the space, where the contact normal has `normal`.
@@ -167,16 +163,8 @@ class ShaperCut:
     # Centre of the rounding about the cutter axis, from the middle of the cutter tooth. [m], [rad]
     center_radius: float
     center_angle: float
-
-    @property
-    def ratio(self) -> float:
-        """z_0/z: turn of the ring for one of the cutter. [1]"""
-        return self.cutter_pitch_radius / self.pitch_radius
-
-    @property
-    def root_angle(self) -> float:
-        """Half the angle of the root arc. [rad]"""
-        return self.center_angle * self.ratio
+    ratio: float  # z_0/z: turn of the ring for one of the cutter. [1]
+    root_angle: float  # Half the angle of the root arc. [rad]
 
     def fillet(self, normal: Floats) -> tuple[Floats, Floats]:
         """Radius, and angle from the middle of the space, where the contact normal has `normal`.
@@ -280,6 +268,7 @@ def _rack_cut(gear: Gear, tool: RackTool) -> RackCut:
     land = stretch / math.cos(alpha_n) - math.tan(alpha_t)
     rounding = min(tool.tip_radius, half_tip / land)
     flank_depth = addendum - rounding * (1 - math.sin(alpha_n))
+    offset = max(0.0, half_tip - rounding * land)
     return RackCut(
         tool_radius=rounding,
         last_normal=math.pi / 2 - alpha_t,
@@ -287,7 +276,8 @@ def _rack_cut(gear: Gear, tool: RackTool) -> RackCut:
         pitch_radius=radius,
         stretch=stretch,
         center_depth=addendum - rounding,
-        center_offset=max(0.0, half_tip - rounding * land),
+        center_offset=offset,
+        root_angle=offset / radius,
     )
 
 
@@ -334,6 +324,7 @@ def _shaper_cut(gear: Gear, tool: ShaperTool) -> ShaperCut:
     if center_angle(rounding) < 0.0:
         rounding = zero_between(center_angle, 0.0, rounding)
     flank_curvature = rounding + math.sqrt(max(0.0, (tip - rounding) ** 2 - base**2))
+    angle, ratio = max(0.0, center_angle(rounding)), tool.teeth / gear.teeth
     return ShaperCut(
         tool_radius=rounding,
         last_normal=math.pi / 2 - alpha,
@@ -341,7 +332,9 @@ def _shaper_cut(gear: Gear, tool: ShaperTool) -> ShaperCut:
         cutter_pitch_radius=pitch,
         pitch_radius=center_distance + pitch,
         center_radius=tip - rounding,
-        center_angle=max(0.0, center_angle(rounding)),
+        center_angle=angle,
+        ratio=ratio,
+        root_angle=angle * ratio,
     )
 
 

@@ -23,27 +23,6 @@ from epicyclic.losses.rolling import RollingModel
 FloatArray = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class MeshWarmth:
-    """Flash temperature of a mesh."""
-
-    flash_mean: float  # Weighted with the load over the mesh period. [K]
-    flash_max: float  # Largest one. [K]
-
-
-def mesh_warmth(
-    contact: MeshContact,
-    friction: FloatArray,  # Coefficient of friction at every point. [1]
-    materials: tuple[Solid, Solid],  # Materials of both gears.
-) -> MeshWarmth:
-    """Flash temperature of a mesh in contact. Theory (W1)."""
-    flash = flash_temperatures(contact, friction, materials)
-    load = contact.line_load * contact.weight
-    return MeshWarmth(
-        flash_mean=float((flash * load).sum() / load.sum()), flash_max=float(flash.max())
-    )
-
-
 def heat_share1(
     contact: MeshContact,
     heat: FloatArray,  # Of sliding friction at every point. [W]

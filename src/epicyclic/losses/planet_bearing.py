@@ -7,8 +7,9 @@ first roller stands under the load, as in Talbot (2012), Fig. 3.1.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +109,7 @@ PALMGREN_RANGES = (
 """Ranges of the coefficient f1."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RollerBearing:
     """A cylindrical roller or needle bearing."""
 
@@ -126,37 +127,28 @@ class RollerBearing:
     equivalent_modulus: float  # E_eq. [Pa]
     slices: int  # On each roller.
 
-    @property
-    def outer_diameter(self) -> float:
-        """Diameter of the outer race. Theory (B4). [m]"""
-        return self.inner_diameter + 2 * self.roller_diameter + self.diametral_clearance
+    if TYPE_CHECKING:  # what follows from them
+        outer_diameter: float = field(init=False)  # Of the outer race. [m]
+        pitch_diameter: float = field(init=False)  # d_m, mean of the two races. [m]
+        # Equivalent radius of the contact at the inner and at the outer race. [m]
+        inner_radius: float = field(init=False)
+        outer_radius: float = field(init=False)
+        slice_width: float = field(init=False)  # [m]
+        # From the middle of the bearing to the outer end of its rollers. [m]
+        half_width: float = field(init=False)
 
-    @property
-    def pitch_diameter(self) -> float:
-        """d_m, mean of the two races. Theory (B4). [m]"""
-        return (self.inner_diameter + self.outer_diameter) / 2
-
-    @property
-    def inner_radius(self) -> float:
-        """Equivalent radius of the contact at the inner race. Theory (B5). [m]"""
-        roller, race = self.roller_diameter / 2, self.inner_diameter / 2
-        return roller * race / (race + roller)
-
-    @property
-    def outer_radius(self) -> float:
-        """Equivalent radius of the contact at the outer race. Theory (B5). [m]"""
-        roller, race = self.roller_diameter / 2, self.outer_diameter / 2
-        return roller * race / (race - roller)
-
-    @property
-    def slice_width(self) -> float:
-        """[m]"""
-        return self.roller_length / self.slices
-
-    @property
-    def half_width(self) -> float:
-        """From the middle of the bearing to the outer end of its rollers. [m]"""
-        return (self.rows * self.roller_length + (self.rows - 1) * self.row_gap) / 2
+    def __post_init__(self) -> None:
+        """Diameters, radii of contact and widths. Theory (B4), (B5)."""
+        inner, roller = self.inner_diameter / 2, self.roller_diameter / 2
+        outer = inner + 2 * roller + self.diametral_clearance / 2
+        vars(self).update(
+            outer_diameter=2 * outer,
+            pitch_diameter=inner + outer,
+            inner_radius=roller * inner / (inner + roller),
+            outer_radius=roller * outer / (outer - roller),
+            slice_width=self.roller_length / self.slices,
+            half_width=(self.rows * self.roller_length + (self.rows - 1) * self.row_gap) / 2,
+        )
 
     def slice_positions(self) -> FloatArray:
         """Axial position of the slices, shape (rows, slices). Theory (B7). [m]"""
@@ -368,7 +360,7 @@ def mixed_ehl_rolling_loss(
         held.dynamic_viscosity,
         held.pressure_viscosity,
         held.radius,
-        held_in_range(contacts.flanks.composite_roughness, _COMPOSITE),
+        held_in_range(contacts.composite_roughness, _COMPOSITE),
         bearing.equivalent_modulus,
     )
     local = bearing.slice_width * density * beyond_data(contacts, held)

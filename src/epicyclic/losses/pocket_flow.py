@@ -181,8 +181,9 @@ class _Network:
         works: Floats = -(self._history[0][:, 1:-1, 1:-1] * self._growth).sum(axis=(1, 2))
         return works
 
-    def _mass_error(self) -> float:
-        """What comes in less what goes out, over what comes in, in a period."""
+    def _made(self, periods: int, works: Floats, other: float, damped: Floats) -> NetworkFlow:
+        period = self._turn * len(works)
+        # what comes in less what goes out, over what comes in, in a period
         live = np.pad(self._cells.live, ((0, 0), (1, 1), (1, 1)))
         full, volume = self._history[1], self._volume[:-1]
         before = _before(live, False)[:, 1:-1, 1:-1]
@@ -194,12 +195,8 @@ class _Network:
             (self._history[2], self._openings[0], 2), (self._history[3], self._openings[1], 1)
         ):  # fmt: skip
             flow = u * area * np.where(u > 0, *_sides(full, axis)) * self._turn
-            one, other = _sides(live, axis)
-            out += float(flow[one & ~other].sum() - flow[other & ~one].sum())
-        return (come - out - gone) / come
-
-    def _made(self, periods: int, works: Floats, other: float, damped: Floats) -> NetworkFlow:
-        period = self._turn * len(works)
+            one, two = _sides(live, axis)
+            out += float(flow[one & ~two].sum() - flow[two & ~one].sum())
         cell, _, axial, gap, *_ = self._history
         pressure = np.ascontiguousarray(cell[:, 1:-1, 1:-1])
         instants = works / self._turn
@@ -209,7 +206,7 @@ class _Network:
             cells=self._cells,
             power=float(works.sum()) / period,
             power_from_flow=other / period,
-            mass_error=self._mass_error(),
+            mass_error=(come - out - gone) / come,
             periods=periods,
             pressure=pressure,
             axial_speed=axial,

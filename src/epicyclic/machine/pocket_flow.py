@@ -104,7 +104,9 @@ def flow_family(duty: MeshDuty) -> FlowFamily:
         duty.gears.tools,
         duty.drives1,
     )
-    if _exchanged(duty):
+    # time steps follow a tooth of gear 1 of the pockets
+    one, two = ((it.teeth, it.tip_radius, it.root_radius) for it in (mesh.gear1, mesh.gear2))
+    if settings.any_order and not mesh.internal and one > two:
         mesh = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
         tools, drives1 = tools[::-1], not drives1
     return FlowFamily(
@@ -117,15 +119,6 @@ def flow_family(duty: MeshDuty) -> FlowFamily:
         steps=settings.steps,
         end_length=settings.end_length,
     )
-
-
-def _exchanged(duty: MeshDuty) -> bool:
-    """Whether gear 2 is gear 1 of the pockets, whose time steps follow a tooth of that gear."""
-    one, two = (
-        (gear.teeth, gear.tip_radius, gear.root_radius)
-        for gear in (duty.gears.mesh.gear1, duty.gears.mesh.gear2)
-    )
-    return duty.gears.models.pockets.any_order and not duty.gears.mesh.internal and one > two
 
 
 def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
@@ -197,11 +190,13 @@ def mesh_flows(
 
 def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
     """The flow through the pockets of a mesh: family, and as for `FlowFamily.flow`."""
-    settings = duty.gears.models.pockets
+    settings, family = duty.gears.models.pockets, flow_family(duty)
     lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
     mixture = fluids.mixed(oil_in_mesh(duty))
-    speed = abs(duty.speed1) / (duty.gears.mesh.ratio if _exchanged(duty) else 1.0)
-    return flow_family(duty), speed, mixture, fluids.pressure - lowest
+    speed = abs(duty.speed1)
+    if family.mesh is not duty.gears.mesh:  # gear 2 is gear 1 of the pockets
+        speed /= duty.gears.mesh.ratio
+    return family, speed, mixture, fluids.pressure - lowest
 
 
 def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:

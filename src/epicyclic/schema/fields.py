@@ -82,7 +82,8 @@ def table_of(annotation: Any) -> type[BaseModel] | None:
 
 def tables_in(annotation: Any) -> Iterator[type[BaseModel]]:
     """The table classes of an annotation, through optional, union and array types."""
-    return (kind for kind, _ in _leaves(annotation) if _is_table(kind))
+    leaves = (kind for kind, _ in _leaves(annotation))
+    return (it for it in leaves if isinstance(it, type) and issubclass(it, BaseModel))
 
 
 def dict_value(annotation: Any) -> Any:
@@ -121,7 +122,7 @@ def describe(annotation: Any, metadata: Sequence[Any] = ()) -> str:
         return f"an array, each entry {describe(first)}"
     if dict_value(annotation) is not None:
         return "a table of names"
-    if _is_table(member):
+    if table_of(member) is not None:
         return "a table of keys"
     quantity = quantity_of(annotation, metadata)
     if quantity is not None:
@@ -200,10 +201,6 @@ def _members(annotation: Any) -> Iterator[Any]:
     for member in typing.get_args(annotation) if is_union else (annotation,):
         is_annotated = typing.get_origin(member) is typing.Annotated
         yield typing.get_args(member)[0] if is_annotated else member
-
-
-def _is_table(annotation: Any) -> bool:
-    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
 
 
 def entry_of(annotation: Any, number: int = 0) -> Any:

@@ -201,7 +201,7 @@ def case_table() -> RenderableType:
     """Built-in cases and the words that name their variants."""
     variants = "variants: at most one word of each line, joined by -"
     table = plain_table("Built-in cases", Column("name", no_wrap=True), "description", variants)
-    for name in library.case_files():
+    for name in library.names("cases"):
         groups = library.case_variants().get(name, [])
         words = "\n".join(f"{' '.join(group['words'])}  ({group['about']})" for group in groups)
         table.add_row(name, library.builtin_case(name)["title"], words)
@@ -220,7 +220,7 @@ def oil_table() -> RenderableType:
     )
     numbers = (Column(head, justify="right") for head in heads)
     table = plain_table("Built-in oils", Column("name", no_wrap=True), "kind", *numbers)
-    for name in sorted(library.oil_names(), key=_by_grade):
+    for name in sorted(library.names("oils"), key=_by_grade):
         oil = Oil.model_validate(library.oil_table(name))
         warm, hot = _state(oil, "40 degC"), _state(oil, "100 degC")
         table.add_row(

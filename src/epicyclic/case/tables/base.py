@@ -135,7 +135,7 @@ _MATERIALS = Named(
     lambda: f"a table of properties or one of {', '.join(library.named('materials'))}",
 )
 _OILS = Named(
-    library.oil_names,
+    lambda: library.names("oils"),
     lambda: "a table of properties or a name of the oil library (epicyclic oils)",
     ShortOil,
 )
@@ -153,7 +153,7 @@ def _named_material(value: object) -> object:
 def builtin_oil(table: Any) -> str | None:
     """The built-in oil of the grade and kind that a table states."""
     name = f"iso-vg-{value_at(table, ('iso_vg',))}-{value_at(table, ('kind',))}"
-    return name if name in library.oil_names() else None
+    return name if name in library.names("oils") else None
 
 
 def _named_oil(value: object) -> object:
