@@ -458,11 +458,6 @@ HeatTransfer = Annotated[
 ]
 
 
-def as_stated(default: str | tuple[str, ...]) -> Any:
-    """A default of a field as a user would state it, with its unit: it is read like any value."""
-    return default
-
-
 def unit_text(unit: str) -> str:
     """`unit` in print, ``"mm²/s"`` for ``"mm^2/s"``; nothing for pure numbers."""
     if unit == "1":

@@ -71,11 +71,6 @@ GENERAL = {"friction": "mixed-lubrication", "rolling": "goksem-hargreaves"}
 """What ``auto`` stands for with the preset ``general``."""
 
 
-def preset_of(models: PlanetaryModels) -> str:
-    """What ``auto`` stands for."""
-    return models.preset
-
-
 @dataclass(frozen=True)
 class SetCase:
     """A gear set with its tables, and those of the case that it is part of.
@@ -147,7 +142,7 @@ class SetCase:
             CONTAINS_ROLLING
         ):
             return CONTAINED.name
-        if role in GENERAL and preset_of(self.models) == "general":
+        if role in GENERAL and self.models.preset == "general":
             return GENERAL[role]
         if self.lubricant.oil.friction_regression == TALBOT_FLUID.key:
             return "mixed-ehl"

@@ -132,7 +132,7 @@ def regression_groups(states: LineContacts) -> RegressionGroups:
         g=states.material_number,
         p=states.hertz_pressure / flanks.equivalent_modulus,
         r=states.radius / states.hertz_half_width,
-        s_co=flanks.composite_roughness / states.radius,
+        s_co=states.composite_roughness / states.radius,
         s_eq=flanks.reduced_roughness / states.radius,
         lam=states.film_ratio,
     )

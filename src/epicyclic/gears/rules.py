@@ -59,27 +59,19 @@ def sound_gears(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
     sound = {}
     for name, gear in made.items():
         table, key = gearing.tables[name], gearing.key(name)
-        found = (
-            _check_tooth(gear, key, table)
-            or _check_measure(gear, key, table)
-            or _check_fit(gear, key, table)
-        )
+        found = _check_tooth(gear, key, table) or _check_measure(gear, key, table)
+        fit, diameter = table.tooth_thickness_fit, 2 * gear.reference_radius
+        if found is None and fit is not None and diameter > LARGEST_FIT:
+            allowed = f"applies to reference diameters up to {millimetres(LARGEST_FIT)}, and this "
+            allowed += f"gear has {millimetres(diameter)}."
+            remedy = "Give tooth_thickness_allowance."
+            found = Problem(f"{key}.tooth_thickness_fit", f'"{fit}"', allowed, remedy)
         if found is None:
             sound[name] = gear
         else:
             problems.append(found)
         problems += _check_rim(gear, key, table)
     return sound, problems
-
-
-def _check_fit(gear: Gear, key: str, table: StatedGear) -> Problem | None:
-    """DIN 3967 has no allowances for larger gears."""
-    if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
-        return None
-    allowed = f"applies to reference diameters up to {millimetres(LARGEST_FIT)}, and this gear has "
-    allowed += f"{millimetres(2 * gear.reference_radius)}."
-    remedy = "Give tooth_thickness_allowance."
-    return Problem(f"{key}.tooth_thickness_fit", f'"{table.tooth_thickness_fit}"', allowed, remedy)
 
 
 def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:

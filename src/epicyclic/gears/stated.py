@@ -266,12 +266,6 @@ def tolerances_of(gear: Gear, table: StatedGear) -> FlankTolerances | None:
 Tables = tuple[StatedGear, StatedGear]
 
 
-def micro_geometries(table: StatedGear) -> tuple[StatedFlank, ...]:
-    """The tables of micro-geometry that a gear has."""
-    ring_side = getattr(table, "micro_geometry_ring_side", None)
-    return tuple(one for one in (table.micro_geometry, ring_side) if one is not None)
-
-
 @lru_cache(maxsize=256)
 def flank_deviations(mesh: Mesh, tables: Tables, misalignment: float) -> FlankDeviations:
     """The deviations of both working flanks of a mesh."""

@@ -136,35 +136,38 @@ class RollerBearing:
         slice_width: float = field(init=False)  # [m]
         # From the middle of the bearing to the outer end of its rollers. [m]
         half_width: float = field(init=False)
+        # Axial position of the slices, shape (rows, slices). [m]
+        slice_positions: FloatArray = field(init=False)
+        # Drop of the profile at each slice, a parabola over the crowned ends. [m]
+        crown: FloatArray = field(init=False)
+        azimuth: FloatArray = field(init=False)  # Of each roller from the load. [rad]
 
     def __post_init__(self) -> None:
-        """Diameters, radii of contact and widths. Theory (B4), (B5)."""
+        """Diameters, radii of contact, widths and slices. Theory (B4), (B5), (B6), (B7)."""
         inner, roller = self.inner_diameter / 2, self.roller_diameter / 2
         outer = inner + 2 * roller + self.diametral_clearance / 2
+        length, width = self.roller_length, self.roller_length / self.slices
+        within = (np.arange(self.slices) + 0.5) * width - length / 2
+        middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (length + self.row_gap)
+        positions, crown = middles[:, None] + within, np.zeros(self.slices)
+        crowned = self.crown_length_fraction * length
+        if crowned:
+            depth = np.abs(within) - (length / 2 - crowned)
+            crown = self.crown_drop * (np.maximum(depth, 0.0) / crowned) ** 2
+        azimuth = np.arange(self.rollers_per_row) * 2 * math.pi / self.rollers_per_row
+        for array in (positions, crown, azimuth):
+            array.flags.writeable = False
         vars(self).update(
             outer_diameter=2 * outer,
             pitch_diameter=inner + outer,
             inner_radius=roller * inner / (inner + roller),
             outer_radius=roller * outer / (outer - roller),
-            slice_width=self.roller_length / self.slices,
-            half_width=(self.rows * self.roller_length + (self.rows - 1) * self.row_gap) / 2,
+            slice_width=width,
+            half_width=(self.rows * length + (self.rows - 1) * self.row_gap) / 2,
+            slice_positions=positions,
+            crown=crown,
+            azimuth=azimuth,
         )
-
-    def slice_positions(self) -> FloatArray:
-        """Axial position of the slices, shape (rows, slices). Theory (B7). [m]"""
-        within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
-        middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (self.roller_length + self.row_gap)
-        return middles[:, None] + within
-
-    def crown(self) -> FloatArray:
-        """Drop of the profile at each slice, a parabola over the crowned ends. Theory (B6). [m]"""
-        within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
-        crowned = self.crown_length_fraction * self.roller_length
-        if crowned == 0.0:
-            return np.zeros(self.slices)
-        depth = np.abs(within) - (self.roller_length / 2 - crowned)
-        drop: FloatArray = self.crown_drop * (np.maximum(depth, 0.0) / crowned) ** 2
-        return drop
 
     def rolling_speed(self, speed: float) -> float:
         """u_r = d_m omega (1 - d_r^2/d_m^2)/4. Talbot (2012), Eq. 3.4. Theory (B12). [m/s]"""
@@ -266,13 +269,12 @@ def _solved(
     near: bool = False,
 ) -> tuple[FloatArray, FloatArray, FloatArray, int]:
     """Azimuth of each roller, and what `solve_roller_loads` finds."""
-    azimuth, positions, crown = _slices(bearing)
     found = solve_roller_loads(
         load,
         start,
-        azimuth,
-        positions / bearing.half_width,
-        crown,
+        bearing.azimuth,
+        bearing.slice_positions / bearing.half_width,
+        bearing.crown,
         bearing.slice_width,
         bearing.diametral_clearance,
         TOLERANCE,
@@ -280,14 +282,7 @@ def _solved(
         held=held,
         near=near,
     )
-    return azimuth, *found
-
-
-@lru_cache(maxsize=64)
-def _slices(bearing: RollerBearing) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Azimuth of each roller [rad], axial position of the slices and drop of their profile [m]."""
-    azimuth = np.arange(bearing.rollers_per_row) * 2 * math.pi / bearing.rollers_per_row
-    return azimuth, bearing.slice_positions(), bearing.crown()
+    return bearing.azimuth, *found
 
 
 def tilting_moments(
@@ -311,7 +306,7 @@ def tilting_moments(
             f"{NEWTON.text(force, 4)} with tilts of {tilt_x:.4g} and {tilt_y:.4g} rad; "
             "check roller length and clearance."
         )
-    positions = bearing.slice_positions()
+    positions = bearing.slice_positions
     turning = (intensity * bearing.slice_width * positions[:, None, :]).sum(axis=(0, 2))
     return float(turning @ np.cos(azimuth)), float(turning @ np.sin(azimuth))
 

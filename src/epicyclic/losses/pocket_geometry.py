@@ -55,11 +55,7 @@ class PocketGeometry:
     gap_angle: Floats  # Angles of the gaps: of the tooth of gear 1 that they belong to. [rad]
     gap: Floats  # Narrowest gap at the leading and at the trailing flank of that tooth. [m]
     gap_middle: Floats  # As `centroid`. [m]
-
-    @property
-    def pitch(self) -> float:
-        """Angle of gear 1 in which the mesh repeats. [rad]"""
-        return 2 * math.pi / self.mesh.gear1.teeth
+    pitch: float  # Angle of gear 1 in which the mesh repeats. [rad]
 
 
 @lru_cache(maxsize=32)
@@ -92,6 +88,7 @@ def pocket_geometry(
         gap_angle=gap_angle,
         gap=gaps[..., 0],
         gap_middle=gaps[..., 1:],
+        pitch=2 * half_pitch,
     )
     for array in (life, angle, tables, gap_angle, gaps):
         array.flags.writeable = False

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,6 @@ from epicyclic.units import (
     PressureViscosity,
     Quantity,
     Temperature,
-    as_stated,
 )
 
 # An oil as data: what a file of the oil library or a table in a case states about it.
@@ -172,7 +171,7 @@ class Oil(_Data):
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     description: str = ""
     temperature_range: tuple[Temperature, Temperature] = Field(
-        default=as_stated(("0 degC", "120 degC")),
+        default=cast("Any", ("0 degC", "120 degC")),  # read like any value
         description="Range in which the values are valid.",
     )
     kinematic_viscosity: tuple[ViscosityPoint, ...] = Field(min_length=2)
@@ -202,37 +201,38 @@ class Oil(_Data):
 
     @model_validator(mode="after")
     def _check_points(self) -> Oil:
-        if faults := list(self._faults()):
-            raise ValidationError.from_exception_data(self.name, faults)
-        if "lubricant_factor" not in self.model_fields_set:
-            self.__dict__["lubricant_factor"] = LUBRICANT_FACTORS[self.kind]
-        return self
-
-    def _faults(self) -> Iterator[InitErrorDetails]:
+        faults: list[InitErrorDetails] = []
         remedy, viscosities = "correct one of the two points", self.kinematic_viscosity
         for first, second in _neighbours(viscosities):
             colder, warmer = viscosities[first], viscosities[second]
             if warmer.temperature == colder.temperature:
-                yield _repeated("kinematic_viscosity", first, second, warmer.temperature)
+                faults.append(_repeated("kinematic_viscosity", first, second, warmer.temperature))
             elif warmer.value >= colder.value:
                 shown, other = map(SQUARE_MM_PER_SECOND.text, (warmer.value, colder.value))
                 what = "must fall with rising temperature, but at "
                 what += f"{CELSIUS.text(colder.temperature)} it is {other}"
-                yield _fault(("kinematic_viscosity", second, "value"), shown, what, remedy)
+                faults.append(_fault(("kinematic_viscosity", second, "value"), shown, what, remedy))
         for first, second in _neighbours(self.density):
             cold, warm = self.density[first], self.density[second]
             if warm.temperature == cold.temperature:
-                yield _repeated("density", first, second, warm.temperature)
+                faults.append(_repeated("density", first, second, warm.temperature))
                 continue
             slope = (warm.value - cold.value) / (warm.temperature - cold.temperature)
             if not STEEPEST_DENSITY <= slope <= 0:
                 what = "must fall with rising temperature, by at most 2 kg/(m^3 K)"
-                yield _fault(("density", second, "value"), f"{warm.value:g} kg/m^3", what, remedy)
+                faults.append(
+                    _fault(("density", second, "value"), f"{warm.value:g} kg/m^3", what, remedy)
+                )
         low, high = self.temperature_range
         if low >= high:
             shown = f"{CELSIUS.text(low)} to {CELSIUS.text(high)}"
             remedy = "give the lower temperature first"
-            yield _fault(("temperature_range",), shown, "must rise", remedy)
+            faults.append(_fault(("temperature_range",), shown, "must rise", remedy))
+        if faults:
+            raise ValidationError.from_exception_data(self.name, faults)
+        if "lubricant_factor" not in self.model_fields_set:
+            self.__dict__["lubricant_factor"] = LUBRICANT_FACTORS[self.kind]
+        return self
 
 
 def _neighbours(points: Sequence[ViscosityPoint | DensityPoint]) -> Iterator[tuple[int, int]]:
@@ -408,25 +408,19 @@ def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> t
         return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9, law.t
     # z, linear between the points of the law and constant beyond them: (L5)
     index = float(np.interp(temperature, *_roelands_points(oil, law)))
-    return index * roelands_slope(mu), 1 / (math.log(mu) + ROELANDS_OFFSET)
-
-
-def roelands_slope(mu: float) -> float:
-    """alpha/z of Roelands' law, (ln mu + 9.67)/1.96e8 with mu in Pa s. Theory (L5). [1/Pa]"""
-    return (math.log(mu) + ROELANDS_OFFSET) / ROELANDS_PRESSURE
+    # alpha/z = (ln mu + 9.67)/1.96e8 with mu in Pa s
+    slope = math.log(mu) + ROELANDS_OFFSET
+    return index * slope / ROELANDS_PRESSURE, 1 / slope
 
 
 @lru_cache(maxsize=64)
 def _roelands_points(oil: Oil, law: RoelandsLaw) -> tuple[list[float], list[float]]:
     """Temperatures and indices z of the points of an oil. Theory (L5)."""
     points = sorted(law.point, key=lambda point: point.temperature)
-    index = [
-        point.value
-        / roelands_slope(
-            _kinematic_viscosity(oil, point.temperature) * _density(oil, point.temperature)
-        )
-        for point in points
-    ]
+    index = []
+    for point in points:
+        mu = _kinematic_viscosity(oil, point.temperature) * _density(oil, point.temperature)
+        index.append(point.value * ROELANDS_PRESSURE / (math.log(mu) + ROELANDS_OFFSET))
     return [point.temperature for point in points], index
 
 

@@ -22,8 +22,8 @@ from epicyclic.oil.grades import ShortOil, whole_oil
 from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.schema.fields import Named
 from epicyclic.schema.read import plain
-from epicyclic.schema.table import Table
-from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity, as_stated
+from epicyclic.schema.table import Table, option
+from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity
 
 
 def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> PydanticCustomError:
@@ -114,20 +114,17 @@ class Material(Table):
     title: str = "material of the case"
     elastic_modulus: Modulus
     poisson_ratio: Number = Field(default=0.3, ge=0.0, le=0.5)
-    density: Density = Field(default=as_stated("7850 kg/m^3"))
-    thermal_conductivity: Conductivity = Field(default=as_stated("46 W/(m*K)"))
-    heat_capacity: HeatCapacity = Field(default=as_stated("460 J/(kg*K)"))
+    density: Density = option(None, "7850 kg/m^3")
+    thermal_conductivity: Conductivity = option(None, "46 W/(m*K)")
+    heat_capacity: HeatCapacity = option(None, "460 J/(kg*K)")
     source: str = ""
 
 
 @cache
-def _material(name: str) -> Material:
-    return Material.model_validate(library.named("materials")[name])
-
-
-@cache
-def _oil(name: str) -> Oil:
-    return Oil.model_validate(library.oil_table(name))
+def _builtin(kind: type[Material] | type[Oil], name: str) -> Material | Oil:
+    """A material or an oil of the library."""
+    own = library.named("materials")[name] if kind is Material else library.oil_table(name)
+    return kind.model_validate(own)
 
 
 _MATERIALS = Named(
@@ -147,7 +144,7 @@ def _named_material(value: object) -> object:
         return value
     if value not in _MATERIALS.names():
         raise _no_preset("material", value, _MATERIALS.names(), _MATERIALS.allowed())
-    return _material(value)
+    return _builtin(Material, value)
 
 
 def builtin_oil(table: Any) -> str | None:
@@ -165,7 +162,7 @@ def _named_oil(value: object) -> object:
         return value
     if value not in _OILS.names():
         raise _no_preset("oil", value, _OILS.names(), _OILS.allowed())
-    return _oil(value)
+    return _builtin(Oil, value)
 
 
 NamedMaterial = Annotated[Material, BeforeValidator(_named_material), _MATERIALS]
