@@ -282,6 +282,7 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
             f"No load reaches {'planet' if len(idle) == 1 else 'planets'} {', '.join(idle)} of "
             f"{len(shares)}: the position errors exceed the deflection of the others{beyond}."
         )
+    usual = LoadSharing()
     idle_keys = {"mesh_load_factor"} if sharing.method != "mesh-load-factor" else set()
     if sharing.method not in ("closed-form", "direct"):
         idle_keys |= {"position_errors", "floating_member", "support_stiffness", "pin_stiffness"}
@@ -290,7 +291,7 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
     notes += [
         f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}."
         for key in LoadSharing.model_fields
-        if key in idle_keys and getattr(sharing, key) != getattr(LoadSharing(), key)
+        if key in idle_keys and getattr(sharing, key) != getattr(usual, key)
     ]
     return tuple(notes)
 

@@ -169,13 +169,15 @@ def _stiffness(
     points, weights = legendre.leggauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
     t = np.interp((points + 1) / 2 * top, height, thickness)
     v = legendre.legvander(points, HEIGHT_TERMS - 1)
-    dv = v[:, :-1] @ legendre.legder(np.eye(HEIGHT_TERMS)) * 2 / top
+    slopes = legendre.legval(points, legendre.legder(np.eye(HEIGHT_TERMS)))
+    dv = np.ascontiguousarray(slopes.T) * 2 / top
     bending = weights * top / 2 * elastic_modulus * t**3 / (12 * (1 - nu**2))
     shear = weights * top / 2 * SHEAR_FACTOR * elastic_modulus / (2 * (1 + nu)) * t
 
     points, weights = legendre.leggauss(face_terms)
     y = legendre.legvander(points, face_terms - 1)
-    dy = y[:, :-1] @ legendre.legder(np.eye(face_terms)) * 2 / length
+    slopes = legendre.legval(points, legendre.legder(np.eye(face_terms)))
+    dy = np.ascontiguousarray(slopes.T) * 2 / length
     across = weights * length / 2
     yy, dydy = _integral(y, y, across), _integral(dy, dy, across)
     ydy = _integral(y, dy, across)

@@ -324,7 +324,7 @@ def _shaper_cut(gear: Gear, tool: ShaperTool) -> ShaperCut:
     if center_angle(rounding) < 0.0:
         rounding = zero_between(center_angle, 0.0, rounding)
     flank_curvature = rounding + math.sqrt(max(0.0, (tip - rounding) ** 2 - base**2))
-    angle, ratio = max(0.0, center_angle(rounding)), tool.teeth / gear.teeth
+    angle, ratio = max(0.0, center_angle(rounding)), pitch / (center_distance + pitch)
     return ShaperCut(
         tool_radius=rounding,
         last_normal=math.pi / 2 - alpha,

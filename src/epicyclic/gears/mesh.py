@@ -81,7 +81,7 @@ class Mesh:
         tips = ((end - point) / pitch, (point - start) / pitch)
         width = min(one.face_width, two.face_width)
         backlash = 2 * math.pi * radius1 / one.teeth
-        backlash -= one.thickness_at(radius1) + two.thickness_at(radius1 * ratio)
+        backlash = backlash - one.thickness_at(radius1) - two.thickness_at(radius1 * ratio)
         vars(self).update(
             internal=two.internal,
             ratio=ratio,

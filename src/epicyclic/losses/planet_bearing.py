@@ -355,7 +355,7 @@ def mixed_ehl_rolling_loss(
         held.dynamic_viscosity,
         held.pressure_viscosity,
         held.radius,
-        held_in_range(contacts.composite_roughness, _COMPOSITE),
+        held_in_range(math.hypot(bearing.race_roughness, bearing.roller_roughness), _COMPOSITE),
         bearing.equivalent_modulus,
     )
     local = bearing.slice_width * density * beyond_data(contacts, held)

@@ -410,7 +410,7 @@ def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> t
     index = float(np.interp(temperature, *_roelands_points(oil, law)))
     # alpha/z = (ln mu + 9.67)/1.96e8 with mu in Pa s
     slope = math.log(mu) + ROELANDS_OFFSET
-    return index * slope / ROELANDS_PRESSURE, 1 / slope
+    return index * (slope / ROELANDS_PRESSURE), 1 / slope
 
 
 @lru_cache(maxsize=64)
@@ -420,7 +420,7 @@ def _roelands_points(oil: Oil, law: RoelandsLaw) -> tuple[list[float], list[floa
     index = []
     for point in points:
         mu = _kinematic_viscosity(oil, point.temperature) * _density(oil, point.temperature)
-        index.append(point.value * ROELANDS_PRESSURE / (math.log(mu) + ROELANDS_OFFSET))
+        index.append(point.value / ((math.log(mu) + ROELANDS_OFFSET) / ROELANDS_PRESSURE))
     return [point.temperature for point in points], index
 
 
