@@ -19,7 +19,7 @@ HEAD = (
 
 def table() -> str:
     """A row for each oil, in Markdown."""
-    files = {name: library.oil_model_file(name) for name in library.oil_names()}
+    files = {name: library.oil_model_file(name) for name in library.names("oils")}
     rows = [_row(name, read_oil_model(file)) for name, file in files.items() if file]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in (HEAD, ["---"] * len(HEAD), *rows))
 

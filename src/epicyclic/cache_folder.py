@@ -17,25 +17,22 @@ _USER = os.getuid() if hasattr(os, "getuid") else None
 
 
 def private_folder(name: str) -> Path | None:
-    """A folder of this user to keep things in; None if there is none."""
-    folder = Path(platformdirs.user_cache_dir("epicyclic")) / name
-    if _is_own(folder):
-        return folder
-    try:  # without a home that can be written to: keep things until the machine starts again
-        folder = Path(tempfile.gettempdir()) / f"epicyclic-{_USER}" / name
-    except OSError:  # there is no place at all
-        return None
-    return folder if _is_own(folder) else None
+    """A folder of this user to which nobody else can write, made if need be; None if none can be.
 
-
-def _is_own(folder: Path) -> bool:
-    """True if nobody else can have put anything into `folder`, made if need be."""
-    try:
-        folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        folder.mkdir(mode=0o700, exist_ok=True)
-    except OSError:
-        return False
-    return is_private(folder) and is_private(folder.parent) and os.access(folder, os.W_OK)
+    Without a home that can be written to things are kept until the machine starts again.
+    """
+    for has_home in (True, False):
+        try:
+            folder = Path(platformdirs.user_cache_dir("epicyclic")) / name
+            if not has_home:
+                folder = Path(tempfile.gettempdir()) / f"epicyclic-{_USER}" / name
+            folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            folder.mkdir(mode=0o700, exist_ok=True)
+        except OSError:
+            continue
+        if is_private(folder) and is_private(folder.parent) and os.access(folder, os.W_OK):
+            return folder
+    return None
 
 
 def is_private(folder: Path) -> bool:

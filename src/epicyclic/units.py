@@ -224,7 +224,19 @@ def _convert(number: float, unit: str, si: str) -> float:
 @lru_cache(maxsize=4096)
 def _parsed_text(quantity: Quantity, text: str) -> float:
     """A text that `quantity` reads: the cases of a sweep have most of theirs in common."""
-    return quantity._checked(quantity._converted(*quantity._split_text(text)))
+    if len(text) > _LONGEST_TEXT:
+        raise quantity._error("is not a number with a unit", quantity._form())
+    text = text.strip().translate(_PLAIN_SIGNS)
+    comma = _DECIMAL_COMMA.fullmatch(text)
+    if comma is not None:
+        remedy = f"write {comma['whole']}.{comma['digits']}, with a decimal point"
+        raise quantity._error("has a decimal comma", remedy)
+    match = _NUMBER_AND_UNIT.fullmatch(text)
+    if match is None:
+        raise quantity._error("is not a number with a unit", quantity._form())
+    if not match["unit"]:
+        raise quantity._error("has no unit", f'write "{text} {quantity.display}"')
+    return quantity._checked(quantity._converted(float(match["number"]), match["unit"]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -286,7 +298,9 @@ class Quantity:
 
     def to_display(self, value: float) -> float:
         """SI `value` in the display unit."""
-        return _convert_back(value, self.si, self.display)
+        factor, zero = _scale(self.si, self.display)
+        # 139.23 mm -> m -> mm must read 139.23 again, not 139.23000000000002
+        return float(f"{value * factor + zero if zero else value * factor:.14g}")
 
     def from_display(self, value: float) -> float:
         """A number in the display unit in SI."""
@@ -314,21 +328,6 @@ class Quantity:
     def describe(self) -> str:
         """What is allowed, in words: ``"a length > 0 mm"``."""
         return describe_range(self.noun, self.low, self.high, self.display, open_low=self.open_low)
-
-    def _split_text(self, text: str) -> tuple[float, str]:
-        if len(text) > _LONGEST_TEXT:
-            raise self._error("is not a number with a unit", self._form())
-        text = text.strip().translate(_PLAIN_SIGNS)
-        comma = _DECIMAL_COMMA.fullmatch(text)
-        if comma is not None:
-            remedy = f"write {comma['whole']}.{comma['digits']}, with a decimal point"
-            raise self._error("has a decimal comma", remedy)
-        match = _NUMBER_AND_UNIT.fullmatch(text)
-        if match is None:
-            raise self._error("is not a number with a unit", self._form())
-        if not match["unit"]:
-            raise self._error("has no unit", f'write "{text} {self.display}"')
-        return float(match["number"]), match["unit"]
 
     def _form(self, number: float | None = None) -> str:
         """How to write it; with the user's `number` if that is short enough to repeat."""
@@ -373,22 +372,10 @@ def _as_float(number: float) -> float:
 
 
 @cache
-def _factor(si: str, display: str) -> float | None:
-    """What a number in one unit is multiplied by for another; None if their zeros differ."""
-    if registry().Quantity(0.0, si).to(display).magnitude != 0:
-        return None
-    return float(registry().Quantity(1.0, si).to(display).magnitude)
-
-
-@lru_cache(maxsize=4096)
-def _convert_back(value: float, si: str, display: str) -> float:
-    factor = _factor(si, display)
-    if factor is None:
-        converted = float(registry().Quantity(value, si).to(display).magnitude)
-    else:
-        converted = value * factor
-    # 139.23 mm -> m -> mm must read 139.23 again, not 139.23000000000002
-    return float(f"{converted:.14g}")
+def _scale(si: str, display: str) -> tuple[float, float]:
+    """What a number in one unit is multiplied by for another, and where the zero of it lies."""
+    zero, one = (float(registry().Quantity(it, si).to(display).magnitude) for it in (0.0, 1.0))
+    return one - zero, zero
 
 
 # Kinds of values that are only shown; a case does not read them, so that they have no bounds.
@@ -469,11 +456,6 @@ BodyCapacity = Annotated[
 HeatTransfer = Annotated[
     float, Quantity("a heat transfer coefficient", "W/(m^2*K)", "W/(m^2*K)", low=0.0, high=1e6)
 ]
-
-
-def as_stated(default: str | tuple[str, ...]) -> Any:
-    """A default of a field as a user would state it, with its unit: it is read like any value."""
-    return default
 
 
 def unit_text(unit: str) -> str:

@@ -129,7 +129,7 @@ def _drawn(rng: random.Random) -> Tables:
         tables = rng.choice(LISTED)()
         tables["operation"] |= _point(rng, 200.0, 3000.0)
         tables["operation"]["oil_inlet_temperature"] = _temperature(rng)
-        tables["lubricant"] = {"oil": rng.choice(library.oil_names())}
+        tables["lubricant"] = {"oil": rng.choice(library.names("oils"))}
         tables["surroundings"] = _surroundings(rng)
         tables["numerics"] = listed_trains.NUMERICS
         tables["models"] = _models(rng, tables.get("models", {}))

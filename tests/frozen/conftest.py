@@ -16,7 +16,7 @@ BOUNDARY = uncertainty.DistributionTable(uniform=(0.08, 0.13))
 @pytest.fixture(autouse=True)
 def former_models(monkeypatch):
     """Cases as with the preset talbot-2012, without a key for it."""
-    monkeypatch.setattr(models, "preset_of", lambda models: "talbot-2012")
+    monkeypatch.setattr(models, "GENERAL", {})
     monkeypatch.setattr(uncertainty, "has_rough_flanks", lambda models: False)
 
 

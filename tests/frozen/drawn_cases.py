@@ -35,7 +35,7 @@ COMMON: dict[str, tuple[Any, ...]] = {
     "rolling": ("auto", "mixed-ehl", "goksem-hargreaves", None),
     "distribution": ("uniform", "minimum-energy", "compliance", "compliance", None),
     "mesh": ("local", "local", None, "loss-factor"),
-    "oil": (*library.oil_names(), *["table"] * 10),
+    "oil": (*library.names("oils"), *["table"] * 10),
     "pocketing": (None, None, *CLOSURES, None, None, None, None, None, None),
     "torque": (1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 0),
     "speed": (1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 0),
@@ -200,11 +200,11 @@ def draw_gear(
     else:
         tables["profile_shift_coefficient"] = round(shift, 5)
     if options["finishes"]:
-        tables["roughness"] = numbers.name(library.finishes())
+        tables["roughness"] = numbers.name(library.named("finishes"))
     if options["materials"] == "tables":
         tables["material"] = draw_material(numbers)
     elif options["materials"] == "names":
-        tables["material"] = numbers.name(library.materials())
+        tables["material"] = numbers.name(library.named("materials"))
     if options["details"]:
         tables["tip_chamfer"] = numbers.text(0.01 * module, 0.06 * module, "mm")
         tables["tool_tip_radius"] = numbers.text(0.05 * module, 0.22 * module, "mm")

@@ -56,7 +56,7 @@ THICKEST_OIL = {
     "pressure_viscosity": {"law": "gold", "s": 9.904, "t": 0.139},
 }
 MODELS = {
-    "lubricant.oil": st.sampled_from([*library.oil_names(), THICKEST_OIL]),
+    "lubricant.oil": st.sampled_from([*library.names("oils"), THICKEST_OIL]),
     "models.friction": st.sampled_from(FRICTION),
     "models.rolling": st.sampled_from(["auto", "mixed-ehl", "goksem-hargreaves"]),
     "models.load_distribution": st.sampled_from(["uniform", "minimum-energy"]),

@@ -340,7 +340,7 @@ def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil()
     assert "no model was made for this oil" in why
 
 
-SHIPPED = [name for name in library.oil_names() if library.oil_model_file(name)]
+SHIPPED = [name for name in library.names("oils") if library.oil_model_file(name)]
 
 
 @pytest.mark.parametrize("name", SHIPPED)

@@ -19,7 +19,7 @@ from limits import is_soon
 from problems import problems_of
 
 NAMES = [
-    *library.case_files(),
+    *library.names("cases"),
     *(
         f"talbot-2012-{word}"
         for group in library.case_variants()["talbot-2012"]
@@ -54,7 +54,7 @@ def test_inputs_of_values_with_many_digits_make_the_same_case_again(case):
     assert read_case(changed.inputs()) == changed
 
 
-@pytest.mark.parametrize("name", sorted(library.case_files()))
+@pytest.mark.parametrize("name", sorted(library.names("cases")))
 def test_what_stays_as_it_was_is_read_as_if_for_the_first_time(name):
     case = read_case(name)
     ways = [{"operation.torque": "321 N*m"}, {"models.friction": "schlenk"}, {"title": "another"}]

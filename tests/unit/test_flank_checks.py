@@ -164,7 +164,14 @@ def test_a_bad_flank_hides_no_other_problem(talbot):
 
 def test_a_relief_may_be_stated_by_roll_length_or_by_diameter(talbot):
     mesh, _ = talbot.gearings[""].geometries
-    start = 2 * ((mesh.gear1.tip_involute_length - 2e-3) ** 2 + mesh.gear1.base_radius**2) ** 0.5
+    start = (
+        2
+        * (
+            (mesh.gear1.roll_length_at(mesh.gear1.tip_radius) - 2e-3) ** 2
+            + mesh.gear1.base_radius**2
+        )
+        ** 0.5
+    )
     by_diameter = {"tip_relief": "20 um", "tip_relief_diameter": f"{start * 1e3} mm"}
     reliefs = []
     for flank in (TIP, by_diameter):

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.contact.temperatures import effusivity, flash_temperature, heat_share
+from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width, hertz_pressure
 
-STEEL = effusivity(45.0, 440.0, 7800.0)
+STEEL = Solid(45.0, 440.0, 7800.0).effusivity
 
 
 def test_effusivity_of_steel():
@@ -24,7 +24,7 @@ def test_is_the_printed_form_of_iso_6336_22():
     line_load = np.array([50e3, 236.3e3, 700e3])
     radius = np.array([4e-3, 8.4e-3, 12e-3])
     u1, u2 = np.array([2.0, 8.0, 12.0]), np.array([9.0, 3.0, 12.5])
-    other = effusivity(50.0, 470.0, 7850.0)
+    other = Solid(50.0, 470.0, 7850.0).effusivity
 
     pressure = hertz_pressure(line_load, radius, e_eq) / 1e6  # N/mm^2
     carried = np.sqrt(STEEL**2 * u1) + np.sqrt(other**2 * u2)

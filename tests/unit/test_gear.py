@@ -178,7 +178,7 @@ def test_teeth_become_pointed_where_both_flanks_meet(make_gear):
 
 def test_tip_curvature_is_the_tangent_from_the_tip_to_the_base_circle(make_gear):
     gear = make_gear(25, addendum=1.2)
-    length = gear.tip_involute_length
+    length = gear.roll_length_at(gear.tip_radius)
     assert math.hypot(length, gear.base_radius) == pytest.approx(gear.tip_radius, rel=ROUNDING)
     inside = replace(gear, tip_radius=0.9 * gear.base_radius)
-    assert inside.tip_involute_length == 0.0
+    assert inside.roll_length_at(inside.tip_radius) == 0.0

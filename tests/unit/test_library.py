@@ -16,7 +16,7 @@ TALBOT_WORDS = [[*group["words"]] for group in library.case_variants()["talbot-2
 
 def test_cases_and_their_variants_are_found():
     names = ("talbot-2012", "talbot-2012-pair", "train-8hp70", "train-eaxle")
-    assert library.case_files() == names
+    assert library.names("cases") == names
     assert TALBOT_WORDS == [["n3", "n4", "n5", "n6"], ["shaved", "polished"], ["40C", "60C", "90C"]]
 
 
@@ -52,12 +52,12 @@ def test_tables_are_handed_out_afresh_or_read_only():
     library.oil_table("iso-vg-100-pao")["kind"] = "water"
     assert library.oil_table("iso-vg-100-pao")["kind"] == "pao"
     with pytest.raises(TypeError):
-        library.finishes()["ground"]["roughness"] = "1 um"
+        library.named("finishes")["ground"]["roughness"] = "1 um"
     with pytest.raises(TypeError):
-        library.materials()["steel"] = {}
+        library.named("materials")["steel"] = {}
 
 
-@pytest.mark.parametrize("name", library.oil_names())
+@pytest.mark.parametrize("name", library.names("oils"))
 def test_every_oil_is_sound_and_sourced(name):
     oil = Oil.model_validate(library.oil_table(name), strict=False)
     assert oil.name == name
@@ -73,9 +73,9 @@ def test_other_names_are_no_oil(name):
         library.oil_table(name)
 
 
-@pytest.mark.parametrize("name", library.materials())
+@pytest.mark.parametrize("name", library.named("materials"))
 def test_every_material_is_sound_and_sourced(name):
-    material = Material.model_validate(dict(library.materials()[name]))
+    material = Material.model_validate(dict(library.named("materials")[name]))
     assert material.title
     assert material.source
     assert 185e9 <= material.elastic_modulus <= 215e9
@@ -85,9 +85,9 @@ def test_every_material_is_sound_and_sourced(name):
     assert case.planet.material == material
 
 
-@pytest.mark.parametrize("name", library.finishes())
+@pytest.mark.parametrize("name", library.named("finishes"))
 def test_every_finish_is_sound_and_sourced(name):
-    finish = library.finishes()[name]
+    finish = library.named("finishes")[name]
     assert set(finish) == {"title", "roughness", "source"}
     assert finish["source"]
     case = read_case("talbot-2012").updated({"sun.roughness": name})
@@ -95,8 +95,8 @@ def test_every_finish_is_sound_and_sourced(name):
 
 
 def test_finer_processes_leave_finer_flanks():
-    rough = [float(finish["roughness"].split()[0]) for finish in library.finishes().values()]
+    rough = [float(finish["roughness"].split()[0]) for finish in library.named("finishes").values()]
     assert max(rough) <= 2.5
     order = ["milled", "hobbed", "ground", "honed", "chemically-polished", "superfinished"]
-    values = [float(library.finishes()[name]["roughness"].split()[0]) for name in order]
+    values = [float(library.named("finishes")[name]["roughness"].split()[0]) for name in order]
     assert values == sorted(values, reverse=True)

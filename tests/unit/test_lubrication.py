@@ -12,9 +12,9 @@ from click.testing import CliRunner
 import asymmetric
 import epicyclic as ep
 import listed_trains
+from epicyclic import library
 from epicyclic.cli.main import cli
 from epicyclic.gears.gearing import outside_radius
-from epicyclic.library import lubrication_methods
 from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
 from epicyclic.oil.oil import mixture_state, oil_state
 from epicyclic.study.bands.inputs import uncertain_values
@@ -72,7 +72,7 @@ def sump(case, volume=1.9e-3):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_share_and_band_of_each_method(method):
-    known = lubrication_methods()[method]
+    known = library.named("lubrication")[method]
     case = pair(METHODS[method] | {"method": method, "oil_share_factor": 0.9})
     supply = ep.solve(case).lubrication[""]
     middle = 0.9 * known["oil_share"]
@@ -204,7 +204,7 @@ def test_a_gear_above_the_oil_turns_in_the_mixture():
     result = ep.solve(case)
     sun = case.gearings[""].gear("sun")
     mixture = mixture_state(oil_of(case), 0.1, case.surroundings.pressure)
-    expected = disc_drag(sun.tip_radius, 27.2e-3, 2900 * RPM, mixture).total
+    expected = sum(disc_drag(sun.tip_radius, 27.2e-3, 2900 * RPM, mixture))
     assert result.losses["sun_drag"] == pytest.approx(expected, rel=1e-9)
     assert result.losses["carrier_drag"] > 0
     assert any("Churning of planets" in note for note in result.notes)

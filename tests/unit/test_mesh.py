@@ -40,11 +40,11 @@ def test_meshes_of_the_test_article(talbot_meshes):
         assert item.overlap_ratio == pytest.approx(0.973, abs=0.5e-3)
         assert item.face_width * 1e3 == pytest.approx(24.4, rel=ROUNDING)
     sun_mesh, ring_mesh = talbot_meshes
-    assert sun_mesh.tip_contact_ratio1 == pytest.approx(0.7515, abs=0.5e-4)
-    assert sun_mesh.tip_contact_ratio2 == pytest.approx(0.6127, abs=0.5e-4)
+    assert sun_mesh.tip_contact_ratios[0] == pytest.approx(0.7515, abs=0.5e-4)
+    assert sun_mesh.tip_contact_ratios[1] == pytest.approx(0.6127, abs=0.5e-4)
     assert sun_mesh.transverse_contact_ratio == pytest.approx(1.3643, abs=0.5e-4)
-    assert ring_mesh.tip_contact_ratio1 == pytest.approx(0.6127, abs=0.5e-4)
-    assert ring_mesh.tip_contact_ratio2 == pytest.approx(0.7541, abs=0.5e-4)
+    assert ring_mesh.tip_contact_ratios[0] == pytest.approx(0.6127, abs=0.5e-4)
+    assert ring_mesh.tip_contact_ratios[1] == pytest.approx(0.7541, abs=0.5e-4)
     assert ring_mesh.transverse_contact_ratio == pytest.approx(1.3669, abs=0.5e-4)
 
 
@@ -101,10 +101,10 @@ def test_every_point_of_the_path_lies_on_both_flanks(mesh):
         assert from_second == pytest.approx(expected, rel=ROUNDING)
     start = math.hypot(mesh.gear2.base_radius, mesh.curvature2(mesh.path_start))
     assert start == pytest.approx(mesh.gear2.tip_radius, rel=ROUNDING)
-    assert mesh.radius1_at_start == pytest.approx(
+    assert mesh.inner_radii[0] == pytest.approx(
         math.hypot(mesh.gear1.base_radius, mesh.path_start), rel=ROUNDING
     )
-    assert mesh.radius2_at_end == pytest.approx(
+    assert mesh.inner_radii[1] == pytest.approx(
         math.hypot(mesh.gear2.base_radius, mesh.curvature2(mesh.path_end)), rel=ROUNDING
     )
 
@@ -144,8 +144,8 @@ def test_swapping_an_external_pair_swaps_the_figures(make_mesh):
     mesh = make_mesh(19, 43, x1=0.3, x2=0.1, beta=12.0, center_distance=64.5e-3)
     swapped = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
     assert swapped.ratio == pytest.approx(1 / mesh.ratio, rel=ROUNDING)
-    assert swapped.tip_contact_ratio1 == pytest.approx(mesh.tip_contact_ratio2, rel=1e-10)
-    assert swapped.tip_clearance1 == pytest.approx(mesh.tip_clearance2, rel=1e-10)
+    assert swapped.tip_contact_ratios[0] == pytest.approx(mesh.tip_contact_ratios[1], rel=1e-10)
+    assert swapped.tip_clearances[0] == pytest.approx(mesh.tip_clearances[1], rel=1e-10)
     assert swapped.backlash == pytest.approx(mesh.backlash, rel=1e-10)
     assert swapped.operating_helix_tangent == pytest.approx(
         mesh.operating_helix_tangent, rel=ROUNDING
@@ -155,8 +155,8 @@ def test_swapping_an_external_pair_swaps_the_figures(make_mesh):
 def test_clearances_of_standard_gears_are_a_quarter_module(make_mesh):
     for internal in (False, True):
         mesh = make_mesh(30, 90, internal=internal, module=2e-3)  # dedendum 1.25, addendum 1
-        assert mesh.tip_clearance1 == pytest.approx(0.5e-3, rel=1e-10)
-        assert mesh.tip_clearance2 == pytest.approx(0.5e-3, rel=1e-10)
+        assert mesh.tip_clearances[0] == pytest.approx(0.5e-3, rel=1e-10)
+        assert mesh.tip_clearances[1] == pytest.approx(0.5e-3, rel=1e-10)
 
 
 def test_helix_at_the_operating_circles_keeps_the_lead(mesh):

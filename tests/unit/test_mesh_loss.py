@@ -50,8 +50,8 @@ def reference(formula, mesh):
     return formula(
         mesh.gear1.teeth,
         mesh.gear2.teeth,
-        mesh.tip_contact_ratio1,
-        mesh.tip_contact_ratio2,
+        mesh.tip_contact_ratios[0],
+        mesh.tip_contact_ratios[1],
         mesh.gear1.rack.base_helix_angle,
         internal=mesh.internal,
     )
@@ -87,8 +87,8 @@ def with_tip_ratios(mesh, tip1, tip2):
         gear1=replace(mesh.gear1, tip_radius=math.hypot(mesh.gear1.base_radius, curvature1)),
         gear2=replace(mesh.gear2, tip_radius=math.hypot(mesh.gear2.base_radius, curvature2)),
     )
-    assert mesh.tip_contact_ratio1 == pytest.approx(tip1, rel=1e-9)
-    assert mesh.tip_contact_ratio2 == pytest.approx(tip2, rel=1e-9)
+    assert mesh.tip_contact_ratios[0] == pytest.approx(tip1, rel=1e-9)
+    assert mesh.tip_contact_ratios[1] == pytest.approx(tip2, rel=1e-9)
     return mesh
 
 

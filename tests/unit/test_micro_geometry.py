@@ -40,8 +40,8 @@ def along(mesh, member, flank, shares, y=0.0):
 def test_active_profile_ends_at_the_own_tip_and_where_the_mate_s_tip_touches(mesh, member):
     root, tip = active_profile(mesh, member)
     gear = (mesh.gear1, mesh.gear2)[member - 1]
-    assert tip == pytest.approx(gear.tip_involute_length, rel=1e-12)
-    radius = (mesh.radius1_at_start, mesh.radius2_at_end)[member - 1]
+    assert tip == pytest.approx(gear.roll_length_at(gear.tip_radius), rel=1e-12)
+    radius = mesh.inner_radii[member - 1]
     assert math.hypot(gear.base_radius, root) == pytest.approx(radius, rel=1e-12)
 
 

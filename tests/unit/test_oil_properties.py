@@ -13,7 +13,7 @@ from epicyclic.oil.oil import Oil, air_viscosity, mixture_state, oil_state
 ROUNDING = 1e-12  # relative; a few roundings of doubles
 CELSIUS = 273.15
 ATMOSPHERE = 101325.0
-OILS = library.oil_names()
+OILS = library.names("oils")
 
 
 def load(name):

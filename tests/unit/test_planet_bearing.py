@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.build.gear_sets import palmgren_coefficient, roller_bearing
+from epicyclic.build.gear_sets import roller_bearing
 from epicyclic.build.machine import build
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss
@@ -281,12 +281,13 @@ def test_palmgren_loss():
 
 
 def test_palmgren_coefficients(talbot):
-    table = talbot.planet_bearing
-    assert 0.0002 <= palmgren_coefficient(table) <= 0.0004  # Talbot (2012), p. 56, caged
-    full = talbot.updated({"planet_bearing.cage": "full-complement"}).planet_bearing
-    assert palmgren_coefficient(full) == 0.00055
-    own = talbot.updated({"planet_bearing.palmgren_coefficient": 0.002}).planet_bearing
-    assert palmgren_coefficient(own) == 0.002
+    def coefficient(**changes):
+        case = talbot.updated({f"planet_bearing.{key}": it for key, it in changes.items()})
+        return build(case).sets[""].planets[0].bearing.palmgren_coefficient
+
+    assert 0.0002 <= coefficient() <= 0.0004  # Talbot (2012), p. 56, caged
+    assert coefficient(cage="full-complement") == 0.00055
+    assert coefficient(palmgren_coefficient=0.002) == 0.002
 
 
 def test_palmgren_model_of_the_set(article):

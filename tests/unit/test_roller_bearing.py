@@ -101,10 +101,10 @@ def test_every_slice_follows_the_load_law_at_its_deflection(bearing, load):
     loads = roller_loads(bearing, *load)
     dx, dy, tx, ty = loads.displacement
     width = bearing.slice_width
-    for row, y in enumerate(bearing.slice_positions()):
+    for row, y in enumerate(bearing.slice_positions):
         for z, psi in enumerate(loads.azimuth):
             radial = (dx + tx * y) * math.cos(psi) + (dy + ty * y) * math.sin(psi)
-            delta = (radial - bearing.diametral_clearance / 2) / 2 - bearing.crown()
+            delta = (radial - bearing.diametral_clearance / 2) / 2 - bearing.crown
             q = loads.intensity[row, z]
             loaded = delta > 0
             assert np.all(q[~loaded] == 0)
@@ -277,8 +277,8 @@ def test_solution_does_not_depend_on_the_start(load):
             vector,
             start,
             azimuth,
-            TALBOT.slice_positions() / half_width,
-            TALBOT.crown(),
+            TALBOT.slice_positions / half_width,
+            TALBOT.crown,
             TALBOT.slice_width,
             TALBOT.diametral_clearance,
             SOLVER,
@@ -393,22 +393,22 @@ def test_geometry_of_the_test_article():
     assert 1 / TALBOT.outer_radius == pytest.approx(2e3 / 4.015 - 2e3 / 34.025, rel=1e-12)
     gaps = replace(TALBOT, rows=3, row_gap=2e-3)
     assert gaps.half_width == pytest.approx((3 * 9.52e-3 + 2 * 2e-3) / 2, rel=1e-12)
-    assert gaps.slice_positions().mean() == pytest.approx(0.0, abs=1e-15)
-    assert gaps.slice_positions().max() == pytest.approx(
+    assert gaps.slice_positions.mean() == pytest.approx(0.0, abs=1e-15)
+    assert gaps.slice_positions.max() == pytest.approx(
         gaps.half_width - gaps.slice_width / 2, rel=1e-12
     )
 
 
 def test_crown_is_a_parabola_over_its_ends():
     bearing = replace(TALBOT, slices=1000, crown_drop=5e-6, crown_length_fraction=0.25)
-    crown = bearing.crown()
+    crown = bearing.crown
     assert crown == pytest.approx(crown[::-1], rel=1e-12)
     assert np.all(crown[250:750] == 0)
     # the middle of the last slice stands 1/500 of the crowned quarter short of the end
     assert crown[0] == pytest.approx(5e-6 * (1 - 1 / 500) ** 2, rel=1e-9)
     # half-way in: a quarter of the drop
     assert crown[125] == pytest.approx(5e-6 / 4, rel=0.01)
-    assert np.all(replace(TALBOT, crown_length_fraction=0.0).crown() == 0)
+    assert np.all(replace(TALBOT, crown_length_fraction=0.0).crown == 0)
 
 
 def test_rolling_speed_is_that_of_the_source():

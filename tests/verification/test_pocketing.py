@@ -45,8 +45,8 @@ def pair():
         )
         (mesh,) = case.gearings[""].geometries
         tools = (
-            fitted_tool(mesh.gear1, None, mesh.radius1_at_start),
-            fitted_tool(mesh.gear2, None, mesh.radius2_at_end),
+            fitted_tool(mesh.gear1, None, mesh.inner_radii[0]),
+            fitted_tool(mesh.gear2, None, mesh.inner_radii[1]),
         )
         return pocket_geometry(mesh, tools, drives1, **kwargs)
 
@@ -150,8 +150,8 @@ def test_outline_points_and_angles_converge(pair):
 
 def test_tools_leave_the_involute_that_the_mate_needs(talbot, talbot_meshes):
     mesh = talbot_meshes[0]
-    tool = fitted_tool(mesh.gear2, None, mesh.radius2_at_end)
-    assert form_radius(mesh.gear2, tool) <= mesh.radius2_at_end + 1e-9
+    tool = fitted_tool(mesh.gear2, None, mesh.inner_radii[1])
+    assert form_radius(mesh.gear2, tool) <= mesh.inner_radii[1] + 1e-9
 
 
 # --- fluid ----------------------------------------------------------------------------------------
@@ -397,8 +397,8 @@ def test_every_point_of_the_box_has_an_answer(
 
     try:
         tools = (
-            fitted_tool(mesh.gear1, None, mesh.radius1_at_start),
-            fitted_tool(mesh.gear2, None, mesh.radius2_at_end),
+            fitted_tool(mesh.gear1, None, mesh.inner_radii[0]),
+            fitted_tool(mesh.gear2, None, mesh.inner_radii[1]),
         )
     except ValueError:
         assume(False)
@@ -422,8 +422,8 @@ def test_voids_hold_the_mass(module, backlash, internal, times):
     teeth = (23, 76) if internal else (23, 41)
     mesh = box_mesh(module, 0.0, backlash, teeth, internal, 8 * module)
     tools = (
-        fitted_tool(mesh.gear1, None, mesh.radius1_at_start),
-        fitted_tool(mesh.gear2, None, mesh.radius2_at_end),
+        fitted_tool(mesh.gear1, None, mesh.inner_radii[0]),
+        fitted_tool(mesh.gear2, None, mesh.inner_radii[1]),
     )
     geometry = pocket_geometry(mesh, tools, True)
     number = times * void_number(geometry, 24, 32, 1.0)

@@ -74,9 +74,9 @@ def test_contact_is_that_of_gears_as_short_as_the_tip_form_circles(make_mesh, in
     )
     broken = chamfered(mesh, HEIGHT, HEIGHT)
     assert broken.transverse_contact_ratio == short.transverse_contact_ratio
-    assert broken.radius1_at_start == short.radius1_at_start
-    assert broken.radius2_at_end == short.radius2_at_end
-    assert broken.tip_clearance1 == mesh.tip_clearance1
+    assert broken.inner_radii[0] == short.inner_radii[0]
+    assert broken.inner_radii[1] == short.inner_radii[1]
+    assert broken.tip_clearances[0] == mesh.tip_clearances[0]
     assert broken.transverse_contact_ratio < mesh.transverse_contact_ratio
 
 

@@ -155,7 +155,7 @@ def _meshes(
     # the tool of each gear serves the mate that reaches deepest
     needed: dict[str, float] = {}
     for mesh in gearing.geometries:
-        ends = ((mesh.gear1, mesh.radius1_at_start), (mesh.gear2, mesh.radius2_at_end))
+        ends = ((mesh.gear1, mesh.inner_radii[0]), (mesh.gear2, mesh.inner_radii[1]))
         for gear, radius in ends:
             deeper = max if gear.internal else min
             needed[gear.name] = deeper(radius, needed.get(gear.name, radius))
@@ -268,23 +268,18 @@ def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBea
     """The bearing of a planet, with the models of the case."""
     name = case.bearing_model(planet)
     is_fitted = name in (FittedRolling.name, FITTED_OR_PALMGREN)
-    factor = table.viscous_factor
+    factor, palmgren = table.viscous_factor, table.palmgren_coefficient
+    if palmgren is None:
+        palmgren = CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
     return PlanetBearing(
         bearing=roller_bearing(table, case.numerics),
         model=case.fitted_rolling("bearing_rolling_loss") if is_fitted else name,
-        palmgren_coefficient=palmgren_coefficient(table),
+        palmgren_coefficient=palmgren,
         viscous_factor=VISCOUS_FACTOR_PER_ROW * table.rows if factor is None else factor,
         conductivity=table.material.thermal_conductivity,
         oil_held=case.models.oil_beyond_range == "held",
         palmgren_beyond=name == FITTED_OR_PALMGREN,
     )
-
-
-def palmgren_coefficient(table: BearingTable) -> float:
-    """f1 of the case, or the published one of the bearing's kind. [1]"""
-    if table.palmgren_coefficient is not None:
-        return table.palmgren_coefficient
-    return CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
 
 
 def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:

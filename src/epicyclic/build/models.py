@@ -46,7 +46,7 @@ from epicyclic.losses.friction import (
 )
 from epicyclic.losses.mixed_lubrication import Surfaces
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN
-from epicyclic.losses.pocket_flow import PocketModel, automatic_pocketing
+from epicyclic.losses.pocket_flow import LEAST_OIL, PocketModel
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.losses.reliability import RELIABILITY, reliability
@@ -69,11 +69,6 @@ from epicyclic.registry import load, offered
 
 GENERAL = {"friction": "mixed-lubrication", "rolling": "goksem-hargreaves"}
 """What ``auto`` stands for with the preset ``general``."""
-
-
-def preset_of(models: PlanetaryModels) -> str:
-    """What ``auto`` stands for."""
-    return models.preset
 
 
 @dataclass(frozen=True)
@@ -113,7 +108,7 @@ class SetCase:
         models, table = self.models, self.lubrication
         pocketing: str = models.pocketing
         if pocketing == "auto":
-            pocketing = automatic_pocketing(oil_share(self).share)
+            pocketing = "isentropic" if oil_share(self).share < LEAST_OIL else "incompressible"
         found: dict[str, str] = {
             "friction": self._model("friction", FittedOrSchlenk.name, "schlenk"),
             "rolling": self._model("rolling", FittedOrGoksem.name, "goksem-hargreaves"),
@@ -147,7 +142,7 @@ class SetCase:
             CONTAINS_ROLLING
         ):
             return CONTAINED.name
-        if role in GENERAL and preset_of(self.models) == "general":
+        if role in GENERAL and self.models.preset == "general":
             return GENERAL[role]
         if self.lubricant.oil.friction_regression == TALBOT_FLUID.key:
             return "mixed-ehl"
@@ -288,7 +283,7 @@ def oil_share(case: Lubricated) -> OilShare:
         return OilShare(case.surroundings.oil_air_ratio, SHARE_KEY)
     if table.oil_share is not None:
         return OilShare(table.oil_share, OWN_SHARE_KEY)
-    known = library.lubrication_methods()[table.method]
+    known = library.named("lubrication")[table.method]
     share = min(1.0, table.oil_share_factor * known["oil_share"])
     return OilShare(share, known["source"], known["grade"], known["lognormal_factor"])
 

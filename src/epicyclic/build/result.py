@@ -15,7 +15,6 @@ from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
 from epicyclic.contact.fitted_models import changed_properties
-from epicyclic.gears import stated as flanks
 from epicyclic.gears.gear import HOUSING
 from epicyclic.gears.gearing import DEFAULT_RIM_THICKNESS, rim_thickness
 from epicyclic.gears.mesh import are_evenly_spaced
@@ -217,7 +216,9 @@ def load_notes(case: SetCase) -> Iterator[str]:
     """Deviations that the load distribution ignores, and rims that leave what is assumed."""
     model, gearing = case.models.load_distribution, case.gearing
     deviates = any(mesh.table.misalignment for mesh in gearing.meshes) or any(
-        map(flanks.micro_geometries, gearing.tables.values())
+        getattr(table, key, None) is not None
+        for table in gearing.tables.values()
+        for key in ("micro_geometry", "micro_geometry_ring_side")
     )
     if deviates and not LOAD_DISTRIBUTIONS[model].takes_deviations:
         yield (
@@ -281,9 +282,16 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
             f"No load reaches {'planet' if len(idle) == 1 else 'planets'} {', '.join(idle)} of "
             f"{len(shares)}: the position errors exceed the deflection of the others{beyond}."
         )
+    usual = LoadSharing()
+    idle_keys = {"mesh_load_factor"} if sharing.method != "mesh-load-factor" else set()
+    if sharing.method not in ("closed-form", "direct"):
+        idle_keys |= {"position_errors", "floating_member", "support_stiffness", "pin_stiffness"}
+    elif sharing.floating_member == "none":
+        idle_keys.add("support_stiffness")
     notes += [
         f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}."
-        for key in sharing.idle_keys()
+        for key in LoadSharing.model_fields
+        if key in idle_keys and getattr(sharing, key) != getattr(usual, key)
     ]
     return tuple(notes)
 

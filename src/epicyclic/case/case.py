@@ -919,7 +919,7 @@ def _no_such_case(name: object) -> Problem:
     if not isinstance(name, str):
         allowed = "must be a path, the name of a built-in case, or the tables of a case."
         return Problem("CASE", one_line(repr(name)), allowed, "Give one of these.")
-    known = library.case_files()
+    known = library.names("cases")
     allowed = f"is neither a file nor a built-in case (built in: {', '.join(known)} and variants)."
     base = max((file for file in known if name.startswith(f"{file}-")), key=len, default="")
     groups = library.case_variants().get(base, [])

@@ -33,10 +33,9 @@ def expand(
 
 def gearing_of(parts: Parts) -> Gearing | None:
     """The gearing of a planetary set or a pair; None if a table that it needs is not there."""
-    for names in (("sun", "planet", "ring"), ("pinion", "gear")):
-        if all(name in parts for name in ("gears", *names)):
-            return expand(parts)[0]
-    return None
+    if parts.keys() >= {"gears", "sun", "planet", "ring"}:
+        return _planetary(parts)
+    return _pair(parts) if parts.keys() >= {"gears", "pinion", "gear"} else None
 
 
 def _planetary(parts: Parts) -> Gearing:

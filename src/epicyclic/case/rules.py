@@ -74,13 +74,7 @@ def cross_check(
     problems: list[Problem] = []
     models = sections.get("models")
     if isinstance(models, GearPairModels):
-        if models.friction == "table" and "friction_table" not in {*given, *sections}:
-            remedy = "Add [friction_table], or choose another model."
-            allowed = "needs a table of coefficients."
-            problems.append(Problem("models.friction", "", allowed, remedy))
-        if "lubricant" in sections or models.oil_model is not None:  # a train has that of its sets
-            problems += check_oil_model(models, folder, sections.get("lubricant"))
-        problems += _check_pocketing_table(models, folder)
+        problems += _check_models(models, sections, {*given, *sections}, folder)
     solver = sections.get("contact_solver")
     if isinstance(solver, ContactSolver):
         problems += law_problems("contact_solver", solver)
@@ -88,8 +82,6 @@ def cross_check(
     if isinstance(models, GearPairModels) and isinstance(thermal, ThermalTable):
         own = oil if isinstance(oil, LubricationTable) else None
         problems += check_ways_out(thermal, models.temperatures, own)
-    if isinstance(models, PlanetaryModels):
-        problems += _check_planet_tilt(models, {*given, *sections})
     if gearing is not None and not checked:
         problems += set_problems(gearing)
         bearing = sections.get("planet_bearing")
@@ -269,12 +261,30 @@ def _most_loaded(sharing: LoadSharing, key: str, planets: int) -> Problem:
     return Problem("load_sharing.mesh_load_factor", shown, allowed, "Use a smaller factor.")
 
 
-def _check_planet_tilt(models: PlanetaryModels, given: Collection[str]) -> Iterator[Problem]:
-    key, remedy = "models.planet_tilt", 'Or write planet_tilt = "left-out".'
-    if models.planet_tilt == "coupled" and "planet_bearing" not in given:
-        yield Problem(key, "", "needs [planet_bearing], because the planet tilts in it.", remedy)
-    if models.planet_tilt == "coupled" and models.load_distribution != "compliance":
-        yield Problem(key, "", 'needs load_distribution = "compliance".', remedy)
+def _check_models(
+    models: GearPairModels, sections: Mapping[str, Table], given: Collection[str], folder: Path
+) -> Iterator[Problem]:
+    """Models must have the tables and files that they need."""
+    if models.friction == "table" and "friction_table" not in given:
+        remedy = "Add [friction_table], or choose another model."
+        yield Problem("models.friction", "", "needs a table of coefficients.", remedy)
+    if "lubricant" in sections or models.oil_model is not None:  # a train has that of its sets
+        yield from check_oil_model(models, folder, sections.get("lubricant"))
+    if models.pocketing_table is not None:
+        from epicyclic.losses.pocket_tables import read_stored  # needs kernels
+
+        try:  # whether it is for these pockets shows when they are known
+            read_stored(folder / models.pocketing_table)
+        except InputError as error:
+            yield from error.problems
+    if isinstance(models, PlanetaryModels) and models.planet_tilt == "coupled":
+        key, remedy = "models.planet_tilt", 'Or write planet_tilt = "left-out".'
+        if "planet_bearing" not in given:
+            yield Problem(
+                key, "", "needs [planet_bearing], because the planet tilts in it.", remedy
+            )
+        if models.load_distribution != "compliance":
+            yield Problem(key, "", 'needs load_distribution = "compliance".', remedy)
 
 
 def _check_friction_table(table: FrictionTable) -> list[Problem]:
@@ -333,17 +343,6 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
     if not isinstance(lubricant, Lubricant):
         return None
     return builtin_model(lubricant.oil)
-
-
-def _check_pocketing_table(models: GearPairModels, folder: Path) -> Iterator[Problem]:
-    """That the file is one; whether it is for these pockets shows when they are known."""
-    if models.pocketing_table is not None:
-        from epicyclic.losses.pocket_tables import read_stored  # needs kernels
-
-        try:
-            read_stored(folder / models.pocketing_table)
-        except InputError as error:
-            yield from error.problems
 
 
 def _check_void(models: GearPairModels, surroundings: Surroundings) -> Iterator[Problem]:

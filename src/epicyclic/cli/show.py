@@ -50,8 +50,8 @@ def oils(name: str | None) -> None:
     if name is None:
         terminal().print(oil_table())
         return
-    if name not in library.oil_names():
-        remedy = did_you_mean(name, library.oil_names()) or "See 'epicyclic oils'."
+    if name not in library.names("oils"):
+        remedy = did_you_mean(name, library.names("oils")) or "See 'epicyclic oils'."
         raise InputError([Problem("NAME", repr(name), "is not a built-in oil.", remedy)])
     terminal().print(oil_sheet(name))
 

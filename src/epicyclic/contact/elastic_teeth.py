@@ -7,6 +7,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from importlib import import_module
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -90,48 +91,35 @@ class ToothPlate:
     half_inverse: FloatArray
     face_terms: int  # Polynomials along the tooth.
 
-    def depth(self, curvature: FloatArray) -> FloatArray:
-        """Distance from points of the flank to the tooth's middle line, along the normal. [m]"""
-        height, inclination = self._place(curvature)
-        thickness = np.interp(height, self.section_height, self.section_thickness)
-        depth: FloatArray = thickness / (2 * np.cos(inclination))
-        return depth
-
     def amplitudes(
         self,
         curvature: FloatArray,  # Transverse radius of curvature of the involute at each point. [m]
         face_position: FloatArray,  # Position across the face width of the gear, 0 to 1.
-    ) -> FloatArray:
+    ) -> tuple[FloatArray, FloatArray]:
         """Amplitudes a_i of unit normal forces at points of the flank: their compliance is a_i a_j.
 
         The force acts along the common normal; in the section of the tooth it bends the plate by
         its part across the middle line and, acting beside that line, by the moment of the rest.
 
-        Theory (E3). [m^0.5 N^-0.5]
+        Also how deep the middle line lies along the normal. Theory (E3). [m^0.5 N^-0.5], [m]
         """
-        height, inclination = self._place(curvature)
+        gear = self.gear
+        radius = np.hypot(gear.base_radius, curvature)
+        half_angle = gear.half_angles_at(curvature)
+        outward = -1.0 if gear.internal else 1.0
+        height = outward * (radius * np.cos(half_angle) - gear.root_radius) - self.root_offset
+        transverse = np.arctan2(curvature, gear.base_radius) - outward * half_angle
+        inclination = np.arctan(np.tan(transverse) * math.cos(gear.rack.helix_angle))
         thickness = np.interp(height, self.section_height, self.section_thickness)
         s = np.clip(2 * height / self.height - 1, -1.0, 1.0)
-        over_height = _polynomials(s, HEIGHT_TERMS)
-        along = _polynomials(2 * face_position - 1, self.face_terms)
+        over_height = legendre.legvander(s, HEIGHT_TERMS - 1)
+        along = legendre.legvander(2 * face_position - 1, self.face_terms - 1)
         shape = (over_height[:, :, None] * along[:, None, :]).reshape(len(height), -1)
         load = np.zeros((len(height), self.half_inverse.shape[0]))
         terms = shape.shape[1]
         load[:, :terms] = shape * np.cos(inclination)[:, None]
         load[:, terms : 2 * terms] = -shape * (np.sin(inclination) * thickness / 2)[:, None]
-        return load @ self.half_inverse.T
-
-    def _place(self, curvature: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Height above the root section, and inclination of the normal force to the plate."""
-        gear = self.gear
-        radius = np.hypot(gear.base_radius, curvature)
-        pressure_angle = np.arctan2(curvature, gear.base_radius)
-        half_angle = gear.half_angles_at(curvature)
-        outward = -1.0 if gear.internal else 1.0
-        height = outward * (radius * np.cos(half_angle) - gear.root_radius) - self.root_offset
-        transverse = pressure_angle - outward * half_angle
-        inclination = np.arctan(np.tan(transverse) * math.cos(gear.rack.helix_angle))
-        return height, inclination
+        return load @ self.half_inverse.T, thickness / (2 * np.cos(inclination))
 
 
 @lru_cache(maxsize=64)
@@ -143,7 +131,19 @@ def tooth_plate(
     tool: Tool,  # The tool that leaves the root fillet.
 ) -> ToothPlate:
     """The plate of one tooth of `gear`."""
-    height, thickness, offset = _section(gear, tool)
+    outline = tooth_outline(gear, tool)
+    outward = -1.0 if gear.internal else 1.0
+    flank = slice(outline.joints[0], outline.joints[2] + 1)
+    along = outward * (outline.radius * np.cos(outline.half_angle) - gear.root_radius)
+    across = outline.radius * np.sin(outline.half_angle) * math.cos(gear.rack.helix_angle)
+    height, half = along[flank], across[flank]
+    steep = np.arctan2(-np.gradient(half), np.gradient(height)) > ROOT_TANGENT
+    start = int(np.argmin(steep)) if steep[0] else 0
+    offset, height, thickness = (
+        float(height[start]),
+        height[start:] - height[start],
+        2 * half[start:],
+    )
     length = gear.face_width / math.cos(gear.rack.helix_angle)
     stiffness = _stiffness(height, thickness, length, elastic_modulus, poisson_ratio, face_terms)
     # scaled to a unit diagonal: deflections and rotations differ by orders of magnitude
@@ -153,20 +153,6 @@ def tooth_plate(
     for array in (height, thickness, half_inverse):
         array.flags.writeable = False
     return ToothPlate(gear, float(height[-1]), height, thickness, offset, half_inverse, face_terms)
-
-
-def _section(gear: Gear, tool: Tool) -> tuple[FloatArray, FloatArray, float]:
-    """Thickness in the normal section over the height above the root section, and its offset."""
-    outline = tooth_outline(gear, tool)
-    outward = -1.0 if gear.internal else 1.0
-    flank = slice(outline.joints[0], outline.joints[2] + 1)
-    along = outward * (outline.radius * np.cos(outline.half_angle) - gear.root_radius)
-    across = outline.radius * np.sin(outline.half_angle) * math.cos(gear.rack.helix_angle)
-    height, half = along[flank], across[flank]
-    inclination = np.arctan2(-np.gradient(half), np.gradient(height))
-    steep = inclination > ROOT_TANGENT
-    start = int(np.argmin(steep)) if steep[0] else 0
-    return height[start:] - height[start], 2 * half[start:], float(height[start])
 
 
 def _stiffness(
@@ -182,14 +168,16 @@ def _stiffness(
     top = float(height[-1])
     points, weights = legendre.leggauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
     t = np.interp((points + 1) / 2 * top, height, thickness)
-    v = _polynomials(points, HEIGHT_TERMS)
-    dv = _derivatives(points, HEIGHT_TERMS) * 2 / top
+    v = legendre.legvander(points, HEIGHT_TERMS - 1)
+    slopes = legendre.legval(points, legendre.legder(np.eye(HEIGHT_TERMS)))
+    dv = np.ascontiguousarray(slopes.T) * 2 / top
     bending = weights * top / 2 * elastic_modulus * t**3 / (12 * (1 - nu**2))
     shear = weights * top / 2 * SHEAR_FACTOR * elastic_modulus / (2 * (1 + nu)) * t
 
     points, weights = legendre.leggauss(face_terms)
-    y = _polynomials(points, face_terms)
-    dy = _derivatives(points, face_terms) * 2 / length
+    y = legendre.legvander(points, face_terms - 1)
+    slopes = legendre.legval(points, legendre.legder(np.eye(face_terms)))
+    dy = np.ascontiguousarray(slopes.T) * 2 / length
     across = weights * length / 2
     yy, dydy = _integral(y, y, across), _integral(dy, dy, across)
     ydy = _integral(y, dy, across)
@@ -222,7 +210,7 @@ def _add_foundation(
     coupling = (1 - nu - 2 * nu**2) / (elastic_modulus * root)
     deflection = DEFLECTION_CONSTANT * (1 - nu**2) / elastic_modulus
     springs = np.linalg.inv(np.array([[deflection, coupling], [coupling, rotation]]))
-    at_root = _polynomials(np.array([-1.0]), HEIGHT_TERMS)[0]
+    at_root = legendre.legvander(-1.0, HEIGHT_TERMS - 1)
     line = np.kron(np.outer(at_root, at_root), yy)
     stiffness[:n, :n] += springs[0, 0] * line
     stiffness[n : 2 * n, n : 2 * n] += springs[1, 1] * line
@@ -231,24 +219,10 @@ def _add_foundation(
     stiffness[2 * n :, 2 * n :] += line / rotation
 
 
-def _integral(a: FloatArray, b: FloatArray, weights: FloatArray) -> FloatArray:
+def _integral(a: NDArray[Any], b: NDArray[Any], weights: FloatArray) -> FloatArray:
     """Integrals of products of the columns of `a` and `b`, values at Gauss points."""
-    return a.T @ (weights[:, None] * b)
-
-
-def _polynomials(points: FloatArray, terms: int) -> FloatArray:
-    """Legendre polynomials, shape (points, terms)."""
-    return np.asarray(legendre.legvander(points, terms - 1), dtype=np.float64)
-
-
-def _derivatives(points: FloatArray, terms: int) -> FloatArray:
-    """Derivatives of the Legendre polynomials, shape (points, terms)."""
-    derivatives = np.zeros((len(points), terms))
-    for term in range(1, terms):
-        coefficients = np.zeros(term + 1)
-        coefficients[term] = 1.0
-        derivatives[:, term] = legendre.legval(points, legendre.legder(coefficients))
-    return derivatives
+    integral: FloatArray = a.T @ (weights[:, None] * b)
+    return integral
 
 
 # The rim of a ring gear as an elastic ring under the forces of all planets.
@@ -407,11 +381,6 @@ class GearBody:
     tool: Tool | None = None  # The tool that leaves the root fillet; None for `default_tool`.
     rim: Rim | None = None  # Rim of a ring gear; None for a body that only yields under each tooth.
 
-    @property
-    def surface_compliance(self) -> float:
-        """2 (1 - nu^2)/(pi E), of the local deflection. [m^2/N]"""
-        return 2 * (1 - self.poisson_ratio**2) / (math.pi * self.modulus)
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeshCompliance:
@@ -447,19 +416,21 @@ def mesh_compliance(
         body1.modulus, body1.poisson_ratio, body2.modulus, body2.poisson_ratio
     )
     log_width = np.log(hertz_half_width(np.ones(shape), mesh.equivalent_radius(rho1), modulus))
-    local_a = np.zeros(shape)
+    local_a, local_b = np.zeros(shape), 0.0
     members = ((mesh.gear1, body1, rho1), (mesh.gear2, body2, mesh.curvature2(rho1)))
     for gear, body, curvature in members:
         overhang = (gear.face_width - mesh.face_width) / 2
         face = (lines.face_position + overhang) / gear.face_width
         with one_thread():
             plate = _plate(gear, body)
-            amplitudes = plate.amplitudes(curvature.ravel(), face.ravel()).reshape(*shape, -1)
+            flat, depth = plate.amplitudes(curvature.ravel(), face.ravel())
+            amplitudes = flat.reshape(*shape, -1)
             influence += amplitudes @ amplitudes.swapaxes(-1, -2)
         nu = body.poisson_ratio
-        depth = plate.depth(curvature.ravel()).reshape(shape)
-        local_a += body.surface_compliance * (np.log(2 * depth) - log_width - nu / (2 * (1 - nu)))
-    local_b = body1.surface_compliance + body2.surface_compliance
+        local = 2 * (1 - nu**2) / (math.pi * body.modulus)
+        log_depth = np.log(2 * depth).reshape(shape)
+        local_a += local * (log_depth - log_width - nu / (2 * (1 - nu)))
+        local_b += local
     coupling = np.zeros((*shape[:2], shape[1]))
     if body2.rim is not None:
         coupling += rim_coupling(mesh, lines, body2.rim, body2.modulus, body2.poisson_ratio)

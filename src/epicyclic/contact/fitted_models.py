@@ -132,7 +132,7 @@ def regression_groups(states: LineContacts) -> RegressionGroups:
         g=states.material_number,
         p=states.hertz_pressure / flanks.equivalent_modulus,
         r=states.radius / states.hertz_half_width,
-        s_co=flanks.composite_roughness / states.radius,
+        s_co=states.composite_roughness / states.radius,
         s_eq=flanks.reduced_roughness / states.radius,
         lam=states.film_ratio,
     )
@@ -828,22 +828,20 @@ def builtin_model(
     True
     """
     file = library.oil_model_file(oil.name)
-    if file is None or _changed(oil, file):
+    if file is None or changed_properties(oil):
         return None
     return read_oil_model(file)
 
 
+@lru_cache(maxsize=64)
 def changed_properties(oil: Oil) -> tuple[str, ...]:
     """Properties in which an oil differs from the one of its name that was simulated.
 
     Wherever their values are from; none if no oil of this name was.
     """
     file = library.oil_model_file(oil.name)
-    return () if file is None else _changed(oil, file)
-
-
-@lru_cache(maxsize=64)
-def _changed(oil: Oil, file: Path) -> tuple[str, ...]:
+    if file is None:
+        return ()
     # only the oil: to check all fits takes much longer, and most cases of such an oil use none
     settings = unsealed(read_text(file, "oil model", LARGEST_FILE))["settings"]
     simulated = Oil.model_validate(settings["lubricant"]["oil"])

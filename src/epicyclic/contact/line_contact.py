@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,12 +49,6 @@ class Flanks(Generic[Real]):
     effusivities: tuple[float, float] = (STEEL_EFFUSIVITY, STEEL_EFFUSIVITY)
 
     @property
-    def composite_roughness(self) -> Real:
-        """sqrt(Rq1^2 + Rq2^2). Theory (C12). [m]"""
-        roughness: Real = np.hypot(self.roughness1, self.roughness2)
-        return roughness
-
-    @property
     def reduced_roughness(self) -> Real:
         """Rq1 Rq2/(Rq1 + Rq2). Talbot (2012), p. 137. Theory (C13). [m]"""
         return self.roughness1 * self.roughness2 / (self.roughness1 + self.roughness2)
@@ -80,82 +74,51 @@ class LineContacts:
     flanks: Flanks[Any]  # The surfaces, alike for all contacts or with one roughness for each.
     oil: OilState | InletOil  # At the temperature of these contacts.
 
+    if TYPE_CHECKING:  # what follows from them, by the names that ranges and fits have for it
+        temperature: float = field(init=False)  # Of the oil at the contacts. [K]
+        dynamic_viscosity: Any = field(init=False)  # Of the oil at the inlet. [Pa s]
+        pressure_viscosity: Any = field(init=False)  # alpha. [1/Pa]
+        material_number: Any = field(init=False)  # G = alpha E_eq. [1]
+        roughness1: Any = field(init=False)  # rms. [m]
+        roughness2: Any = field(init=False)  # rms. [m]
+        roughness: tuple[Any, Any] = field(init=False)  # Both. [m]
+        composite_roughness: Any = field(init=False)  # sqrt(Rq1^2 + Rq2^2). [m]
+        hertz_pressure: FloatArray = field(init=False)  # p_h. [Pa]
+        hertz_half_width: FloatArray = field(init=False)  # b_h. [m]
+        speed_number: FloatArray = field(init=False)  # U = u_r mu/(E_eq R_eq). [1]
+        load_number: FloatArray = field(init=False)  # W = W'/(E_eq R_eq). [1]
+
+    def __post_init__(self) -> None:
+        """Properties of oil and surfaces, p_h, b_h, U, W and G. Theory (C7), (C8), (C9), (C12)."""
+        oil, flanks = self.oil, self.flanks
+        stiffness = flanks.equivalent_modulus * self.radius
+        hertz = (self.line_load, self.radius, flanks.equivalent_modulus)
+        vars(self).update(
+            temperature=oil.temperature,
+            dynamic_viscosity=oil.dynamic_viscosity,
+            pressure_viscosity=oil.pressure_viscosity,
+            material_number=oil.pressure_viscosity * flanks.equivalent_modulus,
+            roughness1=flanks.roughness1,
+            roughness2=flanks.roughness2,
+            roughness=(flanks.roughness1, flanks.roughness2),
+            composite_roughness=np.hypot(flanks.roughness1, flanks.roughness2),
+            hertz_pressure=hertz_pressure(*hertz),
+            hertz_half_width=hertz_half_width(*hertz),
+            speed_number=self.rolling_speed * oil.dynamic_viscosity / stiffness,
+            load_number=self.line_load / stiffness,
+        )
+
     @cached_property
     def slide_to_roll_ratio(self) -> FloatArray:
         """abs(u_s)/u_r. Theory (C4). [1]"""
         ratio: FloatArray = np.abs(self.sliding_speed) / np.maximum(self.rolling_speed, LEAST_SPEED)
         return ratio
 
-    @cached_property
-    def hertz_pressure(self) -> FloatArray:
-        """p_h. [Pa]"""
-        return hertz_pressure(self.line_load, self.radius, self.flanks.equivalent_modulus)
-
-    @cached_property
-    def hertz_half_width(self) -> FloatArray:
-        """b_h. [m]"""
-        return hertz_half_width(self.line_load, self.radius, self.flanks.equivalent_modulus)
-
     @property
     def surface_speeds(self) -> tuple[FloatArray, FloatArray]:
         """u_1 and u_2 across the contact. [m/s]"""
         half = self.sliding_speed / 2
         return self.rolling_speed + half, self.rolling_speed - half
-
-    @property
-    def temperature(self) -> float:
-        """Temperature of the oil at the contacts. [K]"""
-        return self.oil.temperature
-
-    @property
-    def dynamic_viscosity(self) -> Any:
-        """Dynamic viscosity of the oil at the inlet of the contacts. [Pa s]"""
-        return self.oil.dynamic_viscosity
-
-    @property
-    def pressure_viscosity(self) -> Any:
-        """Pressure-viscosity coefficient of the oil. [1/Pa]"""
-        return self.oil.pressure_viscosity
-
-    @property
-    def roughness1(self) -> Any:
-        """rms roughness of the first surface. [m]"""
-        return self.flanks.roughness1
-
-    @property
-    def roughness2(self) -> Any:
-        """rms roughness of the second surface. [m]"""
-        return self.flanks.roughness2
-
-    @property
-    def roughness(self) -> tuple[Any, Any]:
-        """rms roughness of both surfaces. [m]"""
-        return self.flanks.roughness1, self.flanks.roughness2
-
-    @property
-    def composite_roughness(self) -> Any:
-        """sqrt(Rq1^2 + Rq2^2). [m]"""
-        return self.flanks.composite_roughness
-
-    @cached_property
-    def speed_number(self) -> FloatArray:
-        """U = u_r mu/(E_eq R_eq). Theory (C7). [1]"""
-        number: FloatArray = (
-            self.rolling_speed
-            * self.dynamic_viscosity
-            / (self.flanks.equivalent_modulus * self.radius)
-        )
-        return number
-
-    @property
-    def material_number(self) -> Any:
-        """G = alpha E_eq. Theory (C8). [1]"""
-        return self.pressure_viscosity * self.flanks.equivalent_modulus
-
-    @cached_property
-    def load_number(self) -> FloatArray:
-        """W = W'/(E_eq R_eq). Theory (C9). [1]"""
-        return self.line_load / (self.flanks.equivalent_modulus * self.radius)
 
     @property
     def moes_load(self) -> FloatArray:

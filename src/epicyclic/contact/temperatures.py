@@ -23,33 +23,24 @@ class Solid:
 
     @property
     def effusivity(self) -> float:
-        """sqrt(k rho c), as a surface takes up the heat of a contact. [W s^0.5/(m^2 K)]"""
-        return effusivity(self.conductivity, self.heat_capacity, self.density)
+        """e = sqrt(k c rho), as a surface takes up heat. Theory (W1). [W s^0.5/(m^2 K)]
+
+        The square root of the thermal contact coefficient B_M of ISO/TS 6336-20 to -22.
+
+        Examples
+        --------
+        Case-hardened steel:
+
+        >>> round(Solid(45.0, 440.0, 7800.0).effusivity)
+        12427
+        """
+        return math.sqrt(self.conductivity * self.heat_capacity * self.density)
 
 
 # Flash temperature of sliding line contacts, and how its heat is shared, after Blok.
 
 FloatArray = NDArray[np.float64]
 Numbers = FloatArray | float
-
-
-def effusivity(
-    conductivity: float,  # [W/(m K)]
-    heat_capacity: float,  # [J/(kg K)]
-    density: float,  # [kg/m^3]
-) -> float:
-    """Thermal effusivity e = sqrt(k c rho) of a solid. Theory (W1). [W s^0.5/(m^2 K)]
-
-    The square root of the thermal contact coefficient B_M of ISO/TS 6336-20 to -22.
-
-    Examples
-    --------
-    Case-hardened steel:
-
-    >>> round(effusivity(45.0, 440.0, 7800.0))
-    12427
-    """
-    return math.sqrt(conductivity * heat_capacity * density)
 
 
 def flash_temperature(

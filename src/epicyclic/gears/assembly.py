@@ -13,7 +13,7 @@ from itertools import combinations, combinations_with_replacement, product
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.gearing import RACK_KEYS, Gearing, GearPairing, Pin
-from epicyclic.gears.mesh import Mesh, nearest_admissible_angle, nearest_places, profile_shift_sum
+from epicyclic.gears.mesh import nearest_admissible_angle, nearest_places, profile_shift_sum
 from epicyclic.gears.rules import check_mesh, sound_gears
 from epicyclic.messages import millimetres
 
@@ -101,28 +101,24 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
             remedy = f"Give gears.center_distance, or {own}."
             yield Problem(own, "", "is missing.", remedy)
     for body in gearing.planets:
-        yield from _pin_radius_problems(gearing, body)
+        # all its meshes with central gears must put its pin at one radius
+        found = [
+            (mesh, distance)
+            for mesh in gearing.meshes
+            if gearing.planet_of(mesh) == body and (distance := distances[mesh.key]) is not None
+        ]
+        if not found or max(a for _, a in found) - min(a for _, a in found) <= SAME_PLACE:
+            continue
+        shown = ", ".join(f"{'-'.join(mesh.pair)} {millimetres(a)}" for mesh, a in found)
+        keys = dict.fromkeys(gearing.distance_key(mesh) for mesh, _ in found)
+        first, wanted = found[0]
+        others = [mesh for mesh, a in found if abs(a - wanted) > SAME_PLACE]
+        fits = " ".join(_shifts_for(gearing, mesh, wanted) for mesh in others)
+        allowed = f"the pin of {body} would be at different radii: {shown}."
+        remedy = f"Give them the same; the one of {'-'.join(first.pair)} is possible: {fits}"
+        yield Problem(", ".join(keys), "", allowed, remedy)
     if None not in distances.values():
         yield from _triangle_problems(gearing)
-
-
-def _pin_radius_problems(gearing: Gearing, body: str) -> Iterator[Problem]:
-    """All meshes of a planet with central gears must put its pin at one radius."""
-    own = [
-        (mesh, distance)
-        for mesh in gearing.meshes
-        if gearing.planet_of(mesh) == body and (distance := gearing.distances[mesh.key]) is not None
-    ]
-    if not own or max(a for _, a in own) - min(a for _, a in own) <= SAME_PLACE:
-        return
-    shown = ", ".join(f"{'-'.join(mesh.pair)} {millimetres(a)}" for mesh, a in own)
-    keys = dict.fromkeys(gearing.distance_key(mesh) for mesh, _ in own)
-    first, wanted = own[0]
-    others = [mesh for mesh, a in own if abs(a - wanted) > SAME_PLACE]
-    fits = " ".join(_shifts_for(gearing, mesh, wanted) for mesh in others)
-    allowed = f"the pin of {body} would be at different radii: {shown}."
-    remedy = f"Give them the same; the one of {'-'.join(first.pair)} is possible: {fits}"
-    yield Problem(", ".join(keys), "", allowed, remedy)
 
 
 def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
@@ -180,35 +176,25 @@ def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         if drawn.first not in sound or drawn.second not in sound:
             continue
         mesh = gearing.geometry(drawn)
-        different = _rack_difference(mesh)
-        if different:
-            one, two = drawn.pair
-            shown = f'["{one}", "{two}"]'
-            allowed = f"cannot mesh: {different}."
-            remedy = "Give both gears the same normal module, pressure angle and helix angle."
-            yield Problem(f"meshes[{gearing.meshes.index(drawn)}]", shown, allowed, remedy)
+        racks = one, two = mesh.gear1.rack, mesh.gear2.rack
+        pitch, helix = one.transverse_base_pitch, one.base_helix_angle
+        if (
+            abs(pitch - two.transverse_base_pitch) <= SAME_PITCH * pitch
+            and abs(helix - two.base_helix_angle) <= SAME_PITCH
+        ):
+            yield from check_mesh(gearing, mesh, gearing.distance_key(drawn))
             continue
-        yield from check_mesh(gearing, mesh, gearing.distance_key(drawn))
-
-
-def _rack_difference(mesh: Mesh) -> str:
-    """Why two gears have different base pitches or base helices; empty if they agree."""
-    one, two = mesh.gear1.rack, mesh.gear2.rack
-    pitches = one.transverse_base_pitch, two.transverse_base_pitch
-    helices = one.base_helix_angle, two.base_helix_angle
-    if (
-        abs(pitches[0] - pitches[1]) <= SAME_PITCH * pitches[0]
-        and abs(helices[0] - helices[1]) <= SAME_PITCH
-    ):
-        return ""
-    names = f"{mesh.gear1.name} and {mesh.gear2.name}"
-    values = {
-        "normal modules": [millimetres(rack.normal_module) for rack in (one, two)],
-        "normal pressure angles": [_degrees(rack.normal_pressure_angle) for rack in (one, two)],
-        "helix angles": [_degrees(rack.helix_angle) for rack in (one, two)],
-    }
-    parts = [f"{name} {a} and {b}" for name, (a, b) in values.items() if a != b]
-    return f"{names} have {', '.join(parts) or 'different base pitches'}"
+        values = {
+            "normal modules": [millimetres(rack.normal_module) for rack in racks],
+            "normal pressure angles": [_degrees(rack.normal_pressure_angle) for rack in racks],
+            "helix angles": [_degrees(rack.helix_angle) for rack in racks],
+        }
+        parts = [f"{name} {a} and {b}" for name, (a, b) in values.items() if a != b]
+        allowed = f"cannot mesh: {mesh.gear1.name} and {mesh.gear2.name} have "
+        allowed += f"{', '.join(parts) or 'different base pitches'}."
+        remedy = "Give both gears the same normal module, pressure angle and helix angle."
+        shown = "[{}]".format(", ".join(f'"{gear}"' for gear in drawn.pair))
+        yield Problem(f"meshes[{gearing.meshes.index(drawn)}]", shown, allowed, remedy)
 
 
 def _degrees(angle: float) -> str:
@@ -225,20 +211,39 @@ def _assembly_problems(
 
     They are `placed` if all centre distances are known.
     """
-    found = [*_angle_problems(gearing), *_place_problems(gearing)]
+    found = list(_place_problems(gearing))
     yield from found
     on_planets = [gear for body in gearing.planets for gear in gearing.gears_of(body)]
     if placed and all(gear in sound for gear in on_planets):
         if gearing.listed and found:
             return
-        yield from _axial_problems(gearing, sound)
+        positions = gearing.positions
+        for body in gearing.planets:  # its gears must stand side by side
+            for one, two in combinations(gearing.gears_of(body), 2):
+                width = (sound[one].face_width + sound[two].face_width) / 2
+                overlap = width - abs(positions[one] - positions[two])
+                if overlap > SAME_PLACE:
+                    keys = ", ".join(f"gears.{gear}.axial_position" for gear in (one, two))
+                    shown = ", ".join(millimetres(positions[gear]) for gear in (one, two))
+                    allowed = f"{one} and {two} of {body} overlap by {millimetres(overlap)}."
+                    remedy = f"Place them at least {millimetres(width)} apart."
+                    yield Problem(keys, shown, allowed, remedy)
         yield from _overlaps(gearing, sound)
 
 
-def _angle_problems(gearing: Gearing) -> Iterator[Problem]:
-    """Planets that stand where the case says must fit there."""
+def _place_problems(gearing: Gearing) -> Iterator[Problem]:
+    """Planets must fit where the case says; if it does not, each needs a place of its own."""
     angles, count = gearing.stated_angles, gearing.count
     if angles is None:
+        arrangement = gearing.arrangement
+        places = {round(angle / (2 * math.pi), 9) % 1 for angle in arrangement.angles}
+        if len(places) != count:
+            number = arrangement.number
+            fitting = [str(n) for n in range(1, MOST_PLANETS + 1) if number % n == 0]
+            allowed = "cannot be assembled: with these tooth numbers, a planet fits only at "
+            allowed += f"multiples of 360/{number} deg from another planet."
+            remedy = f"Use {' or '.join(fitting)}, or other tooth numbers."
+            yield Problem(gearing.count_key, str(count), allowed, remedy)
         return
     if len(angles) != count:
         allowed = f"must be one angle for each of the {count} planets (planet.count)."
@@ -254,34 +259,6 @@ def _angle_problems(gearing: Gearing) -> Iterator[Problem]:
             allowed += f"360/({sun} + {ring}) deg."
             remedy = f"The nearest is {math.degrees(angles[0] + admissible):.6f} deg."
             yield Problem(f"planet.angles[{number}]", shown, allowed, remedy)
-
-
-def _place_problems(gearing: Gearing) -> Iterator[Problem]:
-    arrangement, count = gearing.arrangement, gearing.count
-    places = {round(angle / (2 * math.pi), 9) % 1 for angle in arrangement.angles}
-    if gearing.stated_angles is not None or len(places) == count:
-        return
-    number = arrangement.number
-    fitting = [str(n) for n in range(1, MOST_PLANETS + 1) if number % n == 0]
-    allowed = "cannot be assembled: with these tooth numbers, a planet fits only at multiples of "
-    allowed += f"360/{number} deg from another planet."
-    remedy = f"Use {' or '.join(fitting)}, or other tooth numbers."
-    yield Problem(gearing.count_key, str(count), allowed, remedy)
-
-
-def _axial_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
-    """Gears of one body must stand side by side."""
-    positions = gearing.positions
-    for body in gearing.planets:
-        for one, two in combinations(gearing.gears_of(body), 2):
-            width = (sound[one].face_width + sound[two].face_width) / 2
-            overlap = width - abs(positions[one] - positions[two])
-            if overlap > SAME_PLACE:
-                keys = ", ".join(f"gears.{gear}.axial_position" for gear in (one, two))
-                shown = ", ".join(millimetres(positions[gear]) for gear in (one, two))
-                allowed = f"{one} and {two} of {body} overlap by {millimetres(overlap)}."
-                remedy = f"Place them at least {millimetres(width)} apart."
-                yield Problem(keys, shown, allowed, remedy)
 
 
 def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:

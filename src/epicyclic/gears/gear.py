@@ -7,8 +7,8 @@ positive here, and a positive profile shift thickens the tooth of every gear, in
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,25 +44,22 @@ class BasicRack:
     transverse_pressure_angle: float  # alpha_t at the reference circle. [rad]
     helix_angle: float  # beta at the reference circle, magnitude. [rad]
 
-    @property
-    def normal_module(self) -> float:
-        """m_n = m_t cos(beta). Theory (G1). [m]"""
-        return self.transverse_module * math.cos(self.helix_angle)
+    if TYPE_CHECKING:  # what follows from them
+        normal_module: float = field(init=False)  # m_n. [m]
+        normal_pressure_angle: float = field(init=False)  # alpha_n. [rad]
+        base_helix_angle: float = field(init=False)  # beta_b. [rad]
+        transverse_base_pitch: float = field(init=False)  # p_bt. [m]
 
-    @property
-    def normal_pressure_angle(self) -> float:
-        """alpha_n from tan(alpha_n) = tan(alpha_t) cos(beta). Theory (G2). [rad]"""
-        return math.atan(math.tan(self.transverse_pressure_angle) * math.cos(self.helix_angle))
-
-    @cached_property
-    def base_helix_angle(self) -> float:
-        """beta_b from tan(beta_b) = tan(beta) cos(alpha_t). Theory (G3). [rad]"""
-        return math.atan(math.tan(self.helix_angle) * math.cos(self.transverse_pressure_angle))
-
-    @property
-    def transverse_base_pitch(self) -> float:
-        """p_bt = pi m_t cos(alpha_t). Theory (G4). [m]"""
-        return math.pi * self.transverse_module * math.cos(self.transverse_pressure_angle)
+    def __post_init__(self) -> None:
+        """m_n, alpha_n, beta_b and p_bt. Theory (G1), (G2), (G3), (G4)."""
+        m_t, beta = self.transverse_module, self.helix_angle
+        alpha_t = self.transverse_pressure_angle
+        vars(self).update(
+            normal_module=m_t * math.cos(beta),
+            normal_pressure_angle=math.atan(math.tan(alpha_t) * math.cos(beta)),
+            base_helix_angle=math.atan(math.tan(beta) * math.cos(alpha_t)),
+            transverse_base_pitch=math.pi * m_t * math.cos(alpha_t),
+        )
 
 
 @dataclass(frozen=True)
@@ -81,23 +78,25 @@ class Gear:
     # h_K, radial height of the chamfers of the tip corners; zero for sharp corners. [m]
     tip_chamfer: float = 0.0
 
-    @cached_property
-    def reference_radius(self) -> float:
-        """r = z m_t / 2. Theory (G5). [m]"""
-        return self.teeth * self.rack.transverse_module / 2
+    if TYPE_CHECKING:  # what follows from them
+        reference_radius: float = field(init=False)  # r. [m]
+        base_radius: float = field(init=False)  # r_b. [m]
+        tip_form_radius: float = field(init=False)  # r_Fa, where the tip chamfer begins. [m]
+        # x of the rack that cuts this tooth thickness. [1]
+        profile_shift_coefficient: float = field(init=False)
 
-    @cached_property
-    def base_radius(self) -> float:
-        """r_b = r cos(alpha_t). Theory (G6). [m]"""
-        return self.reference_radius * math.cos(self.rack.transverse_pressure_angle)
-
-    @property
-    def profile_shift_coefficient(self) -> float:
-        """x of the rack that cuts this tooth thickness. ISO 21771. Theory (G8). [1]"""
-        rack = self.rack
-        thickness = 2 * self.reference_radius * self.thickness_half_angle
-        excess = thickness - math.pi * rack.transverse_module / 2
-        return excess / (2 * rack.normal_module * math.tan(rack.transverse_pressure_angle))
+    def __post_init__(self) -> None:
+        """r, r_b, r_Fa and x. ISO 21771. Theory (G5), (G6), (G8), (G41)."""
+        rack, radius = self.rack, self.teeth * self.rack.transverse_module / 2
+        excess = 2 * radius * self.thickness_half_angle - math.pi * rack.transverse_module / 2
+        slope = 2 * rack.normal_module * math.tan(rack.transverse_pressure_angle)
+        vars(self).update(
+            reference_radius=radius,
+            base_radius=radius * math.cos(rack.transverse_pressure_angle),
+            tip_form_radius=self.tip_radius
+            + (self.tip_chamfer if self.internal else -self.tip_chamfer),
+            profile_shift_coefficient=excess / slope,
+        )
 
     def pressure_angle_at(self, radius: float) -> float:
         """Transverse pressure angle of the involute at `radius` (zero below the base circle).
@@ -129,23 +128,12 @@ class Gear:
         """Transverse tooth thickness, an arc, at `radius`. ISO 21771. Theory (G11). [m]"""
         return 2 * radius * self.half_angle_at(radius)
 
-    @property
-    def tip_involute_length(self) -> float:
-        """Radius of curvature of the involute at the tip circle, transverse. Theory (G12). [m]"""
-        return math.sqrt(max(0.0, self.tip_radius**2 - self.base_radius**2))
+    def roll_length_at(self, radius: float) -> float:
+        """Transverse radius of curvature of the involute at `radius`; 0 inside the base circle.
 
-    @property
-    def tip_form_radius(self) -> float:
-        """r_Fa, where the involute ends and the tip chamfer begins. ISO 21771. Theory (G41). [m]"""
-        return self.tip_radius + (self.tip_chamfer if self.internal else -self.tip_chamfer)
-
-    @property
-    def tip_form_involute_length(self) -> float:
-        """Radius of curvature of the involute at the tip form circle, transverse. [m]
-
-        Theory (G42).
+        Theory (G12), (G42). [m]
         """
-        return math.sqrt(max(0.0, self.tip_form_radius**2 - self.base_radius**2))
+        return math.sqrt(max(0.0, radius**2 - self.base_radius**2))
 
     @property
     def tip_half_angle(self) -> float:

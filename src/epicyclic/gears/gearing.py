@@ -427,10 +427,8 @@ def _gear(name: str, table: StatedGear, rack: BasicRack, addendum: float, dedend
     )
 
 
-@lru_cache(maxsize=512)
-def _mesh(name: str, one: Gear, two: Gear, distance: float) -> Mesh:
-    """One object for each mesh, which keeps what it has computed of itself."""
-    return Mesh(name, one, two, distance)
+_mesh = lru_cache(maxsize=512)(Mesh)
+"""One object for each mesh, which keeps what it has computed of itself."""
 
 
 def rim_thickness(table: StatedGear) -> float | None:

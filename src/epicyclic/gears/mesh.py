@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TypeVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,51 +31,85 @@ class Mesh:
     gear2: Gear  # Member 1 is external; member 2 external or internal.
     center_distance: float  # [m]
 
-    @property
-    def internal(self) -> bool:
-        """True if member 2 is a ring."""
-        return self.gear2.internal
+    if TYPE_CHECKING:  # what follows from them; NaN where such gears cannot mesh
+        internal: bool = field(init=False)  # True if member 2 is a ring.
+        ratio: float = field(init=False)  # u = z2/z1, positive. [1]
+        side: int = field(init=False)  # Sign of member 2 in sums: -1 for an internal mesh, else +1.
+        face_width: float = field(init=False)  # The smaller one; the other reaches beyond. [m]
+        operating_pressure_angle: float = field(init=False)  # alpha_wt. [rad]
+        operating_radius1: float = field(init=False)  # r_w1. [m]
+        operating_radius2: float = field(init=False)  # r_w2. [m]
+        operating_helix_tangent: float = field(init=False)  # tan(beta_w), of both members. [1]
+        # Distance of the two points where the line of action touches the base circles. [m]
+        line_of_action: float = field(init=False)
+        # Radius of curvature of member 1 where the tip form circle of member 2 is in contact, at
+        # its own tip form circle, and at the pitch point. [m]
+        path_start: float = field(init=False)
+        path_end: float = field(init=False)
+        pitch_point: float = field(init=False)
+        # epsilon_1 and epsilon_2, from the pitch point to both tips in base pitches. [1]
+        tip_contact_ratios: tuple[float, float] = field(init=False)
+        transverse_contact_ratio: float = field(init=False)  # epsilon_alpha, their sum. [1]
+        overlap_ratio: float = field(init=False)  # epsilon_beta. [1]
+        # Mean over the mesh period of the length of all contact lines. [m]
+        mean_contact_length: float = field(init=False)
+        backlash: float = field(init=False)  # j_wt, at the operating circles, transverse. [m]
+        normal_backlash: float = field(init=False)  # j_bn, between flanks. [m]
+        # Gaps between the tip of each member and the root of the other one. [m]
+        tip_clearances: tuple[float, float] = field(init=False)
+        # Radius on each member where contact with the tip of the other one ends. [m]
+        inner_radii: tuple[float, float] = field(init=False)
 
-    @property
-    def ratio(self) -> float:
-        """u = z2 / z1, positive. [1]"""
-        return self.gear2.teeth / self.gear1.teeth
+    def __post_init__(self) -> None:
+        """The figures of the mesh. ISO 21771.
 
-    @property
-    def side(self) -> int:
-        """+1 for an external mesh, -1 for an internal one: the sign of member 2 in sums."""
-        return -1 if self.internal else 1
-
-    @cached_property
-    def operating_pressure_angle(self) -> float:
-        """alpha_wt from cos(alpha_wt) = (r_b2 +- r_b1)/a. ISO 21771. Theory (G13). [rad]"""
-        bases = self.gear2.base_radius + self.side * self.gear1.base_radius
-        return math.acos(bases / self.center_distance)
-
-    @cached_property
-    def operating_radius1(self) -> float:
-        """r_w1 = a z1/(z2 +- z1). Theory (G14). [m]"""
-        z1, z2 = self.gear1.teeth, self.gear2.teeth
-        return self.center_distance * z1 / (z2 + self.side * z1)
-
-    @property
-    def operating_radius2(self) -> float:
-        """r_w2 = r_w1 u. Theory (G14). [m]"""
-        return self.operating_radius1 * self.ratio
-
-    @property
-    def operating_helix_tangent(self) -> float:
-        """tan(beta_w) = tan(beta) r_w/r, the same for both members. Theory (G15). [1]"""
-        gear = self.gear1
-        return math.tan(gear.rack.helix_angle) * self.operating_radius1 / gear.reference_radius
-
-    @cached_property
-    def line_of_action(self) -> float:
-        """Distance of the two points where the line of action touches the base circles. [m]
-
-        Theory (G16).
+        Theory (G13), (G14), (G15), (G16), (G17), (G18), (G19), (G20), (G21), (G22), (G23), (G40),
+        (G47).
         """
-        return self.center_distance * math.sin(self.operating_pressure_angle)
+        one, two, rack = self.gear1, self.gear2, self.gear1.rack
+        side = -1 if two.internal else 1
+        ratio, total = two.teeth / one.teeth, two.teeth + side * one.teeth
+        bases = two.base_radius + side * one.base_radius
+        can_mesh = total > 0 and abs(bases) <= self.center_distance
+        distance = self.center_distance if can_mesh else math.nan
+        angle = math.acos(bases / distance)
+        radius1 = distance * one.teeth / (total or 1)
+        action, point = distance * math.sin(angle), radius1 * math.sin(angle)
+        start = side * (action - two.roll_length_at(two.tip_form_radius))
+        end = one.roll_length_at(one.tip_form_radius)
+        pitch, helix = rack.transverse_base_pitch, rack.base_helix_angle
+        tips = ((end - point) / pitch, (point - start) / pitch)
+        width = min(one.face_width, two.face_width)
+        backlash = 2 * math.pi * radius1 / one.teeth
+        backlash = backlash - one.thickness_at(radius1) - two.thickness_at(radius1 * ratio)
+        vars(self).update(
+            internal=two.internal,
+            ratio=ratio,
+            side=side,
+            face_width=width,
+            operating_pressure_angle=angle,
+            operating_radius1=radius1,
+            operating_radius2=radius1 * ratio,
+            operating_helix_tangent=math.tan(rack.helix_angle) * radius1 / one.reference_radius,
+            line_of_action=action,
+            path_start=start,
+            path_end=end,
+            pitch_point=point,
+            tip_contact_ratios=tips,
+            transverse_contact_ratio=sum(tips),
+            overlap_ratio=width * math.tan(helix) / pitch,
+            mean_contact_length=width * sum(tips) / math.cos(helix),
+            backlash=backlash,
+            normal_backlash=backlash * math.cos(angle) * math.cos(helix),
+            tip_clearances=(
+                side * (self.center_distance - two.root_radius) - one.tip_radius,
+                side * (self.center_distance - two.tip_radius) - one.root_radius,
+            ),
+            inner_radii=(
+                math.hypot(one.base_radius, start),
+                math.hypot(two.base_radius, action - side * end),
+            ),
+        )
 
     def curvature2(self, curvature1: Real) -> Real:
         """Transverse radius of curvature of member 2 where member 1 has `curvature1`. [m]
@@ -94,105 +127,6 @@ class Mesh:
         curvature2 = self.curvature2(curvature1)
         transverse = curvature1 * curvature2 / (curvature2 + self.side * curvature1)
         return transverse / math.cos(self.gear1.rack.base_helix_angle)
-
-    @cached_property
-    def path_start(self) -> float:
-        """Radius of curvature of member 1 where the tip form circle of member 2 is in contact. [m]
-
-        Theory (G17).
-        """
-        return self.side * (self.line_of_action - self.gear2.tip_form_involute_length)
-
-    @cached_property
-    def path_end(self) -> float:
-        """Radius of curvature of member 1 at its own tip form circle. Theory (G17). [m]"""
-        return self.gear1.tip_form_involute_length
-
-    @cached_property
-    def pitch_point(self) -> float:
-        """Radius of curvature of member 1 at the pitch point. Theory (G18). [m]"""
-        return self.operating_radius1 * math.sin(self.operating_pressure_angle)
-
-    @property
-    def face_width(self) -> float:
-        """Common face width: the smaller one, the other gear reaching beyond it. [m]"""
-        return min(self.gear1.face_width, self.gear2.face_width)
-
-    @cached_property
-    def tip_contact_ratio1(self) -> float:
-        """epsilon_1: the path from the pitch point to the tip of member 1, in base pitches. [1]
-
-        Theory (G19).
-        """
-        return (self.path_end - self.pitch_point) / self.gear1.rack.transverse_base_pitch
-
-    @cached_property
-    def tip_contact_ratio2(self) -> float:
-        """epsilon_2: the path from the tip of member 2 to the pitch point, in base pitches. [1]
-
-        Theory (G19).
-        """
-        return (self.pitch_point - self.path_start) / self.gear1.rack.transverse_base_pitch
-
-    @property
-    def transverse_contact_ratio(self) -> float:
-        """epsilon_alpha = epsilon_1 + epsilon_2. ISO 21771. Theory (G19). [1]"""
-        return self.tip_contact_ratio1 + self.tip_contact_ratio2
-
-    @cached_property
-    def mean_contact_length(self) -> float:
-        """Mean over the mesh period of the length of all contact lines. Theory (G40). [m]"""
-        area = self.face_width * self.transverse_contact_ratio
-        return area / math.cos(self.gear1.rack.base_helix_angle)
-
-    @cached_property
-    def overlap_ratio(self) -> float:
-        """epsilon_beta = b tan(beta_b)/p_bt. ISO 21771. Theory (G20). [1]"""
-        rack = self.gear1.rack
-        return self.face_width * math.tan(rack.base_helix_angle) / rack.transverse_base_pitch
-
-    @cached_property
-    def backlash(self) -> float:
-        """Circumferential backlash at the operating circles, transverse. ISO 21771. [m]
-
-        Theory (G21).
-        """
-        pitch = 2 * math.pi * self.operating_radius1 / self.gear1.teeth
-        return (
-            pitch
-            - self.gear1.thickness_at(self.operating_radius1)
-            - self.gear2.thickness_at(self.operating_radius2)
-        )
-
-    @property
-    def normal_backlash(self) -> float:
-        """j_bn = j_wt cos(alpha_wt) cos(beta_b), between flanks. ISO 21771. Theory (G47). [m]"""
-        normal = math.cos(self.operating_pressure_angle)
-        return self.backlash * normal * math.cos(self.gear1.rack.base_helix_angle)
-
-    @property
-    def tip_clearance1(self) -> float:
-        """Gap between the tip of member 1 and the root of member 2. Theory (G22). [m]"""
-        if self.internal:
-            return self.gear2.root_radius - self.center_distance - self.gear1.tip_radius
-        return self.center_distance - self.gear1.tip_radius - self.gear2.root_radius
-
-    @property
-    def tip_clearance2(self) -> float:
-        """Gap between the tip of member 2 and the root of member 1. Theory (G22). [m]"""
-        if self.internal:
-            return self.gear2.tip_radius - self.center_distance - self.gear1.root_radius
-        return self.center_distance - self.gear2.tip_radius - self.gear1.root_radius
-
-    @property
-    def radius1_at_start(self) -> float:
-        """Radius on member 1 where contact with the tip of member 2 begins. Theory (G23). [m]"""
-        return math.hypot(self.gear1.base_radius, self.path_start)
-
-    @property
-    def radius2_at_end(self) -> float:
-        """Radius on member 2 where contact with the tip of member 1 ends. Theory (G23). [m]"""
-        return math.hypot(self.gear2.base_radius, self.curvature2(self.path_end))
 
     @property
     def tip_passage(self) -> float:

@@ -30,7 +30,6 @@ from epicyclic.gears.stated import (
     StatedGear,
     StatedTopography,
     fitting,
-    roll_length_at,
     thickness_key,
     working_flank,
 )
@@ -60,27 +59,19 @@ def sound_gears(gearing: Gearing) -> tuple[dict[str, Gear], list[Problem]]:
     sound = {}
     for name, gear in made.items():
         table, key = gearing.tables[name], gearing.key(name)
-        found = (
-            _check_tooth(gear, key, table)
-            or _check_measure(gear, key, table)
-            or _check_fit(gear, key, table)
-        )
+        found = _check_tooth(gear, key, table) or _check_measure(gear, key, table)
+        fit, diameter = table.tooth_thickness_fit, 2 * gear.reference_radius
+        if found is None and fit is not None and diameter > LARGEST_FIT:
+            allowed = f"applies to reference diameters up to {millimetres(LARGEST_FIT)}, and this "
+            allowed += f"gear has {millimetres(diameter)}."
+            remedy = "Give tooth_thickness_allowance."
+            found = Problem(f"{key}.tooth_thickness_fit", f'"{fit}"', allowed, remedy)
         if found is None:
             sound[name] = gear
         else:
             problems.append(found)
         problems += _check_rim(gear, key, table)
     return sound, problems
-
-
-def _check_fit(gear: Gear, key: str, table: StatedGear) -> Problem | None:
-    """DIN 3967 has no allowances for larger gears."""
-    if table.tooth_thickness_fit is None or 2 * gear.reference_radius <= LARGEST_FIT:
-        return None
-    allowed = f"applies to reference diameters up to {millimetres(LARGEST_FIT)}, and this gear has "
-    allowed += f"{millimetres(2 * gear.reference_radius)}."
-    remedy = "Give tooth_thickness_allowance."
-    return Problem(f"{key}.tooth_thickness_fit", f'"{table.tooth_thickness_fit}"', allowed, remedy)
 
 
 def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:
@@ -203,7 +194,8 @@ def check_mesh(
         return [Problem(distance_key, millimetres(mesh.center_distance), allowed, remedy)]
     problems = _check_backlash(gearing, mesh, distance_key)
     ends: list[Problem] = []
-    for tip, root, clearance in ((two, one, mesh.tip_clearance2), (one, two, mesh.tip_clearance1)):
+    clearance1, clearance2 = mesh.tip_clearances
+    for tip, root, clearance in ((two, one, clearance2), (one, two, clearance1)):
         if clearance < -ROUNDING:
             ends.append(_negative_clearance(gearing, mesh, tip, root))
             continue
@@ -229,7 +221,7 @@ def _reference_distance(mesh: Mesh) -> str:
 
 def _negative_clearance(gearing: Gearing, mesh: Mesh, tip: Gear, root: Gear) -> Problem:
     """The tip of one gear reaches into the root of the other."""
-    clearance = mesh.tip_clearance1 if tip is mesh.gear1 else mesh.tip_clearance2
+    clearance = mesh.tip_clearances[0] if tip is mesh.gear1 else mesh.tip_clearances[1]
     limit = tip.tip_radius + (-clearance if tip.internal else clearance)
     try:
         end = longest_involute(root, gearing.tables[root.name].tool_tip_radius)
@@ -286,9 +278,9 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
     Raises `ValueError` if no tool generates `gear`.
     """
     if gear is mesh.gear1:
-        curvature, radius = mesh.path_start, mesh.radius1_at_start
+        curvature, radius = mesh.path_start, mesh.inner_radii[0]
     else:
-        curvature, radius = mesh.curvature2(mesh.path_end), mesh.radius2_at_end
+        curvature, radius = mesh.curvature2(mesh.path_end), mesh.inner_radii[1]
     change = "change tooth numbers or profile shifts"
     if curvature < 0:
         end = gear.base_radius
@@ -339,7 +331,7 @@ def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
 def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> list[Problem]:
     """The tips of an internal mesh must pass each other beside it."""
     one, two = mesh.gear1, mesh.gear2
-    if not mesh.internal or mesh.tip_clearance2 < -ROUNDING or mesh.tip_passage >= 0:
+    if not mesh.internal or mesh.tip_clearances[1] < -ROUNDING or mesh.tip_passage >= 0:
         return []
     key, shown = _tips(gearing, one, two)
     allowed = f"the tips of {one.name} and {two.name} collide beside the mesh, by "
@@ -512,7 +504,7 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
     near, far = flank.active[::-1] if end == "tip" else flank.active
     inside = f"the active profile of the {flank.mesh.name}"
     if diameter is not None:
-        length = (roll_length_at(flank.gear, diameter / 2) - near) / (far - near)
+        length = (flank.gear.roll_length_at(diameter / 2) - near) / (far - near)
         if 0 < length <= 1:
             return length * flank.active_length
         ends = sorted(_diameter_at(flank.gear, roll) for roll in (near, far))

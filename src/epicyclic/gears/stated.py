@@ -172,31 +172,27 @@ def half_angle(table: StatedGear, rack: BasicRack, *, internal: bool) -> float:
     Raises `ValueError` if the thickness is stated inside the base circle.
     """
     teeth = table.teeth
-    half = _stated(table, rack, internal=internal)
+    if table.profile_shift_coefficient is not None:
+        half = half_angle_from_profile_shift(rack, teeth, table.profile_shift_coefficient)
+    elif table.span_measurement is not None:
+        assert table.teeth_in_span is not None
+        half = measures.half_angle_from_span(
+            rack, teeth, internal, table.span_measurement, table.teeth_in_span
+        )
+    elif table.dimension_over_pins is not None:
+        assert table.measuring_pin_diameter is not None
+        half = measures.half_angle_from_pins(
+            rack, teeth, internal, table.dimension_over_pins, table.measuring_pin_diameter
+        )
+    else:
+        assert table.tooth_thickness is not None
+        assert table.thickness_diameter is not None
+        half = half_angle_from_thickness(
+            rack, teeth, internal, table.tooth_thickness, table.thickness_diameter / 2
+        )
     excess = 2 * allowance_shift(table, rack) * rack.normal_module
     return half + excess * math.tan(rack.transverse_pressure_angle) / (
         teeth * rack.transverse_module
-    )
-
-
-def _stated(table: StatedGear, rack: BasicRack, *, internal: bool) -> float:
-    teeth = table.teeth
-    if table.profile_shift_coefficient is not None:
-        return half_angle_from_profile_shift(rack, teeth, table.profile_shift_coefficient)
-    if table.span_measurement is not None:
-        assert table.teeth_in_span is not None
-        return measures.half_angle_from_span(
-            rack, teeth, internal, table.span_measurement, table.teeth_in_span
-        )
-    if table.dimension_over_pins is not None:
-        assert table.measuring_pin_diameter is not None
-        return measures.half_angle_from_pins(
-            rack, teeth, internal, table.dimension_over_pins, table.measuring_pin_diameter
-        )
-    assert table.tooth_thickness is not None
-    assert table.thickness_diameter is not None
-    return half_angle_from_thickness(
-        rack, teeth, internal, table.tooth_thickness, table.thickness_diameter / 2
     )
 
 
@@ -270,12 +266,6 @@ def tolerances_of(gear: Gear, table: StatedGear) -> FlankTolerances | None:
 Tables = tuple[StatedGear, StatedGear]
 
 
-def micro_geometries(table: StatedGear) -> tuple[StatedFlank, ...]:
-    """The tables of micro-geometry that a gear has."""
-    ring_side = getattr(table, "micro_geometry_ring_side", None)
-    return tuple(one for one in (table.micro_geometry, ring_side) if one is not None)
-
-
 @lru_cache(maxsize=256)
 def flank_deviations(mesh: Mesh, tables: Tables, misalignment: float) -> FlankDeviations:
     """The deviations of both working flanks of a mesh."""
@@ -317,20 +307,15 @@ def _profile_relief(gear: Gear, end: float, flank: StatedFlank, key: str) -> Rel
     roll_length: float | None = getattr(flank, f"{key}_roll_length")
     diameter: float | None = getattr(flank, f"{key}_diameter")
     if diameter is not None:
-        roll_length = abs(roll_length_at(gear, diameter / 2) - end)
+        roll_length = abs(gear.roll_length_at(diameter / 2) - end)
     if amount == 0 or roll_length is None:
         return None
     return Relief(amount, roll_length, getattr(flank, f"{key}_shape"))
 
 
-def roll_length_at(gear: Gear, radius: float) -> float:
-    """Transverse radius of curvature of the involute at `radius`; 0 inside the base circle. [m]"""
-    return math.sqrt(max(0.0, radius**2 - gear.base_radius**2))
-
-
 def _topography(gear: Gear, table: StatedTopography) -> Topography:
     return Topography(
-        tuple(roll_length_at(gear, diameter / 2) for diameter in table.diameter),
+        tuple(gear.roll_length_at(diameter / 2) for diameter in table.diameter),
         table.face_position,
         table.deviation,
     )

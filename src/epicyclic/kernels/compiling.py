@@ -8,8 +8,8 @@ import pickle
 import signal
 import sys
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar, cast
 
@@ -44,19 +44,13 @@ def done_apart(compile_kernel: Callable[[], bool], folder: Path) -> bool:
     """
     if not _can_be_copied:
         return False
-    with _alone(folder):  # a kernel that was waited for is read from the disk by the copy
-        return _done_in_copy(compile_kernel)
-
-
-@contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder, which ends with this process if not before."""
-    handle = None
+    handle = None  # of the lock of the folder, which ends with this process if not before
     try:
         with suppress(OSError):  # where nothing can be locked, each process compiles for itself
             handle = os.open(folder, os.O_RDONLY)
             fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
+        # a kernel that was waited for is read from the disk by the copy
+        return _done_in_copy(compile_kernel)
     finally:
         if handle is not None:
             os.close(handle)

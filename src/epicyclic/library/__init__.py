@@ -12,17 +12,14 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 __all__ = [
     "builtin_case",
-    "case_files",
     "case_variants",
-    "finishes",
-    "lubrication_methods",
-    "materials",
+    "named",
+    "names",
     "oil_model_file",
-    "oil_names",
     "oil_table",
     "uncertainty_table",
 ]
@@ -35,20 +32,16 @@ def _read(file: Traversable) -> dict[str, Any]:
     return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
-def _stems(folder: str) -> tuple[str, ...]:
+@cache
+def names(folder: Literal["cases", "oils"]) -> tuple[str, ...]:
+    """Names of the built-in oils, or of the built-in cases without their variants."""
     files = (entry.name for entry in _ROOT.joinpath(folder).iterdir())
     return tuple(sorted(name.removesuffix(".toml") for name in files if name.endswith(".toml")))
 
 
-@cache
-def oil_names() -> tuple[str, ...]:
-    """Names of the built-in oils."""
-    return _stems("oils")
-
-
 def oil_table(name: str) -> dict[str, Any]:
     """The data of one built-in oil. Raises `KeyError` if there is no such oil."""
-    if name not in oil_names():
+    if name not in names("oils"):
         raise KeyError(name)
     return _read(_ROOT.joinpath("oils", f"{name}.toml")) | {"name": name}
 
@@ -57,30 +50,17 @@ def oil_table(name: str) -> dict[str, Any]:
 def oil_model_file(name: str) -> Path | None:
     """The file of the models fitted for a built-in oil; None if there is none."""
     file = Path(str(_ROOT.joinpath("oilmodels", f"{name}.json")))
-    return file if name in oil_names() and file.is_file() else None
+    return file if name in names("oils") and file.is_file() else None
 
 
 @cache
-def materials() -> Mapping[str, Mapping[str, Any]]:
-    """Built-in gear and bearing steels by name."""
-    return _read_only("materials.toml")
+def named(kind: Literal["materials", "finishes", "lubrication"]) -> Mapping[str, Mapping[str, Any]]:
+    """Built-in steels of gears and bearings, surface finishes, or shares of oil, by name.
 
-
-@cache
-def finishes() -> Mapping[str, Mapping[str, Any]]:
-    """Built-in surface finishes by name."""
-    return _read_only("finishes.toml")
-
-
-def _read_only(file: str) -> Mapping[str, Mapping[str, Any]]:
-    tables = _read(_ROOT.joinpath(file))
+    The shares are those around gears by how they are lubricated, and how well they are known.
+    """
+    tables = _read(_ROOT.joinpath(f"{kind}.toml"))
     return MappingProxyType({name: MappingProxyType(table) for name, table in tables.items()})
-
-
-@cache
-def case_files() -> tuple[str, ...]:
-    """Names of the built-in cases, without their variants."""
-    return _stems("cases")
 
 
 @cache
@@ -105,7 +85,7 @@ def builtin_case(name: str) -> dict[str, Any]:
     A variant is named by words after the name of its case, at most one of each group, in any order:
     ``talbot-2012-n6-polished-40C``. Raises `KeyError` if there is no such case or variant.
     """
-    bases = (file for file in case_files() if f"{name}-".startswith(f"{file}-"))
+    bases = (file for file in names("cases") if f"{name}-".startswith(f"{file}-"))
     base = max(bases, key=len, default="")
     if not base:
         raise KeyError(name)
@@ -131,9 +111,3 @@ def builtin_case(name: str) -> dict[str, Any]:
 def uncertainty_table() -> dict[str, Any]:
     """What is assumed of values and models whose uncertainty a case does not state."""
     return _read(_ROOT.joinpath("uncertainty.toml"))
-
-
-@cache
-def lubrication_methods() -> Mapping[str, Mapping[str, Any]]:
-    """Share of oil around gears by how they are lubricated, and how well it is known."""
-    return _read_only("lubrication.toml")

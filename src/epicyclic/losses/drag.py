@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.oil.oil import MixtureState
@@ -75,17 +75,11 @@ def speed_parameter(speed: float, pitch_diameter: float) -> float:
     return abs(speed) / RPM * pitch_diameter * 1e3
 
 
-@dataclass(frozen=True, slots=True)
-class DiscDrag:
-    """Drag of a disc."""
+class DiscDrag(NamedTuple):
+    """Drag of a disc, in two parts."""
 
     rim: float  # Losses at the rim and at both faces. [W]
     faces: float  # Losses at the rim and at both faces. [W]
-
-    @property
-    def total(self) -> float:
-        """Loss of the whole disc. [W]"""
-        return self.rim + self.faces
 
 
 def disc_drag(
@@ -129,12 +123,13 @@ def disc_drag_flags(
     where: str, radius: float, drag: DiscDrag, speed: float, mixture: MixtureState
 ) -> tuple[ValidityFlag, ...]:
     """Flags of the `drag` of the body called `where`, each with the part of it that it concerns."""
-    if drag.total == 0:
+    total = sum(drag)
+    if total == 0:
         return ()
     use = ModelUse("drag", "seetharaman-kahraman", where)
     values = {"reynolds_number": reynolds_number(radius, speed, mixture)}
-    return check_ranges(use, (_RIM,), values, part=drag.rim / drag.total) + check_ranges(
-        use, (_FACES, _CREEPING), values, part=drag.faces / drag.total
+    return check_ranges(use, (_RIM,), values, part=drag.rim / total) + check_ranges(
+        use, (_FACES, _CREEPING), values, part=drag.faces / total
     )
 
 

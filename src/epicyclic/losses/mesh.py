@@ -23,27 +23,6 @@ from epicyclic.losses.rolling import RollingModel
 FloatArray = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class MeshWarmth:
-    """Flash temperature of a mesh."""
-
-    flash_mean: float  # Weighted with the load over the mesh period. [K]
-    flash_max: float  # Largest one. [K]
-
-
-def mesh_warmth(
-    contact: MeshContact,
-    friction: FloatArray,  # Coefficient of friction at every point. [1]
-    materials: tuple[Solid, Solid],  # Materials of both gears.
-) -> MeshWarmth:
-    """Flash temperature of a mesh in contact. Theory (W1)."""
-    flash = flash_temperatures(contact, friction, materials)
-    load = contact.line_load * contact.weight
-    return MeshWarmth(
-        flash_mean=float((flash * load).sum() / load.sum()), flash_max=float(flash.max())
-    )
-
-
 def heat_share1(
     contact: MeshContact,
     heat: FloatArray,  # Of sliding friction at every point. [W]
@@ -146,14 +125,26 @@ def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:
 
 
 def ohlendorf_loss_factor(mesh: Mesh) -> float:
-    """H_V = pi (u +- 1)/(z1 u cos(beta_b)) (1 - eps_alpha + eps_1^2 + eps_2^2). Theory (M5). [1]
+    """H_V = pi (u +- 1)/(z1 u cos(beta_b)) (1 - eps_alpha + eps_1^2 + eps_2^2). [1]
 
-    H. Ohlendorf, Diss. TH Muenchen (1958); minus for internal meshes. Constant friction, tooth
-    pairs in contact sharing the load equally. The last bracket holds for 1 <= eps_alpha <= 2 with
-    eps_1, eps_2 <= 1; here it is the integral that it stands for, 2 int |s|/N(s) ds with N the
-    number of pairs in contact, which has no such limits.
+    Theory (M5), (M6). H. Ohlendorf, Diss. TH Muenchen (1958); minus for internal meshes. Constant
+    friction, tooth pairs in contact sharing the load equally. The last bracket holds for
+    1 <= eps_alpha <= 2 with eps_1, eps_2 <= 1; here it is the integral that it stands for,
+    2 int |s|/N(s) ds over s in base pitches from the pitch point, N the number of pairs in contact,
+    which has no such limits.
     """
-    return _ratio_term(mesh) * _sliding_integral(mesh.tip_contact_ratio1, mesh.tip_contact_ratio2)
+    tip1, tip2 = mesh.tip_contact_ratios
+    # N changes where a neighbouring pair enters or leaves, at whole pitches from the ends
+    reach = math.ceil(tip1 + tip2)
+    corners = {-tip2, tip1, 0.0}
+    corners |= {-tip2 + k for k in range(1, reach)} | {tip1 - k for k in range(1, reach)}
+    ordered = sorted(corner for corner in corners if -tip2 <= corner <= tip1)
+    total = 0.0
+    for start, end in pairwise(ordered):
+        middle = (start + end) / 2
+        pairs = math.floor(tip1 - middle) + math.floor(middle + tip2) + 1
+        total += 2 * abs(middle) * (end - start) / pairs
+    return _ratio_term(mesh) * total
 
 
 def ohlendorf_closed_form(mesh: Mesh) -> float:
@@ -161,13 +152,13 @@ def ohlendorf_closed_form(mesh: Mesh) -> float:
 
     Theory (M5). What other programs state, KISSsoft among them.
     """
-    tip1, tip2 = mesh.tip_contact_ratio1, mesh.tip_contact_ratio2
+    tip1, tip2 = mesh.tip_contact_ratios
     return _ratio_term(mesh) * (1 - tip1 - tip2 + tip1**2 + tip2**2)
 
 
 def loss_factor_notes(mesh: Mesh) -> tuple[str, ...]:
     """Where other programs state another loss factor, and why."""
-    tip1, tip2 = mesh.tip_contact_ratio1, mesh.tip_contact_ratio2
+    tip1, tip2 = mesh.tip_contact_ratios
     if max(tip1, tip2) <= CLOSED_LIMIT and 1 <= tip1 + tip2 <= 2 * CLOSED_LIMIT:
         return ()
     return (
@@ -182,18 +173,3 @@ def _ratio_term(mesh: Mesh) -> float:
     """pi (u +- 1)/(z1 u cos(beta_b)). [1]"""
     ratio = (mesh.ratio + mesh.side) / (mesh.gear1.teeth * mesh.ratio)
     return math.pi * ratio / math.cos(mesh.gear1.rack.base_helix_angle)
-
-
-def _sliding_integral(tip1: float, tip2: float) -> float:
-    """2 int |s|/N(s) ds from -tip2 to tip1, s in base pitches from the pitch point. Theory (M6)."""
-    # N changes where a neighbouring pair enters or leaves, at whole pitches from the ends
-    reach = math.ceil(tip1 + tip2)
-    corners = {-tip2, tip1, 0.0}
-    corners |= {-tip2 + k for k in range(1, reach)} | {tip1 - k for k in range(1, reach)}
-    ordered = sorted(corner for corner in corners if -tip2 <= corner <= tip1)
-    total = 0.0
-    for start, end in pairwise(ordered):
-        middle = (start + end) / 2
-        pairs = math.floor(tip1 - middle) + math.floor(middle + tip2) + 1
-        total += 2 * abs(middle) * (end - start) / pairs
-    return total

@@ -101,8 +101,9 @@ def films(contact: LineContacts) -> Films:
 
     Under light load flanks stay rigid: H. M. Martin, Engineering 102 (1916) 119, 4.895 mu u_r R/W'.
     """
+    assert isinstance(contact.oil, OilState)  # of fits to simulated contacts it is not known
     heating = inlet_film_factor(
-        _state(contact).thermal_load(contact.rolling_speed),
+        contact.oil.thermal_load(contact.rolling_speed),
         contact.hertz_pressure / contact.flanks.equivalent_modulus,
         contact.slide_to_roll_ratio,
     )
@@ -146,7 +147,8 @@ def mixed_friction(
     boundary: float | None = None,  # mu_b; None: that of the oil. [1]
 ) -> FloatArray:
     """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]"""
-    oil = _state(contact)
+    oil = contact.oil
+    assert isinstance(oil, OilState)
     boundary = oil.boundary_friction if boundary is None else boundary
     film = films(contact)
     share = asperity_share(contact, surfaces, film)
@@ -173,11 +175,6 @@ def mixed_friction(
     )
     mu: FloatArray = share * boundary + (1 - share) * stress / pressure
     return mu
-
-
-def _state(contact: LineContacts) -> OilState:
-    assert isinstance(contact.oil, OilState)  # of fits to simulated contacts it is not known
-    return contact.oil
 
 
 @lru_cache(maxsize=64)

@@ -7,8 +7,9 @@ first roller stands under the load, as in Talbot (2012), Fig. 3.1.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +109,7 @@ PALMGREN_RANGES = (
 """Ranges of the coefficient f1."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class RollerBearing:
     """A cylindrical roller or needle bearing."""
 
@@ -126,58 +127,47 @@ class RollerBearing:
     equivalent_modulus: float  # E_eq. [Pa]
     slices: int  # On each roller.
 
-    @property
-    def outer_diameter(self) -> float:
-        """Diameter of the outer race. Theory (B4). [m]"""
-        return self.inner_diameter + 2 * self.roller_diameter + self.diametral_clearance
+    if TYPE_CHECKING:  # what follows from them
+        outer_diameter: float = field(init=False)  # Of the outer race. [m]
+        pitch_diameter: float = field(init=False)  # d_m, mean of the two races. [m]
+        # Equivalent radius of the contact at the inner and at the outer race. [m]
+        inner_radius: float = field(init=False)
+        outer_radius: float = field(init=False)
+        slice_width: float = field(init=False)  # [m]
+        # From the middle of the bearing to the outer end of its rollers. [m]
+        half_width: float = field(init=False)
+        # Axial position of the slices, shape (rows, slices). [m]
+        slice_positions: FloatArray = field(init=False)
+        # Drop of the profile at each slice, a parabola over the crowned ends. [m]
+        crown: FloatArray = field(init=False)
+        azimuth: FloatArray = field(init=False)  # Of each roller from the load. [rad]
 
-    @property
-    def pitch_diameter(self) -> float:
-        """d_m, mean of the two races. Theory (B4). [m]"""
-        return (self.inner_diameter + self.outer_diameter) / 2
-
-    @property
-    def inner_radius(self) -> float:
-        """Equivalent radius of the contact at the inner race. Theory (B5). [m]"""
-        roller, race = self.roller_diameter / 2, self.inner_diameter / 2
-        return roller * race / (race + roller)
-
-    @property
-    def outer_radius(self) -> float:
-        """Equivalent radius of the contact at the outer race. Theory (B5). [m]"""
-        roller, race = self.roller_diameter / 2, self.outer_diameter / 2
-        return roller * race / (race - roller)
-
-    @property
-    def composite_roughness(self) -> float:
-        """Composite roughness of roller and race, rms. [m]"""
-        return math.hypot(self.race_roughness, self.roller_roughness)
-
-    @property
-    def slice_width(self) -> float:
-        """[m]"""
-        return self.roller_length / self.slices
-
-    @property
-    def half_width(self) -> float:
-        """From the middle of the bearing to the outer end of its rollers. [m]"""
-        return (self.rows * self.roller_length + (self.rows - 1) * self.row_gap) / 2
-
-    def slice_positions(self) -> FloatArray:
-        """Axial position of the slices, shape (rows, slices). Theory (B7). [m]"""
-        within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
-        middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (self.roller_length + self.row_gap)
-        return middles[:, None] + within
-
-    def crown(self) -> FloatArray:
-        """Drop of the profile at each slice, a parabola over the crowned ends. Theory (B6). [m]"""
-        within = (np.arange(self.slices) + 0.5) * self.slice_width - self.roller_length / 2
-        crowned = self.crown_length_fraction * self.roller_length
-        if crowned == 0.0:
-            return np.zeros(self.slices)
-        depth = np.abs(within) - (self.roller_length / 2 - crowned)
-        drop: FloatArray = self.crown_drop * (np.maximum(depth, 0.0) / crowned) ** 2
-        return drop
+    def __post_init__(self) -> None:
+        """Diameters, radii of contact, widths and slices. Theory (B4), (B5), (B6), (B7)."""
+        inner, roller = self.inner_diameter / 2, self.roller_diameter / 2
+        outer = inner + 2 * roller + self.diametral_clearance / 2
+        length, width = self.roller_length, self.roller_length / self.slices
+        within = (np.arange(self.slices) + 0.5) * width - length / 2
+        middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (length + self.row_gap)
+        positions, crown = middles[:, None] + within, np.zeros(self.slices)
+        crowned = self.crown_length_fraction * length
+        if crowned:
+            depth = np.abs(within) - (length / 2 - crowned)
+            crown = self.crown_drop * (np.maximum(depth, 0.0) / crowned) ** 2
+        azimuth = np.arange(self.rollers_per_row) * 2 * math.pi / self.rollers_per_row
+        for array in (positions, crown, azimuth):
+            array.flags.writeable = False
+        vars(self).update(
+            outer_diameter=2 * outer,
+            pitch_diameter=inner + outer,
+            inner_radius=roller * inner / (inner + roller),
+            outer_radius=roller * outer / (outer - roller),
+            slice_width=width,
+            half_width=(self.rows * length + (self.rows - 1) * self.row_gap) / 2,
+            slice_positions=positions,
+            crown=crown,
+            azimuth=azimuth,
+        )
 
     def rolling_speed(self, speed: float) -> float:
         """u_r = d_m omega (1 - d_r^2/d_m^2)/4. Talbot (2012), Eq. 3.4. Theory (B12). [m/s]"""
@@ -279,13 +269,12 @@ def _solved(
     near: bool = False,
 ) -> tuple[FloatArray, FloatArray, FloatArray, int]:
     """Azimuth of each roller, and what `solve_roller_loads` finds."""
-    azimuth, positions, crown = _slices(bearing)
     found = solve_roller_loads(
         load,
         start,
-        azimuth,
-        positions / bearing.half_width,
-        crown,
+        bearing.azimuth,
+        bearing.slice_positions / bearing.half_width,
+        bearing.crown,
         bearing.slice_width,
         bearing.diametral_clearance,
         TOLERANCE,
@@ -293,14 +282,7 @@ def _solved(
         held=held,
         near=near,
     )
-    return azimuth, *found
-
-
-@lru_cache(maxsize=64)
-def _slices(bearing: RollerBearing) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Azimuth of each roller [rad], axial position of the slices and drop of their profile [m]."""
-    azimuth = np.arange(bearing.rollers_per_row) * 2 * math.pi / bearing.rollers_per_row
-    return azimuth, bearing.slice_positions(), bearing.crown()
+    return bearing.azimuth, *found
 
 
 def tilting_moments(
@@ -324,7 +306,7 @@ def tilting_moments(
             f"{NEWTON.text(force, 4)} with tilts of {tilt_x:.4g} and {tilt_y:.4g} rad; "
             "check roller length and clearance."
         )
-    positions = bearing.slice_positions()
+    positions = bearing.slice_positions
     turning = (intensity * bearing.slice_width * positions[:, None, :]).sum(axis=(0, 2))
     return float(turning @ np.cos(azimuth)), float(turning @ np.sin(azimuth))
 
@@ -373,7 +355,7 @@ def mixed_ehl_rolling_loss(
         held.dynamic_viscosity,
         held.pressure_viscosity,
         held.radius,
-        held_in_range(bearing.composite_roughness, _COMPOSITE),
+        held_in_range(math.hypot(bearing.race_roughness, bearing.roller_roughness), _COMPOSITE),
         bearing.equivalent_modulus,
     )
     local = bearing.slice_width * density * beyond_data(contacts, held)

@@ -68,20 +68,13 @@ def bounded_flow(
     free = _free_flow(geometry, slices, steps, end_length)
     if number <= void_number(geometry, slices, steps, end_length):
         return free
-    return _network(geometry, slices, steps, end_length).flow(-1 / number**2, free.damped)
+    return _Network(geometry, slices, steps, end_length).flow(-1 / number**2, free.damped)
 
 
 @lru_cache(maxsize=64)
 def _free_flow(geometry: PocketGeometry, slices: int, steps: int, end_length: float) -> NetworkFlow:
     """The flow while no pocket holds a void."""
-    return _network(geometry, slices, steps, end_length).flow(-math.inf)
-
-
-def _network(geometry: PocketGeometry, slices: int, steps: int, end_length: float) -> _Network:
-    """With the openings in the middle of each step."""
-    end = end_length * geometry.mesh.gear1.rack.normal_module
-    cells = pocket_cells(geometry, slices, steps, end, inner=0.5)
-    return _Network(cells, geometry.pitch / steps, slice(1, None, 2))
+    return _Network(geometry, slices, steps, end_length).flow(-math.inf)
 
 
 @lru_cache(maxsize=32)
@@ -90,9 +83,7 @@ def study_flow(geometry: PocketGeometry) -> NetworkFlow:
 
     `power_from_flow` is the boundary work.
     """
-    cells = pocket_cells(geometry, STUDY_SLICES, STUDY_STEPS, None, inner=0.5)
-    network = _Network(cells, geometry.pitch / STUDY_STEPS, slice(2, None, 2))
-    return network.study()
+    return _Network(geometry, STUDY_SLICES, STUDY_STEPS, None, slice(2, None, 2)).study()
 
 
 class _Network:
@@ -100,15 +91,23 @@ class _Network:
 
     Parameters
     ----------
-    cells : Cells
-    turn : float
-        Time step, as an angle of gear 1. [rad]
+    geometry, slices, steps, end_length
+        As for `pocket_flow`; `end_length` is None for slices of one width.
     at : slice
-        The times of `cells` at which openings are taken, one for each step.
+        The times of the cells at which openings are taken, one for each step: its middle.
     """
 
-    def __init__(self, cells: Cells, turn: float, at: slice) -> None:
-        self._cells, self._turn = cells, turn
+    def __init__(
+        self,
+        geometry: PocketGeometry,
+        slices: int,
+        steps: int,
+        end_length: float | None,
+        at: slice = slice(1, None, 2),
+    ) -> None:
+        end = None if end_length is None else end_length * geometry.mesh.gear1.rack.normal_module
+        cells = pocket_cells(geometry, slices, steps, end, inner=0.5)
+        self._cells, self._turn = cells, geometry.pitch / steps  # The time step is an angle. [rad]
         self._volume = np.ascontiguousarray(cells.volume[::2])
         self._growth = np.diff(self._volume, axis=0)
         self._openings = (
@@ -155,7 +154,11 @@ class _Network:
             damping += (wet * mass * step**2 / 2).sum(axis=(1, 2))
             lost += float((wet * u * (drop + mass * step)).sum())
         damped = damping if damped is None else damped
-        lost += self._voids() - float(damped.sum())
+        # work that opening voids store, less what they give back when they fill up
+        q, inside = self._history[0][:, 1:-1, 1:-1], np.s_[:, 1:-1, 1:-1]
+        opened = (1 - full[inside]) * self._volume[1:]
+        opened -= (1 - _before(full, 1.0)[inside]) * self._volume[:-1]
+        lost += float(-(q * opened)[self._cells.live].sum()) - float(damped.sum())
         return self._made(periods, self._works() - damped, lost, damped)
 
     def study(self) -> NetworkFlow:
@@ -178,15 +181,9 @@ class _Network:
         works: Floats = -(self._history[0][:, 1:-1, 1:-1] * self._growth).sum(axis=(1, 2))
         return works
 
-    def _voids(self) -> float:
-        """Work that opening voids store, less what they give back when they fill up."""
-        q, full = self._history[0][:, 1:-1, 1:-1], self._history[1]
-        volume = (1 - full[:, 1:-1, 1:-1]) * self._volume[1:]
-        before = (1 - _before(full, 1.0)[:, 1:-1, 1:-1]) * self._volume[:-1]
-        return float(-(q * (volume - before))[self._cells.live].sum())
-
-    def _mass_error(self) -> float:
-        """What comes in less what goes out, over what comes in, in a period."""
+    def _made(self, periods: int, works: Floats, other: float, damped: Floats) -> NetworkFlow:
+        period = self._turn * len(works)
+        # what comes in less what goes out, over what comes in, in a period
         live = np.pad(self._cells.live, ((0, 0), (1, 1), (1, 1)))
         full, volume = self._history[1], self._volume[:-1]
         before = _before(live, False)[:, 1:-1, 1:-1]
@@ -198,12 +195,8 @@ class _Network:
             (self._history[2], self._openings[0], 2), (self._history[3], self._openings[1], 1)
         ):  # fmt: skip
             flow = u * area * np.where(u > 0, *_sides(full, axis)) * self._turn
-            one, other = _sides(live, axis)
-            out += float(flow[one & ~other].sum() - flow[other & ~one].sum())
-        return (come - out - gone) / come
-
-    def _made(self, periods: int, works: Floats, other: float, damped: Floats) -> NetworkFlow:
-        period = self._turn * len(works)
+            one, two = _sides(live, axis)
+            out += float(flow[one & ~two].sum() - flow[two & ~one].sum())
         cell, _, axial, gap, *_ = self._history
         pressure = np.ascontiguousarray(cell[:, 1:-1, 1:-1])
         instants = works / self._turn
@@ -213,7 +206,7 @@ class _Network:
             cells=self._cells,
             power=float(works.sum()) / period,
             power_from_flow=other / period,
-            mass_error=self._mass_error(),
+            mass_error=(come - out - gone) / come,
             periods=periods,
             pressure=pressure,
             axial_speed=axial,
@@ -254,7 +247,7 @@ NETWORK_MODELS: tuple[PocketModel, ...] = ("incompressible", "talbot-2012")
 """Those without sound waves, whose flow scales with density and speed."""
 
 LEAST_OIL = 0.005
-"""Share of oil below which `automatic_pocketing` takes the mixture for compressible. [1]"""
+"""Share of oil below which the choice auto takes the mixture for compressible: it is a gas. [1]"""
 LEAST_AIR = 1e-4
 """Air in a compressible mixture, at least: with it pure oil cavitates near zero pressure. The loss
 is that without a lower bound within a percent. [1]"""
@@ -453,11 +446,6 @@ def _places(cells: Cells, geometry: PocketGeometry) -> dict[str, Any]:
         "face": cells.face,
         "live": cells.live,
     }
-
-
-def automatic_pocketing(oil_fraction: float) -> PocketModel:
-    """The model where the user leaves the choice: air with hardly any oil in it is a gas."""
-    return "isentropic" if oil_fraction < LEAST_OIL else "incompressible"
 
 
 def _fluid(

@@ -55,11 +55,7 @@ class PocketGeometry:
     gap_angle: Floats  # Angles of the gaps: of the tooth of gear 1 that they belong to. [rad]
     gap: Floats  # Narrowest gap at the leading and at the trailing flank of that tooth. [m]
     gap_middle: Floats  # As `centroid`. [m]
-
-    @property
-    def pitch(self) -> float:
-        """Angle of gear 1 in which the mesh repeats. [rad]"""
-        return 2 * math.pi / self.mesh.gear1.teeth
+    pitch: float  # Angle of gear 1 in which the mesh repeats. [rad]
 
 
 @lru_cache(maxsize=32)
@@ -92,6 +88,7 @@ def pocket_geometry(
         gap_angle=gap_angle,
         gap=gaps[..., 0],
         gap_middle=gaps[..., 1:],
+        pitch=2 * half_pitch,
     )
     for array in (life, angle, tables, gap_angle, gaps):
         array.flags.writeable = False
@@ -161,7 +158,7 @@ def _flank(gear: Gear, tool: Tool | None) -> tuple[NDArray[np.complex128], Float
     base = gear.base_radius
     form = math.sqrt(max(0.0, outline.form_radius**2 - base**2))
     at_base = gear.thickness_half_angle + outward * involute(gear.rack.transverse_pressure_angle)
-    figures = np.array([base, at_base, form, gear.tip_form_involute_length, outward])
+    figures = np.array([base, at_base, form, gear.roll_length_at(gear.tip_form_radius), outward])
     return points, np.array([root, fillet, involute_end], dtype=np.float64), figures
 
 

@@ -100,22 +100,23 @@ class FlowFamily:
 
     def flow(self, speed: float, mixture: MixtureState, pressure: float) -> PocketFlow:
         """The flow itself. Parameters as for `pocket_flow`."""
-        return pocket_flow(self.geometry, speed, mixture, pressure, self.model, *self._resolution)
-
-    @property
-    def _resolution(self) -> tuple[int, int, float]:
-        return self.slices, self.steps, self.end_length
+        resolution = (self.slices, self.steps, self.end_length)
+        return pocket_flow(self.geometry, speed, mixture, pressure, self.model, *resolution)
 
     @staticmethod
     def number(speed: float, mixture: MixtureState, pressure: float) -> float:
         """Speed over the root of pressure over density, held at the least. Theory (Q21). [1/m]"""
         return max(speed * math.sqrt(mixture.density / pressure), LEAST_NUMBER)
 
-    def scales(self, number: float) -> bool:
-        """Whether the flow at a number is another one times density and powers of the speed."""
-        if self.model == "incompressible":
-            return number <= void_number(self.geometry, *self._resolution)
-        return self.model in NETWORK_MODELS
+    def scales(self, speed: float, mixture: MixtureState, pressure: float) -> bool:
+        """Whether the flow is another one times density and powers of the speed."""
+        if self.model != "incompressible":
+            return self.model in NETWORK_MODELS
+        try:
+            limit = void_number(self.geometry, self.slices, self.steps, self.end_length)
+        except ValueError:  # no tooth outline: the solution says so
+            return False
+        return self.number(speed, mixture, pressure) <= limit
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
         """Figures of the flow itself. Parameters as for `pocket_flow`."""
@@ -135,7 +136,9 @@ class FlowFamily:
                 MixtureState(self.oil_fraction, 1.0, 0.0),
                 1.0,
                 self.model,
-                *self._resolution,
+                self.slices,
+                self.steps,
+                self.end_length,
             )
         except ConvergenceError:
             return np.full(5, math.nan)

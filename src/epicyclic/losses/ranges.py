@@ -40,11 +40,6 @@ class Range:
     # From the conditions to the quantity, where these have no attribute `name`.
     of: Callable[[Any], FloatArray | float] | None = None
 
-    def found_in(self, conditions: object) -> FloatArray | float:
-        """The quantity in `conditions`, in SI."""
-        found = getattr(conditions, self.name) if self.of is None else self.of(conditions)
-        return found if isinstance(found, float) else np.asarray(found, dtype=float)
-
     def limits(self) -> tuple[float | None, float | None]:
         """`low` and `high` in SI."""
         scale, offset = self.unit.scale_and_offset()
@@ -312,15 +307,20 @@ def _not_within(
     ranges: tuple[Range, ...], contacts: object
 ) -> tuple[tuple[Range, FloatArray | float], ...]:
     """The ranges that not all contacts keep, with the quantities."""
-    found = [(item, item.found_in(contacts)) for item in ranges]
-    return tuple((item, values) for item, values in found if not _holds(item, values))
+    left = []
+    for item in ranges:
+        found = getattr(contacts, item.name) if item.of is None else item.of(contacts)
+        values = found if isinstance(found, float) else np.asarray(found, dtype=float)
+        if not _holds(item, values):
+            left.append((item, values))
+    return tuple(left)
 
 
 def _flag(
     use: ModelUse, item: Range, values: FloatArray | float, weight: FloatArray | float, part: float
 ) -> ValidityFlag:
     """The flag of a quantity that leaves its range."""
-    least, most = _ends(values)
+    least, most = float(np.min(values)), float(np.max(values))
     low, high = item.bounds
     outside = (values < low) | (values > high)
     share = 1.0
@@ -345,17 +345,7 @@ def _flag(
 def _holds(item: Range, values: FloatArray | float) -> bool:
     """True if all values that are numbers lie in the range."""
     low, high = item.bounds
-    least, most = _ends(values)
-    return (low <= least and most <= high) or not np.any((values < low) | (values > high))
-
-
-def _ends(values: FloatArray | float) -> tuple[float, float]:
-    """The smallest and the largest one."""
-    if not isinstance(values, np.ndarray):
-        return float(values), float(values)
-    if not values.size:
-        return math.inf, -math.inf
-    return float(values.min()), float(values.max())
+    return not np.any((values < low) | (values > high))
 
 
 FITTED_QUANTITIES = {

@@ -103,7 +103,7 @@ def disc_loss(
         else:
             mixture = state.fluids.mixed(disc.oil_fraction)
             own = disc_drag(disc.radius, disc.width, speed, mixture)
-            drag = own.total
+            drag = sum(own)
             flags += disc_drag_flags(disc.where, disc.radius, own, speed, mixture)
             methods[DRAG_METHOD] = DRAG_SOURCE
         if disc.jets is not None:

@@ -25,12 +25,12 @@ from epicyclic.losses.contact import (
 from epicyclic.losses.friction import CONTAINS_ROLLING, FrictionModel
 from epicyclic.losses.mesh import (
     MeshLoss,
+    flash_temperatures,
     heat_share1,
     local_loss,
     loss_factor_loss,
     loss_factor_notes,
     mean_friction,
-    mesh_warmth,
     ohlendorf_loss_factor,
 )
 from epicyclic.losses.pocket_tables import FLOW_NUMBERS, FlowFigures
@@ -337,14 +337,17 @@ def _mesh_figures(
     flow: FlowFigures | None,
 ) -> MeshFigures:
     mesh = duty.gears.mesh
-    warmth = None if contact is None else mesh_warmth(contact, loss.friction, duty.gears.materials)
     speed1 = abs(duty.speed1)
     sliding = max(
         abs(speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1))
         for rho1 in (mesh.path_start, mesh.path_end)
     )
     line_load, pressure, flattening, resistance = math.nan, math.nan, 0.0, 0.0
+    flash_mean = flash_max = math.nan
     if contact is not None:
+        flash = flash_temperatures(contact, loss.friction, duty.gears.materials)
+        load = contact.line_load * contact.weight
+        flash_mean, flash_max = float((flash * load).sum() / load.sum()), float(flash.max())
         speed = contact.rolling_speed + np.abs(contact.sliding_speed)
         resisted = float((contact.line_load * speed) @ contact.weight)
         resistance = (loss.sliding + loss.rolling) / resisted if resisted else 0.0
@@ -379,7 +382,7 @@ def _mesh_figures(
         pocket_power_difference=math.nan if flow is None else flow.difference,
         pocket_interpolation_error=math.nan if flow is None else flow.error,
         contact_temperature=math.nan if contact is None else contact.oil.temperature,
-        flash_temperature_mean=math.nan if warmth is None else warmth.flash_mean,
-        flash_temperature_max=math.nan if warmth is None else warmth.flash_max,
+        flash_temperature_mean=flash_mean,
+        flash_temperature_max=flash_max,
         contact=contact,
     )

@@ -98,13 +98,23 @@ class Planet:
 
         Theory (B3).
         """
-        contacts = self._contacts(duties)
+        contacts = []
+        for own in self.meshes:
+            duty = duties[own.mesh]
+            # the mesh turns both of its external gears against the torque that gear 1 brings in
+            sense = -1 if duty.torque1 > 0 else 1
+            contacts.append(
+                PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
+            )
+        if contacts[0].sense < 0:
+            contacts = [contact.turned_round() for contact in contacts]
         centrifugal = self.centrifugal(carrier_speed)
         idle = all(contact.duty.torque1 == 0 for contact in contacts)
         if not self.tilts or self.bearing is None or idle:
             load = planet_load(contacts, centrifugal)
         else:
-            contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
+            tilted, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
+            contacts = [*tilted]
         return [contact.duty for contact in contacts], load
 
     def centrifugal(self, carrier_speed: float) -> float:
@@ -122,18 +132,6 @@ class Planet:
             f"{format_number(self.mass, 3)} kg and its centrifugal force is "
             f"{NEWTON.text(force, 3)} of the {NEWTON.text(load.force, 3)} on the bearing.",
         )
-
-    def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
-        contacts = []
-        for own in self.meshes:
-            duty = duties[own.mesh]
-            # the mesh turns both of its external gears against the torque that gear 1 brings in
-            sense = -1 if duty.torque1 > 0 else 1
-            contacts.append(
-                PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
-            )
-        first = contacts[0].sense
-        return contacts if first > 0 else [contact.turned_round() for contact in contacts]
 
 
 class Drags(NamedTuple):
@@ -272,7 +270,7 @@ class GearSet:
     @property
     def count(self) -> int:
         """Number of planets of each kind, which work in parallel."""
-        return 1 if self.sharing is None else self.sharing.count
+        return 1 if self.sharing is None else len(self.sharing.angles)
 
     def loaded_duties(self, state: State) -> tuple[MeshDuty, ...]:
         """The meshes of the planet that carries most, misaligned if it tilts."""
@@ -367,10 +365,14 @@ class GearSet:
         if self.thrust is not None:
             losses["thrust_bearing_viscous"], found = thrust_loss(self.thrust, state)
             flags += found
-        placed = {
-            name: self._placed(_with_choice(loss, self.choices[name]))
-            for name, loss in losses.items()
-        }
+        placed = {}
+        for name, loss in losses.items():
+            own = _with_choice(loss, self.choices[name])
+            on_shaft = any(HOUSING in brake for brake in own.brakes) and self.carrier != HOUSING
+            # inside the set it acts where all its losses do, and so do both discs of a pair
+            if self.reference is not None and not on_shaft:
+                own = own._replace(brakes=((*self.reference.between, 1.0),), mesh="")
+            placed[name] = own
         return Drags(placed, flags)
 
     def _branch(
@@ -447,8 +449,10 @@ class GearSet:
         """
         follows = (duty.gears.key,) if self._parts_apart else ()
         if self.reference is not None:
+            inside = ((*self.reference.between, 1.0),)
             return {
-                name: self._inside(loss)._replace(follows=follows) for name, loss in losses.items()
+                name: loss._replace(brakes=inside, mesh="", follows=follows)
+                for name, loss in losses.items()
             }
         mesh = duty.gears
         halves = tuple((body, self.carrier, 0.5) for body in mesh.bodies)
@@ -467,17 +471,6 @@ class GearSet:
         if planet.bearing is not None and self._parts_apart:
             placed = placed._replace(follows=(planet.key,))
         return placed._replace(heat=tuple((node, 0.5) for node in planet.nodes))
-
-    def _inside(self, loss: Loss) -> Loss:
-        """A loss between moving parts of the set where the set has all of them act."""
-        if self.reference is None:
-            return loss
-        return loss._replace(brakes=((*self.reference.between, 1.0),), mesh="")
-
-    def _placed(self, loss: Loss) -> Loss:
-        """Friction inside the set acts where all its losses do, and so do both discs of a pair."""
-        on_shaft = any(HOUSING in brake for brake in loss.brakes) and self.carrier != HOUSING
-        return loss if on_shaft else self._inside(loss)
 
 
 def _with_choice(loss: Loss, choice: LossChoice) -> Loss:

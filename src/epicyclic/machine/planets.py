@@ -96,14 +96,9 @@ class LoadSharing:
     pin_stiffness: float | None  # Radial, of one pin; None: rigid. [N/m]
 
     @property
-    def count(self) -> int:
-        """Number of planets."""
-        return len(self.angles)
-
-    @property
     def whatever_the_load(self) -> bool:
         """True if the shares do not depend on the load."""
-        return self.method in ("equal", "mesh-load-factor") or self.count == 1
+        return self.method in ("equal", "mesh-load-factor") or len(self.angles) == 1
 
 
 def planet_shares(
@@ -117,7 +112,7 @@ def planet_shares(
     The closed form holds while all planets carry; where one does not, (S3) and (S4) are solved.
     Raises `ConvergenceError` if no loads of the planets balance.
     """
-    count = sharing.count
+    count = len(sharing.angles)
     if sharing.method == "mesh-load-factor":
         return mesh_load_factor_shares(count, sharing.mesh_load_factor)
     idle = not all(duty.torque1 for duty in duties)
@@ -156,7 +151,7 @@ def _branches(
     # slope of the transmission error over the force, mean of the mesh period [m/N]
     loaded = [elastic_loads(duty) for duty in duties]
     compliance = sum(one.mean(1 / one.tangent_stiffness) for one in loaded)
-    errors = np.array(sharing.position_errors or np.zeros(sharing.count))
+    errors = np.array(sharing.position_errors or np.zeros(len(sharing.angles)))
     return Branches(
         np.array(sharing.angles),
         compliance + through_pin**2 * pin_compliance,

@@ -104,7 +104,9 @@ def flow_family(duty: MeshDuty) -> FlowFamily:
         duty.gears.tools,
         duty.drives1,
     )
-    if _exchanged(duty):
+    # time steps follow a tooth of gear 1 of the pockets
+    one, two = ((it.teeth, it.tip_radius, it.root_radius) for it in (mesh.gear1, mesh.gear2))
+    if settings.any_order and not mesh.internal and one > two:
         mesh = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
         tools, drives1 = tools[::-1], not drives1
     return FlowFamily(
@@ -117,15 +119,6 @@ def flow_family(duty: MeshDuty) -> FlowFamily:
         steps=settings.steps,
         end_length=settings.end_length,
     )
-
-
-def _exchanged(duty: MeshDuty) -> bool:
-    """Whether gear 2 is gear 1 of the pockets, whose time steps follow a tooth of that gear."""
-    one, two = (
-        (gear.teeth, gear.tip_radius, gear.root_radius)
-        for gear in (duty.gears.mesh.gear1, duty.gears.mesh.gear2)
-    )
-    return duty.gears.models.pockets.any_order and not duty.gears.mesh.internal and one > two
 
 
 def solve_pockets(duty: MeshDuty, fluids: Fluids) -> PocketFlow | None:
@@ -155,7 +148,8 @@ def flow_requests(duties: Sequence[MeshDuty], fluids: Fluids) -> Iterator[FlowRe
     for duty in duties:
         if duty.gears.models.pockets.include and duty.speed1 != 0:
             request = flow_request(duty, fluids)
-            if _stored_figures(duty.gears.models.pockets, request) is None and not _scales(request):
+            stored = _stored_figures(duty.gears.models.pockets, request)
+            if stored is None and not request[0].scales(*request[1:]):
                 yield request
 
 
@@ -179,7 +173,7 @@ def mesh_flows(
             continue
         request = flow_request(duty, fluids)
         figures = _stored_figures(settings, request)
-        if figures is None and not _scales(request):
+        if figures is None and not request[0].scales(*request[1:]):
             if request[0] in settings.tables:
                 figures = settings.tables[request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
@@ -196,19 +190,13 @@ def mesh_flows(
 
 def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
     """The flow through the pockets of a mesh: family, and as for `FlowFamily.flow`."""
-    settings = duty.gears.models.pockets
+    settings, family = duty.gears.models.pockets, flow_family(duty)
     lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
     mixture = fluids.mixed(oil_in_mesh(duty))
-    speed = abs(duty.speed1) / (duty.gears.mesh.ratio if _exchanged(duty) else 1.0)
-    return flow_family(duty), speed, mixture, fluids.pressure - lowest
-
-
-def _scales(request: FlowRequest) -> bool:
-    """Whether the flow is another one times density and powers of the speed."""
-    try:
-        return request[0].scales(FlowFamily.number(*request[1:]))
-    except ValueError:  # no tooth outline: the solution says so
-        return False
+    speed = abs(duty.speed1)
+    if family.mesh is not duty.gears.mesh:  # gear 2 is gear 1 of the pockets
+        speed /= duty.gears.mesh.ratio
+    return family, speed, mixture, fluids.pressure - lowest
 
 
 def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigures | None:

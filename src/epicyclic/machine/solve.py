@@ -304,12 +304,12 @@ def solve_machine(
     tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
         tried.append(drives)
-        branch = branch.turned(drives)
+        branch = replace(branch, drives=drives, passes=0)
         last = _converged(branch)
         drives = drives_first(last.balance.powers, drives)
     floating = frozenset(key for key, first in drives.items() if first != last.drives[key])
     if floating:
-        branch = branch.turned(last.drives, floating)
+        branch = replace(branch, drives=last.drives, braking=floating, passes=0)
         last = _converged(branch)
     if last.efficiencies != efficiencies and not directions.jammed:
         directions = find_directions(machine, operation, speeds, lossless, last.efficiencies)
@@ -397,13 +397,6 @@ class _Branch:
     drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
     braking: Collection[str] = ()  # Meshes whose losses are friction, whichever gear drives.
     passes: int = 0  # So far.
-
-    def turned(self, drives: Mapping[str, bool], braking: Collection[str] = ()) -> _Branch:
-        """Another choice of the directions, from what the elements have answered so far."""
-        return _Branch(
-            self.machine, self.operation, self.start, self.fluids, self.known, self.earlier,
-            drives, braking,
-        )  # fmt: skip
 
     @cached_property
     def unlost(self) -> Balance:

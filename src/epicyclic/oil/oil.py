@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,6 @@ from epicyclic.units import (
     PressureViscosity,
     Quantity,
     Temperature,
-    as_stated,
 )
 
 # An oil as data: what a file of the oil library or a table in a case states about it.
@@ -105,16 +104,15 @@ BOUNDARY_FRICTION = {
 """Friction of flanks that touch, by the level of additives. [1]"""
 
 
-def _factor(value: float, kind: str) -> LubricantFactor:
-    return LubricantFactor(value=value, source=f"X_L of ISO/TR 14179-2 for {kind}, second hand")
-
-
 LUBRICANT_FACTORS = {
-    "mineral": _factor(1.0, "mineral oils"),
-    "pao": _factor(0.8, "polyalphaolefins and esters"),
-    "ester": _factor(0.8, "polyalphaolefins and esters"),
-    "pag": _factor(0.75, "polyglycols"),
-    "atf": _factor(1.0, "mineral oils, taken over for transmission fluids"),
+    kind: LubricantFactor(value=value, source=f"X_L of ISO/TR 14179-2 for {oils}, second hand")
+    for kind, value, oils in (
+        ("mineral", 1.0, "mineral oils"),
+        ("pao", 0.8, "polyalphaolefins and esters"),
+        ("ester", 0.8, "polyalphaolefins and esters"),
+        ("pag", 0.75, "polyglycols"),
+        ("atf", 1.0, "mineral oils, taken over for transmission fluids"),
+    )
 }
 """X_L by the kind of an oil that does not state it. Theory (F15). The standard has 1.3 for
 phosphoric esters and 1.5 for traction fluids too, which are no kinds here."""
@@ -175,7 +173,7 @@ class Oil(_Data):
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     description: str = ""
     temperature_range: tuple[Temperature, Temperature] = Field(
-        default=as_stated(("0 degC", "120 degC")),
+        default=cast("Any", ("0 degC", "120 degC")),  # read like any value
         description="Range in which the values are valid.",
     )
     kinematic_viscosity: tuple[ViscosityPoint, ...] = Field(min_length=2)
@@ -205,37 +203,38 @@ class Oil(_Data):
 
     @model_validator(mode="after")
     def _check_points(self) -> Oil:
-        if faults := list(self._faults()):
-            raise ValidationError.from_exception_data(self.name, faults)
-        if "lubricant_factor" not in self.model_fields_set:
-            self.__dict__["lubricant_factor"] = LUBRICANT_FACTORS[self.kind]
-        return self
-
-    def _faults(self) -> Iterator[InitErrorDetails]:
+        faults: list[InitErrorDetails] = []
         remedy, viscosities = "correct one of the two points", self.kinematic_viscosity
         for first, second in _neighbours(viscosities):
             colder, warmer = viscosities[first], viscosities[second]
             if warmer.temperature == colder.temperature:
-                yield _repeated("kinematic_viscosity", first, second, warmer.temperature)
+                faults.append(_repeated("kinematic_viscosity", first, second, warmer.temperature))
             elif warmer.value >= colder.value:
                 shown, other = map(SQUARE_MM_PER_SECOND.text, (warmer.value, colder.value))
                 what = "must fall with rising temperature, but at "
                 what += f"{CELSIUS.text(colder.temperature)} it is {other}"
-                yield _fault(("kinematic_viscosity", second, "value"), shown, what, remedy)
+                faults.append(_fault(("kinematic_viscosity", second, "value"), shown, what, remedy))
         for first, second in _neighbours(self.density):
             cold, warm = self.density[first], self.density[second]
             if warm.temperature == cold.temperature:
-                yield _repeated("density", first, second, warm.temperature)
+                faults.append(_repeated("density", first, second, warm.temperature))
                 continue
             slope = (warm.value - cold.value) / (warm.temperature - cold.temperature)
             if not STEEPEST_DENSITY <= slope <= 0:
                 what = "must fall with rising temperature, by at most 2 kg/(m^3 K)"
-                yield _fault(("density", second, "value"), f"{warm.value:g} kg/m^3", what, remedy)
+                faults.append(
+                    _fault(("density", second, "value"), f"{warm.value:g} kg/m^3", what, remedy)
+                )
         low, high = self.temperature_range
         if low >= high:
             shown = f"{CELSIUS.text(low)} to {CELSIUS.text(high)}"
             remedy = "give the lower temperature first"
-            yield _fault(("temperature_range",), shown, "must rise", remedy)
+            faults.append(_fault(("temperature_range",), shown, "must rise", remedy))
+        if faults:
+            raise ValidationError.from_exception_data(self.name, faults)
+        if "lubricant_factor" not in self.model_fields_set:
+            self.__dict__["lubricant_factor"] = LUBRICANT_FACTORS[self.kind]
+        return self
 
 
 def _neighbours(points: Sequence[ViscosityPoint | DensityPoint]) -> Iterator[tuple[int, int]]:
@@ -329,23 +328,26 @@ class MixtureState:
 
 @lru_cache(maxsize=256)
 def oil_state(oil: Oil, temperature: float) -> OilState:
-    """Properties of `oil` at `temperature` in kelvin. Theory (L3)."""
+    """Properties of `oil` at `temperature` in kelvin. Theory (L3), (L6)."""
     nu = _kinematic_viscosity(oil, temperature)
     rho = _density(oil, temperature)
+    alpha, exponent = _pressure_viscosity(oil, temperature, nu, rho * nu)
+    colder = _kinematic_viscosity(oil, temperature - SLOPE_STEP)
+    warmer = _kinematic_viscosity(oil, temperature + SLOPE_STEP)
     return OilState(
         temperature=temperature,
         kinematic_viscosity=nu,
         density=rho,
         dynamic_viscosity=rho * nu,
-        pressure_viscosity=_pressure_viscosity(oil, temperature, nu, rho * nu),
-        thermoviscosity=_thermoviscosity(oil, temperature),
+        pressure_viscosity=alpha,
+        thermoviscosity=math.log(colder / warmer) / (2 * SLOPE_STEP),
         thermal_conductivity=(
             DEFAULT_CONDUCTIVITY
             if oil.thermal_conductivity is None
             else oil.thermal_conductivity.value
         ),
         lubricant_factor=oil.lubricant_factor.value,
-        pressure_viscosity_exponent=_pressure_viscosity_exponent(oil, rho * nu),
+        pressure_viscosity_exponent=exponent,
         limiting_traction=(oil.limiting_traction or LIMITING_TRACTION[oil.kind]).value,
         boundary_friction=BOUNDARY_FRICTION[oil.additives].value,
     )
@@ -379,25 +381,13 @@ def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
 
 def extrapolated_viscosity(oil: Oil, temperature: float) -> float:
     """ASTM D341 between neighbouring points, and beyond the outermost two. Theory (L1). [m^2/s]"""
-    y = _piecewise_line(math.log10(temperature), *_viscosity_points(oil))
-    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
-
-
-@lru_cache(maxsize=64)
-def _viscosity_points(oil: Oil) -> tuple[list[float], list[float]]:
-    """Logarithm of the temperature, and ordinate of D341, of the points of an oil. Theory (L1)."""
     points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
-    return (
+    y = _piecewise_line(
+        math.log10(temperature),
         [math.log10(point.temperature) for point in points],
         [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points],
     )
-
-
-def _thermoviscosity(oil: Oil, temperature: float) -> float:
-    """-d(ln nu)/dT by central difference. Theory (L6). [1/K]"""
-    colder = _kinematic_viscosity(oil, temperature - SLOPE_STEP)
-    warmer = _kinematic_viscosity(oil, temperature + SLOPE_STEP)
-    return math.log(colder / warmer) / (2 * SLOPE_STEP)
+    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
 
 
 def _density(oil: Oil, temperature: float) -> float:
@@ -410,38 +400,29 @@ def _density(oil: Oil, temperature: float) -> float:
     )
 
 
-def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> float:
-    """Pressure-viscosity coefficient. Theory (L4). [1/Pa]"""
+def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> tuple[float, float]:
+    """Pressure-viscosity coefficient alpha and d(ln alpha)/d(ln nu), density and index z held.
+
+    Theory (L4), (L5). [1/Pa], [1]
+    """
     law = oil.pressure_viscosity
     if isinstance(law, GoldLaw):
-        return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9
+        return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9, law.t
     # z, linear between the points of the law and constant beyond them: (L5)
     index = float(np.interp(temperature, *_roelands_points(oil, law)))
-    return index * roelands_slope(mu)
-
-
-def _pressure_viscosity_exponent(oil: Oil, mu: float) -> float:
-    """d(ln alpha)/d(ln nu), density and index z held. Theory (L4), (L5). [1]"""
-    law = oil.pressure_viscosity
-    return law.t if isinstance(law, GoldLaw) else 1 / (math.log(mu) + ROELANDS_OFFSET)
-
-
-def roelands_slope(mu: float) -> float:
-    """alpha/z of Roelands' law, (ln mu + 9.67)/1.96e8 with mu in Pa s. Theory (L5). [1/Pa]"""
-    return (math.log(mu) + ROELANDS_OFFSET) / ROELANDS_PRESSURE
+    # alpha/z = (ln mu + 9.67)/1.96e8 with mu in Pa s
+    slope = math.log(mu) + ROELANDS_OFFSET
+    return index * (slope / ROELANDS_PRESSURE), 1 / slope
 
 
 @lru_cache(maxsize=64)
 def _roelands_points(oil: Oil, law: RoelandsLaw) -> tuple[list[float], list[float]]:
     """Temperatures and indices z of the points of an oil. Theory (L5)."""
     points = sorted(law.point, key=lambda point: point.temperature)
-    index = [
-        point.value
-        / roelands_slope(
-            _kinematic_viscosity(oil, point.temperature) * _density(oil, point.temperature)
-        )
-        for point in points
-    ]
+    index = []
+    for point in points:
+        mu = _kinematic_viscosity(oil, point.temperature) * _density(oil, point.temperature)
+        index.append(point.value / ((math.log(mu) + ROELANDS_OFFSET) / ROELANDS_PRESSURE))
     return [point.temperature for point in points], index
 
 

@@ -82,12 +82,13 @@ def table_of(annotation: Any) -> type[BaseModel] | None:
 
 def tables_in(annotation: Any) -> Iterator[type[BaseModel]]:
     """The table classes of an annotation, through optional, union and array types."""
-    return (kind for kind, _ in _leaves(annotation) if _is_table(kind))
+    leaves = (kind for kind, _ in _leaves(annotation))
+    return (it for it in leaves if isinstance(it, type) and issubclass(it, BaseModel))
 
 
 def dict_value(annotation: Any) -> Any:
     """Type of the values of a table whose keys are the user's names; None for others."""
-    for member in map(_without_metadata, _members(annotation)):
+    for member in _members(annotation):
         if typing.get_origin(member) is dict:
             return typing.get_args(member)[1]
     return None
@@ -95,7 +96,7 @@ def dict_value(annotation: Any) -> Any:
 
 def is_text(annotation: Any) -> bool:
     """True for keys that hold any text, such as a name that the user chose."""
-    members = [_without_metadata(member) for member in _members(annotation)]
+    members = list(_members(annotation))
     return str in members and set(members) <= {str, type(None)}
 
 
@@ -115,13 +116,13 @@ def describe(annotation: Any, metadata: Sequence[Any] = ()) -> str:
         if isinstance(item, Named):
             return item.allowed()
     members = [member for member in _members(annotation) if member is not type(None)]
-    member = _without_metadata(members[0]) if members else annotation
+    member = members[0] if members else annotation
     if typing.get_origin(member) is tuple:
         first = typing.get_args(member)[0]
         return f"an array, each entry {describe(first)}"
     if dict_value(annotation) is not None:
         return "a table of names"
-    if _is_table(member):
+    if table_of(member) is not None:
         return "a table of keys"
     quantity = quantity_of(annotation, metadata)
     if quantity is not None:
@@ -195,25 +196,16 @@ def locate(table: type[BaseModel], location: Sequence[str | int]) -> Place:
 
 
 def _members(annotation: Any) -> Iterator[Any]:
-    """The members of a union, or `annotation` itself."""
-    if typing.get_origin(annotation) in (types.UnionType, typing.Union):
-        yield from typing.get_args(annotation)
-    else:
-        yield annotation
-
-
-def _without_metadata(annotation: Any) -> Any:
-    is_annotated = typing.get_origin(annotation) is typing.Annotated
-    return typing.get_args(annotation)[0] if is_annotated else annotation
-
-
-def _is_table(annotation: Any) -> bool:
-    return isinstance(annotation, type) and issubclass(annotation, BaseModel)
+    """The members of a union, or `annotation` itself, without their metadata."""
+    is_union = typing.get_origin(annotation) in (types.UnionType, typing.Union)
+    for member in typing.get_args(annotation) if is_union else (annotation,):
+        is_annotated = typing.get_origin(member) is typing.Annotated
+        yield typing.get_args(member)[0] if is_annotated else member
 
 
 def entry_of(annotation: Any, number: int = 0) -> Any:
     """Type of one entry of an array; None if `annotation` is no array."""
-    for member in map(_without_metadata, _members(annotation)):
+    for member in _members(annotation):
         if typing.get_origin(member) is tuple:
             types_ = typing.get_args(member)
             return types_[0] if types_[-1] is Ellipsis else types_[min(number, len(types_) - 1)]
@@ -222,10 +214,10 @@ def entry_of(annotation: Any, number: int = 0) -> Any:
 
 def _branch(annotation: Any, name: str | int) -> Any:
     """The member of a union that goes by `name` in an error's location; None if none does."""
-    for member in _members(annotation):
+    for member in (annotation, *typing.get_args(annotation)):
         items = getattr(member, "__metadata__", ())  # of an annotated one
         if any(isinstance(item, Tag) and item.tag == name for item in items):
-            return _without_metadata(member)
+            return typing.get_args(member)[0]
     tables = list(tables_in(annotation))
     if len(tables) > 1:
         for table in tables:

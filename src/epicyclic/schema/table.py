@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field
 from epicyclic.schema.fields import to_inputs
 
 
-def option(description: str, default: Any = None, **limits: Any) -> Any:
+def option(description: str | None, default: Any = None, **limits: Any) -> Any:
     """The field of a key with a default, which is stated as a file has it, with its unit."""
     return Field(default=default, description=description, **limits)
 

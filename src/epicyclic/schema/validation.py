@@ -271,9 +271,10 @@ def _rename(new: Mapping[str, str], table: dict[str, Any]) -> dict[str, Any]:
 def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]:
     """One of each group of alternatives must be given, and that one whole."""
     problems = []
-    for name, table in _tables_of_choices(kind).items():
+    for name, table in tables_of(kind).items():
         given = {name: raw.get(name)}
-        if _holds_names(kind, name) and isinstance(raw.get(name), dict):
+        has_names = dict_value(kind.model_fields[name].annotation) is not None  # [states.NAME]
+        if has_names and isinstance(raw.get(name), dict):
             given = {f"{name}.{dotted([key])}": item for key, item in raw[name].items()}
         for key, item in given.items():
             if isinstance(item, dict):
@@ -282,19 +283,6 @@ def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]
                     is_needed = group in table.EXACTLY_ONE
                     problems += _check_group(key, choices, item, is_needed=is_needed)
     return problems
-
-
-@cache
-def _tables_of_choices(kind: type[Table]) -> dict[str, type[Table]]:
-    """Those of the tables that have alternatives."""
-    tables = tables_of(kind).items()
-    return {name: table for name, table in tables if table.EXACTLY_ONE or table.AT_MOST_ONE}
-
-
-@cache
-def _holds_names(kind: type[Table], name: str) -> bool:
-    """True if the tables stand below names of the user's, ``[states.NAME]``."""
-    return dict_value(kind.model_fields[name].annotation) is not None
 
 
 def _check_group(
@@ -333,7 +321,7 @@ def _sound_sections(
     """The tables that are sound, or can be made so by stand-ins for their `bad` keys."""
     sound: dict[str, Table] = {}
     for name, table in tables_of(kind).items():
-        if _holds_names(kind, name):
+        if dict_value(kind.model_fields[name].annotation) is not None:
             continue
         if name not in raw:
             default = kind.model_fields[name].default

@@ -97,8 +97,8 @@ _MESH_ROWS: tuple[_MeshRow, ...] = (
     ("normal backlash j_bn", "um", lambda one: f"{UM * one.mesh.normal_backlash:z.1f}"),
     ("circumferential backlash j_wt", "um", lambda one: f"{UM * one.mesh.backlash:z.1f}"),
     ("least j_bn, ISO/TR 10064-2", "um", lambda one: f"{UM * one.recommended_backlash:.1f}"),
-    ("clearance at tip 1", "mm", lambda one: _mm(one.mesh.tip_clearance1)),
-    ("clearance at tip 2", "mm", lambda one: _mm(one.mesh.tip_clearance2)),
+    ("clearance at tip 1", "mm", lambda one: _mm(one.mesh.tip_clearances[0])),
+    ("clearance at tip 2", "mm", lambda one: _mm(one.mesh.tip_clearances[1])),
     ("specific sliding at root 1", "", lambda one: _ratio(one.specific_sliding[0])),
     ("specific sliding at root 2", "", lambda one: _ratio(one.specific_sliding[1])),
 )
@@ -201,7 +201,7 @@ def case_table() -> RenderableType:
     """Built-in cases and the words that name their variants."""
     variants = "variants: at most one word of each line, joined by -"
     table = plain_table("Built-in cases", Column("name", no_wrap=True), "description", variants)
-    for name in library.case_files():
+    for name in library.names("cases"):
         groups = library.case_variants().get(name, [])
         words = "\n".join(f"{' '.join(group['words'])}  ({group['about']})" for group in groups)
         table.add_row(name, library.builtin_case(name)["title"], words)
@@ -220,7 +220,7 @@ def oil_table() -> RenderableType:
     )
     numbers = (Column(head, justify="right") for head in heads)
     table = plain_table("Built-in oils", Column("name", no_wrap=True), "kind", *numbers)
-    for name in sorted(library.oil_names(), key=_by_grade):
+    for name in sorted(library.names("oils"), key=_by_grade):
         oil = Oil.model_validate(library.oil_table(name))
         warm, hot = _state(oil, "40 degC"), _state(oil, "100 degC")
         table.add_row(

@@ -81,7 +81,7 @@ def text_like(name: str) -> str:
     """
     case = read_case(name)
     if isinstance(case, TrainCase):
-        if name in library.case_files():
+        if name in library.names("cases"):
             return library.case_source(name)
         return Path(name).read_text(encoding="utf-8")
     head = [f"A case file of epicyclic, kind {case.kind}, with the values of {name}."]

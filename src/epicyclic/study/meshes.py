@@ -257,7 +257,7 @@ def bearing_details(
         "azimuth": variable("roller", loads.azimuth, "azimuth of the roller from the load", DEGREE),
         "axial_position": variable(
             ("row", "slice"),
-            bearing.slice_positions(),
+            bearing.slice_positions,
             "axial position from the middle of the bearing",
             MILLIMETRE,
         ),

@@ -20,8 +20,8 @@ from epicyclic.case.case import Case, read_case
 from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
+    Solid,
     bulk_rise_of_loss,
-    effusivity,
     flash_temperature,
     iso_mean_friction,
     roughness_factor,
@@ -460,7 +460,7 @@ def pair_flash_temperature(pair: str, line_load: float) -> float:
     contact = _loaded_pair(pair)[1]
     mesh, start = contact.mesh, contact.mesh.path_start
     speed1, speed2 = contact.speed1 * start, contact.speed2 * mesh.curvature2(start)
-    carried = effusivity(**data_file("temperatures.toml")["steel"])
+    carried = Solid(**data_file("temperatures.toml")["steel"]).effusivity
     rise = flash_temperature(
         _mean_friction(pair),
         line_load,

@@ -106,8 +106,8 @@ def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
     mesh = _varied_mesh(duty.gears.mesh, variant)
     for what, value in (
         ("backlash", mesh.backlash),
-        ("tip clearance of member 1", mesh.tip_clearance1),
-        ("tip clearance of member 2", mesh.tip_clearance2),
+        ("tip clearance of member 1", mesh.tip_clearances[0]),
+        ("tip clearance of member 2", mesh.tip_clearances[1]),
         ("transverse contact ratio", mesh.transverse_contact_ratio),
     ):
         if value < -ROUNDING:

@@ -22,8 +22,8 @@ from epicyclic.oil.grades import ShortOil, whole_oil
 from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.schema.fields import Named
 from epicyclic.schema.read import plain
-from epicyclic.schema.table import Table
-from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity, as_stated
+from epicyclic.schema.table import Table, option
+from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity
 
 
 def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> PydanticCustomError:
@@ -42,7 +42,7 @@ class _Roughness(Quantity):
     """A length, also with its parameter, ``"Ra 0.4 um"``, or the name of a built-in finish."""
 
     def parse(self, value: object) -> float:
-        finishes = library.finishes()
+        finishes = library.named("finishes")
         named = _PARAMETER.fullmatch(value) if isinstance(value, str) else None
         if named is not None:
             return self._checked(rq_of(named[1], super().parse(named[2])))
@@ -53,7 +53,7 @@ class _Roughness(Quantity):
         return super().parse(value)
 
     def describe(self) -> str:
-        finishes = ", ".join(library.finishes())
+        finishes = ", ".join(library.named("finishes"))
         return f"{super().describe()}, also as Ra or Rz, or one of the finishes {finishes}"
 
     def __get_pydantic_json_schema__(
@@ -61,7 +61,7 @@ class _Roughness(Quantity):
     ) -> dict[str, Any]:
         length = super().__get_pydantic_json_schema__(schema, handler)
         stated = {"type": "string", "pattern": r"^\s*R[aqz]\b"}
-        return {"anyOf": [length, {"enum": list(library.finishes())}, stated]}
+        return {"anyOf": [length, {"enum": list(library.named("finishes"))}, stated]}
 
 
 Roughness = Annotated[
@@ -114,28 +114,25 @@ class Material(Table):
     title: str = "material of the case"
     elastic_modulus: Modulus
     poisson_ratio: Number = Field(default=0.3, ge=0.0, le=0.5)
-    density: Density = Field(default=as_stated("7850 kg/m^3"))
-    thermal_conductivity: Conductivity = Field(default=as_stated("46 W/(m*K)"))
-    heat_capacity: HeatCapacity = Field(default=as_stated("460 J/(kg*K)"))
+    density: Density = option(None, "7850 kg/m^3")
+    thermal_conductivity: Conductivity = option(None, "46 W/(m*K)")
+    heat_capacity: HeatCapacity = option(None, "460 J/(kg*K)")
     source: str = ""
 
 
 @cache
-def _material(name: str) -> Material:
-    return Material.model_validate(library.materials()[name])
-
-
-@cache
-def _oil(name: str) -> Oil:
-    return Oil.model_validate(library.oil_table(name))
+def _builtin(kind: type[Material] | type[Oil], name: str) -> Material | Oil:
+    """A material or an oil of the library."""
+    own = library.named("materials")[name] if kind is Material else library.oil_table(name)
+    return kind.model_validate(own)
 
 
 _MATERIALS = Named(
-    lambda: tuple(library.materials()),
-    lambda: f"a table of properties or one of {', '.join(library.materials())}",
+    lambda: tuple(library.named("materials")),
+    lambda: f"a table of properties or one of {', '.join(library.named('materials'))}",
 )
 _OILS = Named(
-    library.oil_names,
+    lambda: library.names("oils"),
     lambda: "a table of properties or a name of the oil library (epicyclic oils)",
     ShortOil,
 )
@@ -147,13 +144,13 @@ def _named_material(value: object) -> object:
         return value
     if value not in _MATERIALS.names():
         raise _no_preset("material", value, _MATERIALS.names(), _MATERIALS.allowed())
-    return _material(value)
+    return _builtin(Material, value)
 
 
 def builtin_oil(table: Any) -> str | None:
     """The built-in oil of the grade and kind that a table states."""
     name = f"iso-vg-{value_at(table, ('iso_vg',))}-{value_at(table, ('kind',))}"
-    return name if name in library.oil_names() else None
+    return name if name in library.names("oils") else None
 
 
 def _named_oil(value: object) -> object:
@@ -165,7 +162,7 @@ def _named_oil(value: object) -> object:
         return value
     if value not in _OILS.names():
         raise _no_preset("oil", value, _OILS.names(), _OILS.allowed())
-    return _oil(value)
+    return _builtin(Oil, value)
 
 
 NamedMaterial = Annotated[Material, BeforeValidator(_named_material), _MATERIALS]

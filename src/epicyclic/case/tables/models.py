@@ -53,11 +53,6 @@ PRESET = (
 """What the key says."""
 
 
-def stress_text(assumed: Assumptions) -> str:
-    """The Eyring stress as a file has it."""
-    return f"{assumed.eyring_stress * 1e-6:g} MPa"
-
-
 def film_text(assumed: Assumptions) -> str:
     """The film of touching as a file has it."""
     return f"{assumed.film * 1e9:g} nm"
@@ -69,7 +64,7 @@ def behaviour_of(preset: object) -> dict[str, object]:
     if assumed is None:
         return {}
     law = PRESSURE_NAMES[assumed.pressure_law]
-    return {"pressure_law": law, "eyring_stress": stress_text(assumed)}
+    return {"pressure_law": law, "eyring_stress": f"{assumed.eyring_stress * 1e-6:g} MPa"}
 
 
 HeatingModel = Literal["isothermal", "inlet-and-film"]
@@ -103,7 +98,7 @@ class OilBehaviour(Table):
     eyring_stress: Stress = option(
         "For the default law: stress above which the oil thins (estimate; mineral oils 2 to 10 "
         "MPa).",
-        stress_text(USUAL),
+        f"{USUAL.eyring_stress * 1e-6:g} MPa",
     )
     shear_law: Literal["ree-eyring", "newtonian", "limiting-stress", "carreau"] = option(
         "Law of the viscosity under shear.", "ree-eyring"
@@ -192,18 +187,6 @@ class LoadSharing(Table):
         "Radial stiffness of one planet pin in the carrier, in series with the planet bearing. "
         "Default: rigid."
     )
-
-    def idle_keys(self) -> tuple[str, ...]:
-        """Keys that are given other than by default and do not matter to the method."""
-        elastic = {"position_errors", "floating_member", "support_stiffness", "pin_stiffness"}
-        idle = set() if self.method == "mesh-load-factor" else {"mesh_load_factor"}
-        if self.method not in ("closed-form", "direct"):
-            idle |= elastic
-        elif self.floating_member == "none":
-            idle.add("support_stiffness")
-        usual = type(self)()
-        known = [key for key in type(self).model_fields if key in idle]
-        return tuple(key for key in known if getattr(self, key) != getattr(usual, key))
 
 
 FrictionName = Literal[

@@ -532,7 +532,7 @@ def _keep(folder: Path, name: str, content: bytes) -> None:
 
 def built_in(name: str) -> Desk:
     """The desk of a built-in case, and of nothing else."""
-    if name not in library.case_files():
+    if name not in library.names("cases"):
         raise InputError([Problem("CASE", name, "is not a built-in case.", "Choose one.")])
     return opened(name)
 

@@ -213,7 +213,7 @@ def ask_for_case(
             take(lambda: received(files, own))
 
         with ui.row():
-            for name in library.case_files():
+            for name in library.names("cases"):
                 ui.button(name, on_click=lambda name=name: take(lambda: built_in(name))).props(
                     "outline no-caps dense"
                 )

@@ -394,7 +394,7 @@ def command_of(campaign: Campaign) -> str:
     """The command that makes a campaign; of an oil that is not of the library, ``OIL.toml``."""
     settings = json.loads(campaign.settings)
     name = settings["lubricant"]["oil"].get("name", "")
-    oil = name if name in library.oil_names() else None
+    oil = name if name in library.names("oils") else None
     words = ["epicyclic oil characterise", oil or "OIL.toml"]
     for design, size in zip(campaign.designs, ("--size", "--bearing-size"), strict=False):
         before = "" if design.part == "gear" else "bearing."
@@ -459,11 +459,11 @@ def _as_of_file(error: InputError, oil: str | Path | Mapping[str, Any]) -> Input
 
 def oil_tables(oil: str | Path | Mapping[str, Any]) -> Any:
     """The properties in a file; a name or tables are given back as they are."""
-    if isinstance(oil, Mapping) or str(oil) in library.oil_names():
+    if isinstance(oil, Mapping) or str(oil) in library.names("oils"):
         return oil
     path = Path(oil)
     if path.suffix != ".toml":
-        remedy = did_you_mean(str(oil), library.oil_names()) or "See 'epicyclic oils'."
+        remedy = did_you_mean(str(oil), library.names("oils")) or "See 'epicyclic oils'."
         problem = Problem("OIL", str(oil), "is neither a .toml file nor a built-in oil.", remedy)
         raise InputError([problem], "the command")
     tables, problems = read_file(path)

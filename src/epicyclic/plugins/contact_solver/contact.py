@@ -66,7 +66,7 @@ from epicyclic.plugins.contact_solver.surfaces import (
 )
 from epicyclic.result.result import versions
 from epicyclic.schema.read import plain, read_file, with_value
-from epicyclic.schema.table import Table
+from epicyclic.schema.table import Table, option
 from epicyclic.schema.validation import validate
 from epicyclic.units import (
     MICROMETRE,
@@ -77,7 +77,6 @@ from epicyclic.units import (
     Quantity,
     SmallLength,
     Temperature,
-    as_stated,
     format_number,
     percent,
 )
@@ -123,15 +122,12 @@ class ContactLubricant(OilBehaviour):
 class Surface(Table):
     """A surface: its material and its roughness, generated or measured."""
 
-    material: NamedMaterial = Field(
-        default=as_stated("steel"), description="A name or a table of elastic constants."
-    )
+    material: NamedMaterial = option("A name or a table of elastic constants.", "steel")
     roughness: Roughness | None = Field(
         default=None, description="Rq; a measured profile is scaled to it. Smooth by default."
     )
-    correlation_length: SmallLength = Field(
-        default=as_stated("20 um"),
-        description="Distance at which the autocorrelation has fallen to 1/e.",
+    correlation_length: SmallLength = option(
+        "Distance at which the autocorrelation has fallen to 1/e.", "20 um"
     )
     skewness: Number = Field(default=0.0, ge=-5.0, le=5.0, description="Rsk.")
     kurtosis: Number = Field(default=3.0, ge=1.0, le=50.0, description="Rku.")
@@ -157,9 +153,8 @@ class SecondSurface(Surface):
 class Asperities(Table):
     """Where the film vanishes."""
 
-    film: SmallLength = Field(
-        default=as_stated(film_text(USUAL)),
-        description="Film thickness below which surfaces touch (estimate).",
+    film: SmallLength = option(
+        "Film thickness below which surfaces touch (estimate).", film_text(USUAL)
     )
     friction: Number = Field(
         default=USUAL.friction,

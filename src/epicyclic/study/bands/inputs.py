@@ -133,7 +133,7 @@ def _assumed_slope(case: CaseTable, key: str, limit: float) -> UncertainValue:
 
 def _assumed_factor(case: CaseTable, key: str) -> UncertainValue | None:
     """How well the share of oil is known that follows from a method."""
-    method = library.lubrication_methods()[value_of(case, key.rpartition(".")[0]).method]
+    method = library.named("lubrication")[value_of(case, key.rpartition(".")[0]).method]
     factor, source = method["lognormal_factor"], method["source"]
     parameter = parameter_of(case, key)
     assert isinstance(parameter, Parameter)
