@@ -121,28 +121,28 @@ class _Network:
         cell = (steps, pockets + 2, slices + 2)
         self._history = tuple(map(np.zeros, (cell, cell, faces, gaps, faces, gaps, faces)))
 
-    def _solve(self, lowest: float, carries: bool, eased: bool) -> int:
-        """Periods; fills the history."""
-        return int(
-            periodic_network(
-                self._volume,
-                self._cells.live,
-                self._openings,
-                (self._turn, lowest, carries),
-                eased,
-                POCKETS_PER_PITCH,
-                (PERIODS_MOST, PERIOD_TOLERANCE),
-                self._history,
-                np.zeros(2),
-            )
+    def _solve(self, lowest: float, carries: bool, eased: bool) -> tuple[int, Floats]:
+        """Periods, and the boundary work of each step; fills the history."""
+        periods = periodic_network(
+            self._volume,
+            self._cells.live,
+            self._openings,
+            (self._turn, lowest, carries),
+            eased,
+            POCKETS_PER_PITCH,
+            (PERIODS_MOST, PERIOD_TOLERANCE),
+            self._history,
+            np.zeros(2),
         )
+        pressure = self._history[0][:, 1:-1, 1:-1]
+        return int(periods), -(pressure * self._growth).sum(axis=(1, 2))
 
     def flow(self, lowest: float, damped: Floats | None = None) -> NetworkFlow:
         """Eased births, kinetic energy carried on, power from the boundary work. Theory (Q27).
 
         `damped` is of the flow without voids, if this is not the one.
         """
-        periods = self._solve(lowest, carries=True, eased=True)
+        periods, works = self._solve(lowest, carries=True, eased=True)
         _, full, axial, gap, inertia, gap_inertia, law = self._history
         lost, damping = 0.0, np.zeros(len(axial))
         for u, area, mass, drop, axis in (
@@ -159,11 +159,11 @@ class _Network:
         opened = (1 - full[inside]) * self._volume[1:]
         opened -= (1 - _before(full, 1.0)[inside]) * self._volume[:-1]
         lost += float(-(q * opened)[self._cells.live].sum()) - float(damped.sum())
-        return self._made(periods, self._works() - damped, lost, damped)
+        return self._made(periods, works - damped, lost, damped)
 
     def study(self) -> NetworkFlow:
         """New pockets from rest, no kinetic energy inside, power at the openings. Theory (Q28)."""
-        periods = self._solve(-math.inf, carries=False, eased=False)
+        periods, inside = self._solve(-math.inf, carries=False, eased=False)
         q, _, axial, gap, *_ = self._history
         live = np.pad(self._cells.live, ((0, 0), (1, 1), (1, 1)))
         works = np.zeros(len(q))
@@ -174,12 +174,7 @@ class _Network:
             alpha = np.where(out > 0, 2.0, 1.0)
             power = area * out * (pressure + alpha * u**2) / 2
             works += np.where(one != other, power, 0.0).sum(axis=(1, 2)) * self._turn
-        return self._made(periods, works, float(self._works().sum()), np.zeros(len(q)))
-
-    def _works(self) -> Floats:
-        """Boundary work of each step."""
-        works: Floats = -(self._history[0][:, 1:-1, 1:-1] * self._growth).sum(axis=(1, 2))
-        return works
+        return self._made(periods, works, float(inside.sum()), np.zeros(len(q)))
 
     def _made(self, periods: int, works: Floats, other: float, damped: Floats) -> NetworkFlow:
         period = self._turn * len(works)

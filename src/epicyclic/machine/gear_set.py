@@ -98,23 +98,13 @@ class Planet:
 
         Theory (B3).
         """
-        contacts = []
-        for own in self.meshes:
-            duty = duties[own.mesh]
-            # the mesh turns both of its external gears against the torque that gear 1 brings in
-            sense = -1 if duty.torque1 > 0 else 1
-            contacts.append(
-                PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
-            )
-        if contacts[0].sense < 0:
-            contacts = [contact.turned_round() for contact in contacts]
+        contacts = self._contacts(duties)
         centrifugal = self.centrifugal(carrier_speed)
         idle = all(contact.duty.torque1 == 0 for contact in contacts)
         if not self.tilts or self.bearing is None or idle:
             load = planet_load(contacts, centrifugal)
         else:
-            tilted, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
-            contacts = [*tilted]
+            contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
         return [contact.duty for contact in contacts], load
 
     def centrifugal(self, carrier_speed: float) -> float:
@@ -132,6 +122,18 @@ class Planet:
             f"{format_number(self.mass, 3)} kg and its centrifugal force is "
             f"{NEWTON.text(force, 3)} of the {NEWTON.text(load.force, 3)} on the bearing.",
         )
+
+    def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
+        contacts = []
+        for own in self.meshes:
+            duty = duties[own.mesh]
+            # the mesh turns both of its external gears against the torque that gear 1 brings in
+            sense = -1 if duty.torque1 > 0 else 1
+            contacts.append(
+                PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
+            )
+        first = contacts[0].sense
+        return contacts if first > 0 else [contact.turned_round() for contact in contacts]
 
 
 class Drags(NamedTuple):
