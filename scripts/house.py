@@ -110,8 +110,11 @@ def classes() -> Iterator[tuple[str, frozenset[str]]]:
     for path in files():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef):
-                fields = [item.target for item in node.body if isinstance(item, ast.AnnAssign)]
-                names = frozenset(item.id for item in fields if isinstance(item, ast.Name))
+                names = frozenset(
+                    ast.unparse(item.target)
+                    for item in node.body
+                    if isinstance(item, ast.AnnAssign) and "ClassVar" not in ast.unparse(item)
+                )
                 if len(names) >= COMMON - 1:
                     yield f"{name_of(path)}.{node.name}", names
 

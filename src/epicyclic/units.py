@@ -350,6 +350,9 @@ class Quantity:
     def __get_pydantic_core_schema__(
         self, source: object, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
+        limits = {"gt", "ge", "lt", "le"} & handler(source).keys()
+        if limits:  # they would be lost: those of a quantity are its own
+            raise TypeError(f"{sorted(limits)} beside {self.noun}: use its low and high")
         return core_schema.no_info_plain_validator_function(self.parse)
 
     def __get_pydantic_json_schema__(

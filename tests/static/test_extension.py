@@ -2,13 +2,14 @@
 
 A friction model, an element, a key of a case, an output figure and a loss family. Each addition is
 a list of edits: the file, what stands there, and what takes its place; a file that is not there is
-made. CONTRIBUTING.md walks through the element.
+made. The element is the one of CONTRIBUTING.md, as it is printed there.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -36,76 +37,36 @@ FRICTION: list[Edit] = [
     ("case/tables/models.py", '    "mixed-ehl",\n', '    "mixed-ehl",\n    "halved",\n'),
 ]
 
+
+def printed() -> tuple[str, ...]:
+    """The blocks of Python with which CONTRIBUTING.md adds an element, in their order."""
+    text = (SOURCE.parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    part = text.partition("## Add a loss")[2].partition("## Where things are")[0]
+    return tuple(re.findall(r"```python\n(.*?)```", part, re.DOTALL))
+
+
+ELEMENT, TABLE, BUILDER, TEST = printed()
+FUNCTION, LINE = BUILDER.split("\n\n\n")
 BRAKE: list[Edit] = [
-    (
-        "machine/magnet_brake.py",
-        "",
-        '''"""A magnet brake on a shaft: a constant torque above 10 rpm."""
-
-from dataclasses import dataclass
-from typing import ClassVar
-
-from epicyclic.machine.element import LOAD_INDEPENDENT, ElementResult, Loss
-
-LEAST_SPEED = 10 * 3.141592653589793 / 30  # [rad/s]
-
-
-@dataclass(frozen=True, slots=True)
-class MagnetBrake:
-    """Torque between a shaft and what holds the magnet."""
-
-    key: str
-    between: tuple[str, str]
-    torque: float  # [N m]
-
-    terms: ClassVar = ("braking",)
-    figure_types: ClassVar = ()
-
-    def loads(self, state, last=None):
-        """Nothing: torques and forces do not matter."""
-        return {}
-
-    def evaluate(self, state, last=None):
-        """The loss in a state."""
-        speed = abs(state.speeds[self.between[0]] - state.speeds[self.between[1]])
-        watts = self.torque * speed if speed > LEAST_SPEED else 0.0
-        ends = ((*self.between, 1.0),)
-        return ElementResult(
-            {"braking": Loss(LOAD_INDEPENDENT, watts, "magnet brake", "a test", brakes=ends)}, {}
-        )
-''',
-    ),
+    ("machine/magnet_brake.py", "", ELEMENT),
     (
         "case/tables/elements.py",
         "class ElementTables(Table):\n",
-        '''class BrakeTable(ElementTable):
-    """A magnet brake on a shaft."""
-
-    shaft: str
-    against: str = "housing"
-    torque: DragTorque
-
-
-class ElementTables(Table):
-''',
+        f"{TABLE}\n\nclass ElementTables(Table):\n",
     ),
     (
         "case/tables/elements.py",
         "    drags: dict[str, DragTable] = Field(default={})\n",
         "    drags: dict[str, DragTable] = Field(default={})\n"
-        "    brakes: dict[str, BrakeTable] = Field(default={})\n",
+        "    magnet_brakes: dict[str, MagnetBrakeTable] = Field(default={})\n",
     ),
+    ("build/elements.py", "_BUILDERS: Mapping", f"{FUNCTION}\n\n\n_BUILDERS: Mapping"),
+    ("build/elements.py", '    "drags": _drag,\n', f'    "drags": _drag,\n    {LINE}'),
     (
         "build/elements.py",
-        '    "drags": _drag,\n',
-        '    "drags": _drag,\n'
-        '    "brakes": lambda name, table, bodies, *_: MagnetBrake(name, bodies, table.torque),\n',
-    ),
-    (
-        "build/elements.py",
-        "from epicyclic.machine.shaft_parts import",
+        "from epicyclic.case.tables.elements import",
         "from epicyclic.machine.magnet_brake import MagnetBrake\n"
-        "from epicyclic.machine.shaft_parts import",
+        "from epicyclic.case.tables.elements import MagnetBrakeTable,",
     ),
 ]
 
@@ -178,9 +139,19 @@ print(ep.solve(low).losses["sun_mesh_sliding"] / ep.solve(high).losses["sun_mesh
 """,
     "element": """
 train = ep.load_case("train-eaxle").updated(coarse)
-shaft = train.operation.input
-braked = train.updated({"brakes.B.shaft": shaft, "brakes.B.torque": "0.7 N*m"})
-result = ep.solve(braked)
+brake = {"shaft": train.operation.input, "torque": "0.7 N*m"}
+result = ep.solve(train.updated({"magnet_brakes": {"B": brake}}))
+result.save("braked.nc")
+read = ep.open_result("braked.nc").result.parts["B.brake"]
+assert type(read).__name__ == "MagnetBrakeFigures", read
+assert abs(read.torque - 0.7) < 1e-12, read
+for key, value in (("torque", "-0.7 N*m"), ("shaft", "moter")):
+    try:
+        train.updated({"magnet_brakes": {"B": brake | {key: value}}})
+    except ep.InputError as error:
+        assert f"magnet_brakes.B.{key}" in str(error)
+    else:
+        raise AssertionError(key)
 print(result.losses["B.braking"] / (0.7 * train.operation.speed))
 """,
     "key": """
@@ -241,9 +212,13 @@ case = ep.load_case("talbot-2012").updated(coarse)
         [sys.executable, "-c", program],
         capture_output=True,
         text=True,
+        cwd=tmp_path,
         env=os.environ | {"PYTHONPATH": str(tmp_path)},
         check=False,
     )
     assert found.returncode == 0, found.stderr
+    (tmp_path / "test_magnet_brake.py").write_text(TEST, encoding="utf-8")
+    test = [sys.executable, "-m", "pytest", "-q", "-c", os.devnull, "test_magnet_brake.py"]
+    subprocess.run(test, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(tmp_path)}, check=True)
     ratios = [float(line) for line in found.stdout.split()]
     assert ratios == pytest.approx([1.0] * len(PROGRAMS), rel=1e-9)

@@ -202,6 +202,17 @@ def test_a_stored_train_with_unknown_shafts_is_refused(gearbox):
     assert read_result(content)[1] == [("", "Value error, members lacks nowhere")]
 
 
+def test_figures_of_a_part_of_no_known_kind_are_refused(axle):
+    from epicyclic.result.stored import read_result
+
+    content = json.loads(axle.result.to_json())
+    (key, part), *_ = content["parts"].items()
+    content["parts"][key] = {f"other_{name}": value for name, value in part.items()}
+    assert read_result(content)[1] == [
+        (f"parts.{key}", "has none of the figures that are known here")
+    ]
+
+
 @pytest.mark.slow
 def test_the_page_of_a_train_has_its_chapters(axle, gearbox):
     page = ep.report_html(axle)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 from epicyclic import units
@@ -266,3 +267,12 @@ def test_a_unit_of_random_signs_is_a_length_or_refused(text):
     assert names
     assert all(name in registry() for name in names)
     assert not re.search(r"(?<![1-9])0", text)
+
+
+def test_limits_beside_a_quantity_are_refused_as_they_would_be_lost():
+    class Table(BaseModel):
+        model_config = ConfigDict(defer_build=True)
+        torque: units.Torque = Field(gt=0)
+
+    with pytest.raises(TypeError, match=r"'gt'.* beside a torque: use its low and high"):
+        Table.model_rebuild(force=True)

@@ -165,6 +165,11 @@ def displayed(source: DataclassInstance, field: dataclasses.Field[Any]) -> float
     return unit.to_display(value) if unit.si else value
 
 
+@dataclass(frozen=True, eq=False)
+class PartFigures:
+    """Figures of a further element of a train; a file is read with the class that has its keys."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class FluidFigures:
     """Properties of the oil at its inlet temperature, and of its mixture with air."""

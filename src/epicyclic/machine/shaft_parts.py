@@ -25,6 +25,7 @@ from epicyclic.machine.element import (
     LOAD_INDEPENDENT,
     ElementResult,
     Loss,
+    PartFigures,
     State,
     figure,
 )
@@ -42,8 +43,8 @@ from epicyclic.units import (
 # A loss between two bodies that the user gives as a table: clutch, brake, pump or other drag.
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TableLossFigures:
+@dataclass(frozen=True, eq=False)
+class TableLossFigures(PartFigures):
     """Speed and torque of a loss from a table; the torque is NaN at rest."""
 
     speed: float = figure("speed difference", RPM)
@@ -192,8 +193,8 @@ def seal_flags(
     return check_ranges(ModelUse("seal", formula, where), _RANGES[formula], values)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SealFigures:
+@dataclass(frozen=True, eq=False)
+class SealFigures(PartFigures):
     """What an engineer checks by eye on a seal, and how far the formulas spread; NaN at rest."""
 
     speed: float = figure("speed difference at the seal", RPM)
@@ -257,8 +258,8 @@ class Seal:
 # A rolling bearing of a shaft, as a catalogue states it.
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ShaftBearingFigures:
+@dataclass(frozen=True, eq=False)
+class ShaftBearingFigures(PartFigures):
     """What an engineer checks by eye on a shaft bearing; NaN where unknown or without motion."""
 
     radial_force: float = figure("radial force", NEWTON)

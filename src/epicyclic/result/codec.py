@@ -82,7 +82,11 @@ class Reader:
             expected = f"{', '.join(names)} or {last}" if names else last
             return data if data in inner else self.refuse(place, f"Input should be {expected}")
         if dataclasses.is_dataclass(kind):
-            return self._object(kind, data, place)
+            kinds = tuple(kind.__subclasses__()) or (kind,)  # a base stands for its classes
+            nearest = _nearest(kinds, data)
+            if len(kinds) > 1 and not {key for key, _ in _fields(nearest)} & {*data}:
+                return self.refuse(place, "has none of the figures that are known here")
+            return self._object(nearest, data, place)
         if origin is tuple and index and isinstance(data, dict):
             items = {name: {index: name, **it} for name, it in data.items() if isinstance(it, dict)}
             return tuple(self.read(inner[0], it, f"{place}.{name}") for name, it in items.items())

@@ -10,10 +10,9 @@ from typing import Any, Literal
 from epicyclic.errors import Status
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.ranges import OUT_OF_RANGE, ValidityFlag
-from epicyclic.machine.element import OIL, FluidFigures
+from epicyclic.machine.element import OIL, FluidFigures, PartFigures
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.planets import BearingFigures
-from epicyclic.machine.shaft_parts import SealFigures, ShaftBearingFigures, TableLossFigures
 from epicyclic.result.codec import Reader
 from epicyclic.result.result import (
     HeatBalance,
@@ -29,8 +28,6 @@ from epicyclic.units import DEGREE, NUMBER, RPM, WATT
 
 Numbers = Mapping[str, float]
 Texts = Mapping[str, str]
-Part = ShaftBearingFigures | SealFigures | TableLossFigures
-"""Figures of further elements of a train."""
 _FORM = {
     "title": str,
     "kind": Literal["planetary", "gear_pair", "train"],
@@ -62,7 +59,7 @@ _MORE: dict[str, tuple[Any, Any]] = {
     "heat": (HeatBalance | None, None),
     "planet_bearing": (BearingFigures | None, None),
     "bearings": (Mapping[str, BearingFigures], {}),
-    "parts": (Mapping[str, Part], {}),
+    "parts": (Mapping[str, PartFigures], {}),
 }
 """What only some state, and what it is for the others."""
 _Check = Callable[[Mapping[str, Any]], str]
