@@ -81,7 +81,7 @@ class Reader:
             *names, last = map(repr, inner)
             expected = f"{', '.join(names)} or {last}" if names else last
             return data if data in inner else self.refuse(place, f"Input should be {expected}")
-        if dataclasses.is_dataclass(kind):
+        if isinstance(kind, type) and dataclasses.is_dataclass(kind):
             kinds = tuple(kind.__subclasses__()) or (kind,)  # a base stands for its classes
             nearest = _nearest(kinds, data)
             if len(kinds) > 1 and not {key for key, _ in _fields(nearest)} & {*data}:
