@@ -196,7 +196,7 @@ def test_a_train_balances_its_heat():
 def test_no_way_for_the_heat_is_an_error():
     case = ep.load_case(TALBOT)
     with pytest.raises(ep.InputError, match="no path out"):
-        case.updated({"models.temperatures": "network"})
+        case.updated({"models.temperatures": "network", "thermal.oil_flow": None})
     dry = {"thermal.jet_effectiveness": 0, "losses.sun_drag.include": True}
     with pytest.raises(ep.InputError, match=r"heat of ring has no path out"):
         ep.solve(case.updated(FLOW | dry))

@@ -194,7 +194,8 @@ def test_capacities_are_those_of_rings_and_discs():
 
 
 def test_what_is_not_known_is_told_at_once():
-    case = ep.load_case("talbot-2012").updated({"thermal.housing": {"area": "0.5 m^2"}})
+    housed = {"thermal.oil_flow": None, "thermal.housing": {"area": "0.5 m^2"}}
+    case = ep.load_case("talbot-2012").updated(housed)
     with pytest.raises(ep.InputError) as error:
         ep.warm_up(case.updated({"thermal.capacities.sum.scale": 2}), "1 h")
     keys = {problem.key for problem in error.value.problems}
@@ -207,13 +208,15 @@ def test_what_is_not_known_is_told_at_once():
 
 
 def test_a_runaway_is_told_with_its_time():
-    hot = HOUSING | {"thermal.housing": {"area": "0.01 m^2", "mass": "1 kg"}}
+    small = {"area": "0.01 m^2", "mass": "1 kg"}
+    hot = HOUSING | {"thermal.oil_flow": None, "thermal.housing": small}
     with pytest.raises(ep.ConvergenceError, match=r"thermal runaway: within .* s \w+ exceeds"):
         ep.warm_up(ep.load_case("talbot-2012").updated(hot), "2 h")
 
 
 def test_a_short_time_is_told_though_it_would_run_away():
-    hot = HOUSING | {"thermal.housing": {"area": "0.01 m^2", "mass": "100 kg"}}
+    heavy = {"area": "0.01 m^2", "mass": "100 kg"}
+    hot = HOUSING | {"thermal.oil_flow": None, "thermal.housing": heavy}
     data = ep.warm_up(ep.load_case("talbot-2012").updated(hot), "20 s")
     assert np.isnan(data["settled_temperature"]).all()
     assert np.isnan(data["time_to_90_percent"]).all()

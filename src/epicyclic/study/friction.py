@@ -144,12 +144,13 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
 def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str | None:
     """What ISO/TR 14179-2 gives for the meshes of a result, and why it differs if it does.
 
-    The friction of the standard contains the rolling loss. None if the standard was used itself.
+    The friction of the standard contains the rolling loss. None if the standard was used itself, or
+    the meshes lose nothing.
     """
     standard = next(row for row in rows if row.name == _STANDARD)
-    if standard.chosen:
-        return None
     own = _sliding(result) + math.fsum(result.losses[f"{key}_rolling"] for key in result.meshes)
+    if standard.chosen or not own:
+        return None
     ratio = standard.sliding / own
     told = (
         f"ISO/TR 14179-2 gives {known_text(standard.sliding)} for the meshes under load, "
