@@ -68,6 +68,9 @@ LONG = (
     "how-to/uncertainty.md",
     "how-to/loss-map.md",
     "how-to/look-at-a-mesh.md",
+    "how-to/duty-cycle.md",
+    "how-to/pockets.md",
+    "how-to/sweep.md",
 )
 """Pages that take longer than the default suite allows, even without their slow blocks."""
 SLOW = [

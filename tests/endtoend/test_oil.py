@@ -107,6 +107,7 @@ def test_a_killed_campaign_ends_with_the_same_bits(finished, tmp_path, kills):
     assert "structured" in printed
 
 
+@pytest.mark.slow
 def test_a_cluster_gives_the_same_bits(finished, tmp_path):
     distributed = pytest.importorskip("distributed")
     folder = CampaignFolder(tmp_path / "atf", campaign())

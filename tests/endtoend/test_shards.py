@@ -378,6 +378,7 @@ def test_a_comparison_with_points_that_fail_is_the_same_in_shards(call, tmp_path
     assert Path("merged.json").read_bytes() == Path("one.json").read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("ending", "option"),
     [

@@ -28,6 +28,7 @@ def shell(command, folder, **environment):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("encoding", "command"),
     [("cp1252", "run talbot-2012-pair"), ("ascii", "oils"), ("latin-1", "cases")],
@@ -39,6 +40,7 @@ def test_signs_that_a_terminal_does_not_know_are_replaced(tmp_path, encoding, co
     assert len(shown.splitlines()) > 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "command",
     [
@@ -64,6 +66,7 @@ def test_a_pipe_that_is_closed_early_is_no_error(tmp_path):
     assert done.stderr == b""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "code"),
     [

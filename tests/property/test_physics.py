@@ -269,6 +269,7 @@ def test_planets_at_the_same_branch_torque_lose_the_same(talbot, changes, count)
     assert many.load_dependent == pytest.approx(count * one.load_dependent, rel=1e-7, abs=1e-12)
 
 
+@pytest.mark.slow
 @given(changes=PLANETARY, name=st.sampled_from(["sun_mesh_sliding", "carrier_drag"]))
 def test_left_out_terms_leave_the_others(talbot, changes, name):
     case = talbot.updated({**changes, **GIVEN_LOADS})

@@ -516,6 +516,7 @@ def test_a_chapter_is_shown_before_the_others_are_known(simulate, chapter, tab, 
     simulate(desk, script, chapter=chapter, slow=_Held)
 
 
+@pytest.mark.slow
 def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(simulate):
     desk = opened("talbot-2012-pair")
     desk.change("losses.mesh_pocketing.include", False)
@@ -535,6 +536,7 @@ def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(s
     simulate(desk, script)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "typed",
     ["nan", "3 kg", *(pytest.param(text, marks=pytest.mark.slow) for text in ("inf", "-1e308"))],
@@ -712,6 +714,7 @@ def test_the_worker_tells_progress_and_errors_and_can_be_ended():
     asyncio.run(run())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "task", [app_tasks.doubled, pytest.param(app_tasks.endless, marks=pytest.mark.slow)]
 )

@@ -113,6 +113,7 @@ def cut(path):
     path.write_bytes(path.read_bytes()[:-30])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "damage"),
     [

@@ -191,6 +191,7 @@ def pictures():
     yield "Ravigneaux", ep.load_case(ravigneaux(), axle)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name, _ in pictures()])
 def test_texts_of_the_picture_are_apart_and_within_it(name):
     heat = ep.heat_balance(dict(pictures())[name])

@@ -116,6 +116,7 @@ class Decay:
         return [SimpleNamespace(loss=self.losses(**keys)) for keys in settings]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("weighted", [True, False], ids=["with uncertainties", "from the scatter"])
 def test_intervals_cover_the_inputs_as_often_as_they_say(weighted):
     parameters = [Parameter(key, "", 1.3 * value, 0.0, 1e3) for key, value in DECAY.items()]

@@ -151,6 +151,7 @@ def distance(point, line):
     return np.hypot(*(nearest - point).T).min()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", ["first", "last"])
 def test_pockets_fit_between_the_teeth_of_a_picture(meshes, mesh, end):
     """Teeth are placed by the dataset's figures, pockets by the kernel."""

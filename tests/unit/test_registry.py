@@ -46,6 +46,7 @@ def test_every_folder_of_plug_ins_is_found():
     assert {name.rpartition(".")[2] for name in plug_ins()} == folders | {"validation"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "gone",
     [

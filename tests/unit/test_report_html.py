@@ -202,6 +202,7 @@ def test_progress_is_told(told):
     assert told == [(number, 7) for number in range(7)]
 
 
+@pytest.mark.slow
 def test_figures_have_the_size_that_is_asked_for(pair_map, map_page):
     wide = ep.report_html(pair_map, size=(150, 50))
     boxes = [re.findall(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', page) for page in (map_page, wide)]

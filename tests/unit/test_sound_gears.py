@@ -84,6 +84,7 @@ def planetary(zs, zp, zr, xs=0.0, xp=0.0, *, module=2.0, beta=0.0, alpha=20.0, c
 SHIFTS = [(0, 0), (0.2, 0), (0.5, 0), (0.5, 0.5), (0, 0.5), (0.3, 0.1)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", [0.5, 2, 10])
 @pytest.mark.parametrize("beta", [0, 15, 30, 40])
 def test_standard_gear_pairs_are_sound(module, beta):

@@ -173,6 +173,7 @@ def test_the_template_of_a_train_is_a_sound_case():
 # --- records and pages ----------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["axle", "gearbox", "wolfrom"])
 def test_a_stored_train_reads_back_as_it_was(name, request, tmp_path):
     stored = request.getfixturevalue(name)

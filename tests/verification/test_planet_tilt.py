@@ -152,6 +152,7 @@ def test_shares_are_those_of_straight_planets(talbot):
 FROZEN = Path(__file__).parents[1] / "frozen" / "results.json.xz"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [1.0, 0.01, 1e-5])
 @pytest.mark.parametrize("number", ["001", "004", "019", "055", "103", "157", "175", "181"])
 def test_tilt_is_found_in_drawn_sets_down_to_light_loads(number, share):

@@ -78,6 +78,7 @@ def outline_distance(mesh, tools, phi, leading, shift):
     return float(np.abs(one[:, None] - two[None, :]).min())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("internal", [False, True])
 @pytest.mark.parametrize("leading", [1, -1])
 @pytest.mark.parametrize("chamfer", [0.0, 0.2e-3])
@@ -219,6 +220,7 @@ def test_no_pressure_falls_below_that_of_a_void(pair):
     assert abs(bounded.mass_error) < 1e-5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beta", [0.0, 15.0, 30.0])
 def test_the_loss_goes_smoothly_over_to_voids(pair, beta):
     """Scaled power in steps of 1 % of the number: no jump where voids begin, nor beyond.
@@ -235,6 +237,7 @@ def test_the_loss_goes_smoothly_over_to_voids(pair, beta):
     assert abs(np.log(power[4] / power[3])) < 5e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beta", [0.0, 10.0, 15.0, 25.0, 35.0])
 def test_the_default_resolution_is_near_the_limit_without_waves(pair, beta):
     """Within 2 % of twice as many slices and four times as many steps, with and without voids."""

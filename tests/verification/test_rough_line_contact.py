@@ -61,6 +61,7 @@ def amplitude_ratio(contact, wavelength, nodes=512):
     return np.ptp(films) / 2 * contact.film_scale / amplitude
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("m", "el", "wavelength"),
     [(20, 8, 0.5), (20, 8, 1.0), (50, 10, 0.25), (50, 10, 0.5), (100, 10, 0.5), (100, 10, 1.0)],

@@ -146,6 +146,7 @@ def test_workers_give_the_same_file(case, tmp_path):
     assert not one.identical(ep.uncertainty(case, samples=16, seed=2, jobs=1))
 
 
+@pytest.mark.slow
 def test_results_of_a_case_are_those_without_uncertainty(case, study):
     result = ep.solve(case)
     for name, watts in result.losses.items():

@@ -63,6 +63,7 @@ def at(case, speed, torque, celsius="55"):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "torque", "celsius"), [(2700, 190, 0), (2700, -70, 55)])
 def test_a_point_of_a_map_is_as_uncertain_as_the_case_there(case, over_map, speed, torque, celsius):
     alone = ep.uncertainty(at(case, speed, torque, celsius), samples=32, jobs=1)
@@ -101,6 +102,7 @@ def test_drivers_over_a_map_are_those_of_the_indices_at_a_point(case, over_map):
     assert float(exact.max()) > 0.3
 
 
+@pytest.mark.slow
 def test_what_limits_the_trust_in_a_map_is_told_where_it_is_largest(over_map):
     (advice,) = (it for it in uncertainty_items(over_map) if it.title == LIMITS)
     mean = (over_map["first_order"] * over_map["total"]).sum(over_map["total"].dims)

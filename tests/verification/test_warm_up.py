@@ -111,6 +111,7 @@ def warmed(request):
     return case, ep.warm_up(case, "12 h")
 
 
+@pytest.mark.slow
 def test_the_course_ends_in_the_steady_state(warmed):
     case, data = warmed
     steady = ep.solve(case.updated({"models.temperatures": "network"}))
