@@ -32,6 +32,7 @@ ROUNDING = {
     # the tilt of the planets of a spur set, zero by symmetry, in um, and its moment in N m
     "*misalignment*": 1e-9,
     "*planet_bearing*moment*": 1e-12,
+    "*heat/residual": 1e-12,  # over the heat of all losses
 }
 """Numbers that may be nothing but rounding, and how large that may be."""
 
@@ -153,6 +154,8 @@ def balance_floors(frozen: dict[str, Any]) -> dict[str, float]:
         for name in members:
             floors[f"*/members/{name}/{kind}/value"] = BALANCED * largest
             floors[f"*/numbers/{name}_{kind}"] = BALANCED * largest
+        if kind == "torque":  # which of it the sets of a train leave to each other
+            floors["*/stage_torques/*"] = BALANCED * largest
     for name, array in frozen.items():
         if name.endswith("_torque"):  # of a map or a sweep
             floors[f"*/{name}/values/*"] = BALANCED * float(np.nanmax(np.abs(values(array))))

@@ -18,7 +18,7 @@ from epicyclic.validation.compute import FIGURES
 @pytest.fixture(scope="module")
 def figures():
     """Those of the shaved planets at 90 degC, with the oil flow as the only estimate."""
-    content = settled._content()
+    content = settled.data_file("settled.toml")
     few = {
         "temperatures": ["90 degC"],
         "finishes": ["shaved"],
@@ -26,7 +26,10 @@ def figures():
         "estimate": content["estimate"][:1],
     }
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(settled, "_content", lambda: few)
+        files = settled.data_file
+        patch.setattr(
+            settled, "data_file", lambda name: few if name == "settled.toml" else files(name)
+        )
         return settled.settled_figures(Runner(jobs=1))
 
 
