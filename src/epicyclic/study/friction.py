@@ -69,8 +69,8 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
 
     The model ``table`` takes part if the case has a friction table, ``fitted-or-schlenk`` if there
     are fitted models of the oil, ``fitted`` and ``ehl-direct`` if the case chooses them. With
-    `brief` only those that `recommended` and `standard_beside` look at, without the quick method,
-    whose loss is NaN.
+    `brief` only those that `recommended` and `standard_beside` look at, and the quick method, whose
+    loss is NaN for the others, for ISO/TR 14179-2 alone.
     Raises `InputError` if the case is a train of given efficiencies.
     """
     built = build_computed(case)
@@ -83,7 +83,7 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
             continue
         local = solve(_with(case, {"friction": name, "mesh": "local"}))
         quick_case = _with(case, {"friction": name, "mesh": "loss-factor"})
-        quick = math.nan if brief else _sliding(solve(quick_case))
+        quick = math.nan if brief and name != _STANDARD else _sliding(solve(quick_case))
         own = next(iter(set_cases(quick_case).values()))
         model = own.friction
         flags = [flag for flag in local.flags if flag.use.role == "friction"]
@@ -142,18 +142,18 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
 
 
 def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str | None:
-    """What ISO/TR 14179-2 gives for the meshes of a result, and why it differs if it does.
+    """What ISO/TR 14179-2 gives for the meshes of a result, and what it leaves out if they differ.
 
-    The friction of the standard contains the rolling loss. None if the standard was used itself, or
-    the meshes lose nothing.
+    By its mean friction, which contains the rolling loss, and its loss factor. None if its friction
+    was used itself, or the meshes lose nothing.
     """
     standard = next(row for row in rows if row.name == _STANDARD)
     own = _sliding(result) + math.fsum(result.losses[f"{key}_rolling"] for key in result.meshes)
     if standard.chosen or not own:
         return None
-    ratio = standard.sliding / own
+    ratio = standard.quick / own
     told = (
-        f"ISO/TR 14179-2 gives {known_text(standard.sliding)} for the meshes under load, "
+        f"ISO/TR 14179-2 gives {known_text(standard.quick)} for the meshes under load, "
         f"{ratio:.2f} times this result"
     )
     if 1 / PARTED < ratio < PARTED:
@@ -163,8 +163,8 @@ def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str |
     low = min(mesh.film_ratio_min for mesh in result.meshes.values())
     high = max(mesh.film_ratio_max for mesh in result.meshes.values())
     return (
-        f"{told}; it does not depend on the film ratio, which is {low:.2g} to {high:.2g} here, and "
-        "takes the roughness as drawn, without running-in."
+        f"{told}; its friction does not follow the film ratio, which is {low:.2g} to {high:.2g} "
+        "here, and changes with the fourth root of the roughness alone."
     )
 
 
