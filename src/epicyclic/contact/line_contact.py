@@ -97,15 +97,15 @@ class LineContacts:
             temperature=oil.temperature,
             dynamic_viscosity=oil.dynamic_viscosity,
             pressure_viscosity=oil.pressure_viscosity,
-            material_number=oil.pressure_viscosity * flanks.equivalent_modulus,
+            material_number=oil.pressure_viscosity * flanks.equivalent_modulus,  # (C8)
             roughness1=flanks.roughness1,
             roughness2=flanks.roughness2,
             roughness=(flanks.roughness1, flanks.roughness2),
-            composite_roughness=np.hypot(flanks.roughness1, flanks.roughness2),
+            composite_roughness=np.hypot(flanks.roughness1, flanks.roughness2),  # (C12)
             hertz_pressure=hertz_pressure(*hertz),
             hertz_half_width=hertz_half_width(*hertz),
-            speed_number=self.rolling_speed * oil.dynamic_viscosity / stiffness,
-            load_number=self.line_load / stiffness,
+            speed_number=self.rolling_speed * oil.dynamic_viscosity / stiffness,  # (C7)
+            load_number=self.line_load / stiffness,  # (C9)
         )
 
     @cached_property

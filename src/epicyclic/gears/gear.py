@@ -44,7 +44,7 @@ class BasicRack:
     transverse_pressure_angle: float  # alpha_t at the reference circle. [rad]
     helix_angle: float  # beta at the reference circle, magnitude. [rad]
 
-    if TYPE_CHECKING:  # what follows from them
+    if TYPE_CHECKING:  # what follows from them; no fields, which files would hold
         normal_module: float = field(init=False)  # m_n. [m]
         normal_pressure_angle: float = field(init=False)  # alpha_n. [rad]
         base_helix_angle: float = field(init=False)  # beta_b. [rad]
@@ -55,10 +55,10 @@ class BasicRack:
         m_t, beta = self.transverse_module, self.helix_angle
         alpha_t = self.transverse_pressure_angle
         vars(self).update(
-            normal_module=m_t * math.cos(beta),
-            normal_pressure_angle=math.atan(math.tan(alpha_t) * math.cos(beta)),
-            base_helix_angle=math.atan(math.tan(beta) * math.cos(alpha_t)),
-            transverse_base_pitch=math.pi * m_t * math.cos(alpha_t),
+            normal_module=m_t * math.cos(beta),  # (G1)
+            normal_pressure_angle=math.atan(math.tan(alpha_t) * math.cos(beta)),  # (G2)
+            base_helix_angle=math.atan(math.tan(beta) * math.cos(alpha_t)),  # (G3)
+            transverse_base_pitch=math.pi * m_t * math.cos(alpha_t),  # (G4)
         )
 
 
@@ -78,7 +78,7 @@ class Gear:
     # h_K, radial height of the chamfers of the tip corners; zero for sharp corners. [m]
     tip_chamfer: float = 0.0
 
-    if TYPE_CHECKING:  # what follows from them
+    if TYPE_CHECKING:  # what follows from them; no fields, which files would hold
         reference_radius: float = field(init=False)  # r. [m]
         base_radius: float = field(init=False)  # r_b. [m]
         tip_form_radius: float = field(init=False)  # r_Fa, where the tip chamfer begins. [m]
@@ -90,12 +90,12 @@ class Gear:
         rack, radius = self.rack, self.teeth * self.rack.transverse_module / 2
         excess = 2 * radius * self.thickness_half_angle - math.pi * rack.transverse_module / 2
         slope = 2 * rack.normal_module * math.tan(rack.transverse_pressure_angle)
+        inward = 1 if self.internal else -1
         vars(self).update(
-            reference_radius=radius,
-            base_radius=radius * math.cos(rack.transverse_pressure_angle),
-            tip_form_radius=self.tip_radius
-            + (self.tip_chamfer if self.internal else -self.tip_chamfer),
-            profile_shift_coefficient=excess / slope,
+            reference_radius=radius,  # (G5)
+            base_radius=radius * math.cos(rack.transverse_pressure_angle),  # (G6)
+            tip_form_radius=self.tip_radius + inward * self.tip_chamfer,  # (G41)
+            profile_shift_coefficient=excess / slope,  # (G8)
         )
 
     def pressure_angle_at(self, radius: float) -> float:

@@ -31,7 +31,8 @@ class Mesh:
     gear2: Gear  # Member 1 is external; member 2 external or internal.
     center_distance: float  # [m]
 
-    if TYPE_CHECKING:  # what follows from them; NaN where such gears cannot mesh
+    # What follows from them, NaN where such gears cannot mesh; no fields, which files would hold.
+    if TYPE_CHECKING:
         internal: bool = field(init=False)  # True if member 2 is a ring.
         ratio: float = field(init=False)  # u = z2/z1, positive. [1]
         side: int = field(init=False)  # Sign of member 2 in sums: -1 for an internal mesh, else +1.
@@ -72,16 +73,17 @@ class Mesh:
         bases = two.base_radius + side * one.base_radius
         can_mesh = total > 0 and abs(bases) <= self.center_distance
         distance = self.center_distance if can_mesh else math.nan
-        angle = math.acos(bases / distance)
-        radius1 = distance * one.teeth / (total or 1)
-        action, point = distance * math.sin(angle), radius1 * math.sin(angle)
-        start = side * (action - two.roll_length_at(two.tip_form_radius))
+        angle = math.acos(bases / distance)  # (G13)
+        radius1 = distance * one.teeth / (total or 1)  # (G14)
+        action, point = distance * math.sin(angle), radius1 * math.sin(angle)  # (G16), (G18)
+        start = side * (action - two.roll_length_at(two.tip_form_radius))  # (G17)
         end = one.roll_length_at(one.tip_form_radius)
         pitch, helix = rack.transverse_base_pitch, rack.base_helix_angle
-        tips = ((end - point) / pitch, (point - start) / pitch)
+        tips = ((end - point) / pitch, (point - start) / pitch)  # (G19)
         width = min(one.face_width, two.face_width)
-        backlash = 2 * math.pi * radius1 / one.teeth
-        backlash = backlash - one.thickness_at(radius1) - two.thickness_at(radius1 * ratio)
+        tooth1, tooth2 = one.thickness_at(radius1), two.thickness_at(radius1 * ratio)
+        backlash = 2 * math.pi * radius1 / one.teeth - tooth1 - tooth2  # (G21)
+        tangent = math.tan(rack.helix_angle) * radius1 / one.reference_radius  # (G15)
         vars(self).update(
             internal=two.internal,
             ratio=ratio,
@@ -90,22 +92,22 @@ class Mesh:
             operating_pressure_angle=angle,
             operating_radius1=radius1,
             operating_radius2=radius1 * ratio,
-            operating_helix_tangent=math.tan(rack.helix_angle) * radius1 / one.reference_radius,
+            operating_helix_tangent=tangent,
             line_of_action=action,
             path_start=start,
             path_end=end,
             pitch_point=point,
             tip_contact_ratios=tips,
             transverse_contact_ratio=sum(tips),
-            overlap_ratio=width * math.tan(helix) / pitch,
-            mean_contact_length=width * sum(tips) / math.cos(helix),
+            overlap_ratio=width * math.tan(helix) / pitch,  # (G20)
+            mean_contact_length=width * sum(tips) / math.cos(helix),  # (G40)
             backlash=backlash,
-            normal_backlash=backlash * math.cos(angle) * math.cos(helix),
-            tip_clearances=(
+            normal_backlash=backlash * math.cos(angle) * math.cos(helix),  # (G47)
+            tip_clearances=(  # (G22)
                 side * (self.center_distance - two.root_radius) - one.tip_radius,
                 side * (self.center_distance - two.tip_radius) - one.root_radius,
             ),
-            inner_radii=(
+            inner_radii=(  # (G23)
                 math.hypot(one.base_radius, start),
                 math.hypot(two.base_radius, action - side * end),
             ),

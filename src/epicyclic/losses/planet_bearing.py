@@ -145,23 +145,23 @@ class RollerBearing:
     def __post_init__(self) -> None:
         """Diameters, radii of contact, widths and slices. Theory (B4), (B5), (B6), (B7)."""
         inner, roller = self.inner_diameter / 2, self.roller_diameter / 2
-        outer = inner + 2 * roller + self.diametral_clearance / 2
+        outer = inner + 2 * roller + self.diametral_clearance / 2  # (B4)
         length, width = self.roller_length, self.roller_length / self.slices
         within = (np.arange(self.slices) + 0.5) * width - length / 2
         middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (length + self.row_gap)
-        positions, crown = middles[:, None] + within, np.zeros(self.slices)
+        positions, crown = middles[:, None] + within, np.zeros(self.slices)  # (B7)
         crowned = self.crown_length_fraction * length
         if crowned:
             depth = np.abs(within) - (length / 2 - crowned)
-            crown = self.crown_drop * (np.maximum(depth, 0.0) / crowned) ** 2
+            crown = self.crown_drop * (np.maximum(depth, 0.0) / crowned) ** 2  # (B6)
         azimuth = np.arange(self.rollers_per_row) * 2 * math.pi / self.rollers_per_row
         for array in (positions, crown, azimuth):
             array.flags.writeable = False
         vars(self).update(
             outer_diameter=2 * outer,
-            pitch_diameter=inner + outer,
-            inner_radius=roller * inner / (inner + roller),
-            outer_radius=roller * outer / (outer - roller),
+            pitch_diameter=inner + outer,  # (B4)
+            inner_radius=roller * inner / (inner + roller),  # (B5)
+            outer_radius=roller * outer / (outer - roller),  # (B5)
             slice_width=width,
             half_width=(self.rows * length + (self.rows - 1) * self.row_gap) / 2,
             slice_positions=positions,

@@ -340,7 +340,7 @@ def oil_state(oil: Oil, temperature: float) -> OilState:
         density=rho,
         dynamic_viscosity=rho * nu,
         pressure_viscosity=alpha,
-        thermoviscosity=math.log(colder / warmer) / (2 * SLOPE_STEP),
+        thermoviscosity=math.log(colder / warmer) / (2 * SLOPE_STEP),  # (L6)
         thermal_conductivity=(
             DEFAULT_CONDUCTIVITY
             if oil.thermal_conductivity is None
