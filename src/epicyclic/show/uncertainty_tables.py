@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from rich.console import RenderableType
 
 from epicyclic.case.tables.uncertainty import MODEL_FORM
@@ -25,11 +24,12 @@ from epicyclic.show.page import (
     shown,
     tenths,
 )
-from epicyclic.show.plots.loss_map import at_temperatures
-from epicyclic.show.plots.losses import mean_shares
 from epicyclic.show.terminal import as_on_page, titled
 from epicyclic.study.bands.advice import Known, known_of, limits_of, measurements_of
 from epicyclic.units import format_number, known_text, percent, unit_text
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # What limits the trust in a result, in sentences.
 
@@ -157,6 +157,8 @@ LEAST = 0.02  # Largest share in the variance at any point, from which an input 
 
 def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
     """The band of the total loss over speed and torque at each temperature, and what makes it."""
+    from epicyclic.show.plots.loss_map import at_temperatures  # which `run` need not load
+
     for point in at_temperatures(data).values():
         total = point.sel(result="total").transpose("speed", "torque", ...)
         yield grid_table(point, "95 % band of the total loss, W", _band_of(total))
@@ -185,6 +187,8 @@ def _limits(data: xr.Dataset) -> Iterator[str]:
 
 def _mean_shares(data: xr.Dataset) -> xr.DataArray:
     """`mean_shares`, the largest first."""
+    from epicyclic.show.plots.losses import mean_shares  # which `run` need not load
+
     mean = mean_shares(data)
     return mean.sortby(-mean)
 
