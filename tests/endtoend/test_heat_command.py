@@ -75,9 +75,11 @@ def test_bad_input_of_heat_is_told(epicyclic, options, words):
 
 
 def test_run_tells_temperatures_and_what_warm_flanks_would_change(epicyclic):
-    cold = epicyclic("run", *CASE).stdout
+    cold = epicyclic("run", "--details", *CASE).stdout
     assert "With models.temperatures = flank the " in cold
-    warm = epicyclic("run", *CASE, *FLOW, "--set", "models.temperatures=network").stdout
+    warm = epicyclic(
+        "run", "--details", *CASE, *FLOW, "--set", "models.temperatures=network"
+    ).stdout
     assert "Where the heat leaves" in warm
     assert "With models.temperatures" not in warm
     file = json.loads(epicyclic("run", *CASE, "--json").stdout)

@@ -15,7 +15,9 @@ def test_table_is_written_and_a_case_reads_it(epicyclic, tmp_path):
     )  # fmt: skip
     assert made.returncode == 0, made.stderr
     assert "interpolated within 0." in made.stdout
-    run = epicyclic("run", "talbot-2012-pair", *COARSE, "--set", f"models.pocketing_table={file}")
+    run = epicyclic(
+        "run", "talbot-2012-pair", "--details", *COARSE, "--set", f"models.pocketing_table={file}"
+    )
     assert run.returncode == 0, run.stderr
     assert "table p.nc" in run.stdout
 

@@ -21,7 +21,7 @@ def test_a_train_is_started_checked_and_run(epicyclic):
     assert checked.returncode == 0, checked.stderr
     assert checked.stdout.startswith("axle.toml: a sound train case.\n")
     assert "-7.8996" in checked.stdout
-    run = epicyclic("run", "axle.toml", *SMALL)
+    run = epicyclic("run", "axle.toml", "--details", *SMALL)
     assert run.returncode == 0, run.stderr
     assert "ratio -7.8996 " in run.stdout
     assert "Shaft bearings" in run.stdout

@@ -614,7 +614,7 @@ def test_bad_tables_of_a_train_have_one_clear_problem(changes, key):
 def test_command_and_json_say_how_the_gears_are_lubricated():
     given = ["--set", "lubrication.method=dip", "--set", "lubrication.oil_level=-9 mm"]
     given += ["--set", "lubrication.oil_volume=1.9 l", "--set", "operation.torque=100 N*m"]
-    run = CliRunner().invoke(cli, ["run", "talbot-2012-pair", *given])
+    run = CliRunner().invoke(cli, ["run", "talbot-2012-pair", "--details", *given])
     assert run.exit_code == 0
     text = " ".join(run.output.split())
     assert "lubrication: dip: share of oil 0.1 (95 %: 0.017 to 0.6; estimate:" in text

@@ -76,7 +76,7 @@ def test_every_assumption_says_what_to_do():
         assert entry["name"]
         assert not entry["advice"].endswith(".")
     assert remedy_for("surroundings.oil_air_ratio")[0] == "oil share around the gears"
-    assert remedy_for("sun.roughness")[0] == "sun.roughness"
+    assert remedy_for("sun.roughness")[0] == "roughness of sun"
     assert "[uncertainty]" in remedy_for("planet.mass")[1]
 
 
@@ -124,7 +124,7 @@ def test_the_standard_stands_beside_the_result_with_a_reason_where_they_part(cas
 def test_run_tells_it_in_few_sentences_and_as_json(band):
     texts = list(advice_texts(known_of(band), brief=True))
     assert 4 <= len(texts) <= 6
-    printed = CliRunner().invoke(cli, ["run", "talbot-2012-pair"])
+    printed = CliRunner().invoke(cli, ["run", "talbot-2012-pair", "--details"])
     assert printed.exit_code == 0, printed.output
     assert "Limits of confidence" in printed.output
     assert "A measurement of these would narrow the band" in " ".join(printed.output.split())

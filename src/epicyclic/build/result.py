@@ -25,7 +25,7 @@ from epicyclic.losses.ranges import SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
 from epicyclic.machine.disc import churned
-from epicyclic.machine.element import OIL, State, joined_key
+from epicyclic.machine.element import OIL, Note, State, joined_key, note_watts
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSet, GearSetResult
 from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
@@ -87,8 +87,8 @@ def case_notes(
 ) -> tuple[str, ...]:
     """What a user must know about a set: its oil, its load, its flows, its planets."""
     notes = (
-        *fluid_notes(case),
-        *lubrication_notes(case),
+        *map(Note, fluid_notes(case)),
+        *map(Note, lubrication_notes(case)),
         *load_notes(case),
         *backlash_notes(case.gearing),
         *(
@@ -105,12 +105,14 @@ def case_notes(
     sharing = case.sharing if found.shares else None
     return (
         *notes,
-        *case.found,
-        *_arrangement_notes(case),
+        *map(Note, case.found),
+        *map(Note, _arrangement_notes(case)),
         *(() if sharing is None else _share_notes(sharing, found.shares)),
         *(
-            f"{case.gearing.key(name)}.rim_thickness is not given, so the drag of the turning ring "
-            f"is computed for a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
+            Note(
+                f"{case.gearing.key(name)}.rim_thickness is not given, so the drag of the turning "
+                f"ring is computed for a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
+            )
             for name, table, _ in case.gearing.rings()
             if name in turning and rim_thickness(table) is None
         ),
@@ -248,13 +250,13 @@ def general_notes(
     terms: Iterable[LossTerm], input_power: float, efficiency: float | None
 ) -> tuple[str, ...]:
     """Notes on what is missing, what is scaled, and on efficiency near zero load."""
-    notes = []
+    notes: list[str] = []
     missing: dict[str, list[str]] = {}
     for term in terms:
         if term.left_out:
             missing.setdefault(term.left_out, []).append(term.name)
         elif term.factor != 1.0:
-            notes.append(f"{term.name} is multiplied by {term.factor:g}.")
+            notes.append(Note(f"{term.name} is multiplied by {term.factor:g}."))
     notes += [
         f"{NOT_INCLUDED}: {', '.join(names)} ({reason})." for reason, names in missing.items()
     ]
@@ -267,10 +269,10 @@ def general_notes(
 
 
 def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, ...]:
-    notes = []
+    notes: list[str] = []
     if len(set(shares)) > 1:
         most = shares.index(max(shares)) + 1
-        notes.append(f"Meshes and bearing are those of planet {most}, the most loaded one.")
+        notes.append(Note(f"Meshes and bearing are those of planet {most}, the most loaded one."))
     idle = [str(number) for number, share in enumerate(shares, 1) if share == 0]
     if idle and sharing.method in ("closed-form", "direct"):
         beyond = (
@@ -289,7 +291,7 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
     elif sharing.floating_member == "none":
         idle_keys.add("support_stiffness")
     notes += [
-        f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}."
+        Note(f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}.")
         for key in LoadSharing.model_fields
         if key in idle_keys and getattr(sharing, key) != getattr(usual, key)
     ]
@@ -481,7 +483,7 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
             if solution.speeds[discs[0].body] != 0
         }
         for note in case_notes(own, found, turning):
-            yield f"{key}: {note}" if key else note
+            yield Note(f"{key}: {note}", note_watts(note)) if key else note
     for result in solution.results.values():
         if not isinstance(result, GearSetResult):
             yield from result.notes

@@ -48,9 +48,13 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="Keep the result with all its fields in FILE.nc, for reports and plots.",
 )
-def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None) -> None:
+@click.option("--details", is_flag=True, help="Print all figures, models, warnings and sources.")
+def run(
+    case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None, details: bool
+) -> None:
     """Compute the losses of a case and print them by component."""
     from epicyclic.show.result_tables import remarks
+    from epicyclic.show.summary import first_screen
     from epicyclic.show.terminal import result_tables
     from epicyclic.show.uncertainty_tables import band_texts, result_json
     from epicyclic.study.bands.study import quick_known
@@ -68,11 +72,13 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
         from epicyclic.show.record import record, save_result
 
         save_result(record(loaded, result=result), save)
-    show(
-        lambda: result_tables(result, tuple(remarks(loaded, result)), band_texts(known)),
-        lambda: result_json(result, known),
-        json_file,
-    )
+
+    def tables() -> RenderableType:
+        if details:
+            return result_tables(result, tuple(remarks(loaded, result)), band_texts(known))
+        return first_screen(result, known)
+
+    show(tables, lambda: result_json(result, known), json_file)
     if result.status is not Status.CONVERGED:
         click.echo(result.notes[0], err=True)
         sys.exit(EXIT_NO_SOLUTION)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
@@ -233,6 +234,25 @@ class Loss(NamedTuple):
     heat: tuple[tuple[str, float], ...] = ((OIL, 1.0),)
     # Those of the loads of its element that it depends on; empty: all of them.
     follows: tuple[str, ...] = ()
+
+
+class Note(str):
+    """A sentence for the user that knows the loss it concerns; nothing if it only informs. [W]
+
+    A note that is a plain text concerns nobody knows how much.
+    """
+
+    watts: float
+
+    def __new__(cls, text: str, watts: float = 0.0) -> Note:
+        note = super().__new__(cls, text)
+        note.watts = watts
+        return note
+
+
+def note_watts(note: str) -> float:
+    """The loss that a note concerns; infinite if nobody says. [W]"""
+    return getattr(note, "watts", math.inf)
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,6 +43,7 @@ from epicyclic.machine.element import (
     Figures,
     Fluids,
     Loss,
+    Note,
     figure,
 )
 from epicyclic.machine.pocket_flow import (
@@ -293,7 +294,7 @@ def solve_mesh(
     notes = pocket_notes(duty, flow.figures, fluids, count, least)
     notes += stored_note(duty.gears.models.pockets, duty.gears.mesh, flow.figures)
     if duty.gears.models.by_loss_factor:
-        notes += loss_factor_notes(duty.gears.mesh)
+        notes += tuple(map(Note, loss_factor_notes(duty.gears.mesh)))
     elif rolling is not CONTAINED and friction.name in CONTAINS_ROLLING:
         notes += (
             f"The rolling loss of the {duty.gears.mesh.name}, "

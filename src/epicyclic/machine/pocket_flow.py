@@ -26,7 +26,7 @@ from epicyclic.losses.pocket_tables import (
     stored_table,
 )
 from epicyclic.losses.ranges import Range
-from epicyclic.machine.element import Fluids
+from epicyclic.machine.element import Fluids, Note
 from epicyclic.oil.oil import MixtureState
 from epicyclic.units import BAR, DEGREE, METRE_PER_SECOND, MILLIMETRE, WATT, format_number, percent
 
@@ -244,14 +244,15 @@ def pocket_notes(
     if figures is None:
         return ()
     settings, name = duty.gears.models.pockets, duty.gears.mesh.name
-    lost = f"the pockets lose {WATT.text(count * figures.power, 3)}"
+    watts = count * figures.power
+    lost = f"the pockets lose {WATT.text(watts, 3)}"
     notes = []
     if not figures.periodic:
         notes.append(
             f"The flow through the pockets of the {name} is not periodic over mesh periods; its "
             f"loss is the mean of {figures.periods // 2} periods."
         )
-    if count * figures.power < least:
+    if watts < least:
         return tuple(notes)
     lowest = fluids.pressure + figures.pressure_min
     if lowest < 0:
@@ -276,7 +277,7 @@ def pocket_notes(
             "pockets shows both."
         )
     notes += _study_note(duty, lost)
-    return tuple(notes)
+    return tuple(Note(note, watts) for note in notes)
 
 
 def _study_note(duty: MeshDuty, lost: str) -> Iterator[str]:

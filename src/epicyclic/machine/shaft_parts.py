@@ -25,6 +25,7 @@ from epicyclic.machine.element import (
     LOAD_INDEPENDENT,
     ElementResult,
     Loss,
+    Note,
     PartFigures,
     State,
     figure,
@@ -349,23 +350,26 @@ class ShaftBearing:
         both = self.bearing.type in ("deep-groove", "tapered")
         carried = math.hypot(load.radial, load.axial) if both else load.radial
         if carried < least:
-            notes.append(
+            text = (
                 f"{self.key}: the load of {format_number(carried, 3)} N is below the minimum load "
                 f"of {format_number(least, 3)} N (SKF, second hand). The rolling elements may "
                 "slip; the loss is that of the actual load without slip."
             )
+            notes.append(Note(text, watts))
         best, error = TAPERED_ERRORS["zhou-hoeprich"], TAPERED_ERRORS.get(self.model.name, 0.0)
         if self.bearing.type == "tapered" and error > best:
-            notes.append(
+            text = (
                 f"{self.key}: {WATT.text(watts, 3)} after {self.model.name}, which is off by up to "
                 f"{percent(error, 0)} in the mean of a set of measured "
                 "tapered bearings; give the width of the bearing for zhou-hoeprich, which is off "
                 f"by up to {percent(best, 0)}."
             )
+            notes.append(Note(text, watts))
         skf = self.model.skf if isinstance(self.model, TaperedModel) else self.model
         if isinstance(skf, SkfModel) and skf.drag_is_estimated:
-            notes.append(
+            text = (
                 f"{self.key}: the drag variable V_M is an estimate, because SKF's diagram was "
                 "not available; give drag_variable."
             )
+            notes.append(Note(text))
         return tuple(notes)

@@ -252,7 +252,7 @@ def _losses_chapter(record: ResultRecord, drawings: Drawings) -> Section:
     result = record.result
     train = result.train
     losses = _losses(result, drawings) if train is None else _train_losses(result, train, drawings)
-    return Section("losses", "Losses", (*tables.standing_items(result), *losses))
+    return Section("losses", "Losses", (*losses, *tables.standing_items(result)))
 
 
 def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -44,10 +45,12 @@ from epicyclic.units import (
     NEWTON_METRE,
     RPM,
     WATT,
+    decimals_of,
     format_number,
     known_text,
     large_unit,
     percent,
+    power_unit,
     unit_text,
 )
 
@@ -101,15 +104,26 @@ def _power(label: str, watts: float, key: str) -> KeyFigure:
     return KeyFigure(label, number(watts, key, text=text), unit)
 
 
-def share_row(result: Result, watts: float, key: str) -> tuple[Cell, Cell, Cell]:
+def share_row(
+    result: Result, watts: float, key: str, decimals: int = 1, size: float = 1.0
+) -> tuple[Cell, Cell, Cell]:
     """Power, share of the total loss, share of the input power."""
     of_total = percent(watts / result.total) if result.total else ""
     of_input = percent(watts / result.input_power, 3) if result.input_power else ""
-    return tenths(watts, key), aligned(of_total), aligned(of_input)
+    loss = number(watts, key, text=f"{watts / size:z.{decimals}f}")
+    return loss, aligned(of_total), aligned(of_input)
 
 
-def losses_table(result: Result) -> Table:
-    """The losses of a single set, group by group."""
+def losses_table(result: Result, *, most: int | None = None) -> Table:
+    """The losses of a single set, group by group.
+
+    With `most`, the largest ones in so many rows with as many digits as are known.
+    """
+    unit, size, decimals = (WATT.display, 1.0, 1) if most is None else _known_unit(result)
+    least = 0.0
+    if most is not None:
+        largest = sorted(result.losses.values(), reverse=True)[:most]
+        least = max(largest[-1], 0.5 * size / 10**decimals)
     rows: list[tuple[Cell, ...]] = []
     strong = []
     grouping = result.inputs["models"].get("load_dependent")
@@ -117,20 +131,28 @@ def losses_table(result: Result) -> Table:
     groups, left_out = result.groups, result.not_included
     for group in dict.fromkeys(groups.values()):
         for name, watts in result.losses.items():
-            if groups[name] != group:
+            if groups[name] != group or (most is not None and watts < least):
                 continue
             words = Cell(name.replace("_", " "))
             if name in left_out:
                 rows.append((words, Cell("not included"), Cell(""), Cell("")))
             else:
-                rows.append((words, *share_row(result, watts, f"losses.{name}")))
+                cells = share_row(result, watts, f"losses.{name}", decimals, size)
+                rows.append((words, *cells))
         key = group.replace("-", "_")
         strong.append(len(rows))
-        rows.append((Cell(f"{group}{tested}"), *share_row(result, getattr(result, key), key)))
+        sums = share_row(result, getattr(result, key), key, decimals, size)
+        rows.append((Cell(f"{group}{tested}"), *sums))
     strong.append(len(rows))
-    rows.append((Cell("total"), *share_row(result, result.total, "total")))
-    head = ("", "loss, W", "of total", "of input")
-    return Table(head, tuple(rows), "Losses", frozenset(strong))
+    rows.append((Cell("total"), *share_row(result, result.total, "total", decimals, size)))
+    head = ("", f"loss, {unit}", "of total", "of input")
+    return Table(head, tuple(rows), "Losses" if most is None else "", frozenset(strong))
+
+
+def _known_unit(result: Result) -> tuple[str, float, int]:
+    """Unit of losses in print, its size, and the decimals that are known of them."""
+    unit, size = power_unit(result.total)
+    return unit, size, decimals_of(result.total / size)
 
 
 def flow_units(result: Result) -> tuple[str, Unit, Unit]:
@@ -296,32 +318,58 @@ _TITLES = {
 }
 
 
-def sums_table(result: Result, train: Train) -> Table:
-    """Sets and parts below each other, kinds of losses side by side."""
+def sums_table(result: Result, train: Train, *, most: int | None = None) -> Table:
+    """Sets and parts below each other, kinds of losses side by side.
+
+    With `most`, that many rows with as many digits as are known, smaller ones together.
+    """
     losses = {name: it for name, it in result.losses.items() if name not in result.not_included}
     sums = loss_sums(losses, result.inputs)
+    unit, size, decimals = WATT.display, 1.0, 1
+    if most is not None:
+        sums, (unit, size, decimals) = _largest(sums, most), _known_unit(result)
+
+    def known(watts: float) -> Cell:
+        return number(watts, "", text=f"{watts / size:z.{decimals}f}")
+
     kinds = [kind for kind in LOSS_KINDS if any(kind in own for own in sums.values())]
     columns = kinds if len(kinds) > 1 else []
     # the shares of the total also stand beside the single losses
     wide = len(columns) > MOST_KINDS
 
     def ending(watts: float, key: str) -> tuple[Cell, ...]:
-        loss, of_total, of_input = share_row(result, watts, key)
+        loss, of_total, of_input = share_row(result, watts, key, decimals, size)
+        if most is not None:
+            return (loss,) if wide else (loss, of_total)
         return (loss, of_input) if wide else (loss, of_total, of_input)
 
     rows = [
         (
             Cell(in_words(stage)),
-            *(tenths(own[kind]) if kind in own else Cell("") for kind in columns),
+            *(known(own[kind]) if kind in own else Cell("") for kind in columns),
             *ending(sum(own.values()), f"stages.{stage}"),
         )
         for stage, own in sums.items()
     ]
     totals = [sum(own.get(kind, 0.0) for own in sums.values()) for kind in columns]
-    rows.append((Cell("total"), *map(tenths, totals), *ending(result.total, "total")))
-    head = ("", *columns, "total", *(() if wide else ("of total",)), "of input")
+    rows.append((Cell("total"), *map(known, totals), *ending(result.total, "total")))
+    shares = () if wide else ("of total",)
+    head = ("", *columns, "total", *shares, *(("of input",) if most is None else ()))
     strong = frozenset([len(rows) - 1])
-    return Table(head, tuple(rows), "Losses in W, by set and part", strong, locking_text(train))
+    title, note = f"Losses in {unit}, by set and part", locking_text(train)
+    return Table(head, tuple(rows), title, strong, note if most is None else "")
+
+
+def _largest(sums: dict[str, dict[str, float]], most: int) -> dict[str, dict[str, float]]:
+    """The sets and parts that lose most, in their order, and the others together."""
+    small = sorted(sums, key=lambda stage: -sum(sums[stage].values()))[most - 1 :]
+    if len(small) < 2:
+        return sums
+    others: Counter[str] = Counter()
+    for stage in small:
+        others.update(sums[stage])
+    kept = {stage: own for stage, own in sums.items() if stage not in small}
+    return {**kept, f"{len(small)} others": dict(others)}
 
 
 def shafts_table(result: Result) -> Table:

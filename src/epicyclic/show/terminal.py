@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
+import re
+import sys
+import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TextIO, cast
 
 from rich import box
 from rich.cells import cell_len
@@ -71,6 +76,7 @@ class FittedTable(Table):
             box=self.box,
             pad_edge=self.pad_edge,
             show_header=self.show_header,
+            show_edge=self.show_edge,
         )
         chosen = [self.columns[place] for place in block]
         for column, width in zip(chosen, widths, strict=True):
@@ -121,13 +127,33 @@ def _widths(needs: Sequence[_Need], room: int) -> list[int]:
 # Tables of results, libraries and comparisons for a terminal.
 
 
-PIPE_WIDTH = 100  # Width of tables that do not go to a terminal. [characters]
+PIPE_WIDTH = 100
+"""Width of tables that do not go to a terminal, unless COLUMNS says another. [characters]"""
+
+
+class _Trimmed:
+    """A file that gets every line without blanks at its end."""
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+
+    def write(self, text: str) -> int:
+        return self._file.write(_BLANKS.sub("", text))
+
+    def flush(self) -> None:
+        self._file.flush()
+
+
+_BLANKS = re.compile("[ \t]+$", re.MULTILINE)
 
 
 def terminal() -> Console:
     """The console for results, on standard output."""
     console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=PIPE_WIDTH)
+    if console.is_terminal:
+        return console
+    width = None if "COLUMNS" in os.environ else PIPE_WIDTH
+    return Console(highlight=False, width=width, file=cast(TextIO, _Trimmed(sys.stdout)))
 
 
 def result_tables(
@@ -136,11 +162,11 @@ def result_tables(
     # How well the total loss and the efficiency are known.
     known: Sequence[str | page.Listing] = (),
 ) -> RenderableType:
-    """Everything an engineer reads first: losses, figures, warnings, sources."""
+    """Everything that is known of a result: losses, figures, warnings, sources."""
     parts: list[RenderableType] = [_headline(result)]
     parts += [it if isinstance(it, str) else as_on_page(it) for it in known]
-    parts += map(as_on_page, tables.standing_items(result))
     parts += map(as_on_page, _tables(result))
+    parts += map(as_on_page, tables.standing_items(result))
     if result.heat is not None:
         parts += map(as_on_page, tables.heat_items(result.heat))
     parts += remarks
@@ -199,7 +225,7 @@ def as_on_page(item: page.Table | page.Listing) -> RenderableType:
         Column(head, justify="right" if item.is_numeric(place) else "left")
         for place, head in enumerate(item.head)
     )
-    table = plain_table(item.title, *columns)
+    table = plain_table("", *columns)
     for place, row in enumerate(item.rows):
         strong = place in item.strong
         table.add_row(
@@ -207,7 +233,8 @@ def as_on_page(item: page.Table | page.Listing) -> RenderableType:
             style="bold" if strong else "",
             end_section=strong or item.strong == {place + 1},
         )
-    return Group(table, Text(item.note)) if item.note else table
+    title = [Text(item.title, style="bold")] if item.title else []
+    return Group(*title, table, *([Text(item.note)] if item.note else []))
 
 
 def _methods(result: Result) -> Group:
@@ -221,8 +248,30 @@ def _methods(result: Result) -> Group:
 def _list(title: str, items: Sequence[str]) -> Group:
     if not items:
         return Group(Text(f"{title}: none"))
-    lines = [Padding(Text(f"• {item}"), (0, 0, 0, 2)) for item in items]
-    return Group(Text(title, style="bold"), *lines)
+    return Group(Text(title, style="bold"), *map(Sentence, items))
+
+
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """A sentence of a list, with a bullet; numbers stay with their units."""
+
+    text: str
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        whole = _BEFORE_UNIT.sub(_NO_BREAK, self.text)
+        lines = textwrap.wrap(
+            whole,
+            options.max_width,
+            initial_indent="• ",
+            subsequent_indent="  ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        yield Text("\n".join(lines).replace(_NO_BREAK, " "))
+
+
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=%|°|[kM]?W\b|N\b|[GM]?Pa\b|rpm\b|times\b|m/s)")
 
 
 def plain_table(title: str, *columns: Column | str) -> FittedTable:
@@ -235,6 +284,7 @@ def plain_table(title: str, *columns: Column | str) -> FittedTable:
         header_style="",
         box=box.SIMPLE_HEAD,
         pad_edge=False,
+        show_edge=False,
     )
 
 

@@ -46,9 +46,9 @@ def band_texts(known: Known | None) -> list[str | Listing]:
         return []
     low, high = known.ends["total"]
     text = f"95 % band: total loss {known_text(low, high)}"
-    low, high = (100 * end for end in known.ends["efficiency"])
-    if math.isfinite(low):
-        text += f", efficiency {low:.2f} to {high:.2f} %"
+    ends = known.ends["efficiency"]
+    if math.isfinite(ends[0]):
+        text += f", efficiency {efficiency_text(*ends, ends=ends)}"
     drivers = ", ".join(
         f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST]
     )
@@ -57,6 +57,13 @@ def band_texts(known: Known | None) -> list[str | Listing]:
         "'epicyclic uncertainty' shows all.",
         Listing(tuple(advice_texts(known, brief=True)), LIMITS),
     ]
+
+
+def efficiency_text(*values: float, ends: tuple[float, float]) -> str:
+    """Efficiencies in percent with the decimals that the band between `ends` leaves."""
+    width = 100 * abs(ends[1] - ends[0])
+    decimals = min(6, max(1, 1 - math.floor(math.log10(width)))) if width > 0 else 3
+    return f"{' to '.join(f'{100 * value:.{decimals}f}' for value in values)} %"
 
 
 def advice_texts(known: Known, *, brief: bool = False) -> Iterator[str]:

@@ -36,6 +36,7 @@ _FOR_ONE_OIL = ("mixed-ehl", FittedOrSchlenk.name, "xu-2007")
 _OF_ALL_OILS = ("schlenk", "niemann-winter")
 """Fitted to gear tests with many oils, the one recommended first."""
 _ANY_OIL = "mixed-lubrication"
+STANDARD = "ISO/TR 14179-2"  # Begins what is said of it beside a result.
 _STANDARD = "schlenk"  # ISO/TR 14179-2.
 PARTED = 1.25
 """Ratio of two losses from which a reason for their difference is given. [1]"""
@@ -153,7 +154,7 @@ def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str |
         return None
     ratio = standard.quick / own
     told = (
-        f"ISO/TR 14179-2 gives {known_text(standard.quick)} for the meshes under load, "
+        f"{STANDARD} gives {known_text(standard.quick)} for the meshes under load, "
         f"{ratio:.2f} times this result"
     )
     if 1 / PARTED < ratio < PARTED:
@@ -162,10 +163,7 @@ def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str |
         return f"{told}; most of the loss is outside the range of its tests: {standard.reasons[0]}."
     low = min(mesh.film_ratio_min for mesh in result.meshes.values())
     high = max(mesh.film_ratio_max for mesh in result.meshes.values())
-    return (
-        f"{told}; its friction does not follow the film ratio, which is {low:.2g} to {high:.2g} "
-        "here, and changes with the fourth root of the roughness alone."
-    )
+    return f"{told}; its friction does not follow the film ratio, {low:.2g} to {high:.2g} here."
 
 
 def _differ(row: FrictionComparison, paired: FrictionComparison) -> bool:

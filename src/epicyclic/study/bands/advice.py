@@ -17,7 +17,7 @@ from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.ranges import range_text
 from epicyclic.result.result import Result
-from epicyclic.study.friction import compare_friction, recommended, standard_beside
+from epicyclic.study.friction import STANDARD, compare_friction, recommended, standard_beside
 from epicyclic.units import known_text, percent
 
 if TYPE_CHECKING:
@@ -105,14 +105,14 @@ def limits_of(known: Known) -> list[Limit]:
         if share < LEAST:
             break
         advice = dict.fromkeys(known.advice[key] for key in _keys(driver))
-        found.append(Limit(_called(known, driver), "; ".join(advice), known.width * sqrt(share)))
+        found.append(Limit(called(known, driver), "; ".join(advice), known.width * sqrt(share)))
     return found
 
 
 def measurements_of(known: Known) -> list[Measurement]:
     """What could be measured, that which narrows the band most first. Theory (U12)."""
     found = [
-        Measurement(_called(known, driver), True, known.width * sqrt(1 - share))
+        Measurement(called(known, driver), True, known.width * sqrt(1 - share))
         for driver, share in known.shares.items()
         if not driver.startswith(MODEL_FORM)
     ]
@@ -128,7 +128,8 @@ def _keys(driver: str) -> list[str]:
     return driver.split(" + ")
 
 
-def _called(known: Known, driver: str) -> str:
+def called(known: Known, driver: str) -> str:
+    """The name of one value, or of several that are correlated."""
     return " + ".join(known.names[key] for key in _keys(driver))
 
 
@@ -140,6 +141,14 @@ def _left(known: Known, name: str, uncertainty: float) -> float:
     error = uncertainty * known.nominal[name]
     spread = own + error**2
     return float(np.clip(1 - both**2 / spread / whole, 0.0, 1.0)) if spread and whole else 1.0
+
+
+BETTER = "would suit this case better"  # What is said of a friction model that is not chosen.
+
+
+def is_on_first_screen(remark: str) -> bool:
+    """True for another model that suits better, and for what the standard gives."""
+    return BETTER in remark or remark.startswith(STANDARD)
 
 
 def model_remarks(case: Case, result: Result, *, brief: bool = False) -> list[str]:
@@ -172,7 +181,7 @@ def _friction(case: Case, result: Result, brief: bool) -> Iterator[str]:
     except ConvergenceError:  # of a model that is not that of the case
         return
     best, why = recommended(rows)
-    does = "suits" if best.chosen else "would suit this case better"
+    does = "suits" if best.chosen else BETTER
     yield f"Friction: {best.name} {does}: {why}."
     beside = standard_beside(rows, result)
     if beside:

@@ -1,0 +1,140 @@
+"""The first screen of a result: what an engineer reads before anything else."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from itertools import islice
+
+from rich.console import Group, RenderableType
+from rich.constrain import Constrain
+from rich.text import Text
+
+from epicyclic.build.result import NOT_INCLUDED
+from epicyclic.losses.ranges import range_text
+from epicyclic.machine.element import note_watts
+from epicyclic.messages import sentence
+from epicyclic.result.result import Result, in_words
+from epicyclic.show.page import Listing, Table
+from epicyclic.show.result_tables import key_figures, locking_text, losses_table, sums_table
+from epicyclic.show.terminal import Sentence, as_on_page, spaced
+from epicyclic.show.uncertainty_tables import MOST, efficiency_text
+from epicyclic.study.bands.advice import Known, called, is_on_first_screen
+from epicyclic.study.operating import operating_line
+from epicyclic.units import CELSIUS, known_text, percent, unit_text
+
+MOST_WARNINGS = 3  # On the first screen.
+CONCERNED = 0.01  # Part of the total loss from which a warning stands on the first screen. [1]
+MOST_OF_SET = 12  # Losses of a single set; smaller ones are in the sums alone.
+MOST_ROWS = 20  # Of the losses of a train; smaller ones are put together.
+_BROAD = 0.5  # Part of the loss outside the ranges of its models from which that is said first. [1]
+WIDTH = 80  # Characters of its lines at most.
+_NEXT = "More: run --details (all figures and warnings), friction, uncertainty, report."
+_LABEL, _VALUE = 14, 12  # Characters.
+_END_OF_SENTENCE = re.compile(r"(?<=\w[\w)])\. (?=[A-Z])")
+
+
+def first_screen(result: Result, known: Known | None) -> RenderableType:
+    """What is read first, in at most 40 lines of 80 columns, of a train 55."""
+    head = (result.title or result.kind, operating_line(result.inputs["operation"]))
+    remarks, warnings = tuple(first_remarks(result, known)), first_warnings(result)
+    parts: list[RenderableType] = [
+        Text("\n".join(head)),
+        Text("\n".join(headline(result, known))),
+        as_on_page(loss_summary(result)),
+        *([Group(*map(Sentence, remarks))] if remarks else []),
+        *([as_on_page(warnings)] if warnings.items else []),
+    ]
+    return Constrain(Group(spaced(*parts), _NEXT), WIDTH)
+
+
+def headline(result: Result, known: Known | None) -> Iterator[str]:
+    """Ratio, efficiency and loss with their bands, power and hottest part, a line each."""
+    ends = {} if known is None else known.ends
+    for it in key_figures(result):
+        text = f"{it.cell.text} {it.unit}".rstrip()
+        band = ""
+        if it.label == "efficiency" and math.isfinite(ends.get("efficiency", (math.nan,))[0]):
+            own = ends["efficiency"]
+            text = efficiency_text(result.efficiency or 0.0, ends=own)
+            band = efficiency_text(*own, ends=own)
+        elif it.label == "total loss" and "total" in ends:
+            text = known_text(result.total, beside=ends["total"][1])
+            band = known_text(*ends["total"], beside=result.total)
+        elif it.label.startswith("load-"):
+            continue  # the table has them
+        band = f"95 % band {band}" if band else ""
+        yield f"{it.label:{_LABEL}}{text:{_VALUE}}{band}".rstrip()
+    if result.heat is not None:
+        found = result.heat.temperatures
+        hottest = max(found, key=lambda node: found[node])
+        degrees = unit_text(CELSIUS.text(found[hottest], 3))
+        yield f"{'hottest part':{_LABEL}}{degrees:{_VALUE}}{in_words(hottest)}"
+
+
+def loss_summary(result: Result) -> Table:
+    """What loses, by component; of a train by set and part, with small ones together."""
+    if result.train is None:
+        return losses_table(result, most=MOST_OF_SET)
+    return sums_table(result, result.train, most=MOST_ROWS)
+
+
+def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
+    """What the loss is without, what its band is due to, and what the standard gives."""
+    if result.train is not None and (locking := locking_text(result.train)):
+        yield locking
+    for (reason, terms), owners in _left_out(result).items():
+        of = f" of {', '.join(owners)}" if any(owners) else ""
+        yield f"{NOT_INCLUDED}: {', '.join(terms)}{of} ({reason})."
+    outside = _outside(result)
+    if outside >= _BROAD:
+        yield (
+            f"{percent(min(outside, 1.0), 0)} of the loss is computed outside the ranges of its "
+            "models: take it as an estimate."
+        )
+    if known is None or not known.width:
+        return
+    drivers = ", ".join(
+        f"{called(known, driver)} {percent(share, 0)}" for driver, share in known.drivers[:MOST]
+    )
+    yield f"The band is due to: {drivers}."
+    yield from filter(is_on_first_screen, known.remarks)
+
+
+def _left_out(result: Result) -> dict[tuple[str, tuple[str, ...]], list[str]]:
+    """Which sets are without which losses, by the reason and the losses."""
+    own: dict[tuple[str, str], list[str]] = {}
+    for term in result.terms:
+        if term.left_out:
+            owner, _, last = term.name.rpartition(".")
+            own.setdefault((term.left_out, owner), []).append(in_words(last))
+    found: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+    for (reason, owner), terms in own.items():
+        found.setdefault((reason, tuple(terms)), []).append(owner)
+    return found
+
+
+def _outside(result: Result) -> float:
+    """Largest part of the total loss that one quantity leaves outside the range of its models."""
+    watts = (watts for watts, _ in result.flags_with_loss if math.isfinite(watts))
+    return max(watts, default=0.0) / result.total if result.total else 0.0
+
+
+def first_warnings(result: Result) -> Listing:
+    """The warnings that concern most of the loss, in short; nothing if none matters."""
+    found = [
+        (note_watts(note), _END_OF_SENTENCE.split(note)[0].rstrip(".") + ".")
+        for note in result.notes
+        if not note.startswith(NOT_INCLUDED)
+    ]
+    for watts, group in result.flags_with_loss:
+        uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
+        size = "" if math.isnan(watts) else f"; {known_text(watts)} of the loss"
+        text = f"{sentence(range_text(group)).rstrip('.')} ({', '.join(uses)}){size}."
+        found.append((math.inf if math.isnan(watts) else watts, text))
+    heavy = [pair for pair in found if pair[0] >= CONCERNED * result.total and pair[0] > 0]
+    heavy.sort(key=lambda pair: -pair[0])
+    shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))
+    count = len(result.warnings)
+    return Listing(shown, f"Warnings, {len(shown)} of {count} by the watts concerned")

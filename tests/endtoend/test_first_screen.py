@@ -1,0 +1,74 @@
+"""What `run` prints first: short, narrow, with the loss, its band and what matters most."""
+
+import re
+
+import pytest
+
+from epicyclic.show.summary import WIDTH
+
+SET, TRAIN = 40, 55  # Lines at most.
+
+
+@pytest.mark.parametrize(
+    ("case", "changes", "lines"),
+    [
+        ("talbot-2012", (), SET),
+        ("talbot-2012", ("models.temperatures=network", "thermal.oil_flow=3 l/min"), SET),
+        ("talbot-2012", ("models.friction=schlenk", "operation.torque=47 N*m"), SET),
+        ("talbot-2012", ("lubrication.method=drained", "sun.roughness=Ra 0.7 um"), SET),
+        ("talbot-2012-pair", (), SET),
+        ("talbot-2012-pair", ("operation.torque=312 N*m",), SET),
+        ("train-eaxle", (), TRAIN),
+        ("train-8hp70", ("operation.state=R",), TRAIN),
+    ],
+)
+def test_the_first_screen_is_short_and_narrow(epicyclic, case, changes, lines):
+    given = [part for change in changes for part in ("--set", change)]
+    done = epicyclic("run", case, *given)
+    assert done.returncode == 0, done.stderr
+    printed = done.stdout.splitlines()
+    assert 15 < len(printed) <= lines
+    assert max(map(len, printed)) <= WIDTH
+    assert not [line for line in printed if line != line.rstrip()]
+    assert printed[-1].startswith("More: run --details")
+    assert re.search(r"^total loss +\d", done.stdout, re.MULTILINE)
+
+
+def test_numbers_of_a_row_and_the_band_have_the_same_digits(epicyclic):
+    text = epicyclic("run", "talbot-2012").stdout
+    total = re.search(r"^total loss +(\S+) W +95 % band (\S+) to (\S+) W$", text, re.MULTILINE)
+    share = re.search(r"^efficiency +(\S+) % +95 % band (\S+) to (\S+) %$", text, re.MULTILINE)
+    for found in (total, share):
+        assert found
+        value, low, high = map(float, found.groups())
+        assert low < value < high
+        assert len({len(number.partition(".")[2]) for number in found.groups()}) == 1
+    row = next(line.split() for line in text.splitlines() if line.startswith("total  "))
+    assert row[1] == total[1]
+
+
+def test_the_widest_output_follows_the_terminal(started, monkeypatch):
+    widths = []
+    for columns in (60, 132):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        text = started("run", "talbot-2012-pair", "--details").stdout
+        widths.append(max(map(len, text.splitlines())))
+        assert widths[-1] <= columns
+    assert widths[0] < widths[1]
+
+
+def test_warnings_come_by_the_watts_that_they_concern(epicyclic):
+    text = epicyclic("run", "train-eaxle").stdout.partition("Warnings, 3 of ")[2]
+    watts = [float(found) for found in re.findall(r"([\d.]+) W\b", text)]
+    assert len(watts) == 3
+    assert watts == sorted(watts, reverse=True)
+
+
+def test_details_have_what_the_first_screen_leaves_out(epicyclic):
+    first, details = (
+        epicyclic("run", "train-eaxle", *more).stdout for more in ((), ("--details",))
+    )
+    for words in ("Single losses", "Shafts", "Sources", "Methods", "Limits of confidence"):
+        assert words not in first
+        assert words in details
+    assert len(details.splitlines()) > 2 * TRAIN
