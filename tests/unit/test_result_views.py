@@ -7,8 +7,8 @@ import json
 import pytest
 
 import epicyclic as ep
-from epicyclic.show.summary import MOST_WARNINGS
 from epicyclic.show.plots.catalogue import MM_PER_INCH
+from epicyclic.show.summary import MOST_WARNINGS
 
 
 @pytest.fixture(scope="module")

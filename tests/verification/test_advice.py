@@ -76,7 +76,7 @@ def test_every_assumption_says_what_to_do():
         assert entry["name"]
         assert not entry["advice"].endswith(".")
     assert remedy_for("surroundings.oil_air_ratio")[0] == "oil share around the gears"
-    assert remedy_for("sun.roughness")[0] == "roughness of sun"
+    assert remedy_for("sun.roughness")[0] == "sun.roughness"
     assert "[uncertainty]" in remedy_for("planet.mass")[1]
 
 

@@ -52,7 +52,6 @@ from epicyclic.machine.pocket_flow import (
     PocketSettings,
     pocket_notes,
     pocketing_method,
-    stored_note,
 )
 from epicyclic.oil.oil import OilState
 from epicyclic.units import (
@@ -292,7 +291,6 @@ def solve_mesh(
     figures = partial(_mesh_figures, duty, contact, loss, elastic, flow.figures)
     least = SMALLEST_SHOWN_SHARE * sum(term.watts for term in losses.values())
     notes = pocket_notes(duty, flow.figures, fluids, count, least)
-    notes += stored_note(duty.gears.models.pockets, duty.gears.mesh, flow.figures)
     if duty.gears.models.by_loss_factor:
         notes += tuple(map(Note, loss_factor_notes(duty.gears.mesh)))
     elif rolling is not CONTAINED and friction.name in CONTAINS_ROLLING:

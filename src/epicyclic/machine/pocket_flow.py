@@ -10,7 +10,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.pocket_flow import (
     NETWORK_MODELS,
     POCKETING_MODELS,
@@ -252,8 +251,13 @@ def pocket_notes(
             f"The flow through the pockets of the {name} is not periodic over mesh periods; its "
             f"loss is the mean of {figures.periods // 2} periods."
         )
+    if settings.file is not None and not figures.file:
+        notes.append(
+            f"models.pocketing_table does not cover the flow through the pockets of the {name} at "
+            "this speed, oil density and pressure, so the flow was computed without the table."
+        )
     if watts < least:
-        return tuple(notes)
+        return tuple(map(Note, notes))
     lowest = fluids.pressure + figures.pressure_min
     if lowest < 0:
         notes.append(
@@ -302,15 +306,3 @@ def _study_note(duty: MeshDuty, lost: str) -> Iterator[str]:
             f"The {mesh.name} lies outside the study of {STUDY_SOURCE}: {', '.join(left)}. "
             f"No other values of the model were published; {lost}."
         )
-
-
-def stored_note(
-    settings: PocketSettings, mesh: Mesh, figures: FlowFigures | None
-) -> tuple[str, ...]:
-    """That the flow is not in the stored table."""
-    if settings.file is None or figures is None or figures.file:
-        return ()
-    return (
-        f"models.pocketing_table does not cover the flow through the pockets of the {mesh.name} "
-        "at this speed, oil density and pressure, so the flow was computed without the table.",
-    )

@@ -32,6 +32,7 @@ _BROAD = 0.5  # Part of the loss outside the ranges of its models from which tha
 WIDTH = 80  # Characters of its lines at most.
 _NEXT = "More: run --details (all figures and warnings), friction, uncertainty, report."
 _LABEL, _VALUE = 14, 12  # Characters.
+_KEY = re.compile(r"[\w.-]+\.[\w.-]+")
 _END_OF_SENTENCE = re.compile(r"(?<=\w[\w)])\. (?=[A-Z])")
 
 
@@ -96,10 +97,19 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
     if known is None or not known.width:
         return
     drivers = ", ".join(
-        f"{called(known, driver)} {percent(share, 0)}" for driver, share in known.drivers[:MOST]
+        f"{_in_few_words(called(known, driver))} {percent(share, 0)}"
+        for driver, share in known.drivers[:MOST]
     )
     yield f"The band is due to: {drivers}."
     yield from filter(is_on_first_screen, known.remarks)
+
+
+def _in_few_words(name: str) -> str:
+    """The name of an input, ``"roughness of S sun"`` where that is its key."""
+    if not _KEY.fullmatch(name):
+        return name
+    *owners, last = name.replace("_", " ").split(".")
+    return f"{last} of {' '.join(one for one in owners if one not in ('sets', 'gears'))}"
 
 
 def _left_out(result: Result) -> dict[tuple[str, tuple[str, ...]], list[str]]:

@@ -165,8 +165,8 @@ def result_tables(
     """Everything that is known of a result: losses, figures, warnings, sources."""
     parts: list[RenderableType] = [_headline(result)]
     parts += [it if isinstance(it, str) else as_on_page(it) for it in known]
-    parts += map(as_on_page, _tables(result))
     parts += map(as_on_page, tables.standing_items(result))
+    parts += map(as_on_page, _tables(result))
     if result.heat is not None:
         parts += map(as_on_page, tables.heat_items(result.heat))
     parts += remarks

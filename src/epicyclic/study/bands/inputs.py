@@ -48,15 +48,13 @@ _ABOUT = ("keys", "source", "name", "advice")
 def remedy_for(key: str) -> tuple[str, str]:
     """What a value is called where it limits the trust in a result, and what to do then."""
     table = library.uncertainty_table()
-    owner, _, name = key.replace("_", " ").rpartition(".")
-    words = f"{name} of {owner.replace('.', ', ')}"
     for entry in (*table["inputs"], *table["elsewhere"]):
         if any(fnmatchcase(key, pattern) for pattern in entry["keys"]):
-            return entry["name"].format(words=words), entry["advice"].format(key=key)
+            return entry["name"].format(key=key), entry["advice"].format(key=key)
     for entry in table["model_form"]:
         if key == f"{MODEL_FORM}{entry['kind']}":
             return entry["name"], entry["advice"]
-    return words, f"state {key} in [uncertainty] once it is measured"
+    return key, "state it in [uncertainty] once it is measured"
 
 
 @cache
