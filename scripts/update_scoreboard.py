@@ -1,4 +1,4 @@
-"""Write the tables of measured sets into docs/validation.md, where they stand, and their picture.
+"""Write the tables of measured sets into docs/validation.md and README.md, and their pictures.
 
     python scripts/update_scoreboard.py
 
@@ -8,7 +8,9 @@ Takes some ten minutes.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +32,7 @@ from epicyclic.validation.scoreboard import (
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE, PICTURE = DOCS / "validation.md", DOCS / "_static" / "measured.svg"
+README, FLOW = DOCS.parent / "README.md", DOCS / "_static" / "power-flow.svg"
 LIMITING_TRACTION = "limiting traction"
 RANGES: dict[str, tuple[float, float]] = {
     "models.boundary_friction": (0.065, 0.08),  # Arana et al. (2019), with and without additives.
@@ -119,19 +122,30 @@ def main() -> None:
     models = [it for it in scores if it not in ours or it.run == DEFAULTS]
     bearings = [score for score in models if hasattr(score.set.case, "bearings")]
     gears = [it for it in models if it not in bearings and not it.set.tests]
-    text = PAGE.read_text(encoding="utf-8")
-    for head, content in (
-        ("measured set", score_markdown(ours)),
-        ("friction model", matrix("friction model", gears)),
-        ("bearing model", matrix("bearing model", bearings)),
-        ("parameter", parameters),
-        ("set left out", left_out),
-    ):
+    put(README, {"measured set": score_markdown([it for it in ours if it.run == DEFAULTS])})
+    contents = {
+        "measured set": score_markdown(ours),
+        "friction model": matrix("friction model", gears),
+        "bearing model": matrix("bearing model", bearings),
+        "parameter": parameters,
+        "set left out": left_out,
+    }
+    put(PAGE, contents)
+    PICTURE.write_bytes(figure_bytes(scores_figure(scores), "svg"))
+    subprocess.run(
+        [sys.executable, "-m", "epicyclic", "plot", "train-eaxle", "power-flow", "-o", str(FLOW)],
+        check=True,
+    )
+
+
+def put(page: Path, contents: Mapping[str, str]) -> None:
+    """Write tables where tables with such first heads stand."""
+    text = page.read_text(encoding="utf-8")
+    for head, content in contents.items():
         pattern = re.compile(rf"^\| {head} \|.*?\n\n", re.DOTALL | re.MULTILINE)
         assert pattern.search(text), head
         text = pattern.sub(f"{content}\n\n", text, count=1)
-    PAGE.write_text(text, encoding="utf-8")
-    PICTURE.write_bytes(figure_bytes(scores_figure(scores), "svg"))
+    page.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
