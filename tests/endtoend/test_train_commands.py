@@ -19,7 +19,7 @@ def test_a_train_is_started_checked_and_run(epicyclic):
     assert (done.returncode, done.stdout) == (0, "Wrote axle.toml. Next: epicyclic run axle.toml\n")
     checked = epicyclic("check", "axle.toml")
     assert checked.returncode == 0, checked.stderr
-    assert checked.stdout.startswith("axle.toml: a sound train case.\n")
+    assert checked.stdout.startswith("axle.toml: a valid train case; 3 points to check:\n")
     assert "-7.8996" in checked.stdout
     run = epicyclic("run", "axle.toml", "--details", *SMALL)
     assert run.returncode == 0, run.stderr

@@ -8,7 +8,7 @@ from test_gear_sizes import X, changed
 from test_tooth_measures import RING, TABLES
 
 from epicyclic import load_case
-from epicyclic.show.data_sheet import data_sheet
+from epicyclic.show.data_sheet import data_sheet, reservations
 from epicyclic.study.data_sheet import data_sheets
 
 
@@ -86,3 +86,15 @@ def test_every_computed_set_of_a_train_has_a_sheet():
     assert "Gears, pair" in shown(case)
     listed = load_case("train-8hp70")
     assert data_sheets(listed) == {}  # all efficiencies are given
+
+
+def test_too_little_backlash_and_clearance_are_points_to_check():
+    case = load_case("talbot-2012-pair")
+    texts = list(reservations(case))
+    (mesh,) = data_sheets(case)[""].meshes
+    assert len(texts) == 2
+    assert f"{1e6 * mesh.mesh.normal_backlash:.1f} µm, less than the " in texts[0]
+    assert "tip clearance of the pinion in the mesh is 0.000 mm" in texts[1]
+    thinner = {"pinion.tooth_thickness": "3.08 mm", "gear.root_diameter": "45.4 mm"}
+    assert not list(reservations(case.updated(thinner)))
+    assert "clearance" in " ".join(reservations(case.updated({"gear.tooth_thickness": "3.07 mm"})))

@@ -857,24 +857,35 @@ KINDS: Mapping[str, type[PlanetaryCase] | type[GearPairCase] | type[TrainCase]] 
 }
 
 
-def read_case(source: str | Path | Mapping[str, Any]) -> Case:
-    """A case from a TOML file, the name of a built-in one or its tables, checked.
+def read_case(
+    source: str | Path | Mapping[str, Any], changes: Mapping[str, Any] | None = None
+) -> Case:
+    """A case from a TOML file, the name of a built-in one or its tables, with `changes`, checked.
 
     Raises `InputError` with every problem found, not only the first.
     """
+    tables, name, problems = _stated(source)
+    if changes and isinstance(tables.get("kind"), str) and tables["kind"] in KINDS:
+        tables, more = with_changes(KINDS[tables["kind"]], tables, changes)
+        problems = [*problems, *more]
+    return _build_any(tables, name, problems)
+
+
+def _stated(source: object) -> tuple[dict[str, Any], str, list[Problem]]:
+    """The tables of a case as they are stated, where, and what cannot be read of them."""
     if isinstance(source, Mapping):
-        return _build_any(plain(source), "the given tables")
+        return plain(source), "the given tables", []
     if not isinstance(source, str | Path):
         raise InputError([_no_such_case(source)])
     name, path = str(source), Path(source)
     if path.suffix.lower() != ".toml" and not _holds(path.is_file):
         try:
-            return _build_any(plain(library.builtin_case(name)), name)
+            return plain(library.builtin_case(name)), name, []
         except KeyError:
             if len(path.parts) == 1 and not _holds(path.exists):
                 raise InputError([_no_such_case(name)]) from None
     tables, problems = read_file(path)
-    return _build_any(tables, name, problems)
+    return tables, name, problems
 
 
 def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Case:

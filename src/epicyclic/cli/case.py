@@ -109,11 +109,18 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 
     Of a train also the ratio of every state.
     """
-    from epicyclic.show.data_sheet import data_sheet, state_tables
-    from epicyclic.show.terminal import terminal
+    from epicyclic.show.data_sheet import data_sheet, reservations, state_tables
+    from epicyclic.show.terminal import Sentence, terminal
 
     loaded = load_with(case, changes)
-    click.echo(f"{case}: a sound {loaded.kind} case.")
+    found = list(reservations(loaded))
+    kind = loaded.kind.replace("_", " ")
+    if not found:
+        click.echo(f"{case}: a sound {kind} case.")
+    else:
+        points = "1 point" if len(found) == 1 else f"{len(found)} points"
+        click.echo(f"{case}: a valid {kind} case; {points} to check:")
+        terminal().print(*map(Sentence, found))
     if loaded.lubrication is not None:
         from epicyclic.build.models import set_cases
         from epicyclic.build.result import oil_supplies

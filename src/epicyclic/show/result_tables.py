@@ -390,6 +390,9 @@ def shafts_table(result: Result) -> Table:
                 Cell(", ".join(filter(None, (role, joined)))),
             )
         )
+    held = -sum(member.torque for member in result.flow.members.values())
+    housing = scaled(held, "", torque)
+    rows.append((Cell("housing"), number(0.0, ""), housing, Cell(""), Cell(""), Cell("at rest")))
     heads = (f"speed, {speed}", f"torque, {torque[0]}", f"power, {power[0]}")
     note = (
         "Speeds are positive in one common sense of rotation; torque and power are external and "

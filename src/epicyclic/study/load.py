@@ -58,5 +58,4 @@ def load_case(
     """
     if isinstance(source, str | Path) and (reader := reader_of(source)) is not None:
         return reader(source).case(changes)
-    case = read_case(source)
-    return case.updated(changes) if changes else case
+    return read_case(source, changes)
