@@ -129,8 +129,8 @@ def reservations(case: Case) -> Iterator[str]:
                 if clearance < LEAST_CLEARANCE * module:
                     yield (
                         f"{where}the tip clearance of the {gear.name} in the {mesh.name} is "
-                        f"{_mm(clearance)} mm, {clearance / module:z.2f} normal modules; ISO 53 has "
-                        "0.25."
+                        f"{_mm(clearance)} mm, {clearance / module:z.2f} normal modules; ISO 53 "
+                        "has 0.25."
                     )
 
 
