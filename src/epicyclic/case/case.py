@@ -864,28 +864,26 @@ def read_case(
 
     Raises `InputError` with every problem found, not only the first.
     """
-    tables, name, problems = _stated(source)
-    if changes and isinstance(tables.get("kind"), str) and tables["kind"] in KINDS:
-        tables, more = with_changes(KINDS[tables["kind"]], tables, changes)
-        problems = [*problems, *more]
-    return _build_any(tables, name, problems)
-
-
-def _stated(source: object) -> tuple[dict[str, Any], str, list[Problem]]:
-    """The tables of a case as they are stated, where, and what cannot be read of them."""
+    name = str(source)
+    tables: dict[str, Any] | None = None
+    problems: list[Problem] = []
     if isinstance(source, Mapping):
-        return plain(source), "the given tables", []
-    if not isinstance(source, str | Path):
+        tables, name = plain(source), "the given tables"
+    elif not isinstance(source, str | Path):
         raise InputError([_no_such_case(source)])
-    name, path = str(source), Path(source)
-    if path.suffix.lower() != ".toml" and not _holds(path.is_file):
+    elif (path := Path(source)).suffix.lower() != ".toml" and not _holds(path.is_file):
         try:
-            return plain(library.builtin_case(name)), name, []
+            tables = plain(library.builtin_case(name))
         except KeyError:
             if len(path.parts) == 1 and not _holds(path.exists):
                 raise InputError([_no_such_case(name)]) from None
-    tables, problems = read_file(path)
-    return tables, name, problems
+    if tables is None:
+        tables, problems = read_file(path)
+    kind = tables.get("kind")
+    if changes and isinstance(kind, str) and kind in KINDS:
+        tables, more = with_changes(KINDS[kind], tables, changes)
+        problems = [*problems, *more]
+    return _build_any(tables, name, problems)
 
 
 def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Case:

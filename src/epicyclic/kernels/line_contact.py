@@ -47,19 +47,28 @@ def line_load_at_pressure(p_h: Real, r_eq: Real, e_eq: float) -> Real:
     return 2 * math.pi * r_eq * p_h**2 / e_eq
 
 
+def power(base: Real | float, exponent: float) -> Real:
+    """base^exponent of numbers that are not negative; numpy's own takes three times as long."""
+    found: Real = np.exp(exponent * np.log(np.maximum(base, _LEAST)))
+    return found
+
+
+_LEAST = 1e-300
+
+
 def pan_hamrock_minimum_film(u: Real, g: Real | float, w: Real) -> Real:
     """h_min/R_eq = 1.714 U^0.694 G^0.568 W^-0.128. Theory (C10).
 
     Pan and Hamrock, J. Tribol. 111 (1989) 246; Talbot (2012), p. 135. Smooth, isothermal, fully
     flooded line contacts in the elastic-piezoviscous regime.
     """
-    film: Real = 1.714 * u**0.694 * g**0.568 * w ** (-0.128)
+    film: Real = 1.714 * power(u, 0.694) * power(g, 0.568) * power(w, -0.128)
     return film
 
 
 def pan_hamrock_central_film(u: Real, g: Real | float, w: Real) -> Real:
     """h_c/R_eq = 2.922 U^0.692 G^0.470 W^-0.166. Pan and Hamrock (1989), as above. Theory (C11)."""
-    film: Real = 2.922 * u**0.692 * g**0.470 * w ** (-0.166)
+    film: Real = 2.922 * power(u, 0.692) * power(g, 0.470) * power(w, -0.166)
     return film
 
 
@@ -70,8 +79,8 @@ def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> R
     J. Tribol. 113 (1991) 590; phi_T = 1/(1 + 0.29 L^0.78), L = mu beta u^2/k. Smooth, fully
     flooded contacts. [1]
     """
-    inlet_heating = 1 / (1 + 0.29 * thermal_load**0.78)
-    force: Real = 4.318 * (g * u) ** 0.658 * w**0.0126 * inlet_heating
+    inlet_heating = 1 / (1 + 0.29 * power(thermal_load, 0.78))
+    force: Real = 4.318 * power(g * u, 0.658) * power(w, 0.0126) * inlet_heating
     return force
 
 
@@ -91,8 +100,9 @@ def inlet_film_factor(thermal_load: Real, pressure: Real, slip: Real) -> Real:
     >>> round(inlet_film_factor(2.0, 0.005, 0.5), 4)
     0.5398
     """
-    numerator = np.maximum(1 - 13.2 * pressure * thermal_load**0.42, LEAST_FILM_SHARE)
-    factor: Real = numerator / (1 + 0.213 * (1 + 2.23 * slip**0.83) * thermal_load**0.64)
+    numerator = np.maximum(1 - 13.2 * pressure * power(thermal_load, 0.42), LEAST_FILM_SHARE)
+    slipping = 1 + 2.23 * power(slip, 0.83)
+    factor: Real = numerator / (1 + 0.213 * slipping * power(thermal_load, 0.64))
     return factor
 
 

@@ -30,7 +30,7 @@ def eyring_stress(
     T0 [K], ln(nu + 0.7) and ln(nu) with nu in mm^2/s, the slope of ASTM D341, density times
     1 mm^2/s [Pa s], alpha [1/Pa] and d(ln alpha)/d(ln nu).
     """
-    log_shifted = oil[1] * (oil[0] / temperature) ** oil[3]
+    log_shifted = oil[1] * math.exp(oil[3] * math.log(oil[0] / temperature))
     shifted = math.exp(log_shifted)
     viscosity = max(shifted - OFFSET, LEAST_VISCOSITY)
     log_viscosity = math.log(viscosity)

@@ -28,7 +28,12 @@ from epicyclic.gears.flanks import (
     RA_OVER_RQ,
     RUNNING_IN,
 )
-from epicyclic.kernels.line_contact import MARTIN_FILM, inlet_film_factor, pan_hamrock_central_film
+from epicyclic.kernels.line_contact import (
+    MARTIN_FILM,
+    inlet_film_factor,
+    pan_hamrock_central_film,
+    power,
+)
 from epicyclic.kernels.mixed_lubrication import film_stress
 from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState
 
@@ -61,7 +66,7 @@ def acting_roughness(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
     what is longer than the contact is wide leaves both flanks parallel and breaks no film.
     """
     exponent = surfaces.hurst_exponent
-    grown = (2 * contact.hertz_half_width) ** exponent
+    grown = power(2 * contact.hertz_half_width, exponent)
     heights = []
     for roughness in contact.roughness:
         cutoff = usual_cutoff(roughness) if surfaces.cutoff is None else surfaces.cutoff
@@ -129,14 +134,19 @@ def asperity_share(contact: LineContacts, surfaces: Surfaces, film: Films) -> Fl
     cent, with s = sigma/R and V = hardness/E. Heat at the inlet acts as a lower speed; a film that
     is thicker than the elastic one, as a roughness that is smaller by as much.
     """
-    speed = np.maximum(contact.speed_number * film.heating ** (1 / FILM_EXPONENT), LEAST_NUMBER)
-    load, material = np.maximum(contact.load_number, LEAST_NUMBER), contact.material_number
+    # logarithms of U, W and G
+    speed = np.log(np.maximum(contact.speed_number, LEAST_NUMBER))
+    speed += np.log(film.heating) / FILM_EXPONENT
+    load = np.log(np.maximum(contact.load_number, LEAST_NUMBER))
+    material = np.log(contact.material_number)
     rough = acting_roughness(contact, surfaces) / contact.radius * film.elastic / film.central
     hard = surfaces.hardness / contact.flanks.equivalent_modulus
-    touching = (
-        math.log(4470) + 6.015 * np.log(rough) + 1.168 * math.log(hard) + 0.485 * np.log(load)
-    ) - (3.741 * np.log(speed) + 2.898 * np.log(material))
-    share = 5e-5 * load**-0.408 * speed**-0.088 * material**0.103 * np.logaddexp(0.0, touching)
+    touching = (math.log(4470) + 6.015 * np.log(rough) + 1.168 * math.log(hard) + 0.485 * load) - (
+        3.741 * speed + 2.898 * material
+    )
+    # ln(1 + exp(touching)) that neither overflows nor cancels
+    grown = np.maximum(touching, 0.0) + np.log1p(np.exp(-np.abs(touching)))
+    share = 5e-5 * np.exp(0.103 * material - 0.408 * load - 0.088 * speed) * grown
     held: FloatArray = np.minimum(share, 1.0)
     return held
 

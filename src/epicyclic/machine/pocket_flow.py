@@ -280,14 +280,8 @@ def pocket_notes(
             "between those of models.pocketing = incompressible and isentropic; epicyclic "
             "pockets shows both."
         )
-    notes += _study_note(duty, lost)
-    return tuple(Note(note, watts) for note in notes)
-
-
-def _study_note(duty: MeshDuty, lost: str) -> Iterator[str]:
-    """That the mesh lies outside the parametric study of the source."""
     mesh = duty.gears.mesh
-    found = {
+    studied = {
         "transverse_module": mesh.gear1.rack.transverse_module,
         "face_width": mesh.face_width,
         "helix_angle": abs(mesh.gear1.rack.helix_angle),
@@ -295,14 +289,15 @@ def _study_note(duty: MeshDuty, lost: str) -> Iterator[str]:
     }
     left = []
     for limit in STUDY_RANGES:
-        value, (low, high) = found[limit.name], limit.limits()
+        value, (low, high) = studied[limit.name], limit.limits()
         if not (low or 0.0) * (1 - _EDGE) <= value <= (high or math.inf) * (1 + _EDGE):
             left.append(
                 f"{limit.label} {limit.unit.text(value, 3)} "
                 f"({format_number(limit.low or 0.0)} to {format_number(limit.high or 0.0)})"
             )
     if left:
-        yield (
-            f"The {mesh.name} lies outside the study of {STUDY_SOURCE}: {', '.join(left)}. "
+        notes.append(
+            f"The {name} lies outside the study of {STUDY_SOURCE}: {', '.join(left)}. "
             f"No other values of the model were published; {lost}."
         )
+    return tuple(Note(note, watts) for note in notes)
