@@ -144,7 +144,7 @@ PAGE = "index.html"
 
 
 @click.command()
-@click.argument("chapter", type=click.Choice(["3", "4", "5"]))
+@click.argument("chapter", type=click.Choice(["2", "3", "4", "5"]))
 @click.option(
     "--figure",
     "chosen",
@@ -158,7 +158,7 @@ PAGE = "index.html"
 def reproduce(
     chapter: str, chosen: tuple[str, ...], picture: str, output: Path, runner: Runner
 ) -> None:
-    """Compute a CHAPTER of Talbot (2012) again: 3 planet bearings, 4 pockets, 5 the tests.
+    """Compute a CHAPTER of Talbot (2012) again: 2 the tests, 3 planet bearings, 4 pockets, 5 both.
 
     Each figure N goes to fig-N.nc, fig-N.csv and a picture in the folder OUTPUT, with the numbers
     that the source prints marked on it; index.html shows all of them and compares.

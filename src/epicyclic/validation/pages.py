@@ -46,7 +46,13 @@ from epicyclic.validation.scoreboard import DEFAULTS, GRADES, Score, in_band
 # Published against computed, for a terminal.
 
 
-_STYLES = {"agrees": "green", "differs": "bold red", "calibrated": "dim", "no verdict": "dim"}
+_STYLES = {
+    "agrees": "green",
+    "differs": "bold red",
+    "calibrated": "dim",
+    "no verdict": "dim",
+    "not computed": "dim",
+}
 
 
 def validation_table(
@@ -61,7 +67,7 @@ def validation_table(
             Text.assemble(row.what, ("\n" + "\n".join(remarks(row)), "dim")),
             f"{published_text(row)} {row.unit}".rstrip(),
             f"{shown(row.computed)} {row.unit}".rstrip(),
-            percent(row.difference, signed=True),
+            _difference(row),
             Text(verdict_text(row), style=_STYLES[row.verdict]),
         )
     return Group(table, Text(summary(rows, closures)))
@@ -124,7 +130,7 @@ def band_rows(rows: Sequence[MeasuredFigure]) -> list[tuple[str, ...]]:
     """Figure, measured, computed, its 95 % band, and whether the measurement lies inside."""
     return [
         (
-            f"{row.what}, {row.unit}",
+            f"{row.what}, {row.unit}".rstrip(", "),
             shown(row.measured),
             shown(row.computed, 3),
             f"{shown(row.low, 3)} to {shown(row.high, 3)}",
@@ -139,6 +145,23 @@ def band_markdown(rows: Sequence[MeasuredFigure]) -> str:
     head = ("Measured figure", "Measured", "Computed", "95 % band", "")
     cells = [head, ("---",) * len(head), *band_rows(rows)]
     return "\n".join(f"| {' | '.join(row)} |".replace("|  |", "| |") for row in cells)
+
+
+def missed_markdown(rows: Sequence[Comparison]) -> str:
+    """What differs in the dissertation, and why, as the manual shows it."""
+    head = ("Figure", "Printed", "Computed", "Cause")
+    cells = [head, ("---",) * len(head)]
+    cells += [
+        (
+            f"{row.what} ({row.source.partition(', ')[2]})",
+            f"{published_text(row)} {unit_text(row.unit)}".rstrip(),
+            f"{shown(row.computed, 3)} {unit_text(row.unit)}".rstrip(),
+            row.missed,
+        )
+        for row in rows
+        if row.verdict == "differs" and row.source.startswith("Talbot")
+    ]
+    return "\n".join(f"| {' | '.join(row)} |" for row in cells)
 
 
 def bands_table(rows: Sequence[MeasuredFigure]) -> RenderableType:
@@ -207,6 +230,10 @@ def source_lines(scores: Sequence[Score]) -> Iterator[str]:
     return (f"{'; '.join(names)}: {text}" for text, names in told.items())
 
 
+def _difference(row: Comparison) -> str:
+    return MISSING if math.isnan(row.computed) else percent(row.difference, signed=True)
+
+
 def remarks(row: Comparison) -> list[str]:
     """Where a figure is printed, how it was inferred, why there is no verdict."""
     found = [row.source]
@@ -214,6 +241,8 @@ def remarks(row: Comparison) -> list[str]:
         found.append(f"Inferred: {row.inferred}.")
     if row.reason:
         found.append(f"{_REASONS[row.role]}: {row.reason}.")
+    if row.missed:
+        found.append(f"Cause: {row.missed}.")
     return found
 
 
@@ -299,8 +328,11 @@ def _items(key: str, rows: Sequence[Comparison]) -> Iterator[Item]:
         part = rows[place * height : (place + 1) * height]
         yield _table(part)
         name = f"{key}-{place + 1}" if count > 1 else key
-        with styled_figure(1, 1, "", panel=deviations_size(part)) as (figure, axes):
-            ax = plot_deviations(part, axes[0, 0])
+        computed = [row for row in part if not math.isnan(row.computed)]
+        if not computed:
+            continue
+        with styled_figure(1, 1, "", panel=deviations_size(computed)) as (figure, axes):
+            ax = plot_deviations(computed, axes[0, 0])
         drawing = Drawing(name, "Computed over published", svg_text(figure, name), explorable(ax))
         yield Gallery((drawing,), is_wide=True)
 
@@ -314,7 +346,7 @@ def _table(rows: Sequence[Comparison]) -> Table:
                 Cell(published_text(row), row.low),
                 number(row.computed, ""),
                 Cell(unit_text(row.unit), about="nowrap"),
-                Cell(percent(row.difference, signed=True), row.difference),
+                Cell(_difference(row), row.difference),
                 Cell(verdict_text(row), about="nowrap"),
                 Cell(row.cause),
             )
@@ -348,6 +380,6 @@ def chapter_html(chapter: str, figures: Sequence[Reproduced], rows: Sequence[Com
 
 
 _LEAD = (
-    "Curves are computed. Markers show the numbers printed in the text of the source; its curves "
-    "were not digitised."
+    "Curves are computed. Markers and lines show the numbers printed in the text of the source; its "
+    "curves were not digitised. Numbers that cannot be marked are in the tables below."
 )
