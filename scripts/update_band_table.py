@@ -18,8 +18,8 @@ def main() -> None:
         ("Figure", missed_markdown(compare_published())),
         ("Measured figure", band_markdown(measured_figures())),
     ):
-        pattern = re.compile(TABLE.format(head), re.DOTALL | re.MULTILINE)
-        text = pattern.sub(lambda found, table=table: f"{table}\n\n", text, count=1)
+        (old,) = re.findall(TABLE.format(head), text, re.DOTALL | re.MULTILINE)
+        text = text.replace(old, f"{table}\n\n")
     PAGE.write_text(text, encoding="utf-8")
 
 

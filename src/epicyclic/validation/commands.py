@@ -158,7 +158,8 @@ PAGE = "index.html"
 def reproduce(
     chapter: str, chosen: tuple[str, ...], picture: str, output: Path, runner: Runner
 ) -> None:
-    """Compute a CHAPTER of Talbot (2012) again: 2 the tests, 3 planet bearings, 4 pockets, 5 both.
+    """Compute a CHAPTER of Talbot (2012) again: 2 the tests as measured, 3 planet bearings, 4
+    pockets, 5 the tests as predicted.
 
     Each figure N goes to fig-N.nc, fig-N.csv and a picture in the folder OUTPUT, with the numbers
     that the source prints marked on it; index.html shows all of them and compares.

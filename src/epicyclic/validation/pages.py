@@ -380,6 +380,6 @@ def chapter_html(chapter: str, figures: Sequence[Reproduced], rows: Sequence[Com
 
 
 _LEAD = (
-    "Curves are computed. Markers and lines show the numbers printed in the text of the source; its "
-    "curves were not digitised. Numbers that cannot be marked are in the tables below."
+    "Curves are computed. Markers and lines show the numbers printed in the text of the source; "
+    "its curves were not digitised. Numbers that cannot be marked are in the tables below."
 )
