@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -195,6 +197,31 @@ def test_what_polished_planets_save(data):
     found = float(shown.data["saved"].sel(torque=750, speed=2000))
     assert found == pytest.approx((pair[0] - pair[1]) / 1e3)
     assert [mark.value for mark in shown.marks] == [0.82]
+
+
+def test_influences_are_the_changes_over_all_that_is_drawn(data):
+    more, less = chapters.influences("2.10", family("2.10").data)
+    loss = data["load_dependent"].sel(set="3 shaved", torque=1000)
+    changes = loss.sel(temperature=90) / loss.sel(temperature=40) - 1
+    assert (more.least, more.most) == pytest.approx((float(changes.min()), float(changes.max())))
+    assert more.parameter == "oil inlet temperature 40 to 90 °C"
+    assert (more.sign, less.sign) == (1, -1)
+    told = {
+        (1, 0.1, 0.4): "sign agrees",
+        (1, -0.1, 0.4): "sign differs in part",
+        (-1, 0.1, 0.4): "sign differs",
+        (0, -0.1, 0.4): "",
+    }
+    for (sign, least, most), verdict in told.items():
+        assert replace(more, sign=sign, least=least, most=most).verdict == verdict
+
+
+def test_every_influence_is_of_a_figure():
+    known = {figure for figures in chapters.CHAPTERS.values() for figure in figures}
+    given = chapters.data_file("influences.toml")["influence"]
+    assert {it["figure"] for it in given} <= known
+    assert sum("Table 3.4" in it["source"] for it in given) == 8
+    assert sum("p. 126" in it["source"] for it in given) == 6
 
 
 def test_all_marks_have_their_figure(data):

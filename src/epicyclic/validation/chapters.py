@@ -25,7 +25,14 @@ from epicyclic.study.sweeps.run import PointList
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import CELSIUS, NUMBER, WATT, unit_text
 from epicyclic.validation.compare import published_figures
-from epicyclic.validation.compute import WITHOUT_FLOW, helical, planet_bearing, slopes, source_case
+from epicyclic.validation.compute import (
+    WITHOUT_FLOW,
+    data_file,
+    helical,
+    planet_bearing,
+    slopes,
+    source_case,
+)
 from epicyclic.validation.pocketing import FIGURES_AGAIN
 
 if TYPE_CHECKING:
@@ -393,6 +400,60 @@ TOPICS = {
     "5": "Planetary sets, tests",
 }
 """Which published numbers belong to a chapter."""
+
+
+# --- what the source says of each parameter -------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Influence:
+    """What the source says of a parameter, and what is computed for it."""
+
+    parameter: str  # With the values from which to which it varies.
+    figure: str
+    says: str
+    source: str
+    sign: int  # 1 increases, -1 reduces, 0 hardly influences.
+    least: float  # Smallest and largest relative change of all that is drawn. [1]
+    most: float
+
+    @property
+    def verdict(self) -> str:
+        """Whether all changes have the sign that the source tells; sizes are not classed there."""
+        signs = {int(np.sign(change)) for change in (self.least, self.most)}
+        if self.sign == 0:
+            return ""
+        if self.sign in signs:
+            return "sign agrees" if len(signs) == 1 else "sign differs in part"
+        return "sign differs"
+
+
+def influences(figure: str, data: xr.Dataset) -> Iterator[Influence]:
+    """Those of a figure that was computed again."""
+    for given in data_file("influences.toml")["influence"]:
+        if given["figure"] != figure:
+            continue
+        name, parameter = given.get("variable", str(next(iter(data.data_vars)))), given["parameter"]
+        drawn = data[name].sel(given.get("at", {}))
+        over = drawn[parameter]
+        change = drawn.isel({parameter: -1}) / drawn.isel({parameter: 0}) - 1
+        ends = " to ".join(str(value) for value in over.values[[0, -1]])
+        where = (f", {_named(data[key], str(at))}" for key, at in given.get("at", {}).items())
+        yield Influence(
+            _named(over, ends) + "".join(where),
+            figure,
+            given["says"],
+            given["source"],
+            given["sign"],
+            float(change.min()),
+            float(change.max()),
+        )
+
+
+def _named(coordinate: xr.DataArray, values: str) -> str:
+    """``"face width 35 mm"``"""
+    unit = unit_text(str(coordinate.attrs["units"])).removeprefix("1")
+    return f"{coordinate.attrs['long_name']} {values} {unit}".rstrip()
 
 
 # --- points and datasets --------------------------------------------------------------------------

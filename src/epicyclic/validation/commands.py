@@ -168,10 +168,11 @@ def reproduce(
     epicyclic reproduce 5 -o chapter-5
     epicyclic reproduce 3 --figure 3.4 --figure 3.5 -o bearings
     """
+    from epicyclic.show.terminal import as_on_page, terminal
     from epicyclic.study.sweeps.run import write_dataset
     from epicyclic.validation.chapters import CHAPTERS, TOPICS
     from epicyclic.validation.compare import compare_published, summary
-    from epicyclic.validation.pages import chapter_html
+    from epicyclic.validation.pages import chapter_html, influence_table
     from epicyclic.validation.plots import reproduce as figures_of
 
     known = CHAPTERS[chapter]
@@ -201,6 +202,8 @@ def reproduce(
         rows = compare_published(progress, topic=TOPICS[chapter])
     found.sort(key=lambda item: known.index(item.number))
     write_page(output / PAGE, chapter_html(chapter, found, rows))
+    if (table := influence_table(found)).rows:
+        terminal().print(as_on_page(table))
     click.echo(summary(rows))
 
 
