@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from epicyclic.build.machine import build
 from epicyclic.build.models import fluids_of
 from epicyclic.errors import ConvergenceError
+from epicyclic.study.maps.warm_up import warm_up
 from epicyclic.study.meshes import bearing_details
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.run import PointList
@@ -26,6 +27,7 @@ from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import CELSIUS, NUMBER, WATT, unit_text
 from epicyclic.validation.compare import published_figures
 from epicyclic.validation.compute import (
+    TEST_SPEEDS,
     WITHOUT_FLOW,
     data_file,
     helical,
@@ -372,6 +374,55 @@ def _branches(figure: str, data: xr.Dataset) -> Family:
     return Family(figure, f"loss of a branch, {finish}, {temperature} °C", found)
 
 
+WARM_UPS = {"2.15": 0, "2.16": 1000}
+"""Figures of temperatures over a test, and the torque on the sun. [N m]"""
+AT_EACH_SPEED, STEP, CHANGE = 60.0, 10.0, 1.0
+"""How long each speed is held, which is not printed: the axes of the source go to 140 to 500 s for
+all four. Steps of the course, and how long a change of speed takes. [s]"""
+_WARM_UP = {"planet.count": 6, "thermal.oil_volume": "1 l"}  # The volume is an estimate.
+
+
+def warm_up_families(figures: Sequence[str]) -> Iterator[Family]:
+    """Temperatures of six planets, ring and outlet of the oil over the speeds of a test."""
+    import xarray as xr
+
+    for figure in figures:
+        if figure not in WARM_UPS:
+            continue
+        found = []
+        for temperature in _TEMPERATURE.values:
+            case = source_case().updated(_WARM_UP | dict(_TEMPERATURE.changes(temperature)))
+            cycle = _speed_steps(WARM_UPS[figure])
+            duration = f"{cycle['time [s]'][-1]} s"
+            course = warm_up(case, duration, f"{temperature} degC", cycle=cycle)
+            found.append(course["temperature"].sel(node=["oil", "ring"]).drop_duplicates("time"))
+        data = xr.concat(found, dim="temperature").transpose("temperature", "node", "time")
+        data = data.assign_coords(
+            temperature=("temperature", list(_TEMPERATURE.values), _unit("oil inlet", "degC")),
+            node=("node", ["outlet", "ring"], _unit("temperature", "1")),
+            time=("time", data["time"].values, _unit("time", "s")),
+        )
+        drawn = _drawn(part_temperature=(data, "temperature", "degC"))
+        title = f"temperatures of 6 shaved planets at {WARM_UPS[figure]} N·m"
+        yield Family(figure, title, drawn)
+
+
+def _unit(label: str, unit: str) -> dict[str, str]:
+    return {"long_name": label, "units": unit}
+
+
+def _speed_steps(torque: float) -> dict[str, list[float]]:
+    """All speeds of the tests, one after another, as a cycle."""
+    within = np.arange(0.0, AT_EACH_SPEED, STEP)
+    within = np.append(within, AT_EACH_SPEED - CHANGE)
+    times = np.concatenate([AT_EACH_SPEED * place + within for place in range(len(TEST_SPEEDS))])
+    return {
+        "time [s]": times.tolist(),
+        "speed [rpm]": np.repeat(TEST_SPEEDS, within.size).tolist(),
+        "torque [N*m]": [float(torque)] * times.size,
+    }
+
+
 _OF_TESTS: dict[str, Callable[[str, xr.Dataset], Family]] = {
     **dict.fromkeys(("2.4", "2.5", "2.6", "2.7"), _of_one_set),
     "2.8": _by_planets,
@@ -387,7 +438,12 @@ _OF_TESTS: dict[str, Callable[[str, xr.Dataset], Family]] = {
 }
 """Figures of chapters 2 and 5, and what makes them from the tests."""
 CHAPTERS = {
-    "2": tuple(figure for figure in _OF_TESTS if figure.startswith("2.")),
+    "2": tuple(
+        sorted(
+            {*WARM_UPS, *(figure for figure in _OF_TESTS if figure.startswith("2."))},
+            key=lambda it: int(it[2:]),
+        )
+    ),
     "3": tuple(sorted({*ROLLER_FIGURES, *_BEARING_STUDIES}, key=lambda it: int(it[2:]))),
     "4": tuple(FIGURES_AGAIN),
     "5": tuple(figure for figure in _OF_TESTS if figure.startswith("5.")),

@@ -82,7 +82,7 @@ def family_figure(family: Family) -> Figure:
             ax.set(title=title, xlabel=label_of(part[over]), ylabel=label_of(part))
             ax.margins(0.06)
             ax.set_xlim(left=0)
-            if part.attrs["units"] != "%":
+            if part.attrs["units"] not in ("%", "degC"):
                 ax.set_ylim(bottom=0)
         title = str(places[0][places[0].dims[0]].attrs.get("long_name", ""))
         legend_of_figure(figure, figure.axes, title)
@@ -352,7 +352,7 @@ def reproduce(figures: Sequence[str], runner: Runner = HERE) -> Iterator[Reprodu
         title = f"{SOURCE}, Fig. {name}: pocketing loss of the mesh of Table 4.1"
         picture = study_figure(data.assign_attrs(title=title), published_study(case))
         yield Reproduced(name, data, picture)
-    for family in chapters.set_families(figures, runner):
+    for family in (*chapters.set_families(figures, runner), *chapters.warm_up_families(figures)):
         draw = branch_figure if "branch_loss" in family.data else family_figure
         yield Reproduced(family.figure, family.data, draw(family))
 
