@@ -7,10 +7,13 @@ import math
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import epicyclic as ep
+from epicyclic.validation import compute
 from epicyclic.validation.compare import (
     CLOSURES,
     ClosureFigure,
@@ -230,3 +233,47 @@ def test_page_and_temperatures_exclude_each_other(tmp_path):
     assert "conflicts with --temperatures" in str(done.exception)
     done = CliRunner().invoke(cli, ["validate", "-o", str(tmp_path / "v.txt")])
     assert "must end in .html or .pdf" in str(done.exception)
+
+
+def made_tests(temperature, finish, planets):
+    """Powers of sets at a temperature, no two of them equal."""
+    warm, rough = float(temperature.split()[0]), 1.3 if finish == "shaved" else 1.0
+    return [
+        SimpleNamespace(
+            input_power=torque * speed * 0.1047,
+            load_dependent=rough * (torque * speed * 9e-4 + warm + 7 * count),
+            load_independent=speed**1.5 * count * 4e-4 + 90 - warm,
+        )
+        for count in planets
+        for torque in compute.TEST_TORQUES
+        for speed in compute.TEST_SPEEDS
+    ]
+
+
+def test_figures_of_the_tests_are_those_of_their_conditions():
+    one = {"temperature": "40 degC", "planets": 3}
+    six = {"temperature": "60 degC", "planets": 6}
+    found = compute.loss_in_test("load_dependent", **one, torque=500, speed=3000, tests=made_tests)
+    assert found == pytest.approx(1.3 * (500 * 3000 * 9e-4 + 40 + 21) / 1e3)
+    spin = compute.loss_in_test("load_independent", **six, speed=2000, unit="W", tests=made_tests)
+    assert spin == pytest.approx(2000**1.5 * 6 * 4e-4 + 30)
+    change = compute.loss_change("load_dependent", one, six, tests=made_tests)
+    assert change == pytest.approx(1.3 * (20 + 21) / 1e3)
+    # (measured - predicted)/measured
+    loss = 1.3 * (4000 + 61 - 400)
+    assert compute.prediction_difference(
+        5.0, "load_dependent", **one, tests=made_tests
+    ) == pytest.approx(100 * (5000 - loss) / 5000)
+    branch = compute.branch_spin("40 degC", 3000, tests=made_tests)
+    assert branch == pytest.approx(3000**1.5 * 4e-4)
+    assert compute.branch_spin_exponent("90 degC", tests=made_tests) == pytest.approx(1.5)
+    share = compute.spin_share("40 degC", 3, 250, tests=made_tests)
+    spin, loaded = 4000**1.5 * 3 * 4e-4 + 50, 1.3 * (900 + 61)
+    assert share == pytest.approx(100 * spin / (spin + loaded))
+
+
+def test_lines_with_intercept_and_through_the_origin():
+    over, values = np.array([1.0, 2.0, 4.0]), np.array([3.5, 4.5, 6.5])
+    found = compute.slopes(over, values)
+    assert found["with intercept"] == pytest.approx(1.0)
+    assert found["through the origin"] == pytest.approx((3.5 + 9 + 26) / 21)
