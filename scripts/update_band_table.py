@@ -1,21 +1,26 @@
-"""Write the table of measured figures and their bands into docs/validation.md, where it stands."""
+"""Write the tables of bands and of missed figures into docs/validation.md, where they stand."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-from epicyclic.validation.compare import measured_figures
-from epicyclic.validation.pages import band_markdown
+from epicyclic.validation.compare import compare_published, measured_figures
+from epicyclic.validation.pages import band_markdown, missed_markdown
 
 PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
-TABLE = re.compile(r"^\| Measured figure \|.*?\n\n", re.DOTALL | re.MULTILINE)
+TABLE = r"^\| {} \|.*?\n\n"
 
 
 def main() -> None:
     text = PAGE.read_text(encoding="utf-8")
-    table = band_markdown(measured_figures())
-    PAGE.write_text(TABLE.sub(f"{table}\n\n", text, count=1), encoding="utf-8")
+    for head, table in (
+        ("Figure", missed_markdown(compare_published())),
+        ("Measured figure", band_markdown(measured_figures())),
+    ):
+        (old,) = re.findall(TABLE.format(head), text, re.DOTALL | re.MULTILINE)
+        text = text.replace(old, f"{table}\n\n")
+    PAGE.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

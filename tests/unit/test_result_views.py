@@ -114,3 +114,31 @@ def test_files_of_a_result(result, tmp_path):
 def test_a_stored_result_in_one_line(talbot_record):
     assert repr(talbot_record).startswith(f"<ResultRecord {talbot_record.title!r}: total loss ")
     assert len(repr(talbot_record)) < 400
+
+
+def test_a_planet_branch_and_the_load_dependent_efficiency(result):
+    """Talbot (2012), Eq. 5.14: by its parts, and a third of six less three planets."""
+    losses, branch = result.losses, result.branch
+    spin = [name for name in losses if name.endswith(("pocketing", "bearing_viscous"))]
+    spin.remove("thrust_bearing_viscous")
+    assert branch.load_independent == pytest.approx(sum(losses[name] for name in spin) / 3)
+    assert branch.load_dependent == pytest.approx(result.load_dependent / 3)
+    assert branch.power == pytest.approx(result.input_power / 3)
+    expected = 1 - branch.load_dependent / branch.power
+    assert result.load_dependent_efficiency == pytest.approx(expected)
+    assert result.efficiency < expected < 1
+    six = ep.solve(result.case.updated({"planet.count": 6}))
+    difference = six.load_independent - result.load_independent
+    assert difference / 3 == pytest.approx(branch.load_independent, rel=1e-2)
+    kept = {it.key: it.value for it in result.numbers()}
+    assert kept["branch_load_independent"] == pytest.approx(branch.load_independent)
+    assert kept["load_dependent_efficiency"] == pytest.approx(expected)
+    stored = json.loads(result.to_json())
+    assert stored["branch"]["power"]["value"] == pytest.approx(branch.power)
+
+
+def test_a_pair_and_a_train_have_no_branch():
+    for name in ("talbot-2012-pair", "train-8hp70"):
+        found = ep.solve(ep.load_case(name))
+        assert found.branch is None
+        assert not any(it.key.startswith("branch_") for it in found.numbers())

@@ -23,32 +23,31 @@ def figures():
 
 
 @pytest.mark.slow
-def test_the_manual_shows_the_table_and_says_that_all_lie_inside(figures):
+def test_the_manual_shows_the_table_and_says_how_many_lie_inside(figures):
     """Run scripts/update_band_table.py where it does not."""
     text = DOCS.read_text(encoding="utf-8")
     assert band_markdown(figures) in text
-    assert "All are inside, but for different reasons" in text
-    assert all(figure.is_inside for figure in figures)
+    assert "30 of 37 are inside, for different reasons" in text
+    assert sum(figure.is_inside for figure in figures) == 30
 
 
 @pytest.mark.slow
 def test_computed_figures_are_those_of_validate(figures):
     measured = [item for item in published_figures() if item["what"].endswith("measured")]
-    assert len(figures) == len(measured) == 11
+    assert len(figures) == len(measured) == 37
     for figure, row in zip(measured, figures, strict=True):
         assert row.measured == figure["value"]
         assert row.computed == pytest.approx(
             FIGURES[figure["compute"]](**figure["with"]), rel=1e-9
         ), row.what
-        assert row.low < row.computed < row.high
 
 
 @pytest.mark.slow
 def test_bands_hold_errors_that_all_tests_share(figures):
     """They are as wide over 64 tests as over one: nothing averages out."""
     slope, single = (
-        next(row for row in figures if row.what.startswith(name))
-        for name in ("slope of the branch loss", "load-dependent loss, 3 planets")
+        next(row for row in figures if name in row.what)
+        for name in ("shaved, 90 degC", "load-dependent loss, 3 planets, 90 degC")
     )
     widths = [(row.high - row.low) / row.computed for row in (slope, single)]
     assert widths[0] == pytest.approx(widths[1], rel=0.15)

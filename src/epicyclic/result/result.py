@@ -21,6 +21,7 @@ from epicyclic.machine.element import (
     Figure,
     FluidFigures,
     displayed,
+    figure,
 )
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.planets import BearingFigures
@@ -266,6 +267,15 @@ class PowerFlow:
 
 
 @dataclass(frozen=True, slots=True)
+class BranchFigures:
+    """A planet branch of a single set, the mean of all: one planet with its meshes and bearing."""
+
+    power: float = figure("input power", WATT)
+    load_dependent: float = figure("load-dependent loss", WATT)
+    load_independent: float = figure("load-independent loss of its meshes and bearing", WATT)
+
+
+@dataclass(frozen=True, slots=True)
 class Layout:
     """What the results of a case consist of, known before they are."""
 
@@ -500,6 +510,26 @@ class Result:
         return self.flow.efficiency
 
     @property
+    def load_dependent_efficiency(self) -> float | None:
+        """1 less load-dependent loss over input power, eta_LD. Theory (P11). [1]"""
+        return None if self.efficiency is None else 1 - self.load_dependent / self.input_power
+
+    @property
+    def branch(self) -> BranchFigures | None:
+        """A planet branch; None if this is not a single set with planets. Theory (P10)."""
+        planets = len(self.planet_shares)
+        if self.train is not None or not planets:
+            return None
+        contacts = (*self.layout.meshes, *self.layout.bearings)
+        spin = sum(
+            term.watts
+            for term in self.terms
+            if term.group == LOAD_INDEPENDENT and term.name.startswith(contacts)
+        )
+        power, load_dependent = self.input_power / planets, self.load_dependent / planets
+        return BranchFigures(power, load_dependent, spin / planets)
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Everything the user should know before trusting the numbers."""
         return (*self.notes, *describe_flags(self.flags, self._losses_of(), self.total))
@@ -548,7 +578,9 @@ class Result:
                 "total": self.total,
                 "input_power": self.input_power,
                 "efficiency": self.efficiency,
-                "units": dict.fromkeys(_POWERS, WATT.display) | {"efficiency": "1"},
+                "load_dependent_efficiency": self.load_dependent_efficiency,
+                "units": dict.fromkeys(_POWERS, WATT.display)
+                | {"efficiency": "1", "load_dependent_efficiency": "1"},
                 "warnings": self.warnings,
                 "not_included": self.not_included,
                 "factors": {term.name: term.factor for term in self.terms if term.factor != 1.0},
@@ -580,6 +612,7 @@ class Result:
         """What only a single set states."""
         return {
             "planet_bearing": self.bearing,
+            "branch": self.branch,
             "planet_angles": plain(self.planet_angles, DEGREE),
             "planet_shares": plain(self.planet_shares, NUMBER),
             "mesh_load_factor": plain(self.mesh_load_factor, NUMBER),
@@ -662,8 +695,12 @@ def _number_fields(layout: Layout) -> Iterator[tuple[str, str, str, Callable[[Re
     yield "total", "total loss", watt, lambda it: it.total
     yield "input_power", "input power", watt, lambda it: it.input_power
     yield "efficiency", "efficiency", "1", lambda it: _or_nan(it.efficiency)
+    label = "load-dependent efficiency"
+    yield "load_dependent_efficiency", label, "1", lambda it: _or_nan(it.load_dependent_efficiency)
     if layout.shares:
         yield "mesh_load_factor", "mesh load factor", "1", lambda it: it.mesh_load_factor
+    if layout.shares and not layout.rolling:
+        yield from _part_fields("branch", BranchFigures, lambda it: it.branch)
     if layout.rolling:
         label = "input speed over output speed"
         yield "ratio", label, "1", partial(_of_train, "ratio")

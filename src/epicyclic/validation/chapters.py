@@ -1,4 +1,4 @@
-"""The parametric studies and the test matrix of Talbot (2012), chapters 3 and 5, computed again.
+"""The parametric studies and the tests of Talbot (2012), chapters 2, 3 and 5, computed again.
 
 A figure of the source is a family of curves: a loss over one parameter, a curve for each value of a
 second one, a panel for each value of a third. The studies of chapter 4 are those of
@@ -19,13 +19,22 @@ from numpy.typing import NDArray
 from epicyclic.build.machine import build
 from epicyclic.build.models import fluids_of
 from epicyclic.errors import ConvergenceError
+from epicyclic.study.maps.warm_up import warm_up
 from epicyclic.study.meshes import bearing_details
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.run import PointList
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import CELSIUS, NUMBER, WATT, unit_text
 from epicyclic.validation.compare import published_figures
-from epicyclic.validation.compute import planet_bearing, source_case
+from epicyclic.validation.compute import (
+    TEST_SPEEDS,
+    WITHOUT_FLOW,
+    data_file,
+    helical,
+    planet_bearing,
+    slopes,
+    source_case,
+)
 from epicyclic.validation.pocketing import FIGURES_AGAIN
 
 if TYPE_CHECKING:
@@ -33,7 +42,6 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 PLANETS = 3  # Planets of the set whose planet bearing chapter 3 studies.
-FULL_BRANCH = 1000 / PLANETS  # Largest torque on a branch. [N m]
 ROLLER_FIGURES = {"3.3": "branch", "3.7": "roller", "3.9": "clearance", "3.12": "helix"}
 """Figures of roller loads, and what varies in them."""
 
@@ -55,9 +63,10 @@ class Mark:
     """A published number on a figure."""
 
     label: str
-    over: float  # Where it lies.
     value: float  # Where it lies.
-    panel: float | str  # In which panel.
+    over: float | None = None  # Where it lies; None is a line across the panel.
+    panel: float | str | None = None  # In which panel; None is each of its variable.
+    variable: str = ""  # Of the data; default: the first.
 
 
 @dataclass(frozen=True)
@@ -66,13 +75,31 @@ class Family:
 
     figure: str  # Its number in the source.
     title: str
-    data: xr.Dataset  # With one variable of three dimensions, the first of `variables`.
-    marks: tuple[Mark, ...] = ()
+    data: xr.Dataset  # Its variables have three dimensions, or two if one panel shows them.
 
     @property
-    def variable(self) -> str:
-        """Name of what is drawn."""
-        return str(next(iter(self.data.data_vars)))
+    def marks(self) -> tuple[Mark, ...]:
+        """The published numbers, where the data files say that they lie."""
+        return tuple(
+            _mark(row, mark, self.data)
+            for row in published_figures()
+            for mark in row.get("mark", ())
+            if mark["figure"] == self.figure
+        )
+
+
+def _mark(row: Mapping[str, Any], given: Mapping[str, Any], data: xr.Dataset) -> Mark:
+    """With `base` the number is a ratio to, or a change in % of, the computed value of a curve."""
+    variable = given.get("variable", next(iter(map(str, data.data_vars))))
+    drawn, value = data[variable], given.get("value", row["value"])
+    over, panel = given.get("over"), given.get("panel")
+    if "base" in given:
+        place = dict(zip(map(str, drawn.dims), (panel, given["base"], over), strict=True))
+        value = float(drawn.sel(place, method="nearest")) * (1 + value / 100)
+    elif row["unit"] == "W" and drawn.attrs.get("units") == "kW":
+        value /= 1e3
+    label = given["label"] + (" (inferred)" if "inferred" in row and "value" not in given else "")
+    return Mark(label, value, over, panel, variable)
 
 
 def _key(key: str, unit: str) -> Callable[[Any], dict[str, Any]]:
@@ -104,24 +131,6 @@ def _rough(composite: float) -> dict[str, Any]:
     }
 
 
-def _helical(angle: float) -> dict[str, Any]:
-    """The transverse geometry held, so that the torque gives the same radial force. Eq. 3.7."""
-    gears = source_case().given()["gears"]
-    module, pressure, helix = (
-        float(str(gears[key]).split()[0])
-        for key in ("normal_module", "normal_pressure_angle", "helix_angle")
-    )
-    cosine = math.cos(math.radians(helix))
-    transverse = math.degrees(math.atan(math.tan(math.radians(pressure)) / cosine))
-    return {
-        "gears.normal_module": None,
-        "gears.normal_pressure_angle": None,
-        "gears.transverse_module": f"{module / cosine!r} mm",
-        "gears.transverse_pressure_angle": f"{transverse!r} deg",
-        "gears.helix_angle": f"{angle} deg",
-    }
-
-
 _CURVES = {
     "roughness": Lever("roughness", "composite roughness", "um", tuple(_ROUGHNESS), _rough),
     "roller": Lever(
@@ -136,7 +145,7 @@ _CURVES = {
         "roller_length", "roller length", "mm", (6, 8, 10, 12),
         _key("planet_bearing.roller_length", "mm"),
     ),
-    "helix": Lever("helix_angle", "helix angle", "deg", (0, 13.124, 20, 30), _helical),
+    "helix": Lever("helix_angle", "helix angle", "deg", (0, 13.124, 20, 30), helical),
 }  # fmt: skip
 _BEARING_STUDIES = {
     "3.4": ("oil inlet temperature", _TEMPERATURE, _speed((3000, 4000))),
@@ -147,8 +156,6 @@ _BEARING_STUDIES = {
     "3.11": ("helix angle", _CURVES["helix"], _speed()),
 }
 """Figures of chapter 3 over the torque on a branch: what each is about, its curves and panels."""
-_WITHOUT_FLOW = {f"losses.{mesh}_pocketing.include": False for mesh in ("sun_mesh", "ring_mesh")}
-"""Pockets have no part in the loss of a bearing, and take time."""
 
 
 def bearing_families(figures: Sequence[str], runner: Runner = HERE) -> list[Family]:
@@ -160,7 +167,7 @@ def bearing_families(figures: Sequence[str], runner: Runner = HERE) -> list[Fami
     points: list[dict[str, Any]] = []
     for figure in wanted:
         _, curves, panels = _BEARING_STUDIES[figure]
-        points += (_WITHOUT_FLOW | point for point in _points(panels, curves, _BRANCH))
+        points += (WITHOUT_FLOW | point for point in _points(panels, curves, _BRANCH))
     losses = iter(_numbers(points, ("planet_bearing_mechanical",), runner)[0] / PLANETS)
     families = []
     for figure in wanted:
@@ -170,8 +177,7 @@ def bearing_families(figures: Sequence[str], runner: Runner = HERE) -> list[Fami
         values = np.array(list(itertools.islice(losses, math.prod(shape)))).reshape(shape)
         data = _dataset({"bearing_loss": values}, (panels, curves, _BRANCH))
         data["bearing_loss"].attrs = {"long_name": "loss of one planet bearing", "units": "W"}
-        marks = tuple(_bearing_marks(figure))
-        families.append(Family(figure, f"loss of a planet bearing, {about}{held}", data, marks))
+        families.append(Family(figure, f"loss of a planet bearing, {about}{held}", data))
     return families
 
 
@@ -179,22 +185,6 @@ def _oil() -> str:
     """What the example says of its oil where nothing else is studied."""
     temperature = CELSIUS.text(fluids_of(source_case()).oil.temperature, 3)
     return f"oil at {unit_text(temperature)}"
-
-
-def _bearing_marks(figure: str) -> Iterator[Mark]:
-    """Printed losses at the largest torque and 4000 rpm."""
-    for row in published_figures():
-        given = row["with"]
-        if row["compute"] != "planet_bearing_loss":
-            continue
-        warm = given["composite_roughness"] > 0.14
-        if (figure, warm) in (("3.4", True), ("3.5", False)):
-            label = given["temperature"] if warm else f"{given['composite_roughness']:g} um"
-            yield Mark(f"printed, {unit_text(label)}", FULL_BRANCH, row["value"], 4000)
-    if figure == "3.5":
-        smooth, ratio = _published("planet_bearing_loss", 0.063), _published("planet_bearing_ratio")
-        value = smooth["value"] * ratio["value"]
-        yield Mark("inferred, 0.18 µm", FULL_BRANCH, value, 4000)
 
 
 def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
@@ -210,7 +200,7 @@ def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
         values = (0, 20, 30)
     found = []
     for value in values:
-        case = source_case().updated(_WITHOUT_FLOW | dict(lever.changes(value)))
+        case = source_case().updated(WITHOUT_FLOW | dict(lever.changes(value)))
         result = solve(case)
         assert result.bearing is not None
         assert result.bearing.loads is not None
@@ -227,7 +217,7 @@ def joined(cases: Sequence[tuple[str, xr.Dataset]]) -> xr.Dataset:
     return data.assign_coords(case=[label for label, _ in cases])
 
 
-# --- chapter 5 ------------------------------------------------------------------------------------
+# --- chapters 2 and 5 -----------------------------------------------------------------------------
 
 _TORQUES = (0, 250, 500, 750, 1000)
 _SETS = {
@@ -242,8 +232,6 @@ _SET = Lever(
     lambda name: {"planet.count": _SETS[name][0], "planet.roughness": _SETS[name][1]},
 )  # fmt: skip
 _TORQUE = Lever("torque", "torque on the sun", "N*m", _TORQUES, _key("operation.torque", "N*m"))
-_SPIN = ("sun_mesh_pocketing", "ring_mesh_pocketing", "planet_bearing_viscous")
-"""Load-independent losses of a planet branch. Eq. 5.14."""
 
 
 def loaded_and_unloaded(runner: Runner = HERE) -> xr.Dataset:
@@ -252,7 +240,7 @@ def loaded_and_unloaded(runner: Runner = HERE) -> xr.Dataset:
     Raises `ConvergenceError` if a test cannot be computed.
     """
     levers = (_SET, _TEMPERATURE, _TORQUE, _speed())
-    names = ("total", "load_dependent", "load_independent", "input_power", *_SPIN)
+    names = ("total", "load_dependent", "load_independent", "input_power")
     shape = tuple(len(lever.values) for lever in levers)
     found = _numbers(list(_points(*levers)), names, runner)
     return _dataset(
@@ -261,7 +249,7 @@ def loaded_and_unloaded(runner: Runner = HERE) -> xr.Dataset:
 
 
 def set_families(figures: Sequence[str], runner: Runner = HERE) -> list[Family]:
-    """Losses of the whole set in the tests. Talbot (2012), section 5.3.
+    """Losses of the whole set in the tests. Talbot (2012), sections 2.3 and 5.3.
 
     Raises `ConvergenceError` if a test cannot be computed.
     """
@@ -272,114 +260,256 @@ def set_families(figures: Sequence[str], runner: Runner = HERE) -> list[Family]:
     return [_OF_TESTS[figure](figure, data) for figure in wanted]
 
 
+def _drawn(**values: tuple[xr.DataArray, str, str]) -> xr.Dataset:
+    """Named arrays with what they are and their units, without coordinates of one value."""
+    import xarray as xr
+
+    found = xr.Dataset(
+        {name: array.reset_coords(drop=True) for name, (array, *_) in values.items()}
+    )
+    for name, (_, label, unit) in values.items():
+        found[name].attrs = {"long_name": label, "units": unit}
+    return found
+
+
+_TOTAL, _LOADED = "total loss", "load-dependent loss"
+_SHAVED = list(_SETS)[:4]
+
+
+def _of_one_set(figure: str, data: xr.Dataset) -> Family:
+    """Losses and efficiencies at 90 degC over the speed, a curve for each torque."""
+    name = dict(zip(("2.4", "2.5", "2.6", "2.7", "2.17"), _SETS, strict=True))[figure]
+    own = data.sel(set=name, temperature=90)
+    loaded, power = own["load_dependent"].where(own["torque"] > 0), own["input_power"]
+    found = _drawn(
+        total=(own["total"] / 1e3, _TOTAL, "kW"),
+        load_dependent=(loaded / 1e3, _LOADED, "kW"),
+        efficiency=(100 * (1 - own["total"] / power).where(own["torque"] > 0), "efficiency", "%"),
+        mechanical_efficiency=(100 * (1 - loaded / power), "mechanical efficiency", "%"),
+    )
+    return Family(figure, f"losses of {name} planets at 90 °C", found)
+
+
+def _by_planets(figure: str, data: xr.Dataset) -> Family:
+    own = data["total"].sel(set=_SHAVED, temperature=90, torque=[0, 500, 1000])
+    found = _drawn(total=(own.transpose("torque", "set", "speed") / 1e3, _TOTAL, "kW"))
+    return Family(figure, "total loss by the number of planets, 90 °C", found)
+
+
+def _by_temperature(figure: str, data: xr.Dataset) -> Family:
+    name = list(_SETS)[int(figure.removeprefix("2.")) - 10]
+    own = data.sel(set=name)
+    found = _drawn(
+        load_dependent=(own["load_dependent"].sel(torque=1000) / 1e3, f"{_LOADED}, 1000 N·m", "kW"),
+        load_independent=(own["load_independent"].sel(torque=0) / 1e3, _SPIN, "kW"),
+    )
+    return Family(figure, f"losses of {name} planets by the oil inlet temperature", found)
+
+
+def _saved(figure: str, data: xr.Dataset) -> Family:
+    temperature = {"2.18": 90, "2.19": 60, "2.20": 40}[figure]
+    total = data["total"].sel(temperature=temperature, torque=list(_TORQUES[1:]))
+    saved = total.sel(set="6 shaved") - total.sel(set="6 polished")
+    found = _drawn(saved=(saved / 1e3, "loss that polished planets save", "kW"))
+    return Family(figure, f"6 shaved less 6 polished planets, {temperature} °C", found)
+
+
+_SPIN = "load-independent loss"
+
+
 def _spin(figure: str, data: xr.Dataset) -> Family:
-    loss = _kilowatts(data["load_independent"].sel(torque=0), "load-independent loss")
-    family = loss.sel(set=list(_SETS)[:4]).transpose("temperature", "set", "speed")
-    mark = _published("load_independent_loss")
-    marks = (Mark("measured, 3 planets (inferred)", 4000, mark["value"], 90),)
-    return Family(figure, "load-independent loss", family.to_dataset(name="loss"), marks)
+    loss = data["load_independent"].sel(torque=0, set=_SHAVED)
+    found = _drawn(loss=(loss.transpose("temperature", "set", "speed") / 1e3, _SPIN, "kW"))
+    return Family(figure, _SPIN, found)
 
 
 def _branch_spin(figure: str, data: xr.Dataset) -> Family:
     """As the tests give it, a third of the difference of six and three planets. Eq. 5.14."""
     loss = data["load_independent"].sel(torque=0)
     branch = (loss.sel(set="6 shaved") - loss.sel(set="3 shaved")) / 3
-    branch = branch.expand_dims(panel=["6 less 3 planets"]).transpose(
-        "panel", "temperature", "speed"
-    )
-    branch.attrs = {"long_name": "load-independent loss of a branch", "units": "W"}
-    mark = Mark("measured, at most 0.2 kW/3 (inferred)", 4000, 200 / 3, "6 less 3 planets")
-    title = "load-independent loss of a branch"
-    return Family(figure, title, branch.to_dataset(name="loss"), (mark,))
+    curves = branch.expand_dims(way=["a third of 6 less 3 planets"])
+    title = f"{_SPIN} of a branch"
+    curves = curves.transpose("temperature", "way", "speed")
+    return Family(figure, title, _drawn(loss=(curves, title, "W")))
 
 
 def _loaded(figure: str, data: xr.Dataset) -> Family:
     temperature = dict(zip(("5.3", "5.4", "5.5"), _TEMPERATURE.values, strict=True))[figure]
-    loss = _kilowatts(data["load_dependent"], "load-dependent loss")
-    family = loss.sel(temperature=temperature, set=list(_SETS)[:4], torque=list(_TORQUES[1:]))
-    marks = tuple(_loaded_marks()) if temperature == 90 else ()
-    title = f"load-dependent loss, shaved, {temperature} °C"
-    family = family.drop_vars("temperature").transpose("set", "torque", "speed")
-    return Family(figure, title, family.to_dataset(name="loss"), marks)
-
-
-def _loaded_marks() -> Iterator[Mark]:
-    for row in published_figures():
-        if row["compute"] == "load_dependent_loss":
-            how = "measured" if "measured" in row["what"] else "predicted there"
-            yield Mark(f"{how}, 1000 N·m (inferred)", 4000, row["value"], "3 shaved")
+    own = data["load_dependent"].sel(temperature=temperature, set=_SHAVED)
+    own = own.sel(torque=list(_TORQUES[1:])).transpose("set", "torque", "speed") / 1e3
+    title = f"{_LOADED}, shaved, {temperature} °C"
+    return Family(figure, title, _drawn(loss=(own, _LOADED, "kW")))
 
 
 def _polished(figure: str, data: xr.Dataset) -> Family:
-    loss = _kilowatts(data["load_dependent"], "load-dependent loss")
-    family = loss.sel(set="6 polished", torque=list(_TORQUES[1:])).drop_vars("set")
-    family = family.transpose("temperature", "torque", "speed")
-    title = "load-dependent loss, 6 polished planets"
-    return Family(figure, title, family.to_dataset(name="loss"))
+    own = data["load_dependent"].sel(set="6 polished", torque=list(_TORQUES[1:])) / 1e3
+    own = own.transpose("temperature", "torque", "speed")
+    return Family(figure, f"{_LOADED}, 6 polished planets", _drawn(loss=(own, _LOADED, "kW")))
 
 
 def _branches(figure: str, data: xr.Dataset) -> Family:
-    """Loss over power of a branch, all tests of a finish and temperature, with its line."""
-    number = int(figure.removeprefix("5.")) - 7
+    """Loss of a branch over its power, all tests of a finish and temperature, with their lines.
+
+    Fig. 2.9: over its torque, without lines.
+    """
+    number = {"2.9": 2}.get(figure, int(figure.partition(".")[2]) - 7)
     temperature = _TEMPERATURE.values[number % 3]
-    sets = list(_SETS)[:4] if number < 3 else list(_SETS)[4:]
-    own = data.sel(temperature=temperature, set=sets, torque=list(_TORQUES[1:]))
-    planets = own["planets"]
-    power = _kilowatts(own["input_power"] / planets, "power of a branch")
-    loss = _kilowatts(own["load_dependent"] / planets, "load-dependent loss of a branch")
-    line = np.polyfit(power.values.ravel(), loss.values.ravel(), 1)
-    found = loss.to_dataset(name="branch_loss").assign(branch_power=power)
-    found = found.drop_vars(["temperature", "planets"]).transpose("set", "torque", "speed")
-    found.attrs = {"slope": float(line[0]), "intercept": float(line[1])}
-    finish = "shaved" if number < 3 else "chemically polished"
-    top = float(power.max())
-    marks = tuple(
-        Mark(
-            f"{'measured' if 'measured' in row['what'] else 'predicted there'}, slope "
-            f"{row['value']} %",
-            top,
-            row["value"],
-            "",
-        )
-        for row in published_figures()
-        if row["compute"] == "branch_slope"
-        and (row["with"]["temperature"], row["with"]["finish"]) == (f"{temperature} degC", finish)
+    own = data.sel(
+        temperature=temperature,
+        set=_SHAVED if number < 3 else list(_SETS)[4:],
+        torque=list(_TORQUES[1:]),
     )
-    title = f"loss of a branch, {finish}, {temperature} °C"
-    return Family(figure, title, found, marks)
+    over = (
+        (own["torque"] / own["planets"], "torque on a branch", "N*m")
+        if figure == "2.9"
+        else (own["input_power"] / own["planets"] / 1e3, "power of a branch", "kW")
+    )
+    loss = own["load_dependent"] / own["planets"] / 1e3
+    found = _drawn(branch_loss=(loss, f"{_LOADED} of a branch", "kW"), over=over)
+    found = found.broadcast_like(loss).transpose("speed", "set", "torque")
+    finish = "shaved" if number < 3 else "chemically polished"
+    if figure != "2.9":
+        points = found["over"].values.ravel(), found["branch_loss"].values.ravel()
+        found.attrs = {name: 100 * slope for name, slope in slopes(*points).items()}
+    return Family(figure, f"loss of a branch, {finish}, {temperature} °C", found)
+
+
+WARM_UPS = {"2.15": 0, "2.16": 1000}
+"""Figures of temperatures over a test, and the torque on the sun. [N m]"""
+AT_EACH_SPEED, STEP, CHANGE = 60.0, 10.0, 1.0
+"""How long each speed is held, which is not printed: the axes of the source go to 140 to 500 s for
+all four. Steps of the course, and how long a change of speed takes. [s]"""
+_WARM_UP = {"planet.count": 6, "thermal.oil_volume": "1 l"}  # The volume is an estimate.
+
+
+def warm_up_families(figures: Sequence[str]) -> Iterator[Family]:
+    """Temperatures of six planets, ring and outlet of the oil over the speeds of a test."""
+    import xarray as xr
+
+    for figure in figures:
+        if figure not in WARM_UPS:
+            continue
+        found = []
+        for temperature in _TEMPERATURE.values:
+            case = source_case().updated(_WARM_UP | dict(_TEMPERATURE.changes(temperature)))
+            cycle = _speed_steps(WARM_UPS[figure])
+            duration = f"{cycle['time [s]'][-1]} s"
+            course = warm_up(case, duration, f"{temperature} degC", cycle=cycle)
+            found.append(course["temperature"].sel(node=["oil", "ring"]).drop_duplicates("time"))
+        data = xr.concat(found, dim="temperature").transpose("temperature", "node", "time")
+        data = data.assign_coords(
+            temperature=("temperature", list(_TEMPERATURE.values), _unit("oil inlet", "degC")),
+            node=("node", ["outlet", "ring"], _unit("temperature", "1")),
+            time=("time", data["time"].values, _unit("time", "s")),
+        )
+        drawn = _drawn(part_temperature=(data, "temperature", "degC"))
+        title = f"temperatures of 6 shaved planets at {WARM_UPS[figure]} N·m"
+        yield Family(figure, title, drawn)
+
+
+def _unit(label: str, unit: str) -> dict[str, str]:
+    return {"long_name": label, "units": unit}
+
+
+def _speed_steps(torque: float) -> dict[str, list[float]]:
+    """All speeds of the tests, one after another, as a cycle."""
+    within = np.arange(0.0, AT_EACH_SPEED, STEP)
+    within = np.append(within, AT_EACH_SPEED - CHANGE)
+    times = np.concatenate([AT_EACH_SPEED * place + within for place in range(len(TEST_SPEEDS))])
+    return {
+        "time [s]": times.tolist(),
+        "speed [rpm]": np.repeat(TEST_SPEEDS, within.size).tolist(),
+        "torque [N*m]": [float(torque)] * times.size,
+    }
 
 
 _OF_TESTS: dict[str, Callable[[str, xr.Dataset], Family]] = {
+    **dict.fromkeys(("2.4", "2.5", "2.6", "2.7"), _of_one_set),
+    "2.8": _by_planets,
+    "2.9": _branches,
+    **dict.fromkeys((f"2.{number}" for number in range(10, 15)), _by_temperature),
+    "2.17": _of_one_set,
+    **dict.fromkeys(("2.18", "2.19", "2.20"), _saved),
     "5.1": _spin,
     "5.2": _branch_spin,
     **dict.fromkeys(("5.3", "5.4", "5.5"), _loaded),
     "5.6": _polished,
     **dict.fromkeys((f"5.{number}" for number in range(7, 13)), _branches),
 }
-"""Figures of chapter 5, and what makes them from the tests."""
+"""Figures of chapters 2 and 5, and what makes them from the tests."""
 CHAPTERS = {
+    "2": tuple(
+        sorted(
+            {*WARM_UPS, *(figure for figure in _OF_TESTS if figure.startswith("2."))},
+            key=lambda it: int(it[2:]),
+        )
+    ),
     "3": tuple(sorted({*ROLLER_FIGURES, *_BEARING_STUDIES}, key=lambda it: int(it[2:]))),
     "4": tuple(FIGURES_AGAIN),
-    "5": tuple(_OF_TESTS),
+    "5": tuple(figure for figure in _OF_TESTS if figure.startswith("5.")),
 }
 """The figures of each chapter that are computed again."""
-TOPICS = {"3": "Planet bearings", "4": "Pockets", "5": "Planetary sets, tests"}
+TOPICS = {
+    "2": "Planetary sets, tests",
+    "3": "Planet bearings",
+    "4": "Pockets",
+    "5": "Planetary sets, tests",
+}
 """Which published numbers belong to a chapter."""
 
 
-def _published(compute: str, roughness: float | None = None) -> dict[str, Any]:
-    """The first figure of a kind, or that of a composite roughness in um."""
-    return next(
-        row
-        for row in published_figures()
-        if row["compute"] == compute and roughness in (None, row["with"].get("composite_roughness"))
-    )
+# --- what the source says of each parameter -------------------------------------------------------
 
 
-def _kilowatts(values: xr.DataArray, label: str) -> xr.DataArray:
-    found = values / 1e3
-    found.attrs = {"long_name": label, "units": "kW"}
-    return found
+@dataclass(frozen=True)
+class Influence:
+    """What the source says of a parameter, and what is computed for it."""
+
+    parameter: str  # With the values from which to which it varies.
+    figure: str
+    says: str
+    source: str
+    sign: int  # 1 increases, -1 reduces, 0 hardly influences.
+    least: float  # Smallest and largest relative change of all that is drawn. [1]
+    most: float
+
+    @property
+    def verdict(self) -> str:
+        """Whether all changes have the sign that the source tells; sizes are not classed there."""
+        signs = {int(np.sign(change)) for change in (self.least, self.most)}
+        if self.sign == 0:
+            return ""
+        if self.sign in signs:
+            return "sign agrees" if len(signs) == 1 else "sign differs in part"
+        return "sign differs"
+
+
+def influences(figure: str, data: xr.Dataset) -> Iterator[Influence]:
+    """Those of a figure that was computed again."""
+    for given in data_file("influences.toml")["influence"]:
+        if given["figure"] != figure:
+            continue
+        name, parameter = given.get("variable", str(next(iter(data.data_vars)))), given["parameter"]
+        drawn = data[name].sel(given.get("at", {}))
+        over = drawn[parameter]
+        change = drawn.isel({parameter: -1}) / drawn.isel({parameter: 0}) - 1
+        ends = " to ".join(str(value) for value in over.values[[0, -1]])
+        where = (f", {_named(data[key], str(at))}" for key, at in given.get("at", {}).items())
+        yield Influence(
+            _named(over, ends) + "".join(where),
+            figure,
+            given["says"],
+            given["source"],
+            given["sign"],
+            float(change.min()),
+            float(change.max()),
+        )
+
+
+def _named(coordinate: xr.DataArray, values: str) -> str:
+    """``"face width 35 mm"``"""
+    unit = unit_text(str(coordinate.attrs["units"])).removeprefix("1")
+    return f"{coordinate.attrs['long_name']} {values} {unit}".rstrip()
 
 
 # --- points and datasets --------------------------------------------------------------------------

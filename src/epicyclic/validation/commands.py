@@ -144,7 +144,7 @@ PAGE = "index.html"
 
 
 @click.command()
-@click.argument("chapter", type=click.Choice(["3", "4", "5"]))
+@click.argument("chapter", type=click.Choice(["2", "3", "4", "5"]))
 @click.option(
     "--figure",
     "chosen",
@@ -158,7 +158,8 @@ PAGE = "index.html"
 def reproduce(
     chapter: str, chosen: tuple[str, ...], picture: str, output: Path, runner: Runner
 ) -> None:
-    """Compute a CHAPTER of Talbot (2012) again: 3 planet bearings, 4 pockets, 5 the tests.
+    """Compute a CHAPTER of Talbot (2012) again: 2 the tests as measured, 3 planet bearings, 4
+    pockets, 5 the tests as predicted.
 
     Each figure N goes to fig-N.nc, fig-N.csv and a picture in the folder OUTPUT, with the numbers
     that the source prints marked on it; index.html shows all of them and compares.
@@ -167,10 +168,11 @@ def reproduce(
     epicyclic reproduce 5 -o chapter-5
     epicyclic reproduce 3 --figure 3.4 --figure 3.5 -o bearings
     """
+    from epicyclic.show.terminal import as_on_page, terminal
     from epicyclic.study.sweeps.run import write_dataset
     from epicyclic.validation.chapters import CHAPTERS, TOPICS
     from epicyclic.validation.compare import compare_published, summary
-    from epicyclic.validation.pages import chapter_html
+    from epicyclic.validation.pages import chapter_html, influence_table
     from epicyclic.validation.plots import reproduce as figures_of
 
     known = CHAPTERS[chapter]
@@ -200,6 +202,8 @@ def reproduce(
         rows = compare_published(progress, topic=TOPICS[chapter])
     found.sort(key=lambda item: known.index(item.number))
     write_page(output / PAGE, chapter_html(chapter, found, rows))
+    if (table := influence_table(found)).rows:
+        terminal().print(as_on_page(table))
     click.echo(summary(rows))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -23,7 +24,6 @@ from epicyclic.validation.compute import (
     LoadedTests,
     data_file,
     loaded_conditions,
-    pair_pocketing,
     source_case,
 )
 
@@ -47,6 +47,11 @@ class Published:
     tolerance: float  # Relative to the published value. [1]
     cause: str  # Why that tolerance.
 
+    def off(self, computed: float) -> float:
+        """(computed - published)/published; 0 within a published range. [1]"""
+        nearest = min(max(computed, self.low), self.high)
+        return (computed - nearest) / nearest
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClosureFigure(Published):
@@ -56,65 +61,74 @@ class ClosureFigure(Published):
 
     def holds(self, model: str) -> bool:
         """Whether the value of a model is in the band, or within the tolerance of it."""
-        low, high = self.low * (1 - self.tolerance), self.high * (1 + self.tolerance)
-        return low <= self.computed[model] <= high
+        return abs(self.off(self.computed[model])) <= self.tolerance
 
 
 def closure_figures(
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> tuple[ClosureFigure, ...]:
     """All open figures, computed with every model."""
-    default = data_file("pocketing.toml")["default"]
-    found = []
-    for number, figure in enumerate(open_figures()):
-        allowed = figure if "tolerance" in figure else default
+    found: list[ClosureFigure] = []
+    figures = [figure for figure in open_figures() if figure.get("role") != "context"]
+    for figure in figures:
+        low, high = published_ends(figure)
         found.append(
             ClosureFigure(
                 what=figure["what"],
                 unit=figure["unit"],
                 source=figure["source"],
-                low=figure["low"],
-                high=figure["high"],
-                tolerance=allowed["tolerance"],
-                cause=allowed["cause"],
-                computed={model: _with_closure(figure, model) for model in CLOSURES},
+                low=low,
+                high=high,
+                tolerance=figure["tolerance"],
+                cause=figure["cause"],
+                computed={model: _computed(figure, model=model) for model in CLOSURES},
             )
         )
-        progress(number + 1, len(open_figures()))
+        progress(len(found), len(figures))
     return tuple(found)
 
 
 def open_figures() -> list[dict[str, Any]]:
-    """The entries of `pocketing.toml`."""
-    found: list[dict[str, Any]] = data_file("pocketing.toml")["figure"]
-    return found
+    """The entries of `pocketing.toml`; printed ones have a value, the others a band."""
+    content = data_file("pocketing.toml")
+    conditions = ("of", "over", "unit", "exponent")
+    return [
+        {
+            **content["default"],
+            **figure,
+            "compute": "pocketing_figure",
+            "with": {key: figure[key] for key in conditions if key in figure},
+        }
+        for figure in content["figure"]
+    ]
 
 
-def _with_closure(figure: Mapping[str, Any], model: str) -> float:
-    """Pocketing loss of the example pair at 10000 rpm [W], or its ratio to that of another one."""
-    width = figure["face_width"]
-    loss, *others = (
-        pair_pocketing(
-            gears__helix_angle=figure[angle],
-            pinion__face_width=width,
-            gear__face_width=width,
-            models__pocketing=model,
-        )
-        for angle in ("helix_angle", "over")
-        if angle in figure
-    )
-    return loss / others[0] if others else loss
+def published_ends(figure: Mapping[str, Any]) -> tuple[float, float]:
+    """The published value, twice, or the ends of the published range."""
+    return (figure["low"], figure["high"]) if "low" in figure else (figure["value"],) * 2
+
+
+def _computed(figure: Mapping[str, Any], **more: Any) -> float:
+    """NaN where it is kept without being computed."""
+    if "compute" not in figure:
+        return math.nan
+    return FIGURES[figure["compute"]](**figure["with"], **more)
 
 
 # Compare the published figures with what is computed.
 
-Verdict = Literal["agrees", "differs", "calibrated", "no verdict"]
+Verdict = Literal["agrees", "differs", "calibrated", "no verdict", "not computed"]
 _TOPICS = {
-    "Planet bearings": ("planet_bearing_loss", "planet_bearing_ratio", "azimuth_of_gained_rollers"),
-    "Pockets": (),
+    "Planet bearings": (
+        "planet_bearing_loss", "planet_bearing_ratio", "planet_bearing_change",
+        "azimuth_of_gained_rollers",
+    ),
+    "Pockets": ("pocketing_figure",),
     "Air-oil mixture": ("mixture_density", "mixture_viscosity"),
     "Planetary sets, tests": (
-        "branch_slope", "load_dependent_loss", "load_independent_loss", "loss_share",
+        "composite_roughness", "branch_slope", "slope_gain", "loss_in_test", "loss_change",
+        "spin_share", "prediction_difference", "loss_share", "branch_loss_ratio", "branch_spin",
+        "branch_spin_exponent",
     ),
     "Stiffness of teeth": ("single_stiffness", "mean_mesh_stiffness"),
     "Trains": ("train_ratio", "train_efficiency"),
@@ -122,8 +136,7 @@ _TOPICS = {
     "KISSsoft, NREL 5 MW": ("nrel-1", "nrel-2"),
     "GEARpie": ("gearpie-c14", "gearpie-c40"),
 }  # fmt: skip
-"""The functions that compute the figures, or the cases of other programs; whatever begins with
-``pocket`` is about pockets."""
+"""The functions that compute the figures, or the cases of other programs."""
 FILES = ("published.toml", "programs.toml")  # What is published, and what other programs print.
 
 
@@ -140,16 +153,18 @@ class Comparison(Published):
     # How the published value follows from what is printed; empty if it is printed itself.
     inferred: str = ""
     reason: str = ""  # Why there is no verdict; empty if there is.
+    missed: str = ""  # Why a figure differs, or that this is not known.
 
     @property
     def difference(self) -> float:
         """(computed - published)/published; 0 within a published range. [1]"""
-        nearest = min(max(self.computed, self.low), self.high)
-        return (self.computed - nearest) / nearest
+        return self.off(self.computed)
 
     @property
     def verdict(self) -> Verdict:
         """Agreement within the tolerance; calibration and context get none."""
+        if math.isnan(self.computed):
+            return "not computed"
         if self.role == "calibration":
             return "calibrated"
         if self.role == "context":
@@ -170,8 +185,21 @@ def compare_published(
 
 
 def published_figures() -> list[dict[str, Any]]:
-    """The entries of all `FILES`."""
-    return [figure for name in FILES for figure in data_file(name)["figure"]]
+    """The entries of all `FILES`, then what is printed of pocketing losses.
+
+    The latter count with the model of the flow that is meant for the comparison.
+    """
+    pockets = [
+        {
+            "role": "validation",
+            "settled": "in view",
+            **figure,
+            "with": {"model": CLOSURES[-1], **figure["with"]},
+        }
+        for figure in open_figures()
+        if "value" in figure
+    ]
+    return [*(figure for name in FILES for figure in data_file(name)["figure"]), *pockets]
 
 
 def by_topic(rows: Sequence[Comparison]) -> dict[str, list[Comparison]]:
@@ -181,9 +209,9 @@ def by_topic(rows: Sequence[Comparison]) -> dict[str, list[Comparison]]:
 
 
 def _topic(figure: Mapping[str, Any]) -> str:
+    if "topic" in figure:
+        return str(figure["topic"])
     name = figure["with"].get("case", figure["compute"])
-    if name.startswith("pocket"):
-        return "Pockets"
     return next(topic for topic, names in _TOPICS.items() if name in names)
 
 
@@ -219,25 +247,29 @@ def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:
     calibrated = sum(row.role == "calibration" for row in rows)
     yield (
         f"Not counted: {calibrated} that calibrated an unknown input, and "
-        f"{sum(row.role == 'context' for row in rows)} without a verdict, for the reasons stated."
+        f"{sum(row.verdict == 'no verdict' for row in rows)} without a verdict and "
+        f"{sum(row.verdict == 'not computed' for row in rows)} that cannot be computed, for the "
+        "reasons stated."
     )
 
 
 def _compare(figure: dict[str, Any]) -> Comparison:
+    low, high = published_ends(figure)
     return Comparison(
         what=figure["what"],
         topic=_topic(figure),
         unit=figure["unit"],
         source=figure["source"],
-        low=figure["low"] if "low" in figure else figure["value"],
-        high=figure["high"] if "high" in figure else figure["value"],
-        computed=FIGURES[figure["compute"]](**figure["with"]),
+        low=low,
+        high=high,
+        computed=_computed(figure),
         tolerance=figure.get("tolerance", 0.0),
         cause=figure.get("cause", ""),
         role=figure["role"],
         settled=figure.get("settled", ""),
         inferred=figure.get("inferred", ""),
         reason=figure.get("reason", ""),
+        missed=figure.get("missed", ""),
     )
 
 
@@ -246,7 +278,6 @@ def _compare(figure: dict[str, Any]) -> Comparison:
 FloatArray = NDArray[np.float64]
 
 DRAWS = 1024  # Draws from the distributions, the same in all tests.
-FINISH = "shaved"  # Finish of the planets where a figure does not say it.
 MEASURED = "measured"  # What the names of measured figures end with.
 
 
@@ -271,6 +302,7 @@ class MeasuredFigure:
 class _Test(NamedTuple):
     input_power: float
     load_dependent: float
+    load_independent: float = math.nan
 
 
 class _Band(NamedTuple):
@@ -305,21 +337,27 @@ def measured_figures(runner: Runner = HERE) -> tuple[MeasuredFigure, ...]:
 
 
 def _figures() -> Iterable[dict[str, Any]]:
-    """Those that are measured; 'the same' is the one before."""
-    before = ""
+    """Those that are measured, of the tests and computed."""
     for figure in published_figures():
-        what = figure["what"].replace("the same", before)
-        before = what.rpartition(", ")[0]
-        if what.endswith(MEASURED):
+        what = figure["what"]
+        if what.endswith(MEASURED) and "compute" in figure:
             yield {**figure, "what": what.removesuffix(f", {MEASURED}")}
 
 
 def _conditions(figure: Mapping[str, Any]) -> list[dict[str, Any]]:
     """The tests that a figure follows from."""
-    given = figure["with"]
-    planets = given["planets"]
-    counts = planets if isinstance(planets, list) else [planets]
-    return loaded_conditions(given["temperature"], given.get("finish", FINISH), counts)
+    asked: list[dict[str, Any]] = []
+
+    def tests(temperature: str, finish: str, planets: Iterable[int]) -> list[_Test]:
+        conditions = loaded_conditions(temperature, finish, planets)
+        asked.extend(conditions)
+        # any powers, no two of them equal: only the conditions are wanted
+        return [_Test(9.0 + place, 2.0 + place**2, 5.0 + place) for place, _ in enumerate(asked)][
+            -len(conditions) :
+        ]
+
+    _by_tests(figure, tests)
+    return asked
 
 
 def _bands(figures: Iterable[Mapping[str, Any]], runner: Runner) -> dict[tuple[Any, ...], _Band]:
@@ -338,15 +376,15 @@ def _bands(figures: Iterable[Mapping[str, Any]], runner: Runner) -> dict[tuple[A
 
 def _compute(figure: Mapping[str, Any], bands: _Bands, draw: int) -> float:
     """A figure in one draw."""
-    if figure["compute"] == "load_independent_loss":  # at the highest torque, as all of them
-        last = bands[tuple(_conditions(figure)[-1].values())]
-        return float(last.load_independent[draw]) / 1e3
 
     def tests(temperature: str, finish: str, planets: Iterable[int]) -> list[_Test]:
         chosen = (
             bands[tuple(it.values())] for it in loaded_conditions(temperature, finish, planets)
         )
-        return [_Test(it.input_power, float(it.load_dependent[draw])) for it in chosen]
+        return [
+            _Test(it.input_power, float(it.load_dependent[draw]), float(it.load_independent[draw]))
+            for it in chosen
+        ]
 
     return _by_tests(figure, tests)
 
@@ -356,8 +394,10 @@ def _compute(figure: Mapping[str, Any], bands: _Bands, draw: int) -> float:
 # Nothing is fitted to them: what is not published of their heat is varied over its plausible range.
 
 _MODEL = "models.temperatures"
-_OF_TESTS = ("branch_slope", "load_dependent_loss", "loss_share")
+_OF_TESTS = ("branch_slope", "slope_gain", "loss_in_test", "loss_change", "loss_share")
 """Figures that follow from the loaded tests."""
+_OTHER_PARTS = ("load_independent", "total", "input_power")
+"""Losses and powers that are not formed as loaded less unloaded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -378,8 +418,7 @@ class SettledFigure:
 
     what: str
     unit: str
-    # The published value, or the ends of its range; empty where none is known here.
-    published: tuple[float, ...]
+    published: tuple[float, ...]  # The published value, or the ends of its range.
     inlet: float  # With everything at the inlet temperature.
     flank: float  # With flanks as their own losses heat them.
     network: float  # With the heat network.
@@ -393,7 +432,7 @@ def estimates() -> tuple[Estimate, ...]:
 
 
 def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
-    """Every published figure of the loaded tests, and the slopes at all temperatures and finishes.
+    """Every published figure of the loaded tests.
 
     Raises `ConvergenceError` if a test cannot be computed.
     """
@@ -407,12 +446,10 @@ def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
     likely |= {item.key: item.value for item in estimates()}
     settings = [{_MODEL: "inlet"}, {_MODEL: "flank"}, *networks]
     # The loaded tests with each of the settings, all computed in one go.
-    content = data_file("settled.toml")
-    conditions = [
-        test
-        for temperature, finish in itertools.product(content["temperatures"], content["finishes"])
-        for test in loaded_conditions(temperature, finish, content["planets"])
-    ]
+    figures = _settled_figures()
+    conditions = list(
+        {tuple(it.values()): it for figure in figures for it in _conditions(figure)}.values()
+    )
     points, unloaded = with_unloaded([{**test, **own} for own in settings for test in conditions])
     rows = runner.run(PointList(source_case(), points))
     if rows.failures:
@@ -438,24 +475,17 @@ def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
             low=min(_by_tests(figure, one) for one in others),
             high=max(_by_tests(figure, one) for one in others),
         )
-        for figure in _settled_figures()
+        for figure in figures
     )
 
 
-def _settled_figures() -> Iterator[dict[str, Any]]:
-    """Those that are published, then slopes of which no measurement is kept here."""
-    known = [figure for figure in published_figures() if figure["compute"] in _OF_TESTS]
-    yield from known
-    content = data_file("settled.toml")
-    for finish, temperature in itertools.product(content["finishes"], content["temperatures"]):
-        given = {"temperature": temperature, "finish": finish, "planets": content["planets"]}
-        if not any(figure["with"] == given for figure in known):
-            yield {
-                "what": f"slope of the branch loss over the branch power, {finish}, {temperature}",
-                "unit": "%",
-                "compute": "branch_slope",
-                "with": given,
-            }
+def _settled_figures() -> list[dict[str, Any]]:
+    """Those that are about load-dependent losses."""
+    return [
+        figure
+        for figure in published_figures()
+        if figure.get("compute") in _OF_TESTS and figure["with"].get("part") not in _OTHER_PARTS
+    ]
 
 
 def _by_tests(figure: Mapping[str, Any], tests: LoadedTests) -> float:

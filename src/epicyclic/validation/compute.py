@@ -212,6 +212,8 @@ class LoadedTest(Protocol):
 
     @property
     def load_dependent(self) -> float: ...
+    @property
+    def load_independent(self) -> float: ...
 
 
 LoadedTests = Callable[[str, str, Iterable[int]], Sequence[LoadedTest]]
@@ -234,30 +236,76 @@ def loaded_conditions(
     ]
 
 
+@cache
+def _computed_test(*changes: tuple[str, Any]) -> Result:
+    return solve(source_case().updated(dict(changes)))
+
+
 def _computed_tests(temperature: str, finish: str, planets: Iterable[int]) -> list[Result]:
-    case = _published_case()
-    return [
-        solve(case.updated(changes)) for changes in loaded_conditions(temperature, finish, planets)
-    ]
+    conditions = loaded_conditions(temperature, finish, planets)
+    return [_computed_test(*changes.items()) for changes in conditions]
 
 
-def planet_bearing_loss(temperature: str, composite_roughness: float) -> float:
-    """Rolling loss of one planet bearing at 333 N m on the branch and 4000 rpm. [W]"""
-    rough = f"{composite_roughness / math.sqrt(2)} um"
-    result = solve(
-        _published_case(
-            operation__torque="999 N*m",
-            operation__oil_inlet_temperature=temperature,
-            planet_bearing__roller_roughness=rough,
-            planet_bearing__race_roughness=rough,
-        )
+WITHOUT_FLOW = {f"losses.{mesh}_pocketing.include": False for mesh in ("sun_mesh", "ring_mesh")}
+"""Pockets have no part in the loss of a bearing, and take time."""
+
+
+def helical(angle: float) -> dict[str, Any]:
+    """The transverse geometry held, so that the torque gives the same radial force. Eq. 3.7."""
+    gears = source_case().given()["gears"]
+    module, pressure, helix = (
+        float(str(gears[key]).split()[0])
+        for key in ("normal_module", "normal_pressure_angle", "helix_angle")
     )
+    cosine = math.cos(math.radians(helix))
+    transverse = math.degrees(math.atan(math.tan(math.radians(pressure)) / cosine))
+    return {
+        "gears.normal_module": None,
+        "gears.normal_pressure_angle": None,
+        "gears.transverse_module": f"{module / cosine!r} mm",
+        "gears.transverse_pressure_angle": f"{transverse!r} deg",
+        "gears.helix_angle": f"{angle} deg",
+    }
+
+
+def planet_bearing_loss(
+    temperature: str = "90 degC",
+    composite_roughness: float = math.hypot(0.1, 0.1),  # [um]
+    branch_torque: float = 333,  # [N m]
+    speed: int = 4000,  # [rpm]
+    helix_angle: float | None = None,  # [deg]
+    **changes: Any,
+) -> float:
+    """Rolling loss of one planet bearing; other keys as in a case. [W]"""
+    rough = f"{composite_roughness / math.sqrt(2)} um"
+    case = source_case().updated({
+        "operation.torque": f"{3 * branch_torque} N*m",
+        "operation.speed": f"{speed} rpm",
+        "operation.oil_inlet_temperature": temperature,
+        "planet_bearing.roller_roughness": rough,
+        "planet_bearing.race_roughness": rough,
+        **WITHOUT_FLOW,
+        **({} if helix_angle is None else helical(helix_angle)),
+        **changes,
+    })  # fmt: skip
+    result = solve(case)
     return result.losses["planet_bearing_mechanical"] / len(result.planet_shares)
 
 
-def planet_bearing_ratio(temperature: str, rough: float, smooth: float) -> float:
-    """Rolling loss with rough over that with smooth surfaces. [1]"""
-    return planet_bearing_loss(temperature, rough) / planet_bearing_loss(temperature, smooth)
+def planet_bearing_ratio(before: dict[str, Any], after: dict[str, Any]) -> float:
+    """Loss of a planet bearing with some of its conditions over that with others. [1]"""
+    return planet_bearing_loss(**after) / planet_bearing_loss(**before)
+
+
+def planet_bearing_change(
+    before: dict[str, Any], after: dict[str, Any], extreme: str = ""
+) -> float:
+    """Change of the loss of a planet bearing, or the extreme of it over the speeds. [%]"""
+    changes = [
+        100 * (planet_bearing_ratio({**before, **own}, {**after, **own}) - 1)
+        for own in ([{"speed": speed} for speed in TEST_SPEEDS] if extreme else [{}])
+    ]
+    return min(changes) if extreme == "smallest" else max(changes)
 
 
 def azimuth_of_gained_rollers(low: int, high: int, couple: bool) -> float:
@@ -291,37 +339,129 @@ def mixture_viscosity(temperature: str) -> float:
     return fluids.mixture.dynamic_viscosity * 1e3
 
 
+def composite_roughness(planet: str, others: str) -> float:
+    """Of the flanks of the sun mesh. [um]"""
+    given = {"planet.roughness": planet, "sun.roughness": others, "ring.roughness": others}
+    contact = mesh_contacts(source_case().updated(given))["sun_mesh"]
+    return float(np.mean(contact.composite_roughness)) * 1e6
+
+
 def branch_slope(
-    temperature: str, finish: str, planets: list[int], tests: LoadedTests = _computed_tests
+    temperature: str,
+    finish: str,
+    planets: list[int],
+    line: str = "with intercept",
+    tests: LoadedTests = _computed_tests,
 ) -> float:
-    """Slope of P_LD/n over P_in/n, a straight line with intercept through all tests. [%]"""
+    """Slope of P_LD/n over P_in/n through all tests, `line` or ``"through the origin"``. [%]"""
     results = tests(temperature, finish, planets)
     counts = np.repeat(planets, len(TEST_TORQUES) * len(TEST_SPEEDS))
     power = np.array([result.input_power for result in results]) / counts
     loss = np.array([result.load_dependent for result in results]) / counts
-    return float(100 * np.polyfit(power, loss, 1)[0])
+    return 100 * slopes(power, loss)[line]
 
 
-def load_dependent_loss(
-    temperature: str, planets: int, tests: LoadedTests = _computed_tests
+def slopes(over: NDArray[np.float64], values: NDArray[np.float64]) -> dict[str, float]:
+    """Those of two straight lines through points."""
+    return {
+        "with intercept": float(np.polyfit(over, values, 1)[0]),
+        "through the origin": float(over @ values / (over @ over)),
+    }
+
+
+def slope_gain(temperature: str, tests: LoadedTests = _computed_tests) -> float:
+    """Slope of all shaved sets less that of six polished planets. [%]"""
+    return branch_slope(temperature, "shaved", [3, 4, 5, 6], tests=tests) - branch_slope(
+        temperature, "chemically-polished", [6], tests=tests
+    )
+
+
+def loss_in_test(
+    part: str,  # ``"load_dependent"``, ``"load_independent"``, ``"total"``, ``"input_power"``.
+    temperature: str,
+    planets: int,
+    finish: str = "shaved",
+    torque: int = 1000,
+    speed: int = 4000,
+    unit: str = "kW",
+    tests: LoadedTests = _computed_tests,
 ) -> float:
-    """P_LD at 1000 N m and 4000 rpm. [kW]"""
-    return tests(temperature, "shaved", [planets])[-1].load_dependent / 1e3
+    """A power of one test, in the unit."""
+    place = TEST_TORQUES.index(torque) * len(TEST_SPEEDS) + TEST_SPEEDS.index(speed)
+    power = _part(tests(temperature, finish, [planets])[place], part)
+    return power if unit == "W" else power / 1e3
 
 
-def load_independent_loss(temperature: str, planets: int) -> float:
-    """P_LI at 4000 rpm. [kW]"""
-    case = _published_case(operation__oil_inlet_temperature=temperature, planet__count=planets)
-    return solve(case).load_independent / 1e3
+def _part(test: LoadedTest, part: str) -> float:
+    if part == "total":
+        return test.load_dependent + test.load_independent
+    return float(getattr(test, part))
+
+
+def loss_change(
+    part: str, before: dict[str, Any], after: dict[str, Any], tests: LoadedTests = _computed_tests
+) -> float:
+    """By how much a power of one test exceeds that of another. [kW]"""
+    one, other = (loss_in_test(part, **own, tests=tests) for own in (before, after))
+    return other - one
+
+
+def spin_share(
+    temperature: str, planets: int, torque: int, tests: LoadedTests = _computed_tests
+) -> float:
+    """P_LI/P at 4000 rpm. [%]"""
+    spin, total = (
+        loss_in_test(part, temperature, planets, torque=torque, tests=tests)
+        for part in ("load_independent", "total")
+    )
+    return 100 * spin / total
+
+
+def prediction_difference(
+    measured: float,  # [kW]
+    part: str,
+    temperature: str,
+    planets: int,
+    tests: LoadedTests = _computed_tests,
+) -> float:
+    """(measured - predicted)/measured at 1000 N m and 4000 rpm. Eq. 5.13. [%]"""
+    predicted = loss_in_test(part, temperature, planets, tests=tests)
+    return 100 * (measured - predicted) / measured
 
 
 def loss_share(
-    temperature: str, planets: int, extreme: str, tests: LoadedTests = _computed_tests
+    temperature: str,
+    planets: int,
+    extreme: str,
+    part: str = "load_dependent",
+    tests: LoadedTests = _computed_tests,
 ) -> float:
-    """Extreme of P_LD/P_in over the tests of a number of planets. [%]"""
+    """Extreme of a loss over P_in over the tests of a number of planets. [%]"""
     results = tests(temperature, "shaved", [planets])
-    values = [100 * result.load_dependent / result.input_power for result in results]
+    values = [100 * _part(result, part) / result.input_power for result in results]
     return min(values) if extreme == "smallest" else max(values)
+
+
+def branch_loss_ratio(temperature: str, tests: LoadedTests = _computed_tests) -> float:
+    """P_LD/n with six planets over that with three, mean of all tests. [1]"""
+    three, six = (tests(temperature, "shaved", [planets]) for planets in (3, 6))
+    ratios = [b.load_dependent / a.load_dependent / 2 for a, b in zip(three, six, strict=True)]
+    return float(np.mean(ratios))
+
+
+def branch_spin(temperature: str, speed: int = 4000, tests: LoadedTests = _computed_tests) -> float:
+    """A third of P_LI with six less that with three planets. Eq. 5.14b. [W]"""
+    one, other = (
+        loss_in_test("load_independent", temperature, planets, speed=speed, tests=tests)
+        for planets in (3, 6)
+    )
+    return 1e3 * (other - one) / 3
+
+
+def branch_spin_exponent(temperature: str, tests: LoadedTests = _computed_tests) -> float:
+    """Slope of the logarithm of `branch_spin` over that of the speed. [1]"""
+    losses = [branch_spin(temperature, speed, tests) for speed in TEST_SPEEDS]
+    return float(np.polyfit(np.log(TEST_SPEEDS), np.log(losses), 1)[0])
 
 
 @cache
@@ -332,32 +472,52 @@ def pair_pocketing(**changes: str | float) -> float:
     return solve(updated).losses["mesh_pocketing"]
 
 
-def pocketing_loss(helix_angle: str, model: str) -> float:
-    """Pocketing loss of the example pair at 10000 rpm. [W]"""
-    return pair_pocketing(gears__helix_angle=helix_angle, models__pocketing=model)
+NOMINAL_BACKLASH = 0.1  # Of the example pair. Table 4.1. [mm]
 
 
-def pocketing_speed_exponent(model: str) -> float:
-    """Slope of the logarithm of the loss of the spur pair over that of the speed. [1]"""
-    speeds = np.arange(1000, 10001, 1000)
-    losses = [
-        pair_pocketing(
-            gears__helix_angle="0 deg", models__pocketing=model, operation__speed=f"{speed} rpm"
-        )
-        for speed in speeds
-    ]
-    return float(np.polyfit(np.log(speeds), np.log(losses), 1)[0])
+def pocketing_figure(
+    model: str,
+    of: dict[str, Any],
+    over: dict[str, Any] | None = None,
+    unit: str = "W",
+    exponent: bool = False,
+) -> float:
+    """Pocketing loss of the example pair under conditions `of` at 10000 rpm [W].
+
+    With `over` its ratio to that under these [1], or its change in %; with `exponent` the slope of
+    its logarithm over that of the speed [1].
+    """
+    if exponent:
+        speeds = np.arange(1000, 10001, 1000)
+        losses = [_pocketing(model, speed=f"{speed} rpm", **of) for speed in speeds]
+        return float(np.polyfit(np.log(speeds), np.log(losses), 1)[0])
+    loss = _pocketing(model, **of)
+    if over is None:
+        return loss
+    ratio = loss / _pocketing(model, **over)
+    return 100 * (ratio - 1) if unit == "%" else ratio
 
 
-def pocketing_oil_ratio(model: str) -> float:
-    """Loss of the spur pair with an oil share of 0.6 over that with 0.05. [1]"""
-    rich, lean = (
-        pair_pocketing(
-            gears__helix_angle="0 deg", models__pocketing=model, surroundings__oil_air_ratio=share
-        )
-        for share in (0.6, 0.05)
+def _pocketing(
+    model: str,
+    helix_angle: str,
+    face_width: str = "15 mm",
+    speed: str = "10000 rpm",
+    oil_air_ratio: float = 0.05,
+    backlash: float = NOMINAL_BACKLASH,  # [mm]
+) -> float:
+    thickness = f"{math.pi - backlash / 2:.4f} mm"  # of both, at the operating circles. Table 4.1
+    return pair_pocketing(
+        gears__helix_angle=helix_angle,
+        operation__speed=speed,
+        surroundings__oil_air_ratio=oil_air_ratio,
+        models__pocketing=model,
+        **{
+            f"{gear}__{key}": value
+            for gear in ("pinion", "gear")
+            for key, value in (("face_width", face_width), ("tooth_thickness", thickness))
+        },
     )
-    return rich / lean
 
 
 def single_stiffness(teeth1: int, teeth2: int, internal: bool) -> float:
@@ -501,10 +661,11 @@ FIGURES: Mapping[str, Callable[..., float]] = {
         mesh_geometry, mesh_power, loss_factor, closed_loss_factor, local_loss_factor,
         mean_friction, closed_loss, local_loss, stage_loss, sliding_loss, pitch_pressure,
         smallest_film, largest_film, program_single_stiffness, program_mesh_stiffness,
-        planet_bearing_loss, planet_bearing_ratio, azimuth_of_gained_rollers,
-        mixture_density, mixture_viscosity, branch_slope, load_dependent_loss,
-        load_independent_loss, loss_share, pocketing_loss, pocketing_speed_exponent,
-        pocketing_oil_ratio, single_stiffness, mean_mesh_stiffness, train_ratio,
+        planet_bearing_loss, planet_bearing_ratio, planet_bearing_change,
+        azimuth_of_gained_rollers, mixture_density, mixture_viscosity, composite_roughness,
+        branch_slope, slope_gain, loss_in_test, loss_change, spin_share, prediction_difference,
+        loss_share, branch_loss_ratio, branch_spin, branch_spin_exponent, pocketing_figure,
+        single_stiffness, mean_mesh_stiffness, train_ratio,
         train_efficiency, bulk_temperature, pair_bulk_temperature, pair_flash_temperature,
     )
 }  # fmt: skip

@@ -28,6 +28,7 @@ from epicyclic.show.plots.catalogue import explorable, svg_text
 from epicyclic.show.plots.style import styled_figure
 from epicyclic.show.terminal import number_table
 from epicyclic.units import percent, unit_text
+from epicyclic.validation.chapters import influences
 from epicyclic.validation.compare import (
     CLOSURES,
     STUDY,
@@ -46,7 +47,13 @@ from epicyclic.validation.scoreboard import DEFAULTS, GRADES, Score, in_band
 # Published against computed, for a terminal.
 
 
-_STYLES = {"agrees": "green", "differs": "bold red", "calibrated": "dim", "no verdict": "dim"}
+_STYLES = {
+    "agrees": "green",
+    "differs": "bold red",
+    "calibrated": "dim",
+    "no verdict": "dim",
+    "not computed": "dim",
+}
 
 
 def validation_table(
@@ -61,7 +68,7 @@ def validation_table(
             Text.assemble(row.what, ("\n" + "\n".join(remarks(row)), "dim")),
             f"{published_text(row)} {row.unit}".rstrip(),
             f"{shown(row.computed)} {row.unit}".rstrip(),
-            percent(row.difference, signed=True),
+            _difference(row),
             Text(verdict_text(row), style=_STYLES[row.verdict]),
         )
     return Group(table, Text(summary(rows, closures)))
@@ -124,7 +131,7 @@ def band_rows(rows: Sequence[MeasuredFigure]) -> list[tuple[str, ...]]:
     """Figure, measured, computed, its 95 % band, and whether the measurement lies inside."""
     return [
         (
-            f"{row.what}, {row.unit}",
+            f"{row.what}, {row.unit}".rstrip(", "),
             shown(row.measured),
             shown(row.computed, 3),
             f"{shown(row.low, 3)} to {shown(row.high, 3)}",
@@ -139,6 +146,23 @@ def band_markdown(rows: Sequence[MeasuredFigure]) -> str:
     head = ("Measured figure", "Measured", "Computed", "95 % band", "")
     cells = [head, ("---",) * len(head), *band_rows(rows)]
     return "\n".join(f"| {' | '.join(row)} |".replace("|  |", "| |") for row in cells)
+
+
+def missed_markdown(rows: Sequence[Comparison]) -> str:
+    """What differs in the dissertation, and why, as the manual shows it."""
+    head = ("Figure", "Printed", "Computed", "Cause")
+    cells = [head, ("---",) * len(head)]
+    cells += [
+        (
+            f"{row.what} ({row.source.partition(', ')[2]})",
+            f"{published_text(row)} {unit_text(row.unit)}".rstrip(),
+            f"{shown(row.computed, 3)} {unit_text(row.unit)}".rstrip(),
+            row.missed,
+        )
+        for row in rows
+        if row.verdict == "differs" and row.source.startswith("Talbot")
+    ]
+    return "\n".join(f"| {' | '.join(row)} |" for row in cells)
 
 
 def bands_table(rows: Sequence[MeasuredFigure]) -> RenderableType:
@@ -207,6 +231,10 @@ def source_lines(scores: Sequence[Score]) -> Iterator[str]:
     return (f"{'; '.join(names)}: {text}" for text, names in told.items())
 
 
+def _difference(row: Comparison) -> str:
+    return MISSING if math.isnan(row.computed) else percent(row.difference, signed=True)
+
+
 def remarks(row: Comparison) -> list[str]:
     """Where a figure is printed, how it was inferred, why there is no verdict."""
     found = [row.source]
@@ -214,6 +242,8 @@ def remarks(row: Comparison) -> list[str]:
         found.append(f"Inferred: {row.inferred}.")
     if row.reason:
         found.append(f"{_REASONS[row.role]}: {row.reason}.")
+    if row.missed:
+        found.append(f"Cause: {row.missed}.")
     return found
 
 
@@ -299,8 +329,11 @@ def _items(key: str, rows: Sequence[Comparison]) -> Iterator[Item]:
         part = rows[place * height : (place + 1) * height]
         yield _table(part)
         name = f"{key}-{place + 1}" if count > 1 else key
-        with styled_figure(1, 1, "", panel=deviations_size(part)) as (figure, axes):
-            ax = plot_deviations(part, axes[0, 0])
+        computed = [row for row in part if not math.isnan(row.computed)]
+        if not computed:
+            continue
+        with styled_figure(1, 1, "", panel=deviations_size(computed)) as (figure, axes):
+            ax = plot_deviations(computed, axes[0, 0])
         drawing = Drawing(name, "Computed over published", svg_text(figure, name), explorable(ax))
         yield Gallery((drawing,), is_wide=True)
 
@@ -314,7 +347,7 @@ def _table(rows: Sequence[Comparison]) -> Table:
                 Cell(published_text(row), row.low),
                 number(row.computed, ""),
                 Cell(unit_text(row.unit), about="nowrap"),
-                Cell(percent(row.difference, signed=True), row.difference),
+                Cell(_difference(row), row.difference),
                 Cell(verdict_text(row), about="nowrap"),
                 Cell(row.cause),
             )
@@ -327,6 +360,26 @@ def _table(rows: Sequence[Comparison]) -> Table:
 # The report of a chapter of Talbot (2012), computed again: its figures, and what is published.
 
 
+def influence_table(figures: Sequence[Reproduced]) -> Table:
+    """What the source says of each parameter, beside the computed changes."""
+    found = [it for item in figures for it in influences(item.number, item.data)]
+    cells = [
+        (
+            Cell(f"{it.parameter} (Fig. {it.figure})"),
+            Cell(f"{it.says} ({it.source})"),
+            aligned(" to ".join(percent(end, 0, signed=True) for end in (it.least, it.most))),
+            Cell(it.verdict),
+        )
+        for it in found
+    ]
+    note = (
+        "Least and largest change of all that is drawn in a figure. The source classes no sizes: "
+        "of its own numbers +40 % is modest (p. 78) and -19 % significant (p. 70)."
+    )
+    heads = ("from the first to the last value", "the source says", "computed change", "")
+    return Table(heads, tuple(cells), "Influence of each parameter", note=note)
+
+
 def chapter_html(chapter: str, figures: Sequence[Reproduced], rows: Sequence[Comparison]) -> str:
     """All figures of a chapter and its published numbers, as one page that needs nothing else."""
     drawings = tuple(
@@ -334,6 +387,8 @@ def chapter_html(chapter: str, figures: Sequence[Reproduced], rows: Sequence[Com
         for item in figures
         for key in (f"fig-{item.number.replace('.', '-')}",)
     )
+    table = influence_table(figures)
+    influence_sections = [Section("influences", "Parameters", (table,))] if table.rows else []
     return page_html(
         title=f"Talbot (2012), chapter {chapter}, computed again",
         kind="Reproduction",
@@ -342,12 +397,13 @@ def chapter_html(chapter: str, figures: Sequence[Reproduced], rows: Sequence[Com
         key_figures=[KeyFigure("figures", number(len(drawings), ""))],
         sections=[
             Section("figures", "Figures", (Gallery(drawings, is_wide=True),), _LEAD),
+            *influence_sections,
             *comparison_sections(rows),
         ],
     )
 
 
 _LEAD = (
-    "Curves are computed. Markers show the numbers printed in the text of the source; its curves "
-    "were not digitised."
+    "Curves are computed. Markers and lines show the numbers printed in the text of the source; "
+    "its curves were not digitised. Numbers that cannot be marked are in the tables below."
 )

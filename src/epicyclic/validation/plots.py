@@ -38,7 +38,7 @@ from epicyclic.validation.scoreboard import DEFAULTS, Score
 # The figures of the chapters of Talbot (2012), drawn from what was computed for them.
 
 
-STARS = ("*", "P", "X")  # Markers of published numbers.
+STARS = ("*", "P", "X", "D", "h")  # Markers of published numbers.
 SOURCE = "Talbot (2012)"
 MOST_COLUMNS = 3
 PANEL, ALONE = (4.3, 3.1), (6.4, 4.2)
@@ -47,10 +47,13 @@ SAME = 0.5  # Values of panels that differ less are the same, in their unit.
 
 
 def family_figure(family: Family) -> Figure:
-    """A panel for each value of the first parameter, a curve for each of the second."""
-    data = family.data[family.variable]
-    panels, curves, over = map(str, data.dims)
-    count = data.sizes[panels]
+    """A panel for each variable and value of its first parameter, a curve for each second one."""
+    places = [
+        (array.isel({array.dims[0]: index}) if array.ndim > 2 else array)
+        for array in family.data.data_vars.values()
+        for index in range(array.shape[0] if array.ndim > 2 else 1)
+    ]
+    count = len(places)
     columns = _columns(count)
     rows = -(-count // columns)
     panel = PANEL if count > 1 else ALONE
@@ -59,55 +62,61 @@ def family_figure(family: Family) -> Figure:
             if number >= count:
                 ax.remove()
                 continue
-            part = data.isel({panels: number})
+            part = places[number]
+            curves, over = map(str, part.dims)
             for index in range(part.sizes[curves]):
+                if np.isnan(part.isel({curves: index})).all():
+                    continue
                 ax.plot(
                     part[over],
                     part.isel({curves: index}),
                     marker=MARKERS[index % len(MARKERS)],
+                    color=COLOURS[index % len(COLOURS)],
                     ls=LINE_STYLES[index % len(LINE_STYLES)],
                     ms=4,
                     label=_value(part[curves][index]),
                 )
-            _mark(family.marks, data[panels][number], ax)
-            ax.set(
-                title=_described(data[panels][number]),
-                xlabel=label_of(part[over]),
-                ylabel=label_of(data),
-            )
+            held = [part[name] for name in part.coords if part[name].ndim == 0]
+            _mark(family.marks, part, held, ax)
+            title = ", ".join(map(_described, held)) or str(part.attrs["long_name"])
+            ax.set(title=title, xlabel=label_of(part[over]), ylabel=label_of(part))
             ax.margins(0.06)
             ax.set_xlim(left=0)
-            ax.set_ylim(bottom=0)
-        title = str(data[curves].attrs.get("long_name", curves))
+            if part.attrs["units"] not in ("%", "degC"):
+                ax.set_ylim(bottom=0)
+        title = str(places[0][places[0].dims[0]].attrs.get("long_name", ""))
         legend_of_figure(figure, figure.axes, title)
     return figure
 
 
 def branch_figure(family: Family) -> Figure:
-    """Loss of a branch over its power in all tests, with its line and the published ones."""
+    """Loss of a branch over its power in all tests, by speed, its lines and the published ones."""
     data = family.data
     with styled_figure(1, 1, _title(family), panel=ALONE) as (figure, axes):
         ax = axes[0, 0]
-        for index, name in enumerate(data["set"].values):
-            part = data.isel(set=index)
+        over, loss = data["over"], data["branch_loss"]
+        for index, speed in enumerate(data["speed"]):
+            part = data.sel(speed=speed)
             ax.plot(
-                part["branch_power"].values.ravel(),
+                part["over"].values.ravel(),
                 part["branch_loss"].values.ravel(),
                 ls="none",
                 marker=MARKERS[index],
+                color=COLOURS[index],
                 mfc="none",
                 ms=4,
-                label=f"{name} planets",
+                label=_value(speed),
             )
-        power = data["branch_power"].values
-        ends = np.array([0.0, float(power.max())])
-        slope, intercept = data.attrs["slope"], data.attrs["intercept"]
-        ax.plot(ends, intercept + slope * ends, color="black", label=f"line, {100 * slope:.4f} %")
-        middle = float(power.mean()), float(data["branch_loss"].mean())
+        ends = np.array([0.0, float(over.max())])
+        middle = float(over.mean()), float(loss.mean())
+        for (name, slope), style in zip(data.attrs.items(), ("-", "-."), strict=False):
+            through = middle if name == "with intercept" else (0.0, 0.0)
+            line = through[1] + slope / 100 * (ends - through[0])
+            ax.plot(ends, line, color="black", ls=style, label=f"line {name}, {slope:.4f} %")
         for mark, style in zip(family.marks, ("--", ":"), strict=False):
             line = middle[1] + mark.value / 100 * (ends - middle[0])
             ax.plot(ends, line, color=COLOURS[1], ls=style, label=f"{SOURCE}: {mark.label}")
-        ax.set(xlabel=label_of(data["branch_power"]), ylabel=label_of(data["branch_loss"]))
+        ax.set(xlabel=label_of(over), ylabel=label_of(loss))
         ax.set_xlim(left=0)
         ax.set_ylim(bottom=0)
         ax.legend(fontsize="small", frameon=False)
@@ -151,20 +160,29 @@ def _title(family: Family) -> str:
     return f"{SOURCE}, Fig. {family.figure}: {family.title}"
 
 
-def _mark(marks: Sequence[Mark], panel: xr.DataArray, ax: Axes) -> None:
+def _mark(
+    marks: Sequence[Mark], part: xr.DataArray, held: Sequence[xr.DataArray], ax: Axes
+) -> None:
     """The published numbers of a panel."""
-    own = [mark for mark in marks if _is_same(mark.panel, panel)]
-    for number, mark in enumerate(own):
+    labels = list(dict.fromkeys(mark.label for mark in marks))
+    for mark in marks:
+        panel = mark.panel is None or any(_is_same(mark.panel, own) for own in held)
+        if mark.variable != part.name or not panel:
+            continue
+        number = labels.index(mark.label)
+        style: dict[str, Any] = {"color": COLOURS[-1], "label": f"{SOURCE}: {mark.label}"}
+        if mark.over is None:
+            ax.axhline(mark.value, ls=LINE_STYLES[number % len(LINE_STYLES)], **style)
+            continue
         ax.plot(
             mark.over,
             mark.value,
             ls="none",
             marker=STARS[number % len(STARS)],
-            color=COLOURS[-1],
             mfc="none",
             ms=9,
             zorder=3,
-            label=f"{SOURCE}: {mark.label}",
+            **style,
         )
 
 
@@ -236,33 +254,29 @@ def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) ->
             ms=4,
             label=_value(loss[curves][number]),
         )
-    if published is not None:
-        values = {
-            "helix_angle": published.helix_angle,
-            "face_width": published.face_width,
-            "speed": published.speed,
-        }
-        if _has(loss, values):
-            label = f"{SOURCE}, {published.speed:g} rpm"
-            ax.plot(
-                values[over], published.loss, "*", color=COLOURS[-1], ms=12, label=label, zorder=3
-            )
-        # Between which losses the axes of the source enclose its curve of the highest speed.
-        for helix, width, low, high in published.bands:
-            values = {"helix_angle": helix, "face_width": width, "speed": published.speed}
-            if not _has(loss, values):
-                continue
-            ax.errorbar(
-                values[over],
-                (low + high) / 2,
-                yerr=(high - low) / 2,
-                ls="none",
-                color=COLOURS[-1],
-                capsize=4,
-                lw=1.2,
-                zorder=3,
-                label=f"{SOURCE}, read between ticks of its axes, {published.speed:g} rpm",
-            )
+    own = {} if published is None else published.own
+    for mark in () if published is None else published.marks:
+        places = [mark.place, *([] if mark.base is None else [mark.base])]
+        if not all(_has(loss, place, own) for place in places):
+            continue
+        of = 1.0 if mark.base is None else _at(loss, mark.base)
+        low, high = (of * end for end in mark.ends)
+        how = "" if mark.base is None else ", printed ratio, over the computed loss"
+        how = how if low == high else ", read between ticks of its axes"
+        ax.errorbar(
+            mark.place[over],
+            (low + high) / 2,
+            yerr=(high - low) / 2 or None,
+            ls="none",
+            marker=None if low < high else "*" if mark.base is None else "P",
+            mfc="none",
+            ms=9,
+            color=COLOURS[-1],
+            capsize=4,
+            lw=1.2,
+            zorder=3,
+            label=f"{SOURCE}, {mark.place['speed']:g} rpm{how}",
+        )
     held = [_described(study[name]) for name in study.coords if study[name].ndim == 0]
     ax.set(title=", ".join(held) or "Loss", xlabel=label_of(loss[over]), ylabel="pocketing loss, W")
     ax.set_ylim(bottom=0)
@@ -281,28 +295,33 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
             ms=4,
             label=f"{_value(loss[curves][number])}: {slope:.2f}",
         )
-    if published is not None and float(loss[curves][0]) == 0.0:
-        speed = loss["speed"].to_numpy()
+    known = published.exponents if published is not None and curves == "helix_angle" else {}
+    for (angle, exponent), style in zip(known.items(), ("--", ":"), strict=False):
+        if angle not in loss[curves]:
+            continue
+        curve, speed = loss.sel({curves: angle}), loss["speed"].to_numpy()
         # through the middle of the curve in logarithms, where lines of all slopes cross
-        scale = np.exp(np.log(loss[0]).mean() - published.exponent * np.log(speed).mean())
-        line = float(scale) * speed**published.exponent
-        label = f"{SOURCE}, 0 deg: {published.exponent:.2f}"
-        ax.loglog(speed, line, color="black", ls="--", lw=1.0, label=label)
+        scale = np.exp(np.log(curve).mean() - exponent * np.log(speed).mean())
+        label = f"{SOURCE}, {angle:g} deg: {exponent:.2f}"
+        ax.loglog(speed, float(scale) * speed**exponent, color="black", ls=style, label=label)
     label_logarithms(ax.xaxis, ax.yaxis)
     ax.set(title="Exponent of the speed", xlabel=label_of(loss["speed"]))
     ax.set_ylabel("pocketing loss, W")
     ax.legend(title=f"{loss[curves].attrs['long_name']}: exponent", loc="upper left")
 
 
-def _has(loss: xr.DataArray, values: Mapping[str, float]) -> bool:
-    """Whether a panel has a curve and a point of these values."""
-    if not values.keys() >= set(loss.coords):
-        return False
-    return all(
-        name in loss.coords
-        and bool(np.isclose(np.atleast_1d(loss[name].to_numpy()), value, rtol=SAME_LINE).any())
-        for name, value in values.items()
+def _has(loss: xr.DataArray, place: Mapping[str, float], own: Mapping[str, float]) -> bool:
+    """Whether a panel has a curve and a point of these values; `own` are those of the case."""
+    values = {name: loss[name].to_numpy() for name in map(str, loss.coords)}
+    return values.keys() <= place.keys() and all(
+        np.isclose(np.atleast_1d(values.get(name, own[name])), value, rtol=SAME_LINE).any()
+        for name, value in place.items()
     )
+
+
+def _at(loss: xr.DataArray, place: Mapping[str, float]) -> float:
+    wanted = {name: place[str(name)] for name in loss.dims}
+    return float(loss.sel(wanted, method="nearest"))
 
 
 # Every figure of a chapter of Talbot (2012) that is computed again, with its data.
@@ -333,8 +352,8 @@ def reproduce(figures: Sequence[str], runner: Runner = HERE) -> Iterator[Reprodu
         title = f"{SOURCE}, Fig. {name}: pocketing loss of the mesh of Table 4.1"
         picture = study_figure(data.assign_attrs(title=title), published_study(case))
         yield Reproduced(name, data, picture)
-    for family in chapters.set_families(figures, runner):
-        draw = branch_figure if "branch_power" in family.data else family_figure
+    for family in (*chapters.set_families(figures, runner), *chapters.warm_up_families(figures)):
+        draw = branch_figure if "branch_loss" in family.data else family_figure
         yield Reproduced(family.figure, family.data, draw(family))
 
 

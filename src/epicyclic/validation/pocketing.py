@@ -30,8 +30,9 @@ from epicyclic.schema.read import plain
 from epicyclic.study.meshes import variable
 from epicyclic.study.pockets import mesh_duties
 from epicyclic.study.sweeps.runner import HERE, Plan, Progress, Row, Rows, Runner
-from epicyclic.units import DEGREE, MILLIMETRE, NUMBER, RPM, Quantity
-from epicyclic.validation.compare import open_figures, published_figures
+from epicyclic.units import DEGREE, MILLIMETRE, NUMBER, Quantity
+from epicyclic.validation.compare import open_figures, published_ends
+from epicyclic.validation.compute import NOMINAL_BACKLASH
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -571,16 +572,21 @@ _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")
 
 @dataclass(frozen=True, slots=True)
 class PublishedStudy:
-    """Values that the text of the source prints, in display units."""
+    """What is published of the example, in display units."""
 
-    helix_angle: float  # Where the loss holds. [deg]
-    face_width: float  # [mm]
-    speed: float  # [rpm]
-    loss: float  # [W]
-    exponent: float  # Exponent of the speed in the loss of the spur pair. [1]
-    # Helix angle, face width, and the losses between which the one at `speed` lies, by the axes of
-    # the figures. [deg], [mm], [W], [W]
-    bands: tuple[tuple[float, float, float, float], ...] = ()
+    own: Mapping[str, float]  # Values of the dimensions of a study in the case itself.
+    exponents: Mapping[float, float]  # Of the speed in the loss, by helix angle. [deg]
+    marks: tuple[PublishedLoss, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedLoss:
+    """A published loss, or the ends between which the axes of the figures enclose it."""
+
+    place: Mapping[str, float]  # Values of the dimensions of a study.
+    # What a ratio or a change refers to, in the same way.
+    base: Mapping[str, float] | None
+    ends: tuple[float, float]  # [W], or ratios to the loss at `base`.
 
 
 FIGURES_AGAIN = {study.figure.removeprefix("Fig. "): name for name, study in STUDIES.items()}
@@ -609,36 +615,37 @@ def published_study(case: Case) -> PublishedStudy | None:
     example = read_case(EXAMPLE)
     if not _is_example(case, example):
         return None
-    gearing = example.gearings[""]
-    loss, exponent = _figure("pocketing_loss"), _figure("pocketing_speed_exponent")
-    return PublishedStudy(
-        helix_angle=DEGREE.to_display(DEGREE.parse(loss["with"]["helix_angle"])),
-        face_width=MILLIMETRE.to_display(gearing.tables["pinion"].face_width),
-        speed=RPM.to_display(example.operation.speed),
-        loss=loss["value"],
-        exponent=exponent["value"],
-        bands=tuple(
-            (
-                DEGREE.to_display(DEGREE.parse(item["helix_angle"])),
-                MILLIMETRE.to_display(MILLIMETRE.parse(item["face_width"])),
-                item["low"],
-                item["high"],
-            )
-            for item in open_figures()
-            if "over" not in item and item["low"] < item["high"]
-        ),
-    )
+    given = example.given()
+    own = _place({
+        "helix_angle": given["gears"]["helix_angle"],
+        "face_width": given["pinion"]["face_width"],
+    })  # fmt: skip
+    exponents, marks = {}, []
+    for item in open_figures():
+        if item.get("role") == "context":
+            continue
+        if "exponent" in item:
+            exponents[_place(item["of"])["helix_angle"]] = item["value"]
+            continue
+        low, high = published_ends(item)
+        if item["unit"] == "%":
+            low, high = 1 + low / 100, 1 + high / 100
+        base = _place(item["over"]) if "over" in item else None
+        marks.append(PublishedLoss(_place(item["of"]), base, (low, high)))
+    return PublishedStudy(own, exponents, tuple(marks))
+
+
+def _place(given: Mapping[str, Any]) -> dict[str, float]:
+    """Conditions of a figure as the dimensions of a study: rpm, um, deg, mm."""
+    return {
+        "speed": 1e4,
+        "backlash": 1e3 * given.get("backlash", NOMINAL_BACKLASH),
+        "helix_angle": DEGREE.to_display(DEGREE.parse(given["helix_angle"])),
+        "face_width": MILLIMETRE.to_display(MILLIMETRE.parse(given["face_width"])),
+    }
 
 
 def _is_example(case: Case, example: Case) -> bool:
     same = all(getattr(case, table, None) == getattr(example, table) for table in _SAME)
     one, other = (item.operation.oil_inlet_temperature for item in (case, example))
     return same and one == other
-
-
-def _figure(compute: str) -> dict[str, Any]:
-    return next(
-        figure
-        for figure in published_figures()
-        if figure["compute"] == compute and figure["role"] == "validation"
-    )
