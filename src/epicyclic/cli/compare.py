@@ -21,6 +21,7 @@ from epicyclic.cli.common import (
     set_option,
     shard_option,
     show,
+    table_options,
 )
 from epicyclic.cli.many import Write, compute
 from epicyclic.errors import InputError, Problem
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from epicyclic.study.measured.comparison import MeasuredComparison
     from epicyclic.study.sweeps.run import LoadDependent
     from epicyclic.study.sweeps.runner import Rows, Runner
+    from epicyclic.study.table_file import TableForm
 
 
 @click.command()
@@ -69,6 +71,7 @@ if TYPE_CHECKING:
 @click.option(
     "--seed", type=click.IntRange(0), default=0, help="Seed of the random share; default: 0."
 )
+@table_options
 @output_option("Write the calibrated case (.toml).", "FILE")
 @plot_option("Draw parity and residuals to .png, .svg or .pdf.")
 @json_option
@@ -85,6 +88,7 @@ def compare(
     fit: str | None,
     hold_out: str | None,
     seed: int,
+    form: TableForm,
     output: Path | None,
     plot: Path | None,
     json_file: str | None,
@@ -93,9 +97,9 @@ def compare(
 ) -> None:
     """Compare measured losses with computed ones; with --fit, calibrate inputs to them.
 
-    MEASURED is a .csv, .xlsx or .parquet file with columns such as "speed [rpm]", "torque [N*m]",
-    "temperature [degC]", "loss [W]"; optionally "uncertainty [W]" or [%], component, the state of a
-    train, and any key of the case.
+    MEASURED is a text, Excel or Parquet table with columns such as "speed [rpm]", "torque [N*m]",
+    "temperature [degC]", and "loss [W]", "efficiency [%]" or "output_torque [N*m]"; optionally
+    "uncertainty [W]" or [%], component, the state of a train, and any key of the case.
 
     A shard keeps its points beside the file of --json, which 'epicyclic merge' writes.
     """
@@ -112,7 +116,7 @@ def compare(
         from epicyclic.study.measured.compare import ComparisonPlan, ask
         from epicyclic.study.measured.table import read_grid
 
-        question = ask(loaded, read_grid(measured), component, load_dependent, group)
+        question = ask(loaded, read_grid(measured, form), component, load_dependent, group)
         plan, file = ComparisonPlan.of(question), Path(str(json_file))
         write = comparison_writer(plan, file)
         compute(plan, file, runner, write, plot=None if plot is None else str(plot))
@@ -127,6 +131,7 @@ def compare(
             fit=keys,
             hold_out=hold_out,
             seed=seed,
+            form=form,
             jobs=runner.jobs,
             dask=runner.dask,
             journal=journal,

@@ -30,6 +30,7 @@ from epicyclic.study.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_case
 from epicyclic.study.operating import STATE
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
+from epicyclic.study.table_file import AS_IT_IS, TableForm
 from epicyclic.units import CELSIUS, KILOJOULE, NEWTON_METRE, RPM, SECOND, Quantity, format_number
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ def duty_cycle(
     *,
     clamp: bool = False,
     samples: int = SAMPLES,
+    form: TableForm = AS_IT_IS,
     jobs: int | None = None,
     dask: str | None = None,
     journal: str | Path | None = None,
@@ -72,7 +74,7 @@ def duty_cycle(
     map_or_case : xarray.Dataset, PlanetaryCase or GearPairCase
         A loss map. For a case a map that covers the cycle is computed first.
     cycle : str, Path, pandas.DataFrame or mapping
-        A file that ends in .csv or .parquet, or columns by name: ``"speed [rpm]"``,
+        A text, Excel or Parquet file, or columns by name: ``"speed [rpm]"``,
         ``"torque [N*m]"`` of the input member, ``"temperature [degC]"`` if it varies, and
         ``"time [s]"`` of a time series, or ``"duration [s]"`` or ``"share"`` of a histogram.
         Any units; a train with states has a column ``"state"`` of their names. Other columns are
@@ -85,6 +87,8 @@ def duty_cycle(
         refused.
     samples : int
         Points of the cycle that are solved directly to measure the error of the interpolation.
+    form : TableForm
+        How a file is to be read, where it does not say so itself.
     jobs, dask
         As for `sweep`.
     journal : str or Path, optional
@@ -110,7 +114,7 @@ def duty_cycle(
         have; for a map with gaps, further axes of several values, or two driven members.
     """
     runner = Runner(jobs, dask, journal=journal)
-    checked = open_cycle(cycle)
+    checked = open_cycle(cycle, form=form)
     celsius = parse_temperatures(checked, temperature)
     data = map_or_case
     if isinstance(data, Case):

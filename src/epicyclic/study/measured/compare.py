@@ -30,11 +30,11 @@ from epicyclic.study.measured.table import (
     Measurements,
     parse_measurements,
     parts_of,
-    read_frame,
     read_grid,
 )
 from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, CasePlan, LoadDependent, PointList
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
+from epicyclic.study.table_file import AS_IT_IS, TableForm
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -205,6 +205,7 @@ def compare_measured(
     hold_out: str | float | None = None,
     seed: int = 0,
     confidence: float = 0.95,
+    form: TableForm = AS_IT_IS,
     jobs: int | None = None,
     dask: str | None = None,
     journal: str | Path | None = None,
@@ -240,6 +241,8 @@ def compare_measured(
     seed : int, optional
     confidence : float, optional
         Confidence of the intervals of fitted values. [1]
+    form : TableForm, optional
+        How a file is to be read, where it does not say so itself.
     jobs, dask, progress
         As for `sweep`; the progress starts again with every round of a fit.
     journal : str or Path, optional
@@ -258,10 +261,8 @@ def compare_measured(
     ConvergenceError
         If the fit does not converge.
     """
-    import pandas as pd
-
     runner = Runner(jobs, dask, journal=journal, progress=progress)
-    grid = read_frame(measured) if isinstance(measured, pd.DataFrame) else read_grid(Path(measured))
+    grid = read_grid(measured, form)
     question = ask(case, grid, component, load_dependent, group)
     table = question.table
     keys = tuple(dict.fromkeys(fit))

@@ -450,7 +450,12 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
     items = [item.strip() for item in text.split(",") if item.strip()]
     shared = _unit_of(items[-1]) if items else ""
     for item in items:
+        if _LEADING_ZERO.match(item):
+            raise ValueError(f'"{item}" is no value: commas divide values, not digits of one')
         yield parse_value(f"{item} {shared}" if shared and _is_bare(item) else item)
+
+
+_LEADING_ZERO = re.compile(r"0\d")
 
 
 def _is_bare(item: str) -> bool:
