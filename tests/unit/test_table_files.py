@@ -61,6 +61,7 @@ READ = {
     "spaces": PLAIN.replace(",", "   "),
     "Windows ends, separators at ends": PLAIN.replace("\n", ",,\r\n"),
     "a title": "Run 12 of 12.03.2021\n\n" + PLAIN,
+    "blank cells below": GERMAN + ";;\n;;\n",
     "a title in cells": "Lastkollektiv;;\n" + GERMAN,
     "facts above the head": "Operator:,Meier,\nSample rate:,10 Hz,\n" + PLAIN,
     "a row of units": "time,speed,torque\ns,rpm,N*m\n0,420,310\n7,890,28.5\n",

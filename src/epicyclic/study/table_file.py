@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import islice
+from itertools import compress, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +41,6 @@ _BATCH_ROWS, _PAGE_BYTES = 1 << 16, 1 << 20
 _NOUN, _SAVE_AGAIN, _TIME_OF_DATES = "table", "Save it again, or as CSV.", "time [s]"
 _SHOWN = 5  # Lines, columns and sheets that a message names.
 _MOST_COLUMNS = 2000
-_LONGEST_LINE = 1 << 17
 
 _SEPARATORS = ";\t|,"  # The first of those that divide the lines alike.
 _GAPS = re.compile(r'"[^"]*"|[^\s\[("]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?')
@@ -219,7 +218,10 @@ class _Text:
     @cached_property
     def start(self) -> str:
         with self.path.open(encoding=self.encoding, newline="") as file:
-            return file.read(_SAMPLE_CHARACTERS)
+            text = file.read(_SAMPLE_CHARACTERS)
+        if len(text) == _SAMPLE_CHARACTERS and "\n" not in text and "\r" not in text:
+            refuse("cannot be read: its first line does not end.", "Write it again as CSV.")
+        return text
 
     @cached_property
     def separator(self) -> str:
@@ -234,20 +236,32 @@ class _Text:
         best = max(_SEPARATORS, key=alike)
         return best if alike(best) > 0 else " "
 
-    def __iter__(self) -> Iterator[tuple[int, list[str]]]:
-        """Line and cells of each row, comments included: those have a single cell."""
+    def batches(self, size: int) -> Iterator[tuple[NDArray[np.int64], list[list[str]]]]:
+        """Lines and cells of `size` rows at a time, comments and blank lines included."""
         try:
             with self.path.open(encoding=self.encoding, newline="") as file:
-                lines = map(_without_quotes, iter(lambda: file.readline(_LONGEST_LINE), ""))
                 if self.separator == " ":
-                    for number, line in enumerate(lines, 1):
-                        yield number, [cell.strip('"') for cell in _GAPS.findall(line)]
+                    done = 0
+                    while some := list(islice(file, size)):
+                        rows = [[one.strip('"') for one in _GAPS.findall(line)] for line in some]
+                        yield np.arange(done, done + len(rows)) + 1, rows
+                        done += len(rows)
                     return
+                lines = map(_without_quotes, file) if "#" in self.start else file
                 reader = csv.reader(lines, delimiter=self.separator, skipinitialspace=True)
-                for cells in reader:
-                    yield reader.line_num, cells
+                before = 0
+                while rows := list(islice(reader, size)):
+                    numbers = np.arange(before, before + len(rows)) + 1
+                    if reader.line_num != numbers[-1]:  # cells of several lines
+                        numbers += np.cumsum([sum(map(_line_ends, row)) for row in rows])
+                    before = reader.line_num
+                    yield numbers, rows
         except (csv.Error, UnicodeError) as error:
             refuse(f"cannot be read: {one_line(str(error), 200)}.", "Write it again as CSV.")
+
+
+def _line_ends(cell: str) -> int:
+    return cell.count("\n")
 
 
 def _without_quotes(line: str) -> str:
@@ -299,9 +313,12 @@ class _Workbook:
             refuse(f"has tables on the sheets {shown}.", "Choose one with --sheet NAME.")
         return known[0] if known else next(iter(sheets.values()))
 
-    def __iter__(self) -> Iterator[tuple[int, list[str]]]:
+    def batches(self, size: int) -> Iterator[tuple[NDArray[np.int64], list[list[str]]]]:
+        """As those of a text."""
         try:
-            yield from _rows(self._sheet)
+            numbered = _rows(self._sheet)
+            while rows := list(islice(numbered, size)):
+                yield np.array([number for number, _ in rows]), [cells for _, cells in rows]
         except InputError:
             raise
         except Exception as error:  # the reader raises whatever its parsers do
@@ -330,7 +347,10 @@ def cell_text(value: object) -> str:
 
 
 def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
-    sample = [(line, [cell.strip() for cell in row]) for line, row in islice(cells, _SAMPLE_ROWS)]
+    lines, rows = next(cells.batches(_SAMPLE_ROWS), (np.arange(0), []))
+    sample = [
+        (int(line), [cell.strip() for cell in row]) for line, row in zip(lines, rows, strict=True)
+    ]
     last, headers = _head(sample, form)
     width = len(headers)
     data = [(line, row) for line, row in sample if line > last and any(row) and row[0][:1] != "#"]
@@ -340,21 +360,23 @@ def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
 
     def pieces(chosen: Sequence[str]) -> Iterator[Piece]:
         import pyarrow as pa
+        import pyarrow.compute as pc
 
-        first, final = form.rows or (0, float("inf"))
-        rows = (
-            (line, row)
-            for line, row in cells
-            if line > last and first <= line <= final and any(row) and row[0][:1] != "#"
-        )
-        while batch := list(islice(rows, _BATCH_ROWS)):
-            _check_widths(batch, width, cells.separator)
+        first, final = form.rows or (0, 1 << 60)
+        for numbers, rows in cells.batches(_BATCH_ROWS):
+            kept = (numbers > last) & (numbers >= first) & (numbers <= final)
+            uniform = all(map(width.__eq__, map(len, rows)))
+            if not uniform or not kept.all() or any(row[0][:1] in ("", "#", " ") for row in rows):
+                kept &= np.fromiter(map(_is_row, rows), dtype=bool, count=len(rows))
+                rows = list(compress(rows, kept))
+                numbers = numbers[kept]
+                _check_widths(zip(numbers.tolist(), rows, strict=True), width, cells.separator)
+            columns = {
+                header: pa.array([row[index[header]] for row in rows], pa.string())
+                for header in chosen
+            }
             yield Piece(
-                np.array([line for line, _ in batch]),
-                {
-                    header: pa.array([row[index[header]].strip() for _, row in batch], pa.string())
-                    for header in chosen
-                },
+                numbers, {header: pc.utf8_trim_whitespace(one) for header, one in columns.items()}
             )
 
     def batches(chosen: Sequence[str]) -> Iterator[Piece]:
@@ -364,6 +386,11 @@ def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
             raise InputError(error.problems, name) from None
 
     return Source(name, tuple(headers), batches, "line", mark, moments)
+
+
+def _is_row(cells: Sequence[str]) -> bool:
+    """Whether it is neither blank nor a comment."""
+    return any(cells) and cells[0].lstrip()[:1] != "#"
 
 
 def _check_widths(rows: Iterable[tuple[int, list[str]]], width: int, separator: str) -> None:
@@ -612,6 +639,9 @@ def plain_numbers(source: Source, header: str, column: pa.Array) -> pa.Array:
         return pa.array(_seconds(column.to_pylist(), source.moments), from_pandas=True)
     if header.endswith("[%]") or header == "share":
         column = pc.replace_substring_regex(column, r"\s*%$", "")
+    marked = pc.match_substring_regex(column, rf"[,%{_SPACES}]")
+    if source.decimal == "." and not pc.any(marked).as_py():
+        return column
     other = "," if source.decimal == "." else r"\."
     own = rf"\{source.decimal}"
     whole = rf"(\d{{1,3}}([{other}{_SPACES}]\d{{3}})+|\d+)"
@@ -619,8 +649,8 @@ def plain_numbers(source: Source, header: str, column: pa.Array) -> pa.Array:
     fits = pc.match_substring_regex(column, number)
     if source.decimal == ",":
         wrong = pc.and_(pc.match_substring_regex(column, r"^[+-]?\d*\.\d+$"), pc.invert(fits))
-        marked = pc.binary_join_element_wise(column, "beside decimal commas", " ")
-        column = pc.if_else(wrong, marked, column)
+        beside = pc.binary_join_element_wise(column, "beside decimal commas", " ")
+        column = pc.if_else(wrong, beside, column)
     bare = pc.replace_substring_regex(column, f"[{other}{_SPACES}]", "")
     bare = pc.replace_substring(bare, source.decimal, ".")
     return pc.if_else(fits, bare, column)
