@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from pydantic_core import PydanticCustomError
 
 from epicyclic.cli.common import (
     case_argument,
@@ -26,6 +27,8 @@ from epicyclic.cli.common import (
 from epicyclic.cli.many import Write, compute
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import write_file
+from epicyclic.messages import refused
+from epicyclic.units import NUMBER
 
 if TYPE_CHECKING:
     from epicyclic.study.measured.compare import ComparisonPlan
@@ -69,6 +72,12 @@ if TYPE_CHECKING:
     help="Points excluded from the fit: rows where a column has a value, or a random share.",
 )
 @click.option(
+    "--relative",
+    metavar="PERCENT",
+    help="Standard uncertainty of all losses over them, 5%, if no column states it; default: "
+    "estimated from the scatter about the fit.",
+)
+@click.option(
     "--seed", type=click.IntRange(0), default=0, help="Seed of the random share; default: 0."
 )
 @table_options
@@ -87,6 +96,7 @@ def compare(
     group: str | None,
     fit: str | None,
     hold_out: str | None,
+    relative: str | None,
     seed: int,
     form: TableForm,
     output: Path | None,
@@ -110,7 +120,8 @@ def compare(
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
     _check_output(output, keys)
     if runner.shard is not None:
-        _check_shard(json_file, {"--fit": fit, "--hold-out": hold_out, "--journal": journal})
+        others = {"--relative": relative, "--hold-out": hold_out, "--journal": journal}
+        _check_shard(json_file, {"--fit": fit, **others})
     loaded = load_with(case, changes)
     if runner.shard is not None:
         from epicyclic.study.measured.compare import ComparisonPlan, ask
@@ -131,6 +142,7 @@ def compare(
             fit=keys,
             hold_out=hold_out,
             seed=seed,
+            relative=None if relative is None else _share(relative),
             form=form,
             jobs=runner.jobs,
             dask=runner.dask,
@@ -179,6 +191,7 @@ def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:
     reasons = {
         "--fit": "is not possible with shards, because each round of a fit starts from the "
         "result of the previous one.",
+        "--relative": "concerns a fit, which is not possible with shards.",
         "--hold-out": "requires --fit, which is not possible with shards.",
         "--journal": "is not possible with shards, whose points are kept beside the file of "
         "--json.",
@@ -195,6 +208,14 @@ def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:
         raise InputError(problems, "the command")
 
 
+def _share(text: str) -> float:
+    """A share in per cent, or of one."""
+    try:
+        return float(NUMBER.parse(text if text.strip()[-1:] == "%" else f"{text} dimensionless"))
+    except PydanticCustomError as error:
+        raise InputError([refused(error, "--relative", f'"{text}"')], "the command") from None
+
+
 def _check_output(output: Path | None, keys: list[str]) -> None:
     if output is None:
         return
@@ -208,8 +229,10 @@ def _check_output(output: Path | None, keys: list[str]) -> None:
 
 def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
+    from epicyclic.case.tables.uncertainty import MODEL_FORM
     from epicyclic.show.studies import fitted_comment
     from epicyclic.show.template import case_text
+    from epicyclic.study.bands.inputs import factors_of_kind
     from epicyclic.study.measured.comparison import CALIBRATED
 
     calibrated, fit = comparison.calibrated_case, comparison.fit
@@ -223,8 +246,10 @@ def _calibrated_text(comparison: MeasuredComparison) -> str:
     about = {}
     for item in fit.parameters:
         comment = fitted_comment(item, fit)
-        about[item.key] = comment
-        table, _, name = item.key.rpartition(".")
-        if "." in table:  # a table within a table may stand on one line
-            about[table] = f"{name}: {comment}"
+        kind = item.key.removeprefix(MODEL_FORM)
+        for key in [item.key] if kind == item.key else factors_of_kind(comparison.case, kind):
+            about[key] = comment
+            table, _, name = key.rpartition(".")
+            if "." in table:  # a table within a table may stand on one line
+                about[table] = f"{name}: {comment}"
     return case_text(calibrated.given(), heading, about)

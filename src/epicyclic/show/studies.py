@@ -353,6 +353,8 @@ def _fit_line(fit: Fit) -> str:
             f" The points scatter by {shown(fit.discrepancy, 2)} W about the fit, due to "
             "measurements and model together."
         )
+        if fit.noise == "relative":
+            text += " They scatter in proportion to the loss (rms), as the residuals show."
     return text
 
 
