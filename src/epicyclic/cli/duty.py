@@ -57,6 +57,7 @@ _JSON = ".json"
     type=click.Path(path_type=Path),
     help="Keep the map computed for a CASE in a .nc file.",
 )
+@click.option("--distance", metavar="VALUE", help='What a vehicle covers, "23.27 km": gives Wh/km.')
 @table_options
 @output_option("Write .nc or .csv.", "FILE")
 @json_option
@@ -70,6 +71,7 @@ def duty(
     temperatures: tuple[str, ...],
     clamp: bool,
     map_file: Path | None,
+    distance: str | None,
     form: TableForm,
     output: Path | None,
     json_file: str | None,
@@ -87,7 +89,7 @@ def duty(
     """
     from epicyclic.cli.common import progress_bar
     from epicyclic.study.maps.cycle import open_cycle
-    from epicyclic.study.maps.duty import parse_temperatures
+    from epicyclic.study.maps.duty import parse_temperatures, with_distance
 
     _check_options(map_or_case, changes, map_file, output, runner)
     if runner.shard is not None:
@@ -106,11 +108,12 @@ def duty(
         file = output or Path(str(json_file))
         how: dict[str, Any] = {"cycle": cycle, "folder": str(Path.cwd())}
         how |= {} if map_file is None else {"map_file": str(map_file)}
+        how |= {} if distance is None else {"distance": distance}
         how |= {} if form == AS_IT_IS else {"form": asdict(form)}
         compute(plan, file, runner, duty_writer(plan, file, **how), **how)
         return
     data = _map(map_or_case, changes, checked, celsius, map_file, runner)
-    result = _result(data, checked, celsius, clamp, runner)
+    result = with_distance(_result(data, checked, celsius, clamp, runner), distance)
     _write_table(result, output)
     _show(result, json_file)
 
@@ -122,6 +125,7 @@ def duty_writer(
     folder: str,
     map_file: str | None = None,
     form: Mapping[str, Any] | None = None,
+    distance: str | None = None,
 ) -> Write:
     """Shows a duty cycle and writes it; raises `InputError` if it cannot.
 
@@ -141,13 +145,14 @@ def duty_writer(
         from epicyclic.show.studies import duty_json
         from epicyclic.study.maps.compute import to_map
         from epicyclic.study.maps.cycle import open_cycle
+        from epicyclic.study.maps.duty import with_distance
         from epicyclic.study.sweeps.runner import HERE
         from epicyclic.study.table_file import TableForm
 
         read = open_cycle(path, form=TableForm(**(form or {})))
         named = replace(read, source=replace(read.source, name=cycle))
         data = to_map(plan, rows)
-        result = _result(data, named, plan.celsius, plan.clamp, HERE)
+        result = with_distance(_result(data, named, plan.celsius, plan.clamp, HERE), distance)
         if map_file is not None:
             _write_map(data, Path(map_file))
         if output.suffix == _JSON:

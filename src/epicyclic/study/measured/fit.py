@@ -147,6 +147,9 @@ TOLERANCE = 1e-5  # Relative change of the parameters that ends the fit. [1]
 SQUARES_TOLERANCE = 1e-5  # Relative change of the sum of squares that ends the fit. [1]
 NO_INFLUENCE = 1e-9
 """Relative change of every loss, over that of a parameter, below which it has no influence. [1]"""
+EVIDENCE = 4.0
+"""Difference of Akaike's criterion from which a relative scatter is taken: a constant one has
+considerably less support (K. P. Burnham, D. R. Anderson, Model Selection (2002) 70). [1]"""
 REWEIGHTED = 2  # Fits with weights of the losses of the fit before, for a relative scatter.
 SMALLEST = 1e-3  # Scatter of a point over the largest, at least. [1]
 NEAR_BOUND = 1e-4  # Distance from a bound, over the start value, that counts as at the bound. [1]
@@ -226,7 +229,8 @@ def _is_likelier(residuals: Residuals, found: Linearised, constant: Linearised) 
     if found.freedom == 0 or min(found.sum_of_squares, constant.sum_of_squares) == 0:
         return False
     gain = math.log(constant.sum_of_squares / found.sum_of_squares)
-    return gain > 2 * float(np.mean(np.log(residuals.scatter)))
+    gain -= 2 * float(np.mean(np.log(residuals.scatter)))
+    return found.deviations.size * gain > EVIDENCE
 
 
 def _solution(
