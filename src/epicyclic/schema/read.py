@@ -37,6 +37,23 @@ def plain(value: Any) -> Any:
     return _plain(value, _DEEPEST, budget)
 
 
+_UNIT_IN_KEY = re.compile(r"(?P<key>.+?)\s+\[(?P<unit>[^\[\]]+)\]")
+
+
+def split_key(key: str) -> tuple[str, str]:
+    """A dotted key and the unit that may stand behind it: ``"operation.torque [N*m]"``."""
+    match = _UNIT_IN_KEY.fullmatch(key)
+    return (match["key"], match["unit"].strip()) if match else (key, "")
+
+
+def with_unit_of_key(value: Any, unit: str) -> Any:
+    """Numbers, also of an array, as a case file has them if their key has a unit."""
+    if isinstance(value, np.ndarray | list | tuple):
+        return [with_unit_of_key(item, unit) for item in value]
+    is_number = isinstance(value, numbers.Real) and not isinstance(value, bool | np.bool)
+    return f"{float(value)!r} {unit}" if is_number and unit not in ("", "1") else value
+
+
 def control_problems(tables: Any, path: tuple[str | int, ...] = ()) -> Iterator[Problem]:
     """Texts in plain values with signs that control a terminal, or are no characters."""
     if isinstance(tables, str) and not tables.isprintable():

@@ -140,9 +140,7 @@ def with_distance(result: xr.Dataset, distance: Any) -> xr.Dataset:
     lost = result["energy_lost"].sum(("mode", "component")) / _KJ_PER_WH / covered
     return result.assign(
         distance=((), covered, {"long_name": "distance", "units": "km"}),
-        lost_per_distance=lost.assign_attrs(
-            long_name="energy lost by distance", units="Wh/km"
-        ),
+        lost_per_distance=lost.assign_attrs(long_name="energy lost by distance", units="Wh/km"),
     )
 
 
