@@ -450,7 +450,8 @@ def _head(sample: Sequence[tuple[int, list[str]]], form: TableForm) -> tuple[int
         refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep the columns that are used.")
     below = rows[place + 1][1] if place + 1 < len(rows) else []
     units = [""] * len(names)
-    if any(below) and all(not cell or _is_unit(cell) for cell in below):
+    is_named = any(re.search(r"[^\W\d]|%", cell) for cell in below)
+    if is_named and all(not cell or _is_unit(cell) for cell in below):
         line = rows[place + 1][0]
         units = [cell.strip("[]() ") for cell in [*below, *units]][: len(names)]
         units = ["1" if unit == "-" else unit for unit in units]
@@ -509,14 +510,14 @@ def headers_of(names: Sequence[str], form: TableForm, units: Sequence[str] = ())
     return headers
 
 
-def missing_remedy(name: str, unit: str, headers: Sequence[str]) -> str:
+def missing_remedy(verb: str, name: str, unit: str, headers: Sequence[str]) -> str:
     """What to do where no column is called `name`, with the only header that may be meant."""
     alike = [header for header in headers if name in header.lower()]
-    given = one_line(alike[0]) if len(alike) == 1 else "HEADER"
-    own = _parts(given)[0][1]  # the unit of the file stays
-    wanted = name if own else f"{name} [{unit}]"
-    called = f"{name} [{own or unit}]"
-    return f'Name a column "{called}", or say which it is: --column "{wanted}={given}".'
+    if len(alike) != 1:
+        return f'{verb} a column "{name} [{unit}]".'
+    own = _parts(alike[0])[0][1]  # the unit of the file stays
+    asked = f"{name if own else f'{name} [{unit}]'}={one_line(alike[0])}"
+    return f'{verb} a column "{name} [{own or unit}]", or say which it is: --column "{asked}".'
 
 
 def unit_problem(

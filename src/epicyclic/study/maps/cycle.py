@@ -200,7 +200,7 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
     shown += ", ..." if len(headers) > _SHOWN_HEADERS else ""
     for name, quantity in _QUANTITIES.items():
         if name not in (*_WEIGHTINGS, *_OPTIONAL) and not found[name] and quantity is not None:
-            remedy = missing_remedy(name, quantity.display, headers)
+            remedy = missing_remedy("Name", name, quantity.display, headers)
             problems.append(Problem(name, "", f"is not among the columns {shown}.", remedy))
     weightings = [name for name in _WEIGHTINGS if found[name]]
     if not weightings:
@@ -343,8 +343,8 @@ class _Checks:
 
     def problems(self) -> list[Problem]:
         early = self._faults.get((TIME, _EARLY))
-        if early is not None and len(self._starts) <= _SHOWN_PARTS:
-            parts = zip(self._starts, [*self._ends, self._last_line], strict=True)
+        parts = list(zip(self._starts, [*self._ends, self._last_line], strict=False))
+        if early and len(parts) <= _SHOWN_PARTS and all(last > first for first, last in parts):
             split = first_of([f"--rows {first}-{last}" for first, last in parts], _SHOWN_PARTS)
             early.remedy = (
                 f"If other recordings start there, run each by itself: {split}; else sort the rows."
@@ -361,10 +361,17 @@ class _Checks:
 
     def _share_problems(self) -> Iterator[Problem]:
         """Shares must be parts of one, or of a hundred per cent, but for rounding."""
-        whole = self.sums.get(SHARE, 1.0)
-        if SHARE not in self.columns or min(abs(whole - 1), abs(whole / 100 - 1)) <= _ROUNDED:
+        whole, largest = self.sums.get(SHARE, 0.0), self.high.get(SHARE, 0.0)
+        in_percent = SHARE in self.columns and self.columns[SHARE].header.endswith("[%]")
+        if in_percent or (largest > 1 and 50 <= whole <= 150):
+            wanted = 100.0
+        elif SHARE in self.columns and largest < 1:
+            wanted = 1.0
+        else:  # numbers of any kind, whose sum is the whole
             return
-        rest = 1 - whole if whole < 1 else 100 - whole
+        rest = wanted - whole
+        if abs(rest) <= _ROUNDED * wanted:
+            return
         part = f"add a row for the missing {format_number(rest, 4)}" if rest > 0 else "correct them"
         allowed = f"adds up to {format_number(whole)}, neither to 1 nor to 100 %."
         remedy = f'{part.capitalize()}, or call the column "duration [h]" if it has hours.'

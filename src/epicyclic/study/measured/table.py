@@ -271,11 +271,11 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
 def _examples(columns: Collection[str], headers: tuple[str, ...]) -> Iterator[tuple[str, str]]:
     """Columns that a table must have, and what to do without them."""
     for name, unit in _EXAMPLES.items():
-        remedy = missing_remedy(name, unit, headers)
+        remedy = missing_remedy("Add", name, unit, headers)
         if name != "loss":
             yield name, remedy
         elif not {_EFFICIENCY, _TORQUE_OUT} & set(columns):
-            yield name, f"{remedy} A column {_EFFICIENCY} [%] or {_TORQUE_OUT} [N*m] also gives it."
+            yield name, f"{remedy} Or add {_EFFICIENCY} [%] or {_TORQUE_OUT} [N*m]."
 
 
 def _name_problem(column: _Column, case: Case) -> Problem | None:
