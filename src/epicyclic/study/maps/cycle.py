@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -133,6 +134,8 @@ def open_cycle(
 ) -> Cycle:
     """Read a whole cycle once and check it; raises `InputError` with every problem found."""
     source = open_table(table, form)
+    if not isinstance(table, str | Path):
+        source = replace(source, name="the cycle")
     columns, problems = _find_columns(source.headers)
     checks = _Checks(source, columns)
     if columns:
