@@ -42,8 +42,8 @@ def read_text(
     return decode(read_bytes(path, noun, largest), noun)
 
 
-def read_bytes(path: Path, noun: str, largest: int) -> bytes:
-    """The content of a file. Parameters and errors as for `read_text`."""
+def read_bytes(path: Path, noun: str, largest: int, *, whole: bool = True) -> bytes:
+    """The content of a file, or its start. Parameters and errors as for `read_text`."""
     kind, content = "a file", b""
     try:
         # a pipe or a device could keep the program waiting for ever
@@ -58,7 +58,7 @@ def read_bytes(path: Path, noun: str, largest: int) -> bytes:
         refuse("cannot be read: a path has no zero character.", "Check the path.")
     if kind != "a file":
         refuse(f"cannot be read: it is {kind}.", f"Give a {noun} file.")
-    if len(content) > largest:
+    if whole and len(content) > largest:
         size = f"{largest / _MEGABYTE:g} MB"
         refuse(f"is too large to be a {noun} file (over {size}).", f"Give a {noun} file.")
     return content

@@ -31,7 +31,33 @@ _LONGEST_TEXT = 100
 _NUMBER_AND_UNIT = re.compile(
     r"(?P<number>[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(?P<unit>.*)", re.DOTALL
 )
-_DECIMAL_COMMA = re.compile(r"(?P<whole>[+-]?[0-9]+),(?P<digits>[0-9]+).*", re.DOTALL)
+_MORE_DIGITS = re.compile(r"[.,'’]|\d{3}(?![\d/])")
+"""What follows a number that has marks between its digits."""
+_DECIMAL_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+")
+_MARKED = re.compile(r"[+-]?\d[\d.,'’\s]*(?<!\s)(?:[eE][+-]?\d+)?(?![eE.,'’\d])")
+_GROUPED = {
+    mark: re.compile(
+        rf"[+-]?(?:[1-9]\d{{0,2}}(?:[{other}'’\s]\d{{3}})+|\d*)(?:[{mark}]\d*)?(?:[eE][+-]?\d+)?"
+    )
+    for mark, other in (".,", ",.")
+}
+"""Numbers by their decimal mark; the other one, blanks and apostrophes divide thousands."""
+
+# Units as they are often written and not read, by what they are here: without blanks and signs
+# between, in small letters. What they measure says whether they are meant.
+_SPELLINGS = {
+    **dict.fromkeys(("lbft", "ftlb", "ftlbs", "lbsft", "lbfft", "ftlbf"), "lbf*ft"),
+    **dict.fromkeys(("lbin", "inlb", "inlbs", "lbsin", "lbfin", "inlbf"), "lbf*in"),
+    **dict.fromkeys(("kgm", "kpm", "kgfm"), "kgf*m"),
+    **dict.fromkeys(('"', "''", "”", "″", "zoll"), "in"),
+    **dict.fromkeys(("f", "degf", "°f", "ºf", "fahrenheit"), "degF"),
+    **dict.fromkeys(("c", "degc", "°c", "ºc", "celsius"), "degC"),
+    **dict.fromkeys(("u/min", "upm", "r/min", "1/min"), "rpm"),
+    "nm": "N*m",
+    "knm": "kN*m",
+    "ps": "metric_horsepower",
+    "kp": "kgf",
+}
 
 # Other ways to write the same sign: middle dots and crosses, superscripts, minus, Greek mu.
 _PLAIN_SIGNS = str.maketrans(
@@ -142,6 +168,16 @@ def range_remedy(
     return "give a finite number"
 
 
+def plain_number(text: str) -> str:
+    """A number with other marks as Python writes it; empty if it is none, or may be two."""
+    read = {
+        re.sub(r"['’\s]", "", text.replace(other, "")).replace(mark, ".")
+        for (mark, form), other in zip(_GROUPED.items(), ",.", strict=True)
+        if form.fullmatch(text) and re.search(r"\d", text)
+    }
+    return read.pop() if len({float(number) for number in read}) == 1 else ""
+
+
 def from_pint(value: Any) -> tuple[float, str] | None:
     """Number and unit of a pint quantity; None for anything else, and for arrays."""
     if not (hasattr(value, "magnitude") and hasattr(value, "units")):
@@ -215,10 +251,24 @@ def _convert(number: float, unit: str, si: str) -> float:
     if turns[0] != turns[1]:
         if si != "rad/s":
             raise _UnitError("has a unit that measures something else")
-        rate = format_number(ureg.Quantity(number, parsed).to("1/min").magnitude)
+        rate = format_number(ureg.Quantity(number, parsed).to("1/min").magnitude, 12)
         remedy = f'write "{rate} rpm" if it counts turns'
         raise _UnitError("has a unit that may count turns or radians", remedy)
     return float(ureg.Quantity(number, parsed).to(wanted).magnitude)
+
+
+def _divided(text: str) -> tuple[str, str]:
+    """What is wrong with a number that has marks between its digits, and what to write."""
+    match = _MARKED.match(text)
+    number = match[0] if match else ""
+    plain = plain_number(number)
+    if plain:
+        what = (
+            "has a decimal comma" if _DECIMAL_COMMA.fullmatch(number) else "has marks of thousands"
+        )
+        return what, f"write {plain}" + (", with a decimal point" if "." in plain else "")
+    what = "has marks that may divide thousands or decimals"
+    return what, "write it with a decimal point, and without marks of thousands"
 
 
 @lru_cache(maxsize=4096)
@@ -227,13 +277,11 @@ def _parsed_text(quantity: Quantity, text: str) -> float:
     if len(text) > _LONGEST_TEXT:
         raise quantity._error("is not a number with a unit", quantity._form())
     text = text.strip().translate(_PLAIN_SIGNS)
-    comma = _DECIMAL_COMMA.fullmatch(text)
-    if comma is not None:
-        remedy = f"write {comma['whole']}.{comma['digits']}, with a decimal point"
-        raise quantity._error("has a decimal comma", remedy)
     match = _NUMBER_AND_UNIT.fullmatch(text)
     if match is None:
         raise quantity._error("is not a number with a unit", quantity._form())
+    if _MORE_DIGITS.match(match["unit"]):
+        raise quantity._error(*_divided(text))
     if not match["unit"]:
         raise quantity._error("has no unit", f'write "{text} {quantity.display}"')
     return quantity._checked(quantity._converted(float(match["number"]), match["unit"]))
@@ -292,9 +340,27 @@ class Quantity:
         try:
             return _convert(number, unit, self.si)
         except _UnitError as error:
-            raise self._error(str(error), error.remedy or self._form(number)) from None
+            remedy = error.remedy or self._remedy_of_unit(number, unit)
+            raise self._error(str(error), remedy) from None
         except Exception:  # pint's own errors have no common base
-            raise self._error("has an unknown unit", self._form(number)) from None
+            remedy = self._remedy_of_unit(number, unit)
+            raise self._error("has an unknown unit", remedy) from None
+
+    def meant_unit(self, unit: str) -> str:
+        """The unit that is meant by one which is not read, and measures this; empty if none is."""
+        meant = _SPELLINGS.get(re.sub(r"[\s*.·-]", "", unit).casefold(), "")
+        try:
+            _convert(1.0, meant, self.si)
+        except Exception:  # it measures something else
+            return ""
+        return meant
+
+    def _remedy_of_unit(self, number: float, unit: str) -> str:
+        """What to write for a number whose unit is not read: the same, or no number."""
+        meant = self.meant_unit(unit)
+        if not meant:
+            return self._form()
+        return f'write "{self.text(_convert(number, meant, self.si), 12)}"'
 
     def to_display(self, value: float) -> float:
         """SI `value` in the display unit."""

@@ -10,13 +10,23 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-__all__ = ["TEXTS", "changed_words", "differing", "frozen_texts", "improved", "kept", "words"]
+__all__ = [
+    "OTHERWISE",
+    "TEXTS",
+    "changed_words",
+    "differing",
+    "frozen_texts",
+    "improved",
+    "kept",
+    "words",
+]
 
 TEXTS = Path(__file__).with_name("texts.json.xz")
 IMPROVED = Path(__file__).with_name("improved_texts.toml")
 _TABLES = tomllib.loads(IMPROVED.read_text(encoding="utf-8"))
 PAIRS = tuple((pair["old"], pair["new"]) for pair in _TABLES["text"])
 ADDED = tuple(re.compile(it["pattern"]) for it in _TABLES["added"])
+OTHERWISE = frozenset(it["name"] for it in _TABLES["otherwise"])
 PATTERNS = tuple((re.compile(it["old"]), it["new"]) for it in _TABLES["pattern"])
 
 

@@ -19,7 +19,7 @@ from epicyclic.case.keys import Parameter
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.samples import make_samples
 from epicyclic.study.measured.compare import make_parameters
-from epicyclic.study.measured.comparison import calibrated_case, uncertainty_tables
+from epicyclic.study.measured.comparison import calibrated_case, near_values, uncertainty_tables
 from epicyclic.study.measured.fit import fit_parameters
 from epicyclic.study.measured.intervals import combinations, reaches
 from epicyclic.study.measured.residuals import MeasuredPoints
@@ -52,9 +52,9 @@ class Linear:
     parts = np.random.default_rng(2).uniform(2.0, 90.0, (2, COUNT))
     constant = np.linspace(2.0, 7.0, COUNT)
 
-    def __init__(self, seed=0, weighted=True):
+    def __init__(self, seed=0, weighted=True, noise=None):
         exact = self.losses(*TRUTH.values())
-        sigma = 0.01 * exact + 0.3
+        sigma = {None: 0.01 * exact + 0.3, "constant": 1.7, "relative": 0.05 * exact}[noise]
         noise = np.random.default_rng(seed).standard_normal(COUNT)
         self.measured = made_up(exact + sigma * noise, sigma if weighted else None)
 
@@ -95,6 +95,92 @@ def test_intervals_and_bands_of_calibrated_cases_cover_the_truth(case):
     assert (intervals / 400 >= 0.93).all(), intervals
     assert (intervals / 400 <= 0.97).all(), intervals
     assert 0.93 <= bands / 400 <= 0.97, bands
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("noise", "stated"), [("constant", None), ("relative", None), ("relative", 0.05)]
+)
+def test_intervals_cover_the_truth_without_stated_uncertainties(case, noise, stated):
+    """1000 repetitions of each kind of scatter, its size estimated or stated for all points."""
+    parameters = make_parameters(case, KEYS, ())
+    inside, chosen = np.zeros(2), 0
+    for seed in range(1000):
+        points = Linear(seed, weighted=False, noise=noise)
+        fit = fit_parameters(points, parameters, every(points), 0.95, relative=stated)
+        inside += [item.low <= TRUTH[item.key] <= item.high for item in fit.parameters]
+        chosen += fit.noise == ("stated" if stated else noise)
+    assert (inside / 1000 >= 0.93).all(), inside
+    assert (inside / 1000 <= 0.97).all(), inside
+    assert chosen >= 850, chosen
+
+
+def test_the_scatter_is_that_of_the_residuals(case):
+    parameters = make_parameters(case, KEYS, ())
+    for noise in ("constant", "relative"):
+        points = Linear(5, weighted=False, noise=noise)
+        fit = fit_parameters(points, parameters, every(points), 0.95)
+        assert fit.noise == noise
+        weights = Linear.losses(points, *fit.settings.values()) if noise == "relative" else 1.0
+        wanted = np.linalg.lstsq(
+            (Linear.parts / weights).T, (points.measured.loss - Linear.constant) / weights
+        )[0]
+        # weights are those of the fit before, which differ by some 1e-3
+        assert list(fit.settings.values()) == pytest.approx(wanted, rel=1e-4)
+
+
+def test_the_factor_of_a_model_is_fitted_as_run_advises(talbot):
+    key = "model_form.sliding"
+    stated = talbot.updated({"losses.sun_mesh_sliding.factor": 1.1})
+    (parameter,) = make_parameters(stated, [key], ())
+    assert parameter.settings(1.2) == {
+        "losses.sun_mesh_sliding.factor": pytest.approx(1.32),
+        "losses.ring_mesh_sliding.factor": pytest.approx(1.2),
+    }
+    known, _ = uncertain_values(stated, ("sliding",))
+    (factor,) = (value.spread[0] for value in known if value.key == key)
+    assert reaches(stated, [parameter]) == pytest.approx([math.log(factor)])
+    own = "losses.sun_mesh_sliding.factor"
+    for keys, varied, words in (
+        ([key, own], (), "is fitted or varied too"),
+        ([key], (own,), "is fitted or varied too"),
+        (["model_form.slidng"], (), "Did you mean 'sliding'"),
+        (["model_form.seals"], (), "has no factor in this case"),
+    ):
+        with pytest.raises(ep.InputError, match=words):
+            make_parameters(stated, keys, varied)
+
+
+class Sliding(Linear):
+    """One factor on the first part."""
+
+    def compute(self, *settings):
+        return [
+            SimpleNamespace(loss=self.losses(keys["losses.mesh_sliding.factor"], 0.8))
+            for keys in settings
+        ]
+
+
+def test_a_fitted_model_has_a_factor_as_uncertainty(case):
+    points = Sliding(3)
+    parameters = make_parameters(case, ["model_form.sliding"], ())
+    fit = fit_parameters(points, parameters, every(points), 0.95)
+    (item,) = fit.parameters
+    assert item.value == pytest.approx(1.2, rel=0.02)
+    whole = calibrated_case(case, fit)
+    assert whole.losses.mesh_sliding.factor == item.value
+    table = whole.given()["uncertainty"]["model_form.sliding"]
+    wanted = math.exp(item.uncertainty / item.value)
+    assert table == {"lognormal_factor": pytest.approx(wanted, rel=1e-5)}
+
+
+def test_real_numbers_are_grouped_by_nearness():
+    cells = ("998.7", "1001.2", "2003", "1999.5", "1000.4", "4010", "39")
+    near = near_values(cells)
+    assert near == ("1000", "1000", "2001", "2001", "1000", "4010", "39")
+    nominal = ("40", "41", "40", "41")
+    assert near_values(nominal) == nominal
+    assert near_values(("a", "b", "c")) == ("a", "b", "c")
 
 
 def test_a_calibrated_case_carries_the_covariance_of_the_fit(case):
@@ -151,7 +237,7 @@ def test_a_fitted_factor_takes_the_place_of_the_error_of_its_model(case, talbot)
 def test_scatter_without_uncertainties_carries_students_quantile(case):
     from scipy import stats
 
-    points = Linear(5, weighted=False)
+    points = Linear(5, weighted=False, noise="constant")
     fit = fit_parameters(points, make_parameters(case, KEYS, ()), every(points), 0.95)
     ratio = stats.t.ppf(0.975, COUNT - 2) / stats.norm.ppf(0.975)
     for item in fit.parameters:

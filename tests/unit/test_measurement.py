@@ -15,7 +15,7 @@ import epicyclic as ep
 from epicyclic.case.keys import Parameter
 from epicyclic.study.measured.fit import fit_parameters
 from epicyclic.study.measured.residuals import MeasuredPoints
-from epicyclic.study.measured.table import Measurements, parse_measurements, read_frame
+from epicyclic.study.measured.table import Measurements, parse_measurements, read_grid
 from epicyclic.study.sweeps.run import with_unloaded
 from epicyclic.study.sweeps.runner import Row, Rows, failed_row
 
@@ -423,7 +423,7 @@ def test_other_losses_are_not_touched_by_a_rig(warm):
 
 
 def test_a_point_without_torque_that_fails_is_told(case):
-    table = parse_measurements(read_frame(load_dependent_tests().iloc[1:2]), case)
+    table = parse_measurements(read_grid(load_dependent_tests().iloc[1:2]), case)
     rows = Rows(2)
     rows.add(0, Row("ok", numbers={"total": 5.0}))
     rows.add(1, failed_row("runs away"))

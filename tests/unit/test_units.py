@@ -111,8 +111,8 @@ def test_a_bare_number_in_quotes_is_refused_with_its_unit():
 @pytest.mark.parametrize(
     ("kind", "value", "fault", "remedy"),
     [
-        (LENGTH, "139.23 kg", "measures something else", '"139.23 mm"'),
-        (LENGTH, "139.23 mn", "unknown unit", '"139.23 mm"'),
+        (LENGTH, "139.23 kg", "measures something else", "its unit, mm"),
+        (LENGTH, "139.23 mn", "unknown unit", "its unit, mm"),
         (LENGTH, "30,9 mm", "decimal comma", "30.9"),
         (LENGTH, "mm", "is not a number with a unit", "mm"),
         (LENGTH, "", "is not a number with a unit", "mm"),

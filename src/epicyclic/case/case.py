@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, cas
 
 from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core import PydanticCustomError
 
 from epicyclic import library
 from epicyclic.case.expand import expand, gearing_of
@@ -23,7 +24,7 @@ from epicyclic.case.gear_tables import (
     SetMesh,
     SharedGears,
 )
-from epicyclic.case.keys import owner_without_keys
+from epicyclic.case.keys import field_at, known_keys, owner_without_keys, value_of
 from epicyclic.case.rules import (
     bearing_force_problems,
     check_listed_bearings,
@@ -86,12 +87,21 @@ from epicyclic.messages import (
     misspelt,
     one_line,
     path_of,
+    refused,
     value_at,
     written,
 )
 from epicyclic.oil.grades import short_oil_told
-from epicyclic.schema.fields import find_field, locate, to_inputs
-from epicyclic.schema.read import flattened, plain, read_file, with_value, without
+from epicyclic.schema.fields import find_field, locate, quantity_of, to_inputs
+from epicyclic.schema.read import (
+    flattened,
+    plain,
+    read_file,
+    split_key,
+    with_unit_of_key,
+    with_value,
+    without,
+)
 from epicyclic.schema.table import Table
 from epicyclic.schema.validation import AnyCase, Validation, tables_of, unknown_key, validate
 from epicyclic.units import unit_text
@@ -150,7 +160,8 @@ class CaseTable(Table):
     def updated(
         self,
         # Dotted keys, ``"operation.torque"``, to values as a case file has them: text with a unit
-        # or a pint quantity for dimensional ones. None removes a key.
+        # or a pint quantity for dimensional ones, or a number with the unit behind the key,
+        # ``"operation.torque [N*m]"``. None removes a key.
         changes: Mapping[str, Any],
     ) -> Self:
         """A copy of the case with some keys changed, validated afresh.
@@ -228,6 +239,25 @@ class CaseTable(Table):
             ordered = sorted(problems, key=lambda problem: _position(cls, problem))
             raise InputError(ordered, source)
         return case
+
+    def __getitem__(self, key: str) -> Any:
+        """The value at a dotted key: in SI, or in the unit behind it, ``"operation.speed [rpm]"``.
+
+        None where the case has no value. Raises `InputError` if there is no such key.
+        """
+        own, unit = split_key(key)
+        known = field_at(self, own)
+        if known is None:
+            remedy = did_you_mean(own, known_keys(self)) or "See 'epicyclic init' for keys."
+            raise InputError([Problem(own, "", "is not a known key.", remedy)], self._source)
+        value, quantity = value_of(self, own), quantity_of(*known)
+        if not unit or value is None or quantity is None:
+            return value
+        try:
+            factor, zero = quantity.scale_from(unit)
+        except PydanticCustomError as error:
+            raise InputError([refused(error, own, f"[{unit}]")], self._source) from None
+        return (quantity.to_display(value) - zero) / factor
 
     def given(self) -> dict[str, Any]:
         """The case as nested tables of the keys that were given, without defaults."""
@@ -371,8 +401,9 @@ def with_changes(
     """`tables` with some dotted keys changed, and the problems of those that cannot be."""
     problems: list[Problem] = []
     for key, value in changes.items():
+        own, unit = split_key(str(key))
         try:
-            tables = _changed(kind, tables, str(key), plain(value))
+            tables = _changed(kind, tables, own, plain(with_unit_of_key(value, unit)))
         except InputError as error:
             problems += [replace(problem, key=str(key)) for problem in error.problems]
     return tables, problems

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from pydantic import BaseModel
@@ -72,7 +72,7 @@ def _in_table(table: BaseModel, parts: list[str]) -> list[str]:
 
 
 def _keys(table: BaseModel, prefix: str) -> Iterator[str]:
-    for name, field in type(table).model_fields.items():
+    for name, about in type(table).model_fields.items():
         value = getattr(table, name)
         shown = f"{prefix}{_GEARS if name == _MEMBERS else name}"
         if isinstance(value, BaseModel):
@@ -84,7 +84,7 @@ def _keys(table: BaseModel, prefix: str) -> Iterator[str]:
                     yield from _keys(inner, f"{own}.")
                 else:
                     yield own
-        elif dict_value(field.annotation) is None:
+        elif dict_value(about.annotation) is None:
             yield from (
                 f"{prefix}{key}" for key in all_keys(type(table)) if key.partition(".")[0] == name
             )
@@ -105,6 +105,8 @@ class Parameter:
     start: float  # Value in the case, in `unit`.
     low: float  # Bounds of the schema, in `unit`.
     high: float
+    # Keys that it multiplies, with their values in the case; empty if it is a key itself.
+    factors: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -117,15 +119,21 @@ class Parameter:
         number = min(max(scaled * self.start, self.low), self.high)
         return f"{number!r} {self.unit}" if self.unit else number
 
+    def settings(self, scaled: float) -> dict[str, Any]:
+        """The keys that it sets at `scaled`."""
+        if self.factors:
+            return {key: scaled * self.start * start for key, start in self.factors.items()}
+        return {self.key: self.value(scaled)}
+
 
 def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Parameter | Problem:
     """A key that holds a number, or why it cannot be varied continuously."""
-    field = field_at(case, key)
-    if field is None:
+    found = field_at(case, key)
+    if found is None:
         remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for keys."
         return Problem(key, "", "is not a known key.", remedy)
-    quantity = quantity_of(*field)
-    if not is_continuous(field, quantity):
+    quantity = quantity_of(*found)
+    if not is_continuous(found, quantity):
         return Problem(key, "", "is not a continuous number.", "Fit a key that is.")
     if key in varied:
         return Problem(key, "", "is given by a column of the table.", "Fit another key.")
@@ -134,7 +142,7 @@ def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Par
         return no_start(key, "has no value in the case")
     if quantity is None:
         start, unit = float(value), ""
-        lowest, highest, is_open = bounds_of(*field)
+        lowest, highest, is_open = bounds_of(*found)
     else:
         start, unit = quantity.to_display(value), quantity.display
         lowest, highest, is_open = quantity.low, quantity.high, quantity.open_low

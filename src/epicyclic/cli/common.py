@@ -312,6 +312,39 @@ shard_option = click.option(
 """To stand above `runner_options`."""
 
 
+def table_options(command: Callable[..., None]) -> Callable[..., None]:
+    """How a table is to be read, where it does not say so itself: the command gets a `form`."""
+
+    @click.option(
+        "--column",
+        "columns",
+        metavar="NAME=HEADER",
+        multiple=True,
+        help='Which column of the table is which, as in --column "speed [rpm]=nMot"; repeatable.',
+    )
+    @click.option("--sheet", metavar="NAME", default="", help="Sheet of an Excel workbook.")
+    @click.option("--rows", metavar="FIRST-LAST", help="Read only these lines of the table.")
+    @click.option(
+        "--decimal",
+        type=click.Choice(["point", "comma"]),
+        help="Decimal mark, where the numbers of the table leave it open.",
+    )
+    @wraps(command)
+    def call(
+        *args: Any,
+        columns: tuple[str, ...],
+        sheet: str,
+        rows: str | None,
+        decimal: str,
+        **rest: Any,
+    ) -> None:
+        from epicyclic.study.table_file import parse_form
+
+        command(*args, form=parse_form(columns, sheet, rows, decimal or ""), **rest)
+
+    return call
+
+
 def set_option_for(what: str, example: str) -> Callable[[Any], Any]:
     """The option --set for the keys of `what`."""
     return click.option(

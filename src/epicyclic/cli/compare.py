@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from pydantic_core import PydanticCustomError
 
 from epicyclic.cli.common import (
     case_argument,
@@ -21,16 +22,20 @@ from epicyclic.cli.common import (
     set_option,
     shard_option,
     show,
+    table_options,
 )
 from epicyclic.cli.many import Write, compute
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import write_file
+from epicyclic.messages import refused
+from epicyclic.units import NUMBER
 
 if TYPE_CHECKING:
     from epicyclic.study.measured.compare import ComparisonPlan
     from epicyclic.study.measured.comparison import MeasuredComparison
     from epicyclic.study.sweeps.run import LoadDependent
     from epicyclic.study.sweeps.runner import Rows, Runner
+    from epicyclic.study.table_file import TableForm
 
 
 @click.command()
@@ -67,8 +72,15 @@ if TYPE_CHECKING:
     help="Points excluded from the fit: rows where a column has a value, or a random share.",
 )
 @click.option(
+    "--relative",
+    metavar="PERCENT",
+    help="Standard uncertainty of all losses over them, 5%, if no column states it; default: "
+    "estimated from the scatter about the fit.",
+)
+@click.option(
     "--seed", type=click.IntRange(0), default=0, help="Seed of the random share; default: 0."
 )
+@table_options
 @output_option("Write the calibrated case (.toml).", "FILE")
 @plot_option("Draw parity and residuals to .png, .svg or .pdf.")
 @json_option
@@ -84,7 +96,9 @@ def compare(
     group: str | None,
     fit: str | None,
     hold_out: str | None,
+    relative: str | None,
     seed: int,
+    form: TableForm,
     output: Path | None,
     plot: Path | None,
     json_file: str | None,
@@ -93,9 +107,9 @@ def compare(
 ) -> None:
     """Compare measured losses with computed ones; with --fit, calibrate inputs to them.
 
-    MEASURED is a .csv, .xlsx or .parquet file with columns such as "speed [rpm]", "torque [N*m]",
-    "temperature [degC]", "loss [W]"; optionally "uncertainty [W]" or [%], component, the state of a
-    train, and any key of the case.
+    MEASURED is a text, Excel or Parquet table with columns such as "speed [rpm]", "torque [N*m]",
+    "temperature [degC]", and "loss [W]", "efficiency [%]" or "output_torque [N*m]"; optionally
+    "uncertainty [W]" or [%], component, the state of a train, and any key of the case.
 
     A shard keeps its points beside the file of --json, which 'epicyclic merge' writes.
     """
@@ -106,13 +120,14 @@ def compare(
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
     _check_output(output, keys)
     if runner.shard is not None:
-        _check_shard(json_file, {"--fit": fit, "--hold-out": hold_out, "--journal": journal})
+        others = {"--relative": relative, "--hold-out": hold_out, "--journal": journal}
+        _check_shard(json_file, {"--fit": fit, **others})
     loaded = load_with(case, changes)
     if runner.shard is not None:
         from epicyclic.study.measured.compare import ComparisonPlan, ask
         from epicyclic.study.measured.table import read_grid
 
-        question = ask(loaded, read_grid(measured), component, load_dependent, group)
+        question = ask(loaded, read_grid(measured, form), component, load_dependent, group)
         plan, file = ComparisonPlan.of(question), Path(str(json_file))
         write = comparison_writer(plan, file)
         compute(plan, file, runner, write, plot=None if plot is None else str(plot))
@@ -127,6 +142,8 @@ def compare(
             fit=keys,
             hold_out=hold_out,
             seed=seed,
+            relative=None if relative is None else _share(relative),
+            form=form,
             jobs=runner.jobs,
             dask=runner.dask,
             journal=journal,
@@ -174,6 +191,7 @@ def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:
     reasons = {
         "--fit": "is not possible with shards, because each round of a fit starts from the "
         "result of the previous one.",
+        "--relative": "concerns a fit, which is not possible with shards.",
         "--hold-out": "requires --fit, which is not possible with shards.",
         "--journal": "is not possible with shards, whose points are kept beside the file of "
         "--json.",
@@ -190,6 +208,14 @@ def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:
         raise InputError(problems, "the command")
 
 
+def _share(text: str) -> float:
+    """A share in per cent, or of one."""
+    try:
+        return float(NUMBER.parse(text if text.strip()[-1:] == "%" else f"{text} dimensionless"))
+    except PydanticCustomError as error:
+        raise InputError([refused(error, "--relative", f'"{text}"')], "the command") from None
+
+
 def _check_output(output: Path | None, keys: list[str]) -> None:
     if output is None:
         return
@@ -203,8 +229,10 @@ def _check_output(output: Path | None, keys: list[str]) -> None:
 
 def _calibrated_text(comparison: MeasuredComparison) -> str:
     """The calibrated case as a case file that says which values are fitted, and to what."""
+    from epicyclic.case.tables.uncertainty import MODEL_FORM
     from epicyclic.show.studies import fitted_comment
     from epicyclic.show.template import case_text
+    from epicyclic.study.bands.inputs import factors_of_kind
     from epicyclic.study.measured.comparison import CALIBRATED
 
     calibrated, fit = comparison.calibrated_case, comparison.fit
@@ -218,8 +246,10 @@ def _calibrated_text(comparison: MeasuredComparison) -> str:
     about = {}
     for item in fit.parameters:
         comment = fitted_comment(item, fit)
-        about[item.key] = comment
-        table, _, name = item.key.rpartition(".")
-        if "." in table:  # a table within a table may stand on one line
-            about[table] = f"{name}: {comment}"
+        kind = item.key.removeprefix(MODEL_FORM)
+        for key in [item.key] if kind == item.key else factors_of_kind(comparison.case, kind):
+            about[key] = comment
+            table, _, name = key.rpartition(".")
+            if "." in table:  # a table within a table may stand on one line
+                about[table] = f"{name}: {comment}"
     return case_text(calibrated.given(), heading, about)

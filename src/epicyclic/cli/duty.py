@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,6 +18,7 @@ from epicyclic.cli.common import (
     set_option,
     shard_option,
     show,
+    table_options,
     wrong_ending,
 )
 from epicyclic.cli.many import Write, compute
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from epicyclic.study.maps.cycle import Cycle
     from epicyclic.study.maps.duty import DutyPlan
     from epicyclic.study.sweeps.runner import Rows, Runner
+    from epicyclic.study.table_file import TableForm
 
 _MAP_SUFFIX = ".nc"
 _OUTPUTS = (".nc", ".csv")
@@ -54,6 +57,8 @@ _JSON = ".json"
     type=click.Path(path_type=Path),
     help="Keep the map computed for a CASE in a .nc file.",
 )
+@click.option("--distance", metavar="VALUE", help='What a vehicle covers, "23.27 km": gives Wh/km.')
+@table_options
 @output_option("Write .nc or .csv.", "FILE")
 @json_option
 @journal_option
@@ -66,6 +71,8 @@ def duty(
     temperatures: tuple[str, ...],
     clamp: bool,
     map_file: Path | None,
+    distance: str | None,
+    form: TableForm,
     output: Path | None,
     json_file: str | None,
     journal: Path | None,
@@ -73,43 +80,52 @@ def duty(
 ) -> None:
     """Compute input, output and lost energy of a duty cycle, by component.
 
-    CYCLE is a .csv or .parquet file with the columns "speed [rpm]", "torque [N*m]", if it varies
-    "temperature [degC]", and "time [s]", "duration [s]" or "share"; any units. MAP is a loss map in
-    a .nc file; for a CASE one that covers the cycle is computed first.
+    CYCLE is a text, Excel or Parquet table with the columns "speed [rpm]", "torque [N*m]", if it
+    varies "temperature [degC]", and "time [s]", "duration [s]" or "share"; any units. MAP is a loss
+    map in a .nc file; for a CASE one that covers the cycle is computed first.
 
     A shard has its share of the points of that map. It keeps them beside the file of -o or --json,
     which 'epicyclic merge' writes.
     """
     from epicyclic.cli.common import progress_bar
     from epicyclic.study.maps.cycle import open_cycle
-    from epicyclic.study.maps.duty import parse_temperatures
+    from epicyclic.study.maps.duty import parse_temperatures, with_distance
 
     _check_options(map_or_case, changes, map_file, output, runner)
     if runner.shard is not None:
         _check_shard(output, json_file, journal)
     runner = replace(runner, journal=journal)
     with progress_bar("rows read") as progress:
-        checked = open_cycle(cycle, progress)
+        checked = open_cycle(cycle, progress, form)
     celsius = parse_temperatures(checked, temperatures or None)
     if runner.shard is not None:
         from epicyclic.study.maps.duty import DutyPlan, digest_of
+        from epicyclic.study.table_file import AS_IT_IS
 
         case = load_with(map_or_case, changes)
         digest = digest_of(Path(cycle))
         plan = DutyPlan.of(case, checked, celsius, digest=digest, clamp=clamp)
         file = output or Path(str(json_file))
-        how = {"cycle": cycle, "folder": str(Path.cwd())}
+        how: dict[str, Any] = {"cycle": cycle, "folder": str(Path.cwd())}
         how |= {} if map_file is None else {"map_file": str(map_file)}
+        how |= {} if distance is None else {"distance": distance}
+        how |= {} if form == AS_IT_IS else {"form": asdict(form)}
         compute(plan, file, runner, duty_writer(plan, file, **how), **how)
         return
     data = _map(map_or_case, changes, checked, celsius, map_file, runner)
-    result = _result(data, checked, celsius, clamp, runner)
+    result = with_distance(_result(data, checked, celsius, clamp, runner), distance)
     _write_table(result, output)
     _show(result, json_file)
 
 
 def duty_writer(
-    plan: DutyPlan, output: Path, cycle: str, folder: str, map_file: str | None = None
+    plan: DutyPlan,
+    output: Path,
+    cycle: str,
+    folder: str,
+    map_file: str | None = None,
+    form: Mapping[str, Any] | None = None,
+    distance: str | None = None,
 ) -> Write:
     """Shows a duty cycle and writes it; raises `InputError` if it cannot.
 
@@ -129,12 +145,14 @@ def duty_writer(
         from epicyclic.show.studies import duty_json
         from epicyclic.study.maps.compute import to_map
         from epicyclic.study.maps.cycle import open_cycle
+        from epicyclic.study.maps.duty import with_distance
         from epicyclic.study.sweeps.runner import HERE
+        from epicyclic.study.table_file import TableForm
 
-        read = open_cycle(path)
+        read = open_cycle(path, form=TableForm(**(form or {})))
         named = replace(read, source=replace(read.source, name=cycle))
         data = to_map(plan, rows)
-        result = _result(data, named, plan.celsius, plan.clamp, HERE)
+        result = with_distance(_result(data, named, plan.celsius, plan.clamp, HERE), distance)
         if map_file is not None:
             _write_map(data, Path(map_file))
         if output.suffix == _JSON:

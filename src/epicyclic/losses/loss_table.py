@@ -230,7 +230,10 @@ def _columns(header: Sequence[str]) -> tuple[dict[int, tuple[str, str]], list[Pr
             try:
                 _COLUMNS[name][1].scale_from(columns[number][1])
             except PydanticCustomError as error:
-                remedy = f"Write it as {name} [{_COLUMNS[name][1].display}]."
+                meant = _COLUMNS[name][1].meant_unit(columns[number][1])
+                remedy = (
+                    f"Write it as {name} [{meant}]." if meant else "Convert it to another unit."
+                )
                 problems.append(Problem(_shown(text), "", f"{error.message()}.", remedy))
     return columns, problems or _missing([name for name, _ in columns.values()])
 

@@ -18,7 +18,7 @@ from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, refuse
 from epicyclic.messages import dotted, one_line, written
 from epicyclic.schema.fields import to_inputs
-from epicyclic.units import format_number, from_pint
+from epicyclic.units import format_number, from_pint, plain_number
 
 _DEEPEST = 20  # Tables of a case are nested a few levels deep; deeper ones are something else.
 
@@ -35,6 +35,23 @@ def plain(value: Any) -> Any:
     """
     budget = iter(range(_MOST_VALUES))
     return _plain(value, _DEEPEST, budget)
+
+
+_UNIT_IN_KEY = re.compile(r"(?P<key>.+?)\s+\[(?P<unit>[^\[\]]+)\]")
+
+
+def split_key(key: str) -> tuple[str, str]:
+    """A dotted key and the unit that may stand behind it: ``"operation.torque [N*m]"``."""
+    match = _UNIT_IN_KEY.fullmatch(key)
+    return (match["key"], match["unit"].strip()) if match else (key, "")
+
+
+def with_unit_of_key(value: Any, unit: str) -> Any:
+    """Numbers, also of an array, as a case file has them if their key has a unit."""
+    if isinstance(value, np.ndarray | list | tuple):
+        return [with_unit_of_key(item, unit) for item in value]
+    is_number = isinstance(value, numbers.Real) and not isinstance(value, bool | np.bool)
+    return f"{float(value)!r} {unit}" if is_number and unit not in ("", "1") else value
 
 
 def control_problems(tables: Any, path: tuple[str | int, ...] = ()) -> Iterator[Problem]:
@@ -135,6 +152,7 @@ _BETWEEN_KEYS = re.compile(r"[,={}\[\]\n]")
 _KEY_DOT = re.compile(r"[\w\"'-]\s*\.")
 _PLACE = re.compile(r" \(at line (?P<line>\d+), column \d+\)")
 _KEY_LINE = re.compile(r"(?P<key>[\w.\"'-]+)\s*=(?P<value>[^#\[{]*)(#.*)?")
+_INCHES = re.compile(r"[\d.,/\s]*\d\s*(\"|'')")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 
 _GIVES_AGAIN = "Cannot overwrite"  # How the reason of a key that is given twice begins.
@@ -212,8 +230,9 @@ def _mended(line: _BadLine) -> str | None:
 
 
 def _value(match: re.Match[str]) -> str:
-    """The value of a key line, without the quotes that it may have on one side."""
-    return match["value"].strip().strip("\"'")
+    """The value of a key line, without the quotes that it may have on one side, inches but."""
+    text = match["value"].strip()
+    return text if _INCHES.fullmatch(text) else text.strip("\"'")
 
 
 def _take_marks(
@@ -257,11 +276,16 @@ def _remedy(key: str, value: str) -> str:
         return "Give a value."
     if value.casefold() in ("true", "false"):
         return f"Write {value.casefold()}."
-    if _DECIMAL_COMMA.fullmatch(value):
-        return f"Write {value.replace(',', '.')}."
     try:
         return f"Write {format_number(float(value), 12)}."
     except ValueError:
+        plain = plain_number(value)
+        if plain:
+            return f"Write {plain}."
+        if _DECIMAL_COMMA.fullmatch(value):
+            return "Write it with a decimal point, and without marks of thousands."
+        if _INCHES.fullmatch(value):
+            return "Write the unit by its name, in, and the value in quotes."
         return f'Put the value in quotes: {key} = "{one_line(value)}".'
 
 

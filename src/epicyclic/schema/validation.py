@@ -167,7 +167,7 @@ def _number_remedy(value: Any) -> str:
     if match is None:
         return "write a plain number, without quotes and without unit"
     if match[2]:
-        return f"write {format_number(float(match[1]) / 100)}"
+        return f"write {format_number(float(match[1]) / 100, 15)}"
     return f"write {match[1]}, without quotes"
 
 

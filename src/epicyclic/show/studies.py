@@ -353,6 +353,8 @@ def _fit_line(fit: Fit) -> str:
             f" The points scatter by {shown(fit.discrepancy, 2)} W about the fit, due to "
             "measurements and model together."
         )
+        if fit.noise == "relative":
+            text += " They scatter in proportion to the loss (rms), as the residuals show."
     return text
 
 
@@ -372,6 +374,8 @@ def fitted_comment(item: FittedParameter, fit: Fit) -> str:
 
 # Energies of a duty cycle as tables, for a terminal and for files.
 
+KILOJOULES_PER_KWH = 3600.0
+
 
 def duty_tables(data: xr.Dataset) -> RenderableType:
     """Energy in, out and lost by component, for each temperature that was asked for."""
@@ -387,6 +391,19 @@ def duty_tables(data: xr.Dataset) -> RenderableType:
         for name in ("cycle", "basis", "reference_shaft", "modes")
     ]
     return titled(one_line(data.attrs["title"]), *parts, Text("\n".join(stated)))
+
+
+def _in_other_units(data: xr.Dataset) -> str:
+    """What is lost in kWh, in W on average, and per distance if that is known."""
+    lost, seconds = float(data["energy_lost"].sum()), float(data["duration"].sum())
+    text = (
+        f"Lost: {shown(lost / KILOJOULES_PER_KWH, 4)} kWh, {shown(1e3 * lost / seconds, 4)} W on "
+    )
+    text += f"average over {shown(seconds / 3600, 4)} h"
+    if "distance" not in data:
+        return f"{text}."
+    per_km, distance = float(data["lost_per_distance"]), float(data["distance"])
+    return f"{text}; {shown(per_km, 4)} Wh/km over {shown(distance, 4)} km."
 
 
 def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
@@ -406,7 +423,7 @@ def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
     efficiencies = [*data["efficiency"].values, data["total_efficiency"].item()]
     table.add_row("efficiency", *("" if math.isnan(it) else percent(it, 3) for it in efficiencies))
     states = [_states_table(data)] if "state" in data.dims else []
-    return [table, *states, Text(_error_text(data, whole))]
+    return [table, *states, Text(_in_other_units(data)), Text(_error_text(data, whole))]
 
 
 def _states_table(data: xr.Dataset) -> Table:

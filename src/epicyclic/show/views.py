@@ -6,12 +6,12 @@ Matplotlib.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Self, cast
+from typing import TYPE_CHECKING, Any, Self, cast
 
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
@@ -20,6 +20,7 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.result import result as plain
 from epicyclic.study import heat
 from epicyclic.study import solve as study
+from epicyclic.study.load import load_case
 from epicyclic.study.operating import operating_line
 
 if TYPE_CHECKING:
@@ -164,13 +165,15 @@ def _record_of(result: plain.Result) -> ResultRecord:
     return record(cast(Case, result.case), result=result)
 
 
-def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
+def solve(
+    case: Case | str | Path | Mapping[str, Any], *, flow_tables: FlowTables | None = None
+) -> Result:
     """The losses of a case.
 
     Parameters
     ----------
-    case : PlanetaryCase or GearPairCase
-        From `load_case`.
+    case : PlanetaryCase, GearPairCase, str, Path or mapping
+        From `load_case`, or what that reads: a file, the name of a built-in case, tables.
     flow_tables : mapping, optional
         Tables of flows through pockets, as `sweep` makes them for its points; flows that they do
         not hold are solved.
@@ -186,6 +189,8 @@ def solve(case: Case, *, flow_tables: FlowTables | None = None) -> Result:
     ConvergenceError
         If an iteration ends without a solution, or a loss is not a finite number.
     """
+    if isinstance(case, str | Path | Mapping):
+        case = load_case(case)
     return Result.of(study.solve(case, flow_tables=flow_tables))
 
 

@@ -80,6 +80,21 @@ def model_form_of(term: str, method: str = "") -> str:
     return "other"
 
 
+def factors_of_kind(case: CaseTable, kind: str) -> dict[str, float]:
+    """Keys of the factors of all losses of a kind that a case computes, with their values."""
+    entries = library.uncertainty_table()["model_form"]
+    patterns = [one for entry in entries if entry["kind"] == kind for one in entry["terms"]]
+    found = {}
+    for key in known_keys(case):
+        owner, _, name = key.rpartition(".")
+        table, _, term = owner.rpartition(".")
+        is_loss = name == "factor" and table.rpartition(".")[2] == "losses"
+        of_kind = is_loss and any(fnmatchcase(term, one) for one in patterns)
+        if of_kind and value_of(case, f"{owner}.include"):
+            found[key] = float(value_of(case, key))
+    return found
+
+
 def uncertain_values(
     case: CaseTable,
     kinds: tuple[str, ...] = (),  # Kinds of losses that it has, see `model_form_of`.

@@ -2,178 +2,32 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
-from epicyclic.messages import one_line, sentence
+from epicyclic.errors import Problem, first_of, raise_any
+from epicyclic.messages import one_line
 from epicyclic.study.operating import OPERATING, STATE
-from epicyclic.units import SECOND, Quantity
-
-if TYPE_CHECKING:
-    import pyarrow as pa
-
-
-# Where the rows of a duty cycle come from: CSV, Parquet, or a table in memory.
-
-SUFFIXES = (".csv", ".parquet")
-_BLOCK_BYTES = 1 << 22
-_BATCH_ROWS, _PAGE_BYTES = 1 << 16, 1 << 20
-_LONGEST_HEAD = 1 << 18  # Bytes within which the header of a CSV file must end.
-
-
-@dataclass(frozen=True, slots=True)
-class Source:
-    """Rows in pieces that fit into memory."""
-
-    name: str  # For messages.
-    headers: tuple[str, ...]
-    # Pieces of the columns of some headers, each an array of `pyarrow` by header.
-    batches: Callable[[Sequence[str]], Iterator[Mapping[str, pa.Array]]]
-
-
-def open_source(table: Any) -> Source:
-    """The rows of a file, or of columns by name such as a `pandas.DataFrame`.
-
-    Raises `InputError` if there is no such file, or nothing that can be read as a table.
-    """
-    if not isinstance(table, str | Path):
-        return _from_memory(table)
-    path = Path(table)
-    if path.suffix.lower() not in SUFFIXES:
-        allowed = f"must end in {' or '.join(SUFFIXES)}."
-        raise _unreadable(str(path), allowed, "Choose one of these formats.")
-    if not path.is_file():
-        raise _unreadable(str(path), "is not a file.", "Check the name.")
-    with _readable(str(path)):
-        return _from_csv(path) if path.suffix.lower() == ".csv" else _from_parquet(path)
-
-
-def _unreadable(name: str, allowed: str, remedy: str) -> InputError:
-    return one_problem("CYCLE", name, allowed, remedy, "the command")
-
-
-@contextmanager
-def _readable(name: str) -> Iterator[None]:
-    """What libraries raise for a file that they cannot read, as `InputError`."""
-    import pyarrow as pa
-
-    try:
-        yield
-    except (pa.ArrowException, OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = sentence(f"cannot be read: {one_line(str(error), 200)}", capital=False)
-        raise _unreadable(name, reason, "Write it again, as UTF-8 if it is text.") from None
-
-
-def _from_memory(table: Any) -> Source:
-    import pandas as pd
-    import pyarrow as pa
-
-    name = "the cycle"
-    try:
-        frame = table if isinstance(table, pd.DataFrame) else pd.DataFrame(table)
-    except (TypeError, ValueError) as error:
-        raise _unreadable("", f"is not a table: {one_line(str(error))}.", "Give a file.") from None
-    columns = {}
-    for position in range(frame.shape[1]):
-        values = frame.iloc[:, position]
-        try:
-            columns[position] = pa.array(values, from_pandas=True)
-        except pa.ArrowException:  # values of several kinds
-            columns[position] = pa.array(values.astype(str))
-    headers = tuple(str(header) for header in frame.columns)
-
-    def batches(chosen: Sequence[str]) -> Iterator[Mapping[str, pa.Array]]:
-        for start in range(0, len(frame), _BATCH_ROWS):
-            yield {
-                header: columns[headers.index(header)].slice(start, _BATCH_ROWS)
-                for header in chosen
-            }
-
-    return Source(name, headers, batches)
-
-
-def _from_parquet(path: Path) -> Source:
-    import pyarrow.parquet as pq
-
-    with pq.ParquetFile(path) as file:
-        headers = tuple(file.schema_arrow.names)
-
-    def batches(chosen: Sequence[str]) -> Iterator[Mapping[str, pa.Array]]:
-        # a row group may hold all rows: it is read as its pages are needed, not as a whole
-        with (
-            _readable(str(path)),
-            pq.ParquetFile(path, pre_buffer=False, buffer_size=_PAGE_BYTES) as file,
-        ):
-            for batch in file.iter_batches(_BATCH_ROWS, columns=list(chosen)):
-                yield {header: batch.column(header) for header in chosen}
-
-    return Source(str(path), headers, batches)
-
-
-def _from_csv(path: Path) -> Source:
-    headers, lines = _csv_head(path)
-
-    def batches(chosen: Sequence[str]) -> Iterator[Mapping[str, pa.Array]]:
-        import pyarrow as pa
-        from pyarrow import csv as arrow_csv
-
-        # as text, so that what is not a number can be told from what is missing
-        convert = arrow_csv.ConvertOptions(
-            include_columns=list(chosen), column_types=dict.fromkeys(chosen, pa.string())
-        )
-        read = arrow_csv.ReadOptions(
-            block_size=_BLOCK_BYTES, skip_rows=lines, column_names=list(headers)
-        )
-        with _readable(str(path)):
-            if _is_at_end(path, lines):
-                return
-            with arrow_csv.open_csv(path, read_options=read, convert_options=convert) as reader:
-                for batch in reader:
-                    yield {header: batch.column(header) for header in chosen}
-
-    return Source(str(path), headers, batches)
-
-
-def _csv_head(path: Path) -> tuple[tuple[str, ...], int]:
-    """The names of the columns, and the number of lines down to them."""
-    with path.open("rb") as file:
-        start = file.read(_LONGEST_HEAD)
-    if b"\0" in start:
-        allowed = "is not UTF-8 text; it contains zero bytes."
-        raise _unreadable(str(path), allowed, "Save it as CSV in UTF-8.")
-    head = start if len(start) < _LONGEST_HEAD else start[: start.rfind(b"\n")]
-    lines = head.decode("utf-8-sig").splitlines()
-    comments = 0
-    while comments < len(lines) and lines[comments].startswith("#"):
-        comments += 1
-    if comments == len(lines):
-        allowed = "has no line with the column names."
-        raise _unreadable(str(path), allowed, 'Start it with "time [s],speed [rpm],torque [N*m]".')
-    names = next(csv.reader([lines[comments]]))
-    if len(names) == 1 and ";" in names[0]:
-        allowed = "has columns separated by semicolons."
-        raise _unreadable(str(path), allowed, "Separate them by commas, with decimal points.")
-    return tuple(name.strip() for name in names), comments + 1
-
-
-def _is_at_end(path: Path, lines: int) -> bool:
-    """True if nothing follows the first `lines` lines."""
-    with path.open("rb") as file:
-        for _ in range(lines):
-            file.readline()
-        return not file.read(1)
-
+from epicyclic.study.table_file import (
+    AS_IT_IS,
+    HEADER,
+    Source,
+    TableForm,
+    missing_remedy,
+    open_table,
+    plain_numbers,
+    unit_problem,
+)
+from epicyclic.study.table_file import Piece as TablePiece
+from epicyclic.units import SECOND, Quantity, format_number
 
 # Duty cycles: what the columns of their tables are, and their points in pieces.
 #
@@ -193,10 +47,13 @@ _QUANTITIES: dict[str, Quantity | None] = {
     DURATION: SECOND,
     SHARE: None,
 }
-_HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _NUMBER = r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$"
-_SHOWN_HEADERS = 20
+_WHOLE = re.compile(r"^(\d+)\.0+$")  # A number as spreadsheets write whole ones.
+_SHOWN_HEADERS, _SHOWN_PARTS = 20, 6
 _MOST_STATES = 1000  # A column of more different texts is another one by that name, and left alone.
+_ROUNDED = 0.01  # What rounded shares may miss of their sum.
+_FINITE = "must be a finite number."
+_EARLY = "must be later than in the row before."
 SHARE_DURATION = 3600.0  # What a cycle of shares lasts. [s]
 
 
@@ -242,12 +99,12 @@ class Cycle:
         last: dict[str, Array] = {}
         for batch in self.source.batches([column.header for column in self.columns.values()]):
             rows = {
-                name: column.factor * _numbers(batch[column.header]) + column.offset
+                name: column.factor * _numbers(self.source, column.header, batch) + column.offset
                 for name, column in self.columns.items()
                 if name != STATE
             }
             if self.states:
-                rows[STATE] = self._state_numbers(batch[self.columns[STATE].header])
+                rows[STATE] = self._state_numbers(batch.columns[self.columns[STATE].header])
             if self.weighting == TIME:
                 rows = {name: np.append(last.get(name, []), rows[name]) for name in rows}
                 last = {name: values[-1:] for name, values in rows.items()}
@@ -269,19 +126,21 @@ class Cycle:
 
 
 def open_cycle(
-    # A file that ends in .csv or .parquet, or columns by name. Names carry units, ``"speed
-    # [rpm]"``.
+    # A file, or columns by name. Names carry units, ``"speed [rpm]"``.
     table: Any,
     # Called with the number of rows so far, and None for that of all rows.
     progress: Callable[[int, None], None] | None = None,
+    form: TableForm = AS_IT_IS,
 ) -> Cycle:
     """Read a whole cycle once and check it; raises `InputError` with every problem found."""
-    source = open_source(table)
+    source = open_table(table, form)
+    if not isinstance(table, str | Path):
+        source = replace(source, name="the cycle")
     columns, problems = _find_columns(source.headers)
-    checks = _Checks(columns)
+    checks = _Checks(source, columns)
     if columns:
         for batch in source.batches([column.header for column in columns.values()]):
-            checks.add({name: batch[column.header] for name, column in columns.items()})
+            checks.add(batch)
             if progress is not None:
                 progress(checks.rows, None)
         problems += checks.problems()
@@ -310,7 +169,7 @@ def _find_columns(headers: tuple[str, ...]) -> tuple[dict[str, Column], list[Pro
     """The columns that a cycle needs, in what there is; none of those that are not clear."""
     found: dict[str, list[tuple[str, str | None]]] = {name: [] for name in _QUANTITIES}
     for header in headers:
-        match = _HEADER.fullmatch(header.strip())
+        match = HEADER.fullmatch(header.strip())
         if match is not None and match["name"].lower() in found:
             found[match["name"].lower()].append((header, match["unit"]))
     columns, problems = {}, []
@@ -321,7 +180,7 @@ def _find_columns(headers: tuple[str, ...]) -> tuple[dict[str, Column], list[Pro
             try:
                 columns[name] = _column(*candidates[0], _QUANTITIES[name])
             except PydanticCustomError as error:
-                problems.append(_unit_problem(name, candidates[0][0], error))
+                problems.append(unit_problem(name, *candidates[0], _QUANTITIES[name], error))
     return columns, problems + _missing(found, headers)
 
 
@@ -333,14 +192,8 @@ def _column(header: str, unit: str | None, quantity: Quantity | None) -> Column:
 
 def _repeated(name: str, headers: list[str]) -> Problem:
     shown = ", ".join(f'"{one_line(header)}"' for header in headers)
-    return Problem(name, shown, "appears more than once.", "Keep one.")
-
-
-def _unit_problem(name: str, header: str, error: PydanticCustomError) -> Problem:
-    quantity = _QUANTITIES[name]
-    unit = quantity.display if quantity is not None else ""
-    allowed = sentence(error.message(), capital=False)
-    return Problem(name, f'"{one_line(header)}"', allowed, f'Call it "{name} [{unit}]".')
+    remedy = f'Keep one, or choose it: --column "{name}=HEADER".'
+    return Problem(name, shown, "appears more than once.", remedy)
 
 
 def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[Problem]:
@@ -350,7 +203,7 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
     shown += ", ..." if len(headers) > _SHOWN_HEADERS else ""
     for name, quantity in _QUANTITIES.items():
         if name not in (*_WEIGHTINGS, *_OPTIONAL) and not found[name] and quantity is not None:
-            remedy = f'Name a column "{name} [{quantity.display}]".'
+            remedy = missing_remedy("Name", name, quantity.display, headers)
             problems.append(Problem(name, "", f"is not among the columns {shown}.", remedy))
     weightings = [name for name in _WEIGHTINGS if found[name]]
     if not weightings:
@@ -366,14 +219,16 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
 # --- values ---------------------------------------------------------------------------------------
 
 
-def _numbers(column: Any) -> Array:
-    """A column of `pyarrow` as numbers, NaN for what is not a finite number."""
+def _numbers(source: Source, header: str, piece: TablePiece) -> Array:
+    """A column as numbers, NaN for what is not a finite number."""
     import pyarrow as pa
     import pyarrow.compute as pc
 
+    column = piece.columns[header]
+    if pa.types.is_dictionary(column.type):
+        column = column.dictionary_decode()
+    column = plain_numbers(source, header, column)
     kind = column.type
-    if pa.types.is_dictionary(kind):
-        column, kind = column.dictionary_decode(), kind.value_type
     if pa.types.is_string(kind) or pa.types.is_large_string(kind):
         column = pc.utf8_trim_whitespace(column)
         column = pc.if_else(pc.match_substring_regex(column, _NUMBER), column, None)
@@ -393,7 +248,8 @@ def _texts(column: Any) -> tuple[NDArray[np.intp], list[str]]:
     texts = []
     for item in column.dictionary.to_pylist():
         whole = isinstance(item, float) and item.is_integer()
-        texts.append("" if item is None else str(int(item) if whole else item).strip())
+        text = "" if item is None else str(int(item) if whole else item).strip()
+        texts.append(_WHOLE.sub(r"\1", text))
     codes = column.indices.fill_null(len(texts)).to_numpy(zero_copy_only=False).astype(np.intp)
     return codes, [*texts, ""]
 
@@ -405,73 +261,121 @@ class _Fault:
     name: str
     allowed: str
     remedy: str
+    place: str  # What a row is called.
     count: int = 0
-    row: int = 0
+    line: int = 0
     value: str = ""
 
     def problem(self) -> Problem:
-        more = f", and {self.count - 1} rows more" if self.count > 1 else ""
-        return Problem(self.name, f"{self.value} (row {self.row}{more})", self.allowed, self.remedy)
+        more = f", and {self.count - 1} {self.place}s more" if self.count > 1 else ""
+        given = f"{self.value} ({self.place} {self.line}{more})"
+        return Problem(self.name, given, self.allowed, self.remedy)
 
 
+@dataclass(slots=True)
 class _Checks:
     """What is wrong with the rows of a cycle, and their ranges."""
 
-    def __init__(self, columns: Mapping[str, Column]) -> None:
-        self.columns = columns
-        self.rows = 0
-        self.low = dict.fromkeys(columns, np.inf)
-        self.high = dict.fromkeys(columns, -np.inf)
-        self.sums = dict.fromkeys(columns, 0.0)
-        self.states: dict[str, None] = {}
-        self._faults: dict[tuple[str, str], _Fault] = {}
-        self._last_time = -np.inf
+    source: Source
+    columns: Mapping[str, Column]
+    rows: int = 0
+    low: dict[str, float] = field(default_factory=dict)
+    high: dict[str, float] = field(default_factory=dict)
+    sums: dict[str, float] = field(default_factory=dict)
+    states: dict[str, None] = field(default_factory=dict)
+    _faults: dict[tuple[str, str], _Fault] = field(default_factory=dict)
+    _last_time: float = -np.inf
+    _last_line: int = 0
+    _starts: list[int] = field(default_factory=list)  # Lines at which time starts again.
+    _ends: list[int] = field(default_factory=list)  # Lines before these.
 
-    def add(self, batch: Mapping[str, Any]) -> None:
-        """Take in a piece; arrays of `pyarrow` by quantity."""
-        for name, column in batch.items():
+    def add(self, piece: TablePiece) -> None:
+        """Take in a piece."""
+        lines = piece.lines
+        for name, own in self.columns.items():
+            column = piece.columns[own.header]
             if name == STATE:
                 codes, texts = _texts(column)
                 if len(self.states) <= _MOST_STATES:
                     self.states |= {texts[code]: None for code in dict.fromkeys(codes.tolist())}
                 continue
-            values = _numbers(column)
+            values = _numbers(self.source, own.header, piece)
             bad = np.isnan(values)
-            self._note(bad, column, _Fault(name, "must be a finite number.", "Correct the row."))
-            if name == TIME:
-                early = values <= np.append(self._last_time, values[:-1])
-                allowed = "must be later than in the previous row."
-                remedy = "Sort the rows and give each time once."
-                self._note(early, column, _Fault(name, allowed, remedy))
-                self._last_time = values[-1] if values.size else self._last_time
+            self._note(bad, column, lines, name, _FINITE, "Correct the row.")
+            if name == TIME and values.size:
+                before = np.append(self._last_time, values[:-1])
+                lines_before = np.append(self._last_line, lines[:-1])
+                same, early = values == before, values < before
+                remedy = (
+                    "Keep one of these rows; if the clock was set back, write times with their "
+                    "distance from UTC."
+                )
+                self._note(same, column, lines, name, "must differ from the row before.", remedy)
+                self._note(early, column, lines, name, _EARLY, "Sort the rows.")
+                self._starts = self._starts or [int(lines[0])]
+                if len(self._starts) <= _SHOWN_PARTS:
+                    self._starts += lines[early].tolist()
+                    self._ends += lines_before[early].tolist()
+                self._last_time, self._last_line = values[-1], int(lines[-1])
             if name in (DURATION, SHARE):
-                fault = _Fault(name, "must not be negative.", "Correct the row.")
-                self._note(values < 0, column, fault)
+                negative = "must not be negative."
+                self._note(values < 0, column, lines, name, negative, "Correct the row.")
             sound = values[~bad]
             if sound.size:
-                self.low[name] = min(self.low[name], float(sound.min()))
-                self.high[name] = max(self.high[name], float(sound.max()))
-                self.sums[name] += float(sound.sum())
-        self.rows += len(column)
+                self.low[name] = min(self.low.get(name, np.inf), float(sound.min()))
+                self.high[name] = max(self.high.get(name, -np.inf), float(sound.max()))
+                self.sums[name] = self.sums.get(name, 0.0) + float(sound.sum())
+        self.rows += len(lines)
 
-    def _note(self, bad: NDArray[np.bool_], column: Any, fault: _Fault) -> None:
-        """Count rows with a mistake; `fault` is what to keep of the first."""
+    def _note(
+        self, bad: NDArray[np.bool_], column: Any, lines: Any, name: str, allowed: str, remedy: str
+    ) -> None:
+        """Count rows with a mistake, and keep the first."""
         count = int(bad.sum())
-        if count:
-            kept = self._faults.setdefault((fault.name, fault.allowed), fault)
-            if kept is fault:
-                first = int(bad.argmax())
-                fault.row = self.rows + first + 1
-                fault.value = one_line(f'"{column[first].as_py()}"')
-            kept.count += count
+        if not count:
+            return
+        first = int(bad.argmax())
+        value = one_line(f'"{column[first].as_py()}"')
+        if value == '""' and allowed == _FINITE:
+            allowed, remedy = "is empty.", "Fill it, or delete the row."
+        fault = self._faults.setdefault(
+            (name, allowed),
+            _Fault(name, allowed, remedy, self.source.place, 0, int(lines[first]), value),
+        )
+        fault.count += count
 
     def problems(self) -> list[Problem]:
+        early = self._faults.get((TIME, _EARLY))
+        parts = list(zip(self._starts, [*self._ends, self._last_line], strict=False))
+        if early and len(parts) <= _SHOWN_PARTS and all(last > first for first, last in parts):
+            split = first_of([f"--rows {first}-{last}" for first, last in parts], _SHOWN_PARTS)
+            early.remedy = (
+                f"If other recordings start there, run each by itself: {split}; else sort the rows."
+            )
         found = [fault.problem() for fault in self._faults.values()]
         least = 2 if TIME in self.columns else 1
         if self.rows < least:
             allowed = f"There are {self.rows} rows; a cycle needs {least} or more."
             found.append(Problem("", "", allowed, "Give more rows."))
         for name in (DURATION, SHARE):
-            if self.rows and name in self.columns and not self.sums[name] > 0:
+            if self.rows and name in self.columns and not self.sums.get(name, 0.0) > 0:
                 found.append(Problem(name, "", "is zero in all rows.", "Give positive values."))
-        return found
+        return found or list(self._share_problems())
+
+    def _share_problems(self) -> Iterator[Problem]:
+        """Shares must be parts of one, or of a hundred per cent, but for rounding."""
+        whole, largest = self.sums.get(SHARE, 0.0), self.high.get(SHARE, 0.0)
+        in_percent = SHARE in self.columns and self.columns[SHARE].header.endswith("[%]")
+        if in_percent or (largest > 1 and 50 <= whole <= 150):
+            wanted = 100.0
+        elif SHARE in self.columns and largest < 1:
+            wanted = 1.0
+        else:  # numbers of any kind, whose sum is the whole
+            return
+        rest = wanted - whole
+        if abs(rest) <= _ROUNDED * wanted:
+            return
+        part = f"add a row for the missing {format_number(rest, 4)}" if rest > 0 else "correct them"
+        allowed = f"adds up to {format_number(whole)}, neither to 1 nor to 100 %."
+        remedy = f'{part.capitalize()}, or call the column "duration [h]" if it has hours.'
+        yield Problem(SHARE, "", allowed, remedy)

@@ -30,6 +30,7 @@ from epicyclic.study.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_case
 from epicyclic.study.operating import STATE
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
+from epicyclic.study.table_file import AS_IT_IS, TableForm
 from epicyclic.units import CELSIUS, KILOJOULE, NEWTON_METRE, RPM, SECOND, Quantity, format_number
 
 if TYPE_CHECKING:
@@ -48,6 +49,8 @@ MODES = ("driving", "coasting", "idling")
 """The reference shaft drives, is driven, or passes no power: no torque or no speed."""
 
 _SPEEDS, _TORQUES, _TEMPERATURES = 9, 9, 4  # Values of the axes of a map that is made for a cycle.
+_DISTANCE = Quantity("a distance", "m", "km", low=0.0, high=1e7, open_low=True)
+_KJ_PER_WH = 3.6
 _CROWDING = 1.5  # Exponent by which its speeds and torques crowd at zero, where losses bend most.
 _CROWD = 6  # Further torques next to zero, on each side. [1]
 SAMPLES = 20  # Points that are solved to measure the error of the interpolation.
@@ -60,6 +63,8 @@ def duty_cycle(
     *,
     clamp: bool = False,
     samples: int = SAMPLES,
+    form: TableForm = AS_IT_IS,
+    distance: Any = None,
     jobs: int | None = None,
     dask: str | None = None,
     journal: str | Path | None = None,
@@ -72,7 +77,7 @@ def duty_cycle(
     map_or_case : xarray.Dataset, PlanetaryCase or GearPairCase
         A loss map. For a case a map that covers the cycle is computed first.
     cycle : str, Path, pandas.DataFrame or mapping
-        A file that ends in .csv or .parquet, or columns by name: ``"speed [rpm]"``,
+        A text, Excel or Parquet file, or columns by name: ``"speed [rpm]"``,
         ``"torque [N*m]"`` of the input member, ``"temperature [degC]"`` if it varies, and
         ``"time [s]"`` of a time series, or ``"duration [s]"`` or ``"share"`` of a histogram.
         Any units; a train with states has a column ``"state"`` of their names. Other columns are
@@ -85,6 +90,10 @@ def duty_cycle(
         refused.
     samples : int
         Points of the cycle that are solved directly to measure the error of the interpolation.
+    form : TableForm
+        How a file is to be read, where it does not say so itself.
+    distance : str, optional
+        What a vehicle covers in the cycle, ``"23.27 km"``: the loss for it follows.
     jobs, dask
         As for `sweep`.
     journal : str or Path, optional
@@ -101,7 +110,8 @@ def duty_cycle(
         ``interpolation_standard_error`` and the ``largest_deviation`` of a point, with the way they
         were found in the attributes. A train with states has ``state_energy_in``,
         ``state_energy_out``, ``state_energy_lost``, ``state_duration`` and ``state_efficiency``
-        over ``state`` too. With `temperature` all have that dimension.
+        over ``state`` too. With a distance there are ``distance`` [km] and ``lost_per_distance``
+        [Wh/km]. With `temperature` all have that dimension.
 
     Raises
     ------
@@ -110,13 +120,28 @@ def duty_cycle(
         have; for a map with gaps, further axes of several values, or two driven members.
     """
     runner = Runner(jobs, dask, journal=journal)
-    checked = open_cycle(cycle)
+    checked = open_cycle(cycle, form=form)
     celsius = parse_temperatures(checked, temperature)
     data = map_or_case
     if isinstance(data, Case):
         data = cycle_map(data, checked, celsius, replace(runner, progress=progress))
     sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
-    return make_duty(data, checked, sums, runner)
+    return with_distance(make_duty(data, checked, sums, runner), distance)
+
+
+def with_distance(result: xr.Dataset, distance: Any) -> xr.Dataset:
+    """With the energy lost for each distance, if one is given; raises `InputError` for another."""
+    if distance is None:
+        return result
+    try:
+        covered = _DISTANCE.to_display(_DISTANCE.parse(distance))
+    except PydanticCustomError as error:
+        raise InputError([refused(error, "distance", written(distance))], "the command") from None
+    lost = result["energy_lost"].sum(("mode", "component")) / _KJ_PER_WH / covered
+    return result.assign(
+        distance=((), covered, {"long_name": "distance", "units": "km"}),
+        lost_per_distance=lost.assign_attrs(long_name="energy lost by distance", units="Wh/km"),
+    )
 
 
 def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple[float, ...] | None:

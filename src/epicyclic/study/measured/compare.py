@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -12,13 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, CaseTable, build_case
-from epicyclic.case.keys import Parameter, no_start, parameter_of
+from epicyclic.case.keys import OFF_OPEN_BOUND, Parameter, no_start, parameter_of
+from epicyclic.case.tables.uncertainty import MODEL_FORM, model_forms
 from epicyclic.errors import Problem, one_problem, raise_any
+from epicyclic.messages import did_you_mean
+from epicyclic.study.bands.inputs import factors_of_kind
 from epicyclic.study.measured.comparison import (
     AS_GIVEN,
     CALIBRATED,
     MeasuredComparison,
     all_errors,
+    near_values,
     notes_on,
 )
 from epicyclic.study.measured.fit import Tell, fit_parameters
@@ -30,11 +35,11 @@ from epicyclic.study.measured.table import (
     Measurements,
     parse_measurements,
     parts_of,
-    read_frame,
     read_grid,
 )
 from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, CasePlan, LoadDependent, PointList
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
+from epicyclic.study.table_file import AS_IT_IS, TableForm
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -204,7 +209,9 @@ def compare_measured(
     fit: Iterable[str] = (),
     hold_out: str | float | None = None,
     seed: int = 0,
+    relative: float | None = None,
     confidence: float = 0.95,
+    form: TableForm = AS_IT_IS,
     jobs: int | None = None,
     dask: str | None = None,
     journal: str | Path | None = None,
@@ -238,8 +245,12 @@ def compare_measured(
         Points that the fit must not see: ``"COLUMN=VALUE"``, or a share of all points, drawn with
         `seed`.
     seed : int, optional
+    relative : float, optional
+        Standard uncertainty of all losses over them, of a table without such a column. [1]
     confidence : float, optional
         Confidence of the intervals of fitted values. [1]
+    form : TableForm, optional
+        How a file is to be read, where it does not say so itself.
     jobs, dask, progress
         As for `sweep`; the progress starts again with every round of a fit.
     journal : str or Path, optional
@@ -258,12 +269,16 @@ def compare_measured(
     ConvergenceError
         If the fit does not converge.
     """
-    import pandas as pd
-
     runner = Runner(jobs, dask, journal=journal, progress=progress)
-    grid = read_frame(measured) if isinstance(measured, pd.DataFrame) else read_grid(Path(measured))
+    grid = read_grid(measured, form)
     question = ask(case, grid, component, load_dependent, group)
     table = question.table
+    if relative is not None:
+        raise_any(_relative_problems(table, relative), "the comparison")
+        question = replace(
+            question, table=replace(table, uncertainty=relative * np.abs(table.loss))
+        )
+        table = question.table
     keys = tuple(dict.fromkeys(fit))
     varied = {key for change in table.changes for key in change}
     problems = [*question.problems(), *_fit_problems(keys, hold_out, confidence)]
@@ -277,9 +292,21 @@ def compare_measured(
         return question.answer(given, held_out)
     used = np.isfinite(given.loss) & ~held_out
     reach = reaches(case, parameters)
-    found = fit_parameters(points, parameters, used, confidence, reach, tell)
+    found = fit_parameters(points, parameters, used, confidence, reach, tell, relative=relative)
     (calibrated,) = points.compute(found.settings)
     return question.answer(given, held_out, calibrated, found)
+
+
+def _relative_problems(table: Measurements, relative: float) -> Iterator[Problem]:
+    key, given = "relative", f"{100 * relative:g} %"
+    if not 0 < relative < 1:
+        yield Problem(key, given, "must be > 0 and < 100 %.", "Give the standard uncertainty.")
+    if table.uncertainty is not None:
+        allowed = "is also a column of the table, uncertainty."
+        yield Problem(key, given, allowed, "Keep one of them.")
+    if (table.loss == 0).any():
+        allowed = "leaves a measured loss of 0 without uncertainty."
+        yield Problem(key, given, allowed, "Add a column uncertainty [W].")
 
 
 def _fit_problems(
@@ -310,7 +337,8 @@ def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> B
         remedy = f"Columns are {', '.join(table.labels)}."
         raise one_problem("hold_out", str(hold_out), allowed, remedy, "the comparison")
     wanted = match["value"].strip()
-    chosen = np.array([_same(cell, wanted) for cell in table.labels[column]])
+    cells = zip(table.labels[column], near_values(table.labels[column]), strict=True)
+    chosen = np.array([_same(cell, wanted) or _same(near, wanted) for cell, near in cells])
     if not chosen.any():
         values = ", ".join(dict.fromkeys(table.labels[column]))
         allowed = f"matches no row; {column} has {values[:200]}."
@@ -341,10 +369,32 @@ def make_parameters(
 
     Raises `InputError` for keys that are unknown, hold no number, or have no start value.
     """
-    found = [_not_zero(parameter_of(case, key, set(varied))) for key in keys]
+    chosen, taken = list(keys), set(varied)
+    found = [
+        _of_models(case, key, taken | set(chosen))
+        if key.startswith(MODEL_FORM)
+        else _not_zero(parameter_of(case, key, taken))
+        for key in chosen
+    ]
     problems = [item for item in found if isinstance(item, Problem)]
     raise_any(problems, "the fit")
     return tuple(item for item in found if isinstance(item, Parameter))
+
+
+def _of_models(case: CaseTable, key: str, taken: set[str]) -> Parameter | Problem:
+    """The factor on all losses of a kind, ``model_form.sliding``."""
+    kind = key.removeprefix(MODEL_FORM)
+    if kind not in model_forms():
+        remedy = did_you_mean(kind, model_forms()) or f"There are {', '.join(model_forms())}."
+        return Problem(key, "", "is not a kind of loss.", remedy)
+    factors = factors_of_kind(case, kind)
+    if not factors:
+        return Problem(key, "", "has no factor in this case.", "Fit another key.")
+    both = sorted(taken & factors.keys())
+    if both:
+        allowed = f"contains {both[0]}, which is fitted or varied too."
+        return Problem(key, "", allowed, "Fit one of them.")
+    return Parameter(key, "", 1.0, OFF_OPEN_BOUND, math.inf, factors)
 
 
 def _not_zero(item: Parameter | Problem) -> Parameter | Problem:

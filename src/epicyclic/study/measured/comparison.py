@@ -6,7 +6,7 @@ import itertools
 import json
 import math
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +24,7 @@ from epicyclic.study.measured.residuals import Computed
 from epicyclic.study.measured.table import Measurements
 from epicyclic.study.operating import OPERATING
 from epicyclic.study.sweeps.run import LoadDependent
-from epicyclic.units import CELSIUS
+from epicyclic.units import CELSIUS, format_number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -66,13 +66,20 @@ def uncertainty_tables(fit: Fit) -> dict[str, dict[str, Any]]:
     Normal, with their correlations; of a value at its bound the half that lies within.
     """
     known = [i for i, item in enumerate(fit.parameters) if math.isfinite(item.uncertainty)]
-    tables = {fit.parameters[i].key: {"normal": _stated(fit.parameters[i])} for i in known}
+    tables = {fit.parameters[i].key: _distribution(fit.parameters[i]) for i in known}
     for i, j in itertools.combinations(known, 2):
         coefficient = round(SHRUNK * float(fit.correlation[i, j]), DIGITS)
         if np.isfinite(coefficient):
             entry = tables[fit.parameters[j].key].setdefault("correlated", {})
             entry[fit.parameters[i].key] = coefficient
     return tables
+
+
+def _distribution(item: FittedParameter) -> dict[str, Any]:
+    """What [uncertainty] says of a value; that of a model is a factor on its losses."""
+    if not item.key.startswith(MODEL_FORM):
+        return {"normal": _stated(item)}
+    return {"lognormal_factor": float(f"{math.exp(item.uncertainty / item.value):.6g}")}
 
 
 def _stated(item: FittedParameter) -> Any:
@@ -148,8 +155,8 @@ def all_errors(
     sets = {ALL: np.ones(len(table), dtype=bool)}
     if CALIBRATED in states:
         sets = {USED: ~held_out} | ({HELD_OUT: held_out} if held_out.any() else {})
-    labels = np.array(table.labels[group])
-    values = list(dict.fromkeys(table.labels[group]))
+    near = near_values(table.labels[group])
+    labels, values = np.array(near), list(dict.fromkeys(near))
     for state, computed in states.items():
         for name, members in sets.items():
             yield _errors(table, computed, members, (state, name, ""))
@@ -157,6 +164,35 @@ def all_errors(
             parts = {value: part for value, part in parts.items() if part.any()}
             for value, part in parts.items() if len(parts) > 1 else ():
                 yield _errors(table, computed, part, (state, name, f"{group} {value}"))
+
+
+NEAR, NEAR_OF_ALL = 0.02, 0.01
+"""Values that a rig meant to be the same differ by less than this, over themselves, or over the
+range of all. [1]"""
+
+
+def near_values(cells: Sequence[str]) -> tuple[str, ...]:
+    """Labels as they are; of real numbers that hardly repeat, means of those near each other."""
+    distinct = sorted(set(cells))
+    try:
+        numbers = np.sort([float(cell) for cell in distinct])
+    except ValueError:
+        return tuple(cells)
+    if 2 * len(distinct) <= len(cells) or not np.isfinite(numbers).all():
+        return tuple(cells)
+    groups = [[numbers[0]]]
+    for number in numbers[1:]:
+        first = groups[-1][0]
+        if number - first <= max(NEAR * abs(first), NEAR_OF_ALL * (numbers[-1] - numbers[0])):
+            groups[-1].append(number)
+        else:
+            groups.append([number])
+    means = {
+        number: format_number(float(np.mean(group)), 4 if len(group) > 1 else 6)
+        for group in groups
+        for number in group
+    }
+    return tuple(means[float(cell)] for cell in cells)
 
 
 def _errors(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from statistics import NormalDist
 
 import numpy as np
@@ -18,6 +19,7 @@ from epicyclic.study.measured.intervals import (
     Fit,
     FittedParameter,
     Linearised,
+    Noise,
     combinations,
     profile_ends,
 )
@@ -145,6 +147,11 @@ TOLERANCE = 1e-5  # Relative change of the parameters that ends the fit. [1]
 SQUARES_TOLERANCE = 1e-5  # Relative change of the sum of squares that ends the fit. [1]
 NO_INFLUENCE = 1e-9
 """Relative change of every loss, over that of a parameter, below which it has no influence. [1]"""
+EVIDENCE = 4.0
+"""Difference of Akaike's criterion from which a relative scatter is taken: a constant one has
+considerably less support (K. P. Burnham, D. R. Anderson, Model Selection (2002) 70). [1]"""
+REWEIGHTED = 2  # Fits with weights of the losses of the fit before, for a relative scatter.
+SMALLEST = 1e-3  # Scatter of a point over the largest, at least. [1]
 NEAR_BOUND = 1e-4  # Distance from a bound, over the start value, that counts as at the bound. [1]
 
 
@@ -155,10 +162,13 @@ def fit_parameters(
     confidence: float,
     reach: FloatArray | None = None,
     tell: Tell = lambda text: None,
+    *,
+    relative: float | None = None,
 ) -> Fit:
     """Fit `parameters` to the measured losses of the points `used`. Theory (X4).
 
-    `reach` is how far each may be off before the fit, over its start value; see `reaches`. Raises
+    `reach` is how far each may be off before the fit, over its start value; see `reaches`.
+    `relative` is the standard uncertainty of all points over their losses, if that is known. Raises
     `InputError` if there are fewer points than parameters, or a parameter has no influence;
     `ConvergenceError` if the fit does not converge.
     """
@@ -181,11 +191,55 @@ def fit_parameters(
     for one in known:
         if not one.told_apart:
             tell(one.warning)
-    found = _solution(residuals, Residuals(points, parameters, used), confidence, tell)
-    return _described(residuals, found, known, tell)
+    exact = Residuals(points, parameters, used)
+    noise: Noise = "stated"
+    found = _solution(residuals, exact, confidence, tell)
+    if relative is not None:
+        residuals, found = _relative(residuals, exact, found, tell, relative)
+    elif residuals.uncertainty is None:
+        noise, other = "constant", _relative(residuals, exact, found, tell)
+        if _is_likelier(*other, found):
+            noise, (residuals, found) = "relative", other
+    return replace(_described(residuals, found, known, tell), noise=noise)
 
 
-def _solution(residuals: Residuals, exact: Residuals, confidence: float, tell: Tell) -> Linearised:
+def _relative(
+    residuals: Residuals, exact: Residuals, found: Linearised, tell: Tell, size: float | None = None
+) -> tuple[Residuals, Linearised]:
+    """The fit with a scatter in proportion to the losses, of a `size` that may be unknown.
+
+    Weights are those of computed losses: measured ones that are too small by chance would have the
+    most. Theory (X9).
+    """
+    for _ in range(REWEIGHTED):
+        losses = np.abs(residuals.losses(found.solution))
+        if size is None:
+            losses = losses / math.sqrt(float(np.mean(losses**2)))
+        scatter = np.maximum(losses, SMALLEST * losses.max()) * (size or 1.0)
+        known = size is not None
+        residuals = replace(residuals, scatter=scatter, known=known, _offset=0.0)
+        exact = replace(exact, scatter=scatter, known=known, _offset=0.0)
+        found = _solution(residuals, exact, found.confidence, tell, found.solution)
+    return residuals, found
+
+
+def _is_likelier(residuals: Residuals, found: Linearised, constant: Linearised) -> bool:
+    """Whether a relative scatter makes the residuals likelier than a constant one."""
+    assert residuals.scatter is not None
+    if found.freedom == 0 or min(found.sum_of_squares, constant.sum_of_squares) == 0:
+        return False
+    gain = math.log(constant.sum_of_squares / found.sum_of_squares)
+    gain -= 2 * float(np.mean(np.log(residuals.scatter)))
+    return found.deviations.size * gain > EVIDENCE
+
+
+def _solution(
+    residuals: Residuals,
+    exact: Residuals,
+    confidence: float,
+    tell: Tell,
+    begin: FloatArray | None = None,
+) -> Linearised:
     """The solution, at last with exact flows through pockets and better derivatives."""
     from scipy.optimize import least_squares
 
@@ -203,7 +257,7 @@ def _solution(residuals: Residuals, exact: Residuals, confidence: float, tell: T
     ends = residuals.bounds
     found = least_squares(
         told,
-        np.ones(len(ends)),
+        np.ones(len(ends)) if begin is None else _inside(begin, ends),
         residuals.derivatives,
         (ends[:, 0], ends[:, 1]),
         xtol=TOLERANCE,
@@ -228,6 +282,12 @@ def _solution(residuals: Residuals, exact: Residuals, confidence: float, tell: T
     return Linearised(solution, residuals(solution), slopes, at_bound, weighted, confidence)
 
 
+def _inside(place: FloatArray, ends: FloatArray) -> FloatArray:
+    """`place` off the bounds, where the method may begin."""
+    room = NEAR_BOUND * np.maximum(1.0, np.abs(place))
+    return np.clip(place, ends[:, 0] + room, ends[:, 1] - room)
+
+
 def _last_step(
     residuals: Residuals, start: FloatArray, slopes: FloatArray, at_bound: NDArray[np.bool_]
 ) -> FloatArray:
@@ -242,8 +302,7 @@ def _last_step(
 
 def _check_influence(residuals: Residuals, slopes: FloatArray) -> None:
     loss = residuals.points.measured.loss[residuals.used]
-    sigma = residuals.uncertainty
-    scale = np.abs(loss) if sigma is None else np.abs(loss) / sigma
+    scale = np.abs(loss) * residuals.weight
     problems = [
         Problem(item.key, "", "has no influence on the measured losses.", "Do not fit it.")
         for item, slope in zip(residuals.parameters, np.abs(slopes).max(axis=0), strict=True)

@@ -6,14 +6,14 @@ import math
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
 from epicyclic.case.keys import Parameter
-from epicyclic.case.tables.uncertainty import UncertainValue
+from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.measured.residuals import STEP, Residuals
 from epicyclic.units import format_number
@@ -326,6 +326,8 @@ def _between(inner: tuple[float, float], outer: tuple[float, float]) -> float:
 
 # What a calibration found.
 
+Noise = Literal["stated", "constant", "relative"]
+
 
 @dataclass(frozen=True, slots=True)
 class FittedParameter:
@@ -386,6 +388,9 @@ class Fit:
         What the points know least about, first; as found before the fit.
     evaluations : int
         Computed points.
+    noise : {"stated", "constant", "relative"}
+        How the measurements scatter: as they state, or, of those without uncertainties, alike in W
+        or in proportion to the loss, whichever fits the residuals better.
     warnings : tuple of str
         What to know before using the values.
     """
@@ -402,6 +407,7 @@ class Fit:
     combinations: tuple[Combination, ...]
     evaluations: int
     warnings: tuple[str, ...]
+    noise: Noise = "stated"
 
 
 # Combinations of inputs that measured points cannot tell apart, found before a fit.
@@ -460,7 +466,8 @@ def reaches(case: Case, parameters: Sequence[Parameter]) -> FloatArray:
 
     From [uncertainty] or what is assumed; 1 where nothing is.
     """
-    known = {value.key: _reach(value) for value in uncertain_values(case)[0]}
+    kinds = tuple(item.key.removeprefix(MODEL_FORM) for item in parameters if item.factors)
+    known = {value.key: _reach(value) for value in uncertain_values(case, kinds)[0]}
     return np.array([known.get(item.key, 1.0) for item in parameters])
 
 

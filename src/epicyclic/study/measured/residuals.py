@@ -201,6 +201,9 @@ class Residuals:
     # Their values are given as ratios to the start values, "scaled".
     parameters: Sequence[Parameter]
     used: NDArray[np.bool_]  # Points of the table that the fit sees.
+    # Scatter of the points, in place of that of the table; `known` in W, else over its mean.
+    scatter: FloatArray | None = None
+    known: bool = True
     _known: dict[tuple[float, ...], FloatArray] = field(default_factory=dict)
     _offset: FloatArray | float = 0.0
 
@@ -219,8 +222,21 @@ class Residuals:
     @property
     def uncertainty(self) -> FloatArray | None:
         """Uncertainty of the losses at the points used; None if they have none. [W]"""
+        if self.scatter is not None:
+            return self.scatter if self.known else None
         whole = self.points.measured.uncertainty
-        return None if whole is None else whole[self.used]
+        return None if whole is None or not self.known else whole[self.used]
+
+    @property
+    def weight(self) -> FloatArray | float:
+        """What deviations are multiplied by. [1/W], or 1"""
+        scatter = self.uncertainty if self.scatter is None else self.scatter
+        return 1.0 if scatter is None else 1 / scatter
+
+    def losses(self, scaled: FloatArray) -> FloatArray:
+        """Computed losses of the points used. [W]"""
+        measured: FloatArray = self.points.measured.loss[self.used]
+        return self(scaled) / self.weight + measured
 
     @property
     def bounds(self) -> FloatArray:
@@ -229,9 +245,10 @@ class Residuals:
 
     def settings(self, scaled: FloatArray) -> dict[str, Any]:
         """The values of the keys as a case file has them."""
-        return {
-            item.key: item.value(float(z)) for item, z in zip(self.parameters, scaled, strict=True)
-        }
+        found: dict[str, Any] = {}
+        for item, z in zip(self.parameters, scaled, strict=True):
+            found |= item.settings(float(z))
+        return found
 
     def __call__(self, scaled: FloatArray) -> FloatArray:
         return self.at([scaled])[0]
@@ -271,8 +288,7 @@ class Residuals:
         sets = [tuple(map(float, one)) for one in scaled]
         new = [one for one in dict.fromkeys(sets) if one not in self._known]
         measured = self.points.measured.loss[self.used]
-        weight = 1.0 if self.uncertainty is None else 1 / self.uncertainty
         settings = [self.settings(np.array(one)) for one in new]
         for one, computed in zip(new, self.points.compute(*settings) if new else [], strict=True):
-            self._known[one] = (computed.loss[self.used] - measured) * weight
-        return [self._known[one] + self._offset for one in sets]
+            self._known[one] = computed.loss[self.used] - measured
+        return [self._known[one] * self.weight + self._offset for one in sets]

@@ -2,37 +2,39 @@
 
 from __future__ import annotations
 
-import io
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
-from epicyclic.build.machine import layout_of
+from epicyclic.build.machine import build, layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys
 from epicyclic.errors import InputError, Problem, first_of, raise_any
-from epicyclic.files import check_archive, csv_rows, decode, read_bytes, refuse
+from epicyclic.files import refuse
 from epicyclic.messages import did_you_mean, misspelt, one_line, sentence
 from epicyclic.schema.fields import is_array, is_text, quantity_of
 from epicyclic.schema.read import parse_value
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY
-from epicyclic.units import WATT, Quantity, format_number
-
-if TYPE_CHECKING:
-    import pandas as pd
-
+from epicyclic.study.table_file import (
+    AS_IT_IS,
+    HEADER,
+    TableForm,
+    cell_text,
+    missing_remedy,
+    open_table,
+    plain_numbers,
+    unit_problem,
+)
+from epicyclic.units import NEWTON_METRE, NUMBER, RPM, WATT, Quantity, format_number
 
 # Tables as users keep them (CSV, Excel, Parquet) as rows of plain cells.
 
-_NOUN = "measurement"
-_LARGEST_FILE = 10_000_000  # Largest file, also of what a compressed file holds. [bytes]
 MOST_ROWS = 10_000
 """Every row is a computation; tables of more rows are recordings, to be averaged first."""
 _MOST_COLUMNS = 200
@@ -49,112 +51,33 @@ class Grid:
     source: str  # Where it comes from.
 
 
-def read_grid(path: Path) -> Grid:
-    """The cells of a CSV, Excel (first sheet) or Parquet file.
+def read_grid(table: Any, form: TableForm = AS_IT_IS) -> Grid:
+    """The cells of a file, or of a table in memory, numbers as Python writes them.
 
     Raises `InputError` if it cannot be read as such, is empty, or has more than `MOST_ROWS` rows.
     """
-    readers = {".xlsx": _excel_rows, ".parquet": _parquet_rows}
-    reader = readers.get(path.suffix.lower(), _csv_rows)
-    source = one_line(str(path), 500)
+    source = open_table(table, form)
+    header = source.headers
     try:
-        return _checked(reader(read_bytes(path, _NOUN, _LARGEST_FILE)), source)
+        if not header:
+            refuse("has no columns.", "Give a header such as: speed [rpm],torque [N*m],...")
+        if len(header) > _MOST_COLUMNS:
+            refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep the columns that are compared.")
+        rows: list[tuple[int, tuple[str, ...]]] = []
+        for piece in source.batches(header):
+            columns = [
+                plain_numbers(source, name, piece.columns[name]).to_pylist() for name in header
+            ]
+            for line, *cells in zip(piece.lines.tolist(), *columns, strict=True):
+                if any(cell is not None and cell != "" for cell in cells):
+                    rows.append((line, tuple(map(cell_text, cells))))
+            if len(rows) > MOST_ROWS:
+                refuse(f"has more than {MOST_ROWS} rows.", "Average the records of each point.")
+        if not rows:
+            refuse("has no rows below its header.", "Give one row for each measurement.")
     except InputError as error:
-        raise InputError(error.problems, source) from None
-
-
-def read_frame(table: pd.DataFrame) -> Grid:
-    """The cells of a table in memory; its rows are counted from 1. Errors as for `read_grid`."""
-    return _checked(_frame_rows(table), "the table")
-
-
-def _checked(rows: Iterator[tuple[int, list[str]]], source: str) -> Grid:
-    """The grid of `rows`, the first of which is the header; raises `InputError`."""
-    _, header = next(rows, (0, []))
-    header = _without_end(header, 0)
-    if not header:
-        refuse("has no columns.", "Give a header such as: speed [rpm],torque [N*m],...")
-    if len(header) > _MOST_COLUMNS:
-        refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep the columns that are compared.")
-    kept = []
-    for line, cells in rows:
-        if any(cells):
-            kept.append((line, tuple(_without_end(cells, len(header)))))
-        if len(kept) > MOST_ROWS:
-            refuse(f"has more than {MOST_ROWS} rows.", "Average the records of each point.")
-    if not kept:
-        refuse("has no rows below its header.", "Give one row for each measurement.")
-    ragged = [(line, len(cells)) for line, cells in kept if len(cells) != len(header)]
-    if ragged:
-        shown = first_of([f"line {line} has {count}" for line, count in ragged], _SHOWN_LINES)
-        allowed = f"has {len(header)} columns, but {shown}."
-        refuse(
-            allowed,
-            "Give every row the same number of cells; quote cells that contain the separator.",
-        )
-    return Grid(tuple(header), tuple(kept), source)
-
-
-def _without_end(cells: list[str], least: int) -> list[str]:
-    """`cells` without the empty ones at the end, as spreadsheets leave them, but `least`."""
-    count = len(cells)
-    while count > least and not cells[count - 1]:
-        count -= 1
-    return cells[:count]
-
-
-def _csv_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
-    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        refuse("is UTF-16 text.", "Save it as CSV in UTF-8.")
-    return csv_rows(decode(content, _NOUN))
-
-
-def _excel_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
-    """Rows of the first sheet, with the values that formulas had when the file was saved."""
-    import openpyxl
-
-    remedy = "Save one small sheet as .xlsx, or as CSV."
-    check_archive(content, "an Excel workbook", _LARGEST_FILE, remedy)
-    try:
-        book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
-        rows = iter(book.worksheets[0].iter_rows(values_only=True))
-        for number, row in enumerate(rows, 1):
-            yield number, [_text(cell) for cell in row]
-    except InputError:
-        raise
-    except Exception as error:  # the reader raises whatever its parsers do
-        refuse(f"is not a valid workbook: {one_line(str(error))}.", "Save it again, or as CSV.")
-
-
-def _parquet_rows(content: bytes) -> Iterator[tuple[int, list[str]]]:
-    import pyarrow.parquet as parquet
-
-    try:
-        file = parquet.ParquetFile(io.BytesIO(content))
-        about = file.metadata
-        groups = [about.row_group(number) for number in range(about.num_row_groups)]
-        if about.num_rows > MOST_ROWS or sum(g.total_byte_size for g in groups) > _LARGEST_FILE:
-            refuse(f"has more than {MOST_ROWS} rows or 10 MB.", "Average the records.")
-        table = file.read().to_pandas()
-    except InputError:
-        raise
-    except Exception as error:  # the reader raises whatever its parsers do
-        refuse(
-            f"is not a valid Parquet file: {one_line(str(error))}.", "Write it again, or as CSV."
-        )
-    yield from _frame_rows(table)
-
-
-def _frame_rows(table: pd.DataFrame) -> Iterator[tuple[int, list[str]]]:
-    yield 0, [str(name).strip() for name in table.columns]
-    rows: Iterable[tuple[Any, ...]] = table.itertuples(index=False, name=None)
-    for number, row in enumerate(rows, 1):
-        yield number, [_text(cell) for cell in row]
-
-
-def _text(cell: object) -> str:
-    """A cell as text, numbers with all their digits."""
-    return "" if cell is None else str(cell).strip()
+        raise InputError(error.problems, source.name) from None
+    return Grid(header, tuple(rows), source.name)
 
 
 # Measurements as a table states them: conditions, loss, which loss it is, uncertainty.
@@ -165,8 +88,10 @@ LOAD_DEPENDENT = "load_dependent"  # Sum of the losses that depend on the load, 
 
 _OWN = (*AXES, "loss", "uncertainty", "component")
 _EXAMPLES = {name: part.unit for name, part in OPERATING.items()} | {"loss": WATT.display}
-_HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
-_PERCENT = "%"
+_PERCENT, _UNIT_OF_PARTS = "%", "dimensionless"
+_EFFICIENCY, _TORQUE_OUT, _SPEED_OUT = "efficiency", "output_torque", "output_speed"
+"""Columns from which the total loss follows where it is no column itself."""
+_RAD_PER_S = math.pi / 30  # One rpm.
 _NUMBER_WITH_UNIT = re.compile(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?\s*(?![eE][+-]?\d)[^\d\s.,].*")
 
 
@@ -263,9 +188,13 @@ def parse_measurements(
         name: _numbers(columns.get(name), quantity_of(*_field(case, key)), problems)
         for name, key in _conditions(case).items()
     }
-    loss = _numbers(columns.get("loss"), WATT, problems)
+    loss = _loss(columns, conditions, case, problems)
     uncertainty = _uncertainty(columns.get("uncertainty"), loss, problems)
     components = _components(columns.get("component"), component, case, grid, problems)
+    total = columns.keys() & {_EFFICIENCY, _TORQUE_OUT} and "loss" not in columns
+    if total and set(components) != {"total"}:
+        allowed = "is stated by an efficiency or two torques only if it is the total."
+        problems.found.append(Problem("component", first_of(components), allowed, "Give losses."))
     own = _conditions(case) | _states(case)
     keys = {
         own.get(name, name): column
@@ -308,7 +237,7 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
     short = {key: name for name, key in own.items()}
     columns: dict[str, _Column] = {}
     for number, header in enumerate(grid.header):
-        match = _HEADER.fullmatch(header)
+        match = HEADER.fullmatch(header)
         if match is None:
             allowed, remedy = "is not a name with a unit.", "Write it as: speed [rpm]."
             problems.found.append(
@@ -330,13 +259,23 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
             columns[name] = column
     taken = {problem.key for problem in problems.found}
     problems.found += [
-        Problem(name, "", "is missing among the columns.", f"Add a column {name} [{unit}].")
-        for name, unit in _EXAMPLES.items()
+        Problem(name, "", "is missing among the columns.", remedy)
+        for name, remedy in _examples(columns, grid.header)
         if name not in columns
         and (name in own or name not in AXES)
         and not any(misspelt(key, [name]) for key in taken)
     ]
     return columns
+
+
+def _examples(columns: Collection[str], headers: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """Columns that a table must have, and what to do without them."""
+    for name, unit in _EXAMPLES.items():
+        remedy = missing_remedy("Add", name, unit, headers)
+        if name != "loss":
+            yield name, remedy
+        elif not {_EFFICIENCY, _TORQUE_OUT} & set(columns):
+            yield name, f"{remedy} Or add {_EFFICIENCY} [%] or {_TORQUE_OUT} [N*m]."
 
 
 def _name_problem(column: _Column, case: Case) -> Problem | None:
@@ -369,9 +308,62 @@ def _numbers(column: _Column | None, quantity: Quantity | None, problems: _Probl
         return np.full(len(problems.lines), np.nan)
     assert quantity is not None
     kind: Quantity = quantity
+    try:
+        if column.unit:
+            kind.scale_from(column.unit)
+    except PydanticCustomError as error:
+        given = (column.name, column.header, column.unit, kind, error)
+        problems.found.append(unit_problem(*given))
+        return np.full(len(problems.lines), np.nan)
     return _read(
         column, problems, lambda cell: kind.to_display(kind.parse(_with_unit(column, cell)))
     )
+
+
+def _loss(
+    columns: Mapping[str, _Column],
+    conditions: Mapping[str, FloatArray],
+    case: Case,
+    problems: _Problems,
+) -> FloatArray:
+    """The measured loss, or that which an efficiency or a second torque implies. [W]"""
+    if "loss" in columns or not {_EFFICIENCY, _TORQUE_OUT} & columns.keys():
+        return _numbers(columns.get("loss"), WATT, problems)
+    power = conditions["torque"] * conditions["speed"] * _RAD_PER_S
+    if _EFFICIENCY in columns:
+        column = columns[_EFFICIENCY]
+        if not column.unit:
+            cells = (
+                f"{cell} {_UNIT_OF_PARTS}" if cell[-1:].isdigit() else cell for cell in column.cells
+            )
+            column = replace(column, cells=tuple(cells))
+        share = _numbers(column, NUMBER, problems)
+        for row in np.flatnonzero((share <= 0) | (share > 1)):
+            remedy = "Give it as a share, or in per cent with [%] in the header."
+            problems.cell(column, int(row), "must be > 0 and at most 1, or 100 %.", remedy)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(power > 0, power * (1 - share), -power * (1 / share - 1))
+    torque = _numbers(columns[_TORQUE_OUT], NEWTON_METRE, problems)
+    if _SPEED_OUT in columns:
+        speed = _numbers(columns[_SPEED_OUT], RPM, problems)
+    else:
+        speed = conditions["speed"] * _ratios(columns.get(STATE), case, torque.size)
+    leaving = np.abs(torque * speed) * _RAD_PER_S
+    return np.where(power > 0, power - leaving, leaving + power)
+
+
+def _ratios(states: _Column | None, case: Case, count: int) -> FloatArray:
+    """Speed of the output over that of the input in every row; NaN in states that are none."""
+    known: dict[str, float] = {}
+    for name in dict.fromkeys(states.cells) if states else ("",):
+        try:
+            built = build(case.updated({STATE_KEY: name}) if name else case)
+        except InputError:  # told where the state stands
+            known[name] = math.nan
+            continue
+        speeds, ends = built.state().speeds, built.operation
+        known[name] = speeds[ends.output] / speeds[ends.input]
+    return np.array([known[name] for name in (states.cells if states else [""] * count)])
 
 
 def _with_unit(column: _Column, cell: str) -> str:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import ast
-import io
 import math
 import operator
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
@@ -22,7 +20,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
-from epicyclic.files import read_text, refuse
+from epicyclic.files import refuse
 from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
 from epicyclic.schema.fields import (
     all_keys,
@@ -34,6 +32,7 @@ from epicyclic.schema.fields import (
     table_of,
 )
 from epicyclic.schema.read import parse_value, plain
+from epicyclic.study.table_file import HEADER, cell_text, open_table, plain_numbers
 from epicyclic.units import Quantity, format_number, in_unit, one_of, pure_number, with_unit
 
 if TYPE_CHECKING:
@@ -235,9 +234,6 @@ def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
 
 # Tables of points: a column for each key, a row for each point.
 
-_LARGEST_FILE = 10_000_000  # [bytes]
-_HEADER = re.compile(r"(?P<key>[^\[\]]+?)\s*(\[(?P<unit>[^\[\]]*)\])?")
-
 
 def columns_of(points: str | Path | pd.DataFrame) -> dict[str, list[Any]]:
     """Keys of a table of points with their values, as a case file has them.
@@ -254,43 +250,30 @@ def columns_of(points: str | Path | pd.DataFrame) -> dict[str, list[Any]]:
         raise InputError(error.problems, source) from None
 
 
-def _read(path: Path) -> dict[str, Sequence[Any]]:
-    import pandas as pd
-
-    text = read_text(path, "table", _LARGEST_FILE)
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    if len(lines) < 2:
-        refuse("has no rows below a header.", "Give a header of keys, and a row for each point.")
-    if len(lines) > MOST_POINTS + 1:  # not worth reading them
-        refuse(f"has more than {MOST_POINTS} rows.", "Give fewer points, or several tables.")
-    separator = max(",;\t", key=lines[0].count)
-    try:
-        cells = pd.read_csv(
-            io.StringIO("\n".join(lines)),
-            sep=separator,
-            header=None,
-            dtype=str,
-            keep_default_na=False,
-            skipinitialspace=True,
-        )
-    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        refuse(f"is not a table: {str(error).strip()}.", "Give every row the same number of cells.")
-    header = [str(name).strip() for name in cells.iloc[0]]
-    repeated = {name for name in header if header.count(name) > 1}
+def _read(path: Path) -> dict[str, list[str]]:
+    source = open_table(path)
+    repeated = {name for name in source.headers if source.headers.count(name) > 1}
     if repeated:
         refuse(f"has two columns {', '.join(sorted(repeated))}.", "Keep one of them.")
-    values = cells.iloc[1:]
-    return {
-        name: [str(cell).strip() for cell in values[number]] for number, name in enumerate(header)
-    }
+    values: dict[str, list[str]] = {name: [] for name in source.headers}
+    count = 0
+    for piece in source.batches(source.headers):
+        count += len(piece.lines)
+        if count > MOST_POINTS:
+            refuse(f"has more than {MOST_POINTS} rows.", "Give fewer points, or several tables.")
+        for name, cells in values.items():
+            cells += map(cell_text, plain_numbers(source, name, piece.columns[name]).to_pylist())
+    if not count:
+        refuse("has no rows below a header.", "Give a header of keys, and a row for each point.")
+    return values
 
 
 def _point_columns(table: dict[str, Any]) -> dict[str, list[Any]]:
     columns: dict[str, list[Any]] = {}
     problems = []
     for header, cells in table.items():
-        match = _HEADER.fullmatch(header)
-        key, unit = (match["key"], match["unit"] or "") if match else (header, "")
+        match = HEADER.fullmatch(header)
+        key, unit = (match["name"], match["unit"] or "") if match else (header, "")
         if key in columns:
             problems.append(Problem(key, "", "has two columns.", "Keep one of them."))
         empty = [str(number) for number, cell in enumerate(cells, 1) if _is_empty(cell)]

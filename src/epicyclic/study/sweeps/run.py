@@ -25,7 +25,7 @@ from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
-from epicyclic.schema.read import parse_value, plain
+from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
 from epicyclic.study.operating import AXES, STATE_KEY, axis_name
 from epicyclic.study.solve import pocket_flow_numbers, solve
 from epicyclic.study.sweeps.axes import (
@@ -307,11 +307,8 @@ def make_plan(
     Raises `InputError` for unknown or unsuitable keys, no values, values that cannot be read,
     repeated ones, or links that have no value.
     """
-    single = {str(key): listed(values) for key, values in (vary or {}).items()}
-    groups = [
-        {str(key): listed(values) for key, values in group.items()}
-        for group in (*together, *([] if points is None else [points]))
-    ]
+    given = [vary or {}, *together, *([] if points is None else [points])]
+    single, *groups = [dict(_keyed(group)) for group in given]
     sizes = [*map(len, single.values()), *(max(map(len, it.values()), default=0) for it in groups)]
     if not sizes:
         remedy = "Give at least one key and its values; --vary KEY=VALUES on the command line."
@@ -323,13 +320,20 @@ def make_plan(
     made += [*(make_group(case, group) for group in groups), *rows]
     axes = tuple(axis for axis, _ in made if axis is not None)
     problems = [problem for _, found in made for problem in found]
-    problems += _repeated([*single, *(key for group in groups for key in group), *(points or {})])
+    problems += _repeated(split_key(str(key))[0] for group in given for key in group)
     linked = {str(key): str(text) for key, text in (links or {}).items()}
     problems += check_links(case, linked, {part.key for axis in axes for part in axis.keys})
     raise_any(problems, "the sweep")
     plan = SweepPlan(case, axes, linked)
     _check_first(plan)
     return plan
+
+
+def _keyed(group: Mapping[str, Iterable[Any]]) -> Iterator[tuple[str, list[Any]]]:
+    """Keys and their values, numbers with the unit that stands behind the key."""
+    for name, values in group.items():
+        key, unit = split_key(str(name))
+        yield key, [with_unit_of_key(value, unit) for value in listed(values)]
 
 
 def _repeated(keys: Iterable[str]) -> list[Problem]:
@@ -450,7 +454,12 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
     items = [item.strip() for item in text.split(",") if item.strip()]
     shared = _unit_of(items[-1]) if items else ""
     for item in items:
+        if _LEADING_ZERO.match(item):
+            raise ValueError(f'"{item}" is no value: commas divide values, not digits of one')
         yield parse_value(f"{item} {shared}" if shared and _is_bare(item) else item)
+
+
+_LEADING_ZERO = re.compile(r"0\d")
 
 
 def _is_bare(item: str) -> bool:
@@ -692,7 +701,8 @@ def sweep(
         Every key that is not varied stays as it is here.
     vary : mapping of str to iterable, optional
         Dotted keys to values, ``{"operation.speed": ["1000 rpm", "2000 rpm"]}``: numbers, text
-        with units, choices, names.
+        with units, choices, names. Numbers of an array have the unit behind the key,
+        ``{"operation.torque [N*m]": np.linspace(0, 300, 7)}``.
     together : iterable of mapping, optional
         Groups of keys with as many values each, which change together. Each group is one
         dimension, named after its first key.
