@@ -1,10 +1,10 @@
 """NetCDF files that users give: the only door through which the package reads them.
 
 A file is opened only if it is a regular file of HDF5 and not too large, and if all in it lies in
-itself, and once only: netCDF4 reads other files that it names, and goes round in loops of groups. It
-is read only if what it declares is not too much either: a few kilobytes can declare terabytes. Times
-are not decoded. Texts lie in heaps without a checksum, over which HDF5 loops for ever where a size
-in them is damaged; what points at a text states its length, which HDF5 believes.
+itself, and once only: netCDF4 reads other files that it names, and goes round in loops of groups.
+It is read only if what it declares is not too much either: a few kilobytes can declare terabytes.
+Times are not decoded. Texts lie in heaps without a checksum, over which HDF5 loops for ever where a
+size in them is damaged; what points at a text states its length, which HDF5 believes.
 """
 
 from __future__ import annotations
