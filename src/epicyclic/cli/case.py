@@ -16,6 +16,7 @@ from epicyclic.cli.common import (
     case_argument,
     check_ending,
     draw,
+    echo,
     json_option,
     load_with,
     output_option,
@@ -74,7 +75,7 @@ def run(case: str, changes: tuple[str, ...], json_file: str | None, save: Path |
         json_file,
     )
     if result.status is not Status.CONVERGED:
-        click.echo(result.notes[0], err=True)
+        echo(result.notes[0], err=True)
         sys.exit(EXIT_NO_SOLUTION)
 
 
@@ -107,13 +108,13 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     from epicyclic.show.terminal import terminal
 
     loaded = load_with(case, changes)
-    click.echo(f"{case}: a sound {loaded.kind} case.")
+    echo(f"{case}: a sound {loaded.kind} case.")
     if loaded.lubrication is not None:
         from epicyclic.build.models import set_cases
         from epicyclic.build.result import oil_supplies
 
         for name, supply in oil_supplies(set_cases(loaded)):
-            click.echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
+            echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
     terminal().print(data_sheet(loaded))
     if loaded.kind == "train":
         terminal().print(state_tables(loaded))
@@ -212,7 +213,7 @@ def heat(
     solved = with_network(stated) if found is None else found.case
     result = solve(solved) if found is None else found.result
     if stated.models.temperatures != "network":
-        click.echo(
+        echo(
             f"Computed with models.temperatures = network instead of {stated.models.temperatures}.",
             err=True,
         )

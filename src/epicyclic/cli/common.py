@@ -25,7 +25,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, printable_lines
 from epicyclic.files import write_file
 from epicyclic.kernels import listeners
 
@@ -47,6 +47,11 @@ COMPILING_EVERY = 5.0  # The same while kernels are compiled. [s]
 COMPILED = 75  # Kernels that a result needs, about.
 Update = Callable[..., None]
 LONG_SECONDS = 2.0  # After which a command that tells nothing of itself says that it works.
+
+
+def echo(text: str, err: bool = False) -> None:
+    """Print lines, on standard error if so; what names in them would do to a terminal is shown."""
+    click.echo(printable_lines(text), err=err)
 
 
 def tell(text: str) -> None:
@@ -106,7 +111,7 @@ def _lines(noun: str) -> Iterator[Update]:
             parts.append(f"about {_seconds(left)} left")
         if failed:
             parts.append(_failures(failed))
-        click.echo(", ".join(parts), err=True)
+        echo(", ".join(parts), err=True)
 
     yield update
 
@@ -132,7 +137,7 @@ def tell_compilation() -> None:
         if now - told < COMPILING_EVERY or _is_off():
             return
         told = now
-        click.echo(
+        echo(
             f"First run of this version: compiling the numerics, {count} of about {COMPILED} "
             f"functions after {_seconds(now - first)}.",
             err=True,
@@ -202,7 +207,7 @@ def show(
 
     if json_file is not None:
         write_file(Path(json_file), as_json() + "\n")
-        click.echo(f"Wrote {json_file}.")
+        echo(f"Wrote {json_file}.")
     terminal().print(tables())
 
 
@@ -228,7 +233,7 @@ def draw(figure: Figure, path: Path, caption: str = "") -> None:
 
         caption_below(figure, caption)
     write_file(path, picture_bytes(figure, path))
-    click.echo(f"Wrote {path}.")
+    echo(f"Wrote {path}.")
 
 
 def picture_bytes(figure: Figure, path: Path) -> bytes:
@@ -255,7 +260,7 @@ def write_page(path: Path, page: str) -> None:
         write_file(path, report_pdf(page))
     else:
         write_file(path, page)
-    click.echo(f"Wrote {path}.")
+    echo(f"Wrote {path}.")
 
 
 # Options that commands share, above all a case and changes of its keys.
@@ -372,7 +377,7 @@ def case_with_remarks(found: ForeignCase, changes: dict[str, Any]) -> Case:
     """The case in a file of another form; standard error shows what the file lacks."""
     loaded = found.case(changes)
     for remark in found.remarks(changes, loaded):
-        click.echo(remark, err=True)
+        echo(remark, err=True)
     return loaded
 
 

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 import click
 
 from epicyclic.cli.case import check, friction, heat, mesh, run, warm_up
-from epicyclic.cli.common import tell_compilation
+from epicyclic.cli.common import echo, tell_compilation
 from epicyclic.cli.compare import compare
 from epicyclic.cli.duty import duty
 from epicyclic.cli.many import loss_map, sweep
@@ -133,7 +133,7 @@ def _finish() -> None:
         from epicyclic.kernels.compiling import cache_notes
 
         for note in cache_notes():
-            click.echo(note, err=True)
+            echo(note, err=True)
     if sys.stdout is not None:
         sys.stdout.flush()
 
@@ -147,10 +147,10 @@ def _told(error: Exception) -> int:
             error.show()
             return EXIT_INPUT
         case InputError():
-            click.echo(str(error), err=True)
+            echo(str(error), err=True)
             return EXIT_INPUT
         case ConvergenceError():
-            click.echo(f"No solution: {error}", err=True)
+            echo(f"No solution: {error}", err=True)
             return EXIT_NO_SOLUTION
         case BrokenPipeError():  # the reader of a pipe has seen enough
             _discard_output()
@@ -158,13 +158,11 @@ def _told(error: Exception) -> int:
         case OSError() if os.environ.get("EPICYCLIC_TRACEBACK") != "1":
             _discard_output()
             place = printable(str(error.filename or "the output"))[:_LONGEST_NAME]
-            click.echo(
-                f"The system refused access to {place}: {error.strerror or error}.", err=True
-            )
+            echo(f"The system refused access to {place}: {error.strerror or error}.", err=True)
             return EXIT_INPUT
     if os.environ.get("EPICYCLIC_TRACEBACK") == "1":
         raise error
-    click.echo(
+    echo(
         f"Internal error: {type(error).__name__}: {error}\nSet EPICYCLIC_TRACEBACK=1 for the "
         "traceback.",
         err=True,
@@ -205,7 +203,7 @@ def tell_once() -> None:
     """Say that the command was interrupted, unless it has been said."""
     if not _interrupt_seen.is_set():
         _interrupt_seen.set()
-        click.echo("Interrupted.", err=True)
+        echo("Interrupted.", err=True)
 
 
 @contextmanager

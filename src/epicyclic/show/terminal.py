@@ -11,9 +11,11 @@ from rich.cells import cell_len
 from rich.columns import Columns
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.padding import Padding
+from rich.segment import Segment
 from rich.table import Column, Table
 from rich.text import Text
 
+from epicyclic.errors import printable_lines
 from epicyclic.losses.ranges import share_text
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result
@@ -124,10 +126,23 @@ def _widths(needs: Sequence[_Need], room: int) -> list[int]:
 PIPE_WIDTH = 100  # Width of tables that do not go to a terminal. [characters]
 
 
+class _PlainConsole(Console):
+    """A console that shows texts as they are: neither as markup nor as signs that control it."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterator[Segment]:
+        for segment in super().render(renderable, options):
+            text = segment.text if segment.control else printable_lines(segment.text)
+            yield segment._replace(text=text)
+
+
 def terminal() -> Console:
     """The console for results, on standard output."""
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=PIPE_WIDTH)
+    console = _PlainConsole(highlight=False, markup=False, emoji=False)
+    if not console.is_terminal:
+        console.width = PIPE_WIDTH
+    return console
 
 
 def result_tables(
