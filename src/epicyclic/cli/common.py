@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import sys
@@ -11,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from datetime import timedelta
 from functools import wraps
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +30,7 @@ from rich.progress import (
 from epicyclic.errors import InputError, Problem, printable_lines
 from epicyclic.files import write_file
 from epicyclic.kernels import listeners
+from epicyclic.messages import one_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -171,6 +174,8 @@ def working(noun: str) -> Iterator[None]:
 
 
 PICTURES = (".png", ".svg", ".pdf")
+MOST_KEYS = 1000
+"""For which the braces of one key may stand."""
 PAGE, PRINT = ".html", ".pdf"
 SIZES = (30, 2000)  # Smallest and largest size of a picture. [mm]
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4}
@@ -407,10 +412,14 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
 
 def _alternatives(key: str) -> list[str]:
     """The keys that braces stand for: ``{sun,ring}.teeth``."""
-    match = re.fullmatch(r"(.*?)\{([^{}]*)\}(.*)", key)
-    if match is None:
-        return [key]
-    start, names, end = match.groups()
-    return [
-        f"{start}{name.strip()}{rest}" for name in names.split(",") for rest in _alternatives(end)
+    parts = re.split(r"\{([^{}]*)\}", key)
+    choices = [
+        [name.strip() for name in part.split(",")] if place % 2 else [part]
+        for place, part in enumerate(parts)
     ]
+    count = math.prod(map(len, choices))
+    if count > MOST_KEYS:
+        allowed = f"stands for more than {MOST_KEYS} keys."
+        problem = Problem("--set", f'"{one_line(key)}"', allowed, "Give fewer names in braces.")
+        raise InputError([problem], "the command")
+    return ["".join(chosen) for chosen in product(*choices)]
