@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any, NoReturn
 
 import click
@@ -55,6 +56,12 @@ class _Commands(click.Group):
             return super().get_command(ctx, cmd_name)
         command: click.Command = load("commands", cmd_name)
         return command
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError as error:  # with its number click would make an exit of it
+            raise BrokenPipeError from error
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -102,6 +109,8 @@ for command in COMMANDS:
 def main() -> None:
     """Entry point: errors become messages and exit codes, never tracebacks."""
     tell_compilation()
+    if sys.stdout is None:  # closed: what is printed must fail, and go into no file opened since
+        sys.stdout = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # signs that a terminal does not know become ?
             stream.reconfigure(errors="replace")
@@ -117,6 +126,8 @@ def _code_of(call: Callable[[], object]) -> int:
     try:
         call()
     except SystemExit as end:
+        if isinstance(end.__context__, BrokenPipeError):  # of which rich makes an exit
+            return _told(end.__context__)
         return int(end.code or EXIT_DONE)
     except KeyboardInterrupt:
         return _ended_interrupted()
