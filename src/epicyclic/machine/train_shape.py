@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.gears.gearing import Gearing
-from epicyclic.messages import PART_NAME, PART_NAME_RULE, did_you_mean, written
+from epicyclic.messages import NAME, PART_NAME, PART_NAME_RULE, did_you_mean, written
 
 if TYPE_CHECKING:  # cases that are only read need no machine
     from epicyclic.machine.machine import Coupling, Machine, MeshRow
@@ -215,8 +215,9 @@ def named_problems(train: Train) -> list[Problem]:
     """States and shafts that are named and are not there."""
     operation, problems = train.operation, []
     for name, state in train.states.items():
-        if not name.strip():
-            problems.append(Problem("states", f'"{name}"', "is an empty name.", "Name the state."))
+        if not NAME.fullmatch(name):
+            allowed = "is not a valid name for a state."
+            problems.append(Problem(f"states.{name}", "", allowed, "Choose another name."))
         problems += state_problems(f"states.{name}", state, train.shape)
     problems += _state_choice(train)
     for key in ("input", "output"):

@@ -23,7 +23,7 @@ from epicyclic.units import format_number, from_pint
 _DEEPEST = 20  # Tables of a case are nested a few levels deep; deeper ones are something else.
 
 _CONTROLS = ("Cc", "Cs")  # Unicode categories of control characters and of halves of characters.
-_LAYOUT = "\t\r\n\u2028\u2029"  # What texts of several lines may have, and names may not.
+_LAYOUT = "\t\r\n"  # What texts of several lines may have.
 
 _MOST_VALUES = 20_000  # A case has a hundred values, a large friction table some thousand.
 
@@ -38,19 +38,13 @@ def plain(value: Any) -> Any:
 
 
 def control_problems(tables: Any, path: tuple[str | int, ...] = ()) -> Iterator[Problem]:
-    """Texts and names in plain values with signs that control a terminal, or are no characters.
-
-    Names stand on one line, of files of other programs too.
-    """
+    """Texts in plain values with signs that control a terminal, or are no characters."""
     if isinstance(tables, str) and not tables.isprintable():
         if any(category(char) in _CONTROLS and char not in _LAYOUT for char in tables):
             allowed = "contains control characters."
             yield Problem(dotted(path), written(tables), allowed, "Remove them.")
     elif isinstance(tables, Mapping):
         for key, item in tables.items():
-            if any(category(char) in _CONTROLS or char in _LAYOUT for char in key):
-                allowed = "is a name with control characters."
-                yield Problem(dotted((*path, key)), "", allowed, "Remove them.")
             yield from control_problems(item, (*path, key))
     elif isinstance(tables, tuple):
         for number, item in enumerate(tables):
