@@ -52,6 +52,11 @@ def printable(text: str) -> str:
     )
 
 
+def printable_lines(text: str) -> str:
+    """The same with its lines as they are."""
+    return "\n".join(map(printable, text.split("\n")))
+
+
 # Exit codes of the command.
 EXIT_DONE = 0
 EXIT_ERROR, EXIT_INPUT, EXIT_NO_SOLUTION, EXIT_FAILED_POINTS = 1, 2, 3, 4

@@ -31,6 +31,7 @@ _MEGABYTE = 1_000_000
 _SEAL = "fingerprint"
 _MAKE_AGAIN = "Make it again."
 _LONGEST_REASON = 200
+_PROBE = 65_536  # More than the start of any file. [bytes]
 
 
 def read_text(
@@ -197,7 +198,12 @@ def whole_file(path: Path, option: str = OPTION) -> Iterator[Path]:
         _remove_leftovers(target.parent)
         with _private_folder(target.parent) as folder:
             temporary = folder / target.name
-            yield temporary
+            try:
+                yield temporary
+            except PermissionError:  # netCDF4 says so of a full disk too: what does the system say?
+                temporary.unlink(missing_ok=True)
+                temporary.write_bytes(bytes(_PROBE))
+                raise
             if target.exists():
                 temporary.chmod(stat.S_IMODE(target.stat().st_mode))
             temporary.replace(target)

@@ -14,6 +14,11 @@ from epicyclic.errors import InputError, Problem, printable
 
 _LONGEST_SHOWN = 60  # Text that users wrote is cut to this many characters in messages.
 
+NAME = re.compile(r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028\u2029]+")
+PART_NAME = re.compile(rf"(?![\x00-/:-@[-^`{{-\xa0])(?![^/.]*[/.]){NAME.pattern}(?<!\s)")
+"""Names of parts begin names of variables in NetCDF files, and end at a dot."""
+PART_NAME_RULE = "begin with a letter or digit, and use no dot or slash"
+
 _DEEPEST = 20  # Dots of a key; tables of a case are nested a few levels deep.
 
 

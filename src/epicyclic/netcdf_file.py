@@ -1,18 +1,21 @@
 """NetCDF files that users give: the only door through which the package reads them.
 
-A file is opened only if it is a regular file of HDF5 and not too large, and is read only if what it
-declares is not too much either: a few kilobytes can declare terabytes. Times are not decoded. Texts
-lie in heaps without a checksum, over which HDF5 loops for ever where a size in them is damaged.
+A file is opened only if it is a regular file of HDF5 and not too large, and if all in it lies in
+itself, and once only: netCDF4 reads other files that it names, and goes round in loops of groups.
+It is read only if what it declares is not too much either: a few kilobytes can declare terabytes.
+Times are not decoded. Texts lie in heaps without a checksum, over which HDF5 loops for ever where a
+size in them is damaged; what points at a text states its length, which HDF5 believes.
 """
 
 from __future__ import annotations
 
 import mmap
 import struct
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +24,17 @@ from epicyclic.errors import InputError, printable
 from epicyclic.files import refuse
 
 if TYPE_CHECKING:
+    import h5py
     import netCDF4
     import xarray as xr
 
 LARGEST = 400_000_000
 """A result takes a few megabytes, a map of a million points less than this. [bytes]"""
-MOST_VARIABLES = 2000
+MOST_VARIABLES, MOST_ATTRIBUTES, DEEPEST = 2000, 20_000, 10
+"""Of all groups together, which count as variables; and of groups in groups."""
+MOST_MEMORY = 450_000_000
+"""Beyond what is in use and a few times the file: texts take more as objects of Python. [bytes]"""
+TEXTS = 4
 LONG = 1000
 """Texts of more points than this are read apart: xarray makes all as long as the longest one."""
 POINTER = 8  # Of a text, which is known only when it is read. [bytes]
@@ -49,8 +57,7 @@ def read_groups(path: Path) -> dict[str, xr.Dataset]:
     import netCDF4
     import xarray as xr
 
-    _check(path)
-    with _damage_told(), netCDF4.Dataset(path) as file, texts_not_copied():
+    with _checked(path), netCDF4.Dataset(path) as file, texts_not_copied():
         groups = list(_groups(file))
         left_out = {name for group in groups for name in _long_texts(group)}
         texts = {
@@ -62,8 +69,8 @@ def read_groups(path: Path) -> dict[str, xr.Dataset]:
         ) as tree:
             sizes = [data.nbytes for node in tree.subtree for data in node.variables.values()]
             sizes += [POINTER * text.size for own in texts.values() for text in own.values()]
-            if len(sizes) > MOST_VARIABLES or sum(sizes) > LARGEST:
-                refuse("contains more than a result or a map.", "Give one of these.")
+            if sum(sizes) > LARGEST:
+                _refuse_mass()
             tree.load()
             return {
                 node.path.strip("/"): node.to_dataset(inherit=False).assign(
@@ -109,11 +116,74 @@ def read_attribute(path: Path, name: str) -> str:
     """A text attribute of the root; none of the arrays is read. Errors as for `read_groups`."""
     import netCDF4
 
-    _check(path)
-    with _damage_told(), netCDF4.Dataset(path) as file:
+    with _checked(path), netCDF4.Dataset(path) as file:
         if name not in file.ncattrs():
             refuse(f"has no attribute {name}.", _MAKE_AGAIN)
         return str(file.getncattr(name))
+
+
+@contextmanager
+def _checked(path: Path) -> Iterator[None]:
+    """Where a file is opened that can be; whatever is wrong in it ends in an `InputError`."""
+    import h5py
+
+    _check(path)
+    with _damage_told(), _bounded_memory(MOST_MEMORY + TEXTS * path.stat().st_size):
+        with h5py.File(path) as file:
+            _check_objects(file)
+        yield
+
+
+def _check_objects(file: h5py.File) -> None:
+    """Raise `InputError` unless all objects lie in the file, each in one place, and are few."""
+    import h5py
+
+    inside, known = h5py.HardLink, (h5py.h5t.INTEGER, h5py.h5t.FLOAT, h5py.h5t.STRING)
+    left, seen, attributes = [(file["/"], 0)], set(), 0
+    while left:
+        one, depth = left.pop()
+        about = h5py.h5o.get_info(one.id)
+        attributes += about.num_attrs
+        if about.addr in seen:
+            refuse("contains a group or variable in two places.", _MAKE_AGAIN)
+        seen.add(about.addr)
+        if isinstance(one, h5py.Group):
+            if len(one) + len(left) + len(seen) > MOST_VARIABLES or depth > DEEPEST:
+                _refuse_mass()
+            if not all(type(one.get(name, getlink=True)) is inside for name in one):
+                refuse("contains links.", _MAKE_AGAIN)
+            left += [(one[name], depth + 1) for name in one]
+            continue
+        if not isinstance(one, h5py.Dataset) or one.id.get_type().get_class() not in known:
+            refuse("contains types other than numbers and texts.", _MAKE_AGAIN)
+        made = one.id.get_create_plist()
+        if made.get_external_count() or made.get_layout() == h5py.h5d.VIRTUAL:
+            refuse("points at other files.", _MAKE_AGAIN)
+    if attributes > MOST_ATTRIBUTES:
+        _refuse_mass()
+
+
+def _refuse_mass() -> NoReturn:
+    refuse("contains more than a result or a map.", "Give one of these.")
+
+
+@contextmanager
+def _bounded_memory(most: int) -> Iterator[None]:
+    """Let this process take so many bytes more; where the system counts them."""
+    if sys.platform != "linux":
+        yield
+        return
+    import resource
+
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[5])
+    before, largest = resource.getrlimit(resource.RLIMIT_DATA)
+    limits = [pages * resource.getpagesize() + most, before, largest]
+    soft = min(limit for limit in limits if limit != resource.RLIM_INFINITY)
+    resource.setrlimit(resource.RLIMIT_DATA, (soft, largest))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_DATA, (before, largest))
 
 
 def _check(path: Path) -> None:
@@ -167,5 +237,5 @@ def _damage_told() -> Iterator[None]:
     except InputError:
         raise
     except Exception as error:
-        reason = printable(" ".join(str(error).split()))[:_LONGEST_REASON]
+        reason = printable(" ".join(str(error).split()))[:_LONGEST_REASON] or type(error).__name__
         refuse(f"is damaged: {reason}.", _MAKE_AGAIN)

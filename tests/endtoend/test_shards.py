@@ -18,6 +18,7 @@ import xarray as xr
 import epicyclic as ep
 from epicyclic.cli.main import main
 from epicyclic.study.sweeps import run as plans
+from epicyclic.study.sweeps import runner
 from epicyclic.study.sweeps.run import make_plan
 from epicyclic.study.sweeps.runner import Rows, Runner, share_of
 
@@ -172,9 +173,9 @@ def test_shards_of_another_plan_are_refused(call, tmp_path, shards):
         (lambda text: "", "does not state the study"),
         (lambda text: "my notes\n" * 3, "does not state the study"),
         (lambda text: text.replace('"version":"', '"version":"0.0.0-'), "was made by version"),
-        (lambda text: text.replace('"pinion.face_width"', '"pinion.face"'), "is damaged"),
-        (lambda text: text.replace('"kind":"sweep"', '"kind":"swept"'), "is damaged"),
-        (lambda text: text.replace('"teeth":', '"tooth":'), "is damaged"),
+        (lambda text: text.replace('"pinion.face_width"', '"pinion.face"'), "was altered"),
+        (lambda text: text.replace('"kind":"sweep"', '"kind":"swept"'), "was altered"),
+        (lambda text: text.replace('"teeth":', '"tooth":'), "was altered"),
     ],
     ids=["empty", "notes", "version", "axis", "kind", "case"],
 )
@@ -184,6 +185,64 @@ def test_files_that_are_no_shards_are_refused(call, tmp_path, shards, change, to
     assert code == 2
     assert told in errors
     assert not (tmp_path / "s.csv").exists()
+
+
+HEADS = {
+    "no shard": lambda study: study.pop("shard"),
+    "part of none": lambda study: study.update(shard=[1, 0]),
+    "part of parts": lambda study: study.update(shard=[1.5, "2"]),
+    "all of it": lambda study: study.update(shard=None),
+    "another shard": lambda study: study.update(shard=[2, 2]),
+    "no output": lambda study: study.pop("output"),
+    "another output": lambda study: study.update(output={"format": "vecto"}),
+    "list of outputs": lambda study: study.update(output=[3]),
+    "no plan": lambda study: study.pop("plan"),
+    "no axes": lambda study: study["plan"].update(axes=[]),
+    "axes of none": lambda study: study["plan"].update(axes=[{"key": 5}]),
+    "other values": lambda study: study["plan"]["axes"][0].update(values=["10 mm"]),
+    "no values": lambda study: study["plan"]["axes"][0].update(values=[], coordinate=[]),
+    "case of none": lambda study: study["plan"].update(case=None),
+    "links": lambda study: study["plan"].update(links={"a": "1/0"}),
+    "source": lambda study: study.update(source="\0"),
+    "kind of kinds": lambda study: study.update(kind=["sweep"]),
+    "version": lambda study: study.pop("version"),
+}
+SAME = ("another shard", "all of it", "source")
+"""Heads that whoever seals them again may state: all points that they promise are there."""
+
+
+@pytest.mark.parametrize("sealed_again", [False, True], ids=["altered", "sealed again"])
+def test_altered_heads_of_shards_are_refused(call, tmp_path, shards, sealed_again):
+    sound = {file: file.read_bytes().split(b"\n") for file in shards}
+    for name, change in HEADS.items():
+        for file, (begin, head, *points) in sound.items():
+            content = json.loads(head)
+            content.pop("check")
+            change(content["study"])
+            line = json.dumps(content, separators=(",", ":")).encode()
+            line = runner._sealed(line) if sealed_again else line
+            file.write_bytes(b"\n".join([begin, line, *points]))
+        code, _, errors = call("merge", *shards, "-o", tmp_path / "s.csv")
+        if sealed_again and name in SAME:
+            assert code == 0, (name, errors)
+            (tmp_path / "s.csv").unlink()
+            continue
+        assert code == 2, (name, errors)
+        assert not (tmp_path / "s.csv").exists()
+        assert len(errors) < 2000
+        assert sealed_again or name == "version" or "was altered" in errors
+
+
+def test_points_beyond_the_plan_are_refused(call, tmp_path, shards):
+    with shards[1].open("ab") as file:
+        line = shards[1].read_bytes().splitlines()[-1]
+        record = json.loads(line)
+        record.pop("check")
+        record["point"] = 6
+        file.write(b"\n" + runner._sealed(json.dumps(record, separators=(",", ":")).encode()))
+    code, _, errors = call("merge", *shards, "-o", tmp_path / "s.csv")
+    assert code == 2
+    assert "is damaged" in errors
 
 
 @pytest.mark.parametrize("shard", ["0/4", "5/4", "x", "1", "1/0", "-1/4", "1/4/2"])

@@ -66,6 +66,20 @@ def test_a_pipe_that_is_closed_early_is_no_error(tmp_path):
     assert done.stderr == b""
 
 
+@pytest.mark.parametrize("command", ["schema", "cases", "run talbot-2012-pair --json -"])
+def test_an_output_that_is_closed_is_told(tmp_path, command):
+    done = shell(f"{RUN} {command} >&-", tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.decode() == "The system refused access to the output: not writable.\n"
+
+
+@pytest.mark.parametrize("command", ["schema", "cases"])
+def test_a_pipe_without_a_reader_has_its_code(tmp_path, command):
+    done = shell(f"(sleep 0; exec {RUN} {command}) | true; echo ${{PIPESTATUS[0]}}", tmp_path)
+    assert done.stdout.decode().strip() == "141"
+    assert done.stderr == b""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "code"),

@@ -336,7 +336,8 @@ def _ask(kind="http", path="/", query="", bodies=(b"",), hosts=(HOST,), **header
         "query_string": query.encode(),
         "headers": [
             (name.replace("_", "-").encode(), text.encode())
-            for name, text in ({"host": HOST} | headers).items()
+            for name, texts in ({"host": HOST} | headers).items()
+            for text in ([texts] if isinstance(texts, str) else texts)
         ],
     }
     asyncio.run(Guard(_inner, TOKEN, hosts)(scope, receive, send))
@@ -372,6 +373,9 @@ def test_the_token_in_the_address_becomes_a_cookie():
         ("", {"cookie": COOKIE, "origin": "http://evil.example"}),
         ("", {"cookie": COOKIE, "origin": "null"}),
         ("", {"cookie": COOKIE, "origin": "http://127.0.0.1:80"}),
+        ("", {"cookie": COOKIE, "origin": ["http://evil.example", f"http://{HOST}"]}),
+        ("", {"cookie": COOKIE, "origin": [f"http://{HOST}", "http://evil.example"]}),
+        ("", {"cookie": COOKIE, "host": ["evil.example:4711", HOST]}),
     ],
 )
 @pytest.mark.parametrize("kind", ["http", "websocket"])
@@ -393,6 +397,7 @@ def test_the_token_opens_no_websocket_and_no_other_path():
 def test_what_is_too_large_is_refused_whatever_it_says():
     assert _ask(cookie=COOKIE, content_length=str(LARGEST_BODY + 1))[0]["status"] == 413
     assert _ask(cookie=COOKIE, content_length="many")[0]["status"] == 413
+    assert _ask(cookie=COOKIE, content_length=["9", "2"])[0]["status"] == 413
     part = b"x" * (LARGEST_BODY // 2 + 1)
     assert _ask(cookie=COOKIE, bodies=(part, part))[0]["status"] == 499
     assert _ask(cookie=COOKIE, bodies=(part, b"x"))[0]["status"] == 200

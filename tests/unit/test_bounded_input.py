@@ -28,6 +28,13 @@ DOTS = ".".join(["a"] * 1000)
     [
         ("run", "talbot-2012-pair", "--set", f"{DOTS}=1"),
         ("contact", "--set", f"{DOTS}=1"),
+        ("run", "talbot-2012-pair", "--set", f"{'{sun,ring}' * 40}=1"),
+        ("run", "talbot-2012-pair", "--set", f"{{{','.join('abcdefgh' * 900)}}}.teeth=1"),
+        ("run", "talbot-2012-pair", "--set", f"{'{' * 30_000}=1"),
+        ("run", "talbot-2012-pair", "--set", f"{'{}' * 15_000}=1"),
+        ("run", "talbot-2012-pair", "--set", f"gear={'{a=' * 30_000}"),
+        ("run", "talbot-2012-pair", "--set", f"gear={{{DOTS}.{DOTS}.{DOTS}=1}}"),
+        ("run", "talbot-2012-pair", "--set", f"gear={'{a={b={c=1}}},' * 5000}"),
         ("sweep", "talbot-2012-pair", "--vary", f"{DOTS}=1,2", "-o", "s.csv"),
         ("sweep", "talbot-2012-pair", "--vary", "operation.speed=1:2:1000000 rpm",
          "--vary", "operation.torque=1:2:1000000 N*m", "-o", "s.csv"),

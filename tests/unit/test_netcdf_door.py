@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 
+import h5py
 import netCDF4
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from epicyclic.cli.main import main
 from epicyclic.losses.pocket_tables import read_stored
 from epicyclic.netcdf_file import read_groups
 from epicyclic.show.record import open_map
+from limits import MOST_MEMORY, is_soon, peak_memory
 
 
 @pytest.fixture
@@ -160,3 +163,132 @@ def test_a_heap_without_an_end_is_refused(tmp_path, damage):
     path.write_bytes(content)
     with pytest.raises(ep.InputError, match="a heap of texts is incomplete"):
         read_groups(path)
+
+
+def external(file, other):
+    file.create_dataset("outside", (18,), "f8", external=[(str(other), 0, 144)])
+
+
+def virtual(file, other):
+    layout = h5py.VirtualLayout((18,), "f8")
+    layout[:] = h5py.VirtualSource(str(other), "losses", (18,))
+    file.create_virtual_dataset("outside", layout)
+
+
+def growing(file, other):
+    """HDF5 looks into the other file to know how long this is."""
+    layout = h5py.VirtualLayout((18,), "f8", maxshape=(None,))
+    source = h5py.VirtualSource(str(other), "losses", (18,), maxshape=(None,))
+    layout[: h5py.h5s.UNLIMITED] = source[: h5py.h5s.UNLIMITED]
+    file.create_virtual_dataset("outside", layout)
+
+
+def linked(file, other):
+    file["outside"] = h5py.ExternalLink(str(other), "losses")
+
+
+def named(file, other):
+    file["inside"] = h5py.SoftLink("/total")
+
+
+def round_again(file):
+    file["loop"] = file["/"]
+
+
+def round_below(file):
+    inner = file.create_group("meshes/sun_mesh")
+    inner["up"] = file["meshes"]
+
+
+def twice(file):
+    file["again"] = file["total"]
+
+
+def crowd(file):
+    for number in range(2500):
+        file.create_group(f"group {number}")
+
+
+def tower(file):
+    file.create_group("/".join(["floor"] * 700))
+
+
+def many_labels(file):
+    for number in range(21_000):
+        file["total"].attrs[f"label {number}"] = 0.5 * number
+
+
+def lists(file):
+    file.create_dataset("lists", (3,), h5py.vlen_dtype(float))
+
+
+POINTING = {
+    external: "points at other files",
+    virtual: "points at other files",
+    growing: "points at other files",
+    linked: "contains links",
+    named: "contains links",
+}
+ENDLESS = {
+    round_again: "in two places",
+    round_below: "in two places",
+    twice: "in two places",
+    crowd: "contains more than",
+    tower: "contains more than",
+    many_labels: "contains more than",
+    lists: "other than numbers and texts",
+}
+
+
+def assert_refused_soon(file, reason):
+    before, start = peak_memory(), time.process_time()
+    for read in (ep.open_result, read_stored):
+        with pytest.raises(ep.InputError, match=reason):
+            read(file)
+    assert is_soon(time.process_time() - start)
+    assert peak_memory() - before < MOST_MEMORY
+
+
+@pytest.mark.parametrize("change", POINTING, ids=lambda change: change.__name__)
+@pytest.mark.parametrize("what", ["pipe", "file"])
+@pytest.mark.skipif(sys.platform == "win32", reason="needs named pipes")
+def test_what_lies_elsewhere_is_refused_unread(file, tmp_path, change, what):
+    """From the pipe nobody would ever come back."""
+    other = tmp_path / "other"
+    if what == "pipe":
+        os.mkfifo(other)
+    else:
+        with h5py.File(other, "w") as theirs:
+            theirs.create_dataset("losses", data=np.linspace(3, 20, 18), maxshape=(None,))
+    with h5py.File(file, "a") as own:
+        change(own, other)
+    assert_refused_soon(file, POINTING[change])
+
+
+@pytest.mark.parametrize(
+    "change",
+    [pytest.param(one, marks=pytest.mark.slow) if one is many_labels else one for one in ENDLESS],
+    ids=lambda change: change.__name__,
+)
+def test_loops_and_masses_are_refused_soon(file, change):
+    with h5py.File(file, "a") as own:
+        change(own)
+    assert_refused_soon(file, ENDLESS[change])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs a limit of memory")
+def test_a_text_of_a_false_length_takes_no_more_memory(tmp_path):
+    """HDF5 takes as much memory as what points at a text says, and looks at the text later."""
+    path = tmp_path / "texts.nc"
+    with netCDF4.Dataset(path, "w") as data:
+        data.createDimension("place", 3)
+        data.createVariable("text", str, ("place",))[:] = np.array(["one", "three", "five"], object)
+    content = bytearray(path.read_bytes())
+    heap = content.index(b"GCOL").to_bytes(8, "little")
+    length = content.index((5).to_bytes(4, "little") + heap)
+    content[length : length + 4] = (1_900_000_000).to_bytes(4, "little")
+    path.write_bytes(content)
+    before = peak_memory()
+    with pytest.raises(ep.InputError, match="is damaged"):
+        read_groups(path)
+    assert peak_memory() - before < MOST_MEMORY

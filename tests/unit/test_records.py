@@ -216,3 +216,17 @@ def test_a_sweep_is_no_map_and_what_is_neither_is_refused(tmp_path):
     swept.drop_vars("status").to_netcdf(tmp_path / "sweep.nc")
     with pytest.raises(InputError, match="neither a stored result nor a loss map"):
         ep.open_result(tmp_path / "sweep.nc")
+
+
+@pytest.mark.parametrize("name", ["status", "message", "warnings"])
+@pytest.mark.parametrize("change", ["renamed", "numbers"])
+def test_a_sweep_without_its_texts_is_refused(tmp_path, name, change):
+    vary = {"operation.speed": ["700 rpm", "1300 rpm"]}
+    data = ep.sweep(ep.load_case("train-8hp70"), vary)
+    path = tmp_path / "sweep.nc"
+    data = (
+        data.rename({name: "other"}) if change == "renamed" else data.assign({name: data["total"]})
+    )
+    data.to_netcdf(path, engine="netcdf4")
+    with pytest.raises(ep.InputError, match=rf"{name}: must have a text|neither a stored result"):
+        ep.open_result(path)

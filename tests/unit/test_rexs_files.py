@@ -62,6 +62,10 @@ BROKEN = {
     "binary": (bytes(range(256)), "not valid XML"),
     "wrong encoding": (GOOD.replace(b"stage B", b"st\xe4ge B"), "not valid XML"),
     "unknown encoding": (GOOD.replace(b"UTF-8", b"EBCDIC-X"), "not valid XML"),
+    **{
+        f"encoding {name}": (GOOD.replace(b"UTF-8", name), "not known here")
+        for name in (b"ARMSCII-8", b"NEXTSTEP", b"KOI8-RU", b"JAVA")
+    },
     "zero byte": (GOOD.replace(b"stage B", b"st\0ge B"), "not valid XML"),
     "deep": (xml("<a>" * 5000 + "</a>" * 5000), "not valid XML"),
     "entities": (f"{BOMB}<model version='1.5'>&s;</model>".encode(), "valid XML|document type"),

@@ -30,6 +30,7 @@ from epicyclic.case.rules import (
     check_listed_bearings,
     cross_check,
     listed_problems,
+    name_problems,
     operation_problems,
 )
 from epicyclic.case.tables.base import builtin_oil, roughness_told
@@ -82,6 +83,8 @@ from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.sizing import Found, complete
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
 from epicyclic.messages import (
+    PART_NAME,
+    PART_NAME_RULE,
     did_you_mean,
     key_parts,
     misspelt,
@@ -559,13 +562,15 @@ class TrainCase(_TrainHead):
         for name in named:
             read = _read_set(raw_sets[name], shared, folder)
             found += [_below(f"sets.{name}", problem) for problem in read.problems]
-            if "." in name or not name.strip():
-                allowed = "is not a valid name for a set: use letters, and no dot."
+            if not PART_NAME.fullmatch(name):
+                allowed = f"is not a valid name for a set: {PART_NAME_RULE}."
                 found.append(Problem(f"sets.{name}", "", allowed, "Choose another name."))
             sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in read.found]
             if read.table is not None:
                 sets[name] = read.table
                 shapes[name], wrong = expand(dict(read.table), joined.get(name, ()))
+                if isinstance(read.table, GivenListedSet):
+                    wrong = [*wrong, *name_problems(shapes[name])]
                 complete = complete and not wrong
                 found += [_below(f"sets.{name}", problem) for problem in wrong]
                 if isinstance(read.table, ListedSet) and not wrong:
@@ -780,8 +785,8 @@ def _element_problems(train: TrainCase) -> list[Problem]:
     taken = dict.fromkeys(train.sets, "sets")
     for kind, name, table in train.elements:
         key = f"{kind}.{name}"
-        if "." in name or not name.strip():
-            allowed = "is not a valid name for a part: use letters, and no dot."
+        if not PART_NAME.fullmatch(name):
+            allowed = f"is not a valid name for a part: {PART_NAME_RULE}."
             problems.append(Problem(key, "", allowed, "Choose another name."))
         if name in taken:
             allowed = f"has the same name as another part, {taken[name]}.{name}."

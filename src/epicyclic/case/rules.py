@@ -43,7 +43,7 @@ from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.gears.rules import gears_by_name
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.machine.train_shape import motion_problems, named_problems
-from epicyclic.messages import did_you_mean, millimetres, written
+from epicyclic.messages import PART_NAME, PART_NAME_RULE, did_you_mean, millimetres, written
 from epicyclic.schema.table import Table
 from epicyclic.units import BAR
 
@@ -160,18 +160,18 @@ def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
         for remedy in [did_you_mean(name, known) or f"The losses are {', '.join(known)}."]
     ]
     planets = _planet_problems(table, gearing)
-    return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
+    return [*name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
 
 
-def _name_problems(gearing: Gearing) -> Iterator[Problem]:
+def name_problems(gearing: Gearing) -> Iterator[Problem]:
     """Names that would give two losses or members the same name."""
     for name in (CARRIER, HOUSING) if gearing.planets else (HOUSING,):
         if name in gearing.bodies or name in gearing.bodies.values():
             allowed = f"cannot be the name of a gear or body, because every set has a {name}."
             yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
-    for name in gearing.bodies:
-        if "." in name:
-            allowed = "is not a valid name for a gear, because a dot separates set and gear."
+    for name in dict.fromkeys((*gearing.bodies, *gearing.bodies.values())):
+        if not PART_NAME.fullmatch(name):
+            allowed = f"is not a valid name for a gear: {PART_NAME_RULE}."
             yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
 
 

@@ -16,6 +16,7 @@ from epicyclic.cli.common import (
     case_argument,
     check_ending,
     draw,
+    echo,
     json_option,
     load_with,
     output_option,
@@ -80,7 +81,7 @@ def run(
 
     show(tables, lambda: result_json(result, known), json_file)
     if result.status is not Status.CONVERGED:
-        click.echo(result.notes[0], err=True)
+        echo(result.notes[0], err=True)
         sys.exit(EXIT_NO_SOLUTION)
 
 
@@ -116,17 +117,17 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     found = list(reservations(loaded))
     kind = loaded.kind.replace("_", " ")
     if not found:
-        click.echo(f"{case}: a sound {kind} case.")
+        echo(f"{case}: a sound {kind} case.")
     else:
         points = "1 point" if len(found) == 1 else f"{len(found)} points"
-        click.echo(f"{case}: a valid {kind} case; {points} to check:")
+        echo(f"{case}: a valid {kind} case; {points} to check:")
         terminal().print(*map(Sentence, found))
     if loaded.lubrication is not None:
         from epicyclic.build.models import set_cases
         from epicyclic.build.result import oil_supplies
 
         for name, supply in oil_supplies(set_cases(loaded)):
-            click.echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
+            echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
     terminal().print(data_sheet(loaded))
     if loaded.kind == "train":
         terminal().print(state_tables(loaded))
@@ -225,7 +226,7 @@ def heat(
     solved = with_network(stated) if found is None else found.case
     result = solve(solved) if found is None else found.result
     if stated.models.temperatures != "network":
-        click.echo(
+        echo(
             f"Computed with models.temperatures = network instead of {stated.models.temperatures}.",
             err=True,
         )

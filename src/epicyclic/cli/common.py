@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import sys
@@ -11,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from datetime import timedelta
 from functools import wraps
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,9 +27,10 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, printable_lines
 from epicyclic.files import write_file
 from epicyclic.kernels import listeners
+from epicyclic.messages import one_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,6 +50,11 @@ COMPILING_EVERY = 5.0  # The same while kernels are compiled. [s]
 COMPILED = 75  # Kernels that a result needs, about.
 Update = Callable[..., None]
 LONG_SECONDS = 2.0  # After which a command that tells nothing of itself says that it works.
+
+
+def echo(text: str, err: bool = False) -> None:
+    """Print lines, on standard error if so; what names in them would do to a terminal is shown."""
+    click.echo(printable_lines(text), err=err)
 
 
 def tell(text: str) -> None:
@@ -106,7 +114,7 @@ def _lines(noun: str) -> Iterator[Update]:
             parts.append(f"about {_seconds(left)} left")
         if failed:
             parts.append(_failures(failed))
-        click.echo(", ".join(parts), err=True)
+        echo(", ".join(parts), err=True)
 
     yield update
 
@@ -132,7 +140,7 @@ def tell_compilation() -> None:
         if now - told < COMPILING_EVERY or _is_off():
             return
         told = now
-        click.echo(
+        echo(
             f"First run of this version: compiling the numerics, {count} of about {COMPILED} "
             f"functions after {_seconds(now - first)}.",
             err=True,
@@ -166,6 +174,8 @@ def working(noun: str) -> Iterator[None]:
 
 
 PICTURES = (".png", ".svg", ".pdf")
+MOST_KEYS = 1000
+"""For which the braces of one key may stand."""
 PAGE, PRINT = ".html", ".pdf"
 SIZES = (30, 2000)  # Smallest and largest size of a picture. [mm]
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4}
@@ -202,7 +212,7 @@ def show(
 
     if json_file is not None:
         write_file(Path(json_file), as_json() + "\n")
-        click.echo(f"Wrote {json_file}.")
+        echo(f"Wrote {json_file}.")
     terminal().print(tables())
 
 
@@ -228,7 +238,7 @@ def draw(figure: Figure, path: Path, caption: str = "") -> None:
 
         caption_below(figure, caption)
     write_file(path, picture_bytes(figure, path))
-    click.echo(f"Wrote {path}.")
+    echo(f"Wrote {path}.")
 
 
 def picture_bytes(figure: Figure, path: Path) -> bytes:
@@ -255,7 +265,7 @@ def write_page(path: Path, page: str) -> None:
         write_file(path, report_pdf(page))
     else:
         write_file(path, page)
-    click.echo(f"Wrote {path}.")
+    echo(f"Wrote {path}.")
 
 
 # Options that commands share, above all a case and changes of its keys.
@@ -405,7 +415,7 @@ def case_with_remarks(found: ForeignCase, changes: dict[str, Any]) -> Case:
     """The case in a file of another form; standard error shows what the file lacks."""
     loaded = found.case(changes)
     for remark in found.remarks(changes, loaded):
-        click.echo(remark, err=True)
+        echo(remark, err=True)
     return loaded
 
 
@@ -435,10 +445,14 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
 
 def _alternatives(key: str) -> list[str]:
     """The keys that braces stand for: ``{sun,ring}.teeth``."""
-    match = re.fullmatch(r"(.*?)\{([^{}]*)\}(.*)", key)
-    if match is None:
-        return [key]
-    start, names, end = match.groups()
-    return [
-        f"{start}{name.strip()}{rest}" for name in names.split(",") for rest in _alternatives(end)
+    parts = re.split(r"\{([^{}]*)\}", key)
+    choices = [
+        [name.strip() for name in part.split(",")] if place % 2 else [part]
+        for place, part in enumerate(parts)
     ]
+    count = math.prod(map(len, choices))
+    if count > MOST_KEYS:
+        allowed = f"stands for more than {MOST_KEYS} keys."
+        problem = Problem("--set", f'"{one_line(key)}"', allowed, "Give fewer names in braces.")
+        raise InputError([problem], "the command")
+    return ["".join(chosen) for chosen in product(*choices)]

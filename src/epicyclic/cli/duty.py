@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from epicyclic.cli.common import (
+    echo,
     journal_option,
     json_option,
     load_with,
@@ -250,7 +251,7 @@ def _write_map(data: xr.Dataset, map_file: Path) -> None:
     from epicyclic.study.maps.formats import write_map
 
     write_map(data, map_file)
-    click.echo(f"Wrote the map to {map_file}.", err=True)
+    echo(f"Wrote the map to {map_file}.", err=True)
 
 
 def _write_table(result: xr.Dataset, output: Path | None) -> None:

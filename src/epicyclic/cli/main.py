@@ -11,12 +11,13 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any, NoReturn
 
 import click
 
 from epicyclic.cli.case import check, friction, heat, mesh, run, warm_up
-from epicyclic.cli.common import tell_compilation
+from epicyclic.cli.common import echo, tell_compilation
 from epicyclic.cli.compare import compare
 from epicyclic.cli.duty import duty
 from epicyclic.cli.many import loss_map, sweep
@@ -55,6 +56,12 @@ class _Commands(click.Group):
             return super().get_command(ctx, cmd_name)
         command: click.Command = load("commands", cmd_name)
         return command
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError as error:  # with its number click would make an exit of it
+            raise BrokenPipeError from error
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -102,6 +109,8 @@ for command in COMMANDS:
 def main() -> None:
     """Entry point: errors become messages and exit codes, never tracebacks."""
     tell_compilation()
+    if sys.stdout is None:  # closed: what is printed must fail, and go into no file opened since
+        sys.stdout = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # signs that a terminal does not know become ?
             stream.reconfigure(errors="replace")
@@ -117,6 +126,8 @@ def _code_of(call: Callable[[], object]) -> int:
     try:
         call()
     except SystemExit as end:
+        if isinstance(end.__context__, BrokenPipeError):  # of which rich makes an exit
+            return _told(end.__context__)
         return int(end.code or EXIT_DONE)
     except KeyboardInterrupt:
         return _ended_interrupted()
@@ -133,7 +144,7 @@ def _finish() -> None:
         from epicyclic.kernels.compiling import cache_notes
 
         for note in cache_notes():
-            click.echo(note, err=True)
+            echo(note, err=True)
     if sys.stdout is not None:
         sys.stdout.flush()
 
@@ -147,10 +158,10 @@ def _told(error: Exception) -> int:
             error.show()
             return EXIT_INPUT
         case InputError():
-            click.echo(str(error), err=True)
+            echo(str(error), err=True)
             return EXIT_INPUT
         case ConvergenceError():
-            click.echo(f"No solution: {error}", err=True)
+            echo(f"No solution: {error}", err=True)
             return EXIT_NO_SOLUTION
         case BrokenPipeError():  # the reader of a pipe has seen enough
             _discard_output()
@@ -158,13 +169,11 @@ def _told(error: Exception) -> int:
         case OSError() if os.environ.get("EPICYCLIC_TRACEBACK") != "1":
             _discard_output()
             place = printable(str(error.filename or "the output"))[:_LONGEST_NAME]
-            click.echo(
-                f"The system refused access to {place}: {error.strerror or error}.", err=True
-            )
+            echo(f"The system refused access to {place}: {error.strerror or error}.", err=True)
             return EXIT_INPUT
     if os.environ.get("EPICYCLIC_TRACEBACK") == "1":
         raise error
-    click.echo(
+    echo(
         f"Internal error: {type(error).__name__}: {error}\nSet EPICYCLIC_TRACEBACK=1 for the "
         "traceback.",
         err=True,
@@ -205,7 +214,7 @@ def tell_once() -> None:
     """Say that the command was interrupted, unless it has been said."""
     if not _interrupt_seen.is_set():
         _interrupt_seen.set()
-        click.echo("Interrupted.", err=True)
+        echo("Interrupted.", err=True)
 
 
 @contextmanager

@@ -15,6 +15,7 @@ import click
 
 from epicyclic.cli.common import (
     case_argument,
+    echo,
     load_with,
     output_option,
     runner_options,
@@ -63,7 +64,7 @@ def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None
             raise InputError([problem], str(file))
         data = with_temperature_state(data, case)
     write_map(data, output, name)
-    click.echo(f"Wrote the map of {file} to {output}.")
+    echo(f"Wrote the map of {file} to {output}.")
 
 
 # Commands on many cases, resumed where they were interrupted: sweep, map.
@@ -247,7 +248,7 @@ def loss_map(
         torque = resolving_texts(torque)
     plan = map_plan(loaded, speed, torque, given.get("temperature"), further, chosen)
     for state, reason in ({} if chosen else states_left_out(loaded)).items():
-        click.echo(f"State {state} is left out: it {reason}", err=True)
+        echo(f"State {state} is left out: it {reason}", err=True)
     if heated:
         check_axis(len(coordinates(plan)["temperature"]))
     write = map_writer(plan, output, name, own)
@@ -272,7 +273,7 @@ def map_writer(
         data = checked_map(plan, rows)
         write_map(data.assign_attrs(lumped or {}), output, format)
         if "torque_interpolation" in data.attrs:
-            click.echo(f"Interpolated {data.attrs['torque_interpolation']}.", err=True)
+            echo(f"Interpolated {data.attrs['torque_interpolation']}.", err=True)
         return points_written(rows, files)
 
     return write
@@ -332,14 +333,14 @@ def compute(
     _tell_others(output, journal.path)
     size, kept = len(share_of(plan, runner.shard)), len(journal.read())
     if kept:
-        click.echo(f"Continuing from {kept} of {size} points in {journal.path}.", err=True)
+        echo(f"Continuing from {kept} of {size} points in {journal.path}.", err=True)
     with _kept_in(journal, size):
         with progress_bar(noun) as progress:
             rows = replace(runner, journal=journal.path, progress=progress, output=how).run(plan)
         if runner.shard is None:
             finish(plan, rows, write, journal)
         else:
-            click.echo(f"{size} of {plan.size} points are in {journal.path}.")
+            echo(f"{size} of {plan.size} points are in {journal.path}.")
 
 
 def finish(plan: Plan, rows: Rows, write: Write, journal: Journal | None = None) -> None:
@@ -350,7 +351,7 @@ def finish(plan: Plan, rows: Rows, write: Write, journal: Journal | None = None)
     written = write(rows)
     if journal is not None:
         journal.remove()
-    click.echo(written)
+    echo(written)
     if failures:
         sys.exit(EXIT_FAILED_POINTS)
 
@@ -361,7 +362,7 @@ def _print_thin_teeth(rows: Rows) -> None:
 
     thin = sum(TOO_THIN in text for text in rows.warnings)
     if thin:
-        click.echo(
+        echo(
             f"{thin} of {len(rows)} points: the teeth are far too thin for their centre distance. "
             "If profile shifts are left out, they are computed for each point.",
             err=True,
@@ -379,7 +380,7 @@ def _tell_others(output: Path, own: Path) -> None:
     """Say what is there beside `output` from other sweeps that were interrupted."""
     for path in sorted(output.parent.glob(f"{glob.escape(output.name)}.*.partial")):
         if path.name != own.name:
-            click.echo(
+            echo(
                 f"{path} holds points of an interrupted sweep of another case or with other "
                 "values, and is kept. Delete it if you do not need it.",
                 err=True,
@@ -394,7 +395,7 @@ def _kept_in(journal: Journal, size: int) -> Iterator[None]:
     except (KeyboardInterrupt, Exception):
         kept = len(journal.read())
         if kept:
-            click.echo(
+            echo(
                 f"{kept} of {size} points kept in {journal.path}; give the same command again to "
                 "continue.",
                 err=True,
@@ -406,6 +407,6 @@ def _print_failures(reasons: Sequence[str]) -> None:
     """Each reason once, with the number of points that failed for it."""
     counts = Counter(reasons)
     for reason, count in list(counts.items())[:SHOWN_FAILURES]:
-        click.echo(f"{count} failed: {reason}", err=True)
+        echo(f"{count} failed: {reason}", err=True)
     if len(counts) > SHOWN_FAILURES:
-        click.echo(f"... and {len(counts) - SHOWN_FAILURES} other reasons.", err=True)
+        echo(f"... and {len(counts) - SHOWN_FAILURES} other reasons.", err=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from epicyclic.cli.compare import comparison_writer
 from epicyclic.cli.duty import duty_writer
 from epicyclic.cli.many import Write, finish, map_writer, sweep_writer
 from epicyclic.cli.pockets import table_writer
+from epicyclic.errors import one_problem
 from epicyclic.registry import load, offered
 
 
@@ -50,4 +52,9 @@ def merge(files: tuple[Path, ...], output: Path) -> None:
     }
     plan, rows, how = gather(files, plans)
     writer = own.get(type(plan)) or load("plan_writers", plan.kind)
+    try:
+        signature(writer).bind(plan, output, **how)
+    except TypeError:  # a head that somebody else wrote
+        allowed = "does not state how its points are to be written."
+        raise one_problem("FILE", str(files[0]), allowed, "Compute the shard again.") from None
     finish(plan, rows, writer(plan, output, **how))

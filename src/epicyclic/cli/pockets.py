@@ -12,6 +12,7 @@ from epicyclic.cli.common import (
     case_argument,
     check_ending,
     draw,
+    echo,
     load_with,
     output_option,
     plot_option,
@@ -73,7 +74,7 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
                 moving = pocket_animation(mesh, progress)
             path = beside(animate, key)
             write_file(path, moving)
-            click.echo(f"Wrote {path}.")
+            echo(f"Wrote {path}.")
 
 
 # The command ``epicyclic pockets-table``.

@@ -13,6 +13,7 @@ from epicyclic.cli.common import (
     check_ending,
     check_page,
     draw,
+    echo,
     load_with,
     output_option,
     parse_size,
@@ -79,7 +80,7 @@ def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
         text = (library.minimal_case if minimal else case_template)(kind or "planetary")
     write_file(file, text)
     following = "check" if minimal else "run"
-    click.echo(f"Wrote {file}. Next: epicyclic {following} {file}")
+    echo(f"Wrote {file}. Next: epicyclic {following} {file}")
 
 
 @click.command()
@@ -161,7 +162,7 @@ def plot(
         found = available(stored)
         width = max(map(len, found))
         for name, entry in found.items():
-            click.echo(f"{name:<{width}}  {entry.question}")
+            echo(f"{name:<{width}}  {entry.question}")
         return
     draw(figure_of(stored, what, size=millimetres, dpi=dpi), output)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.gears.gearing import Gearing
-from epicyclic.messages import did_you_mean, written
+from epicyclic.messages import NAME, PART_NAME, PART_NAME_RULE, did_you_mean, written
 
 if TYPE_CHECKING:  # cases that are only read need no machine
     from epicyclic.machine.machine import Coupling, Machine, MeshRow
@@ -138,8 +138,8 @@ def shape_of_train(
     for shaft, names in shafts.items():
         key = f"shafts.{shaft}"
         joined[shaft] = []
-        if "." in shaft or not shaft.strip():
-            allowed = "is not a valid name for a shaft: use letters, and no dot."
+        if not PART_NAME.fullmatch(shaft):
+            allowed = f"is not a valid name for a shaft: {PART_NAME_RULE}."
             problems.append(Problem(key, "", allowed, "Choose another name."))
         for name in names:
             member = aliases.get(name, name)
@@ -215,6 +215,9 @@ def named_problems(train: Train) -> list[Problem]:
     """States and shafts that are named and are not there."""
     operation, problems = train.operation, []
     for name, state in train.states.items():
+        if not NAME.fullmatch(name):
+            allowed = "is not a valid name for a state."
+            problems.append(Problem(f"states.{name}", "", allowed, "Choose another name."))
         problems += state_problems(f"states.{name}", state, train.shape)
     problems += _state_choice(train)
     for key in ("input", "output"):

@@ -186,7 +186,7 @@ def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
 
 def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
     """The tables of a text, its bad lines mended where that is possible."""
-    if any(len(_KEY_DOT.findall(part)) > _DEEPEST_KEY for part in _BETWEEN_KEYS.split(text)):
+    if _is_deep(text):
         refuse("has tables that are nested too deeply.", "Give a case file.")
     lines = text.replace("\r\n", "\n").split("\n")
     bad_lines: list[_BadLine] = []
@@ -205,6 +205,11 @@ def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
         if mended is None or len(bad_lines) > _MOST_BAD_LINES:
             raise InputError([_problem(bad, "") for bad in bad_lines])
         lines[line.number - 1] = mended
+
+
+def _is_deep(text: str) -> bool:
+    """Whether a key has more dots than the TOML reader should be given."""
+    return any(len(_KEY_DOT.findall(part)) > _DEEPEST_KEY for part in _BETWEEN_KEYS.split(text))
 
 
 def _bad_line(error: ValueError, lines: list[str]) -> _BadLine:
@@ -291,6 +296,8 @@ def _remedy(key: str, value: str) -> str:
 
 def parse_value(text: str) -> Any:
     """`text` as TOML would read it (numbers, true, lists), else as plain text."""
+    if _is_deep(text):
+        return text
     try:
         tables = tomllib.loads(f"value = {text}")
     except (ValueError, RecursionError):  # no TOML, numbers or lists beyond all measure

@@ -317,7 +317,7 @@ _PLACES = {
     "period_angle",
 }
 _MAP_NUMBERS = ("torque_loss", "total", "efficiency")
-_MAP_TEXTS = ("status", "message", "warnings")
+_TEXTS = ("status", "message", "warnings")
 
 
 def field_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
@@ -352,10 +352,15 @@ def map_problems(data: xr.Dataset) -> Iterator[Problem]:
             yield from _number_problems(axis, data, axis, (axis,))
     for name in _MAP_NUMBERS:
         yield from _number_problems(name, data, name, tuple(map(str, dims)))
-    for name in _MAP_TEXTS:
+    yield from _text_problems(data)
+    yield from _label_problems("", data)
+
+
+def _text_problems(data: xr.Dataset) -> Iterator[Problem]:
+    """What points of maps and sweeps say of themselves."""
+    for name in _TEXTS:
         if name not in data or data[name].dtype.kind not in "OU":
             yield Problem(name, "", "must have a text for every point.", RUN_AGAIN)
-    yield from _label_problems("", data)
 
 
 def sweep_problems(data: xr.Dataset) -> Iterator[Problem]:
@@ -366,6 +371,7 @@ def sweep_problems(data: xr.Dataset) -> Iterator[Problem]:
             yield Problem(dim, "", "must be numbers or names.", RUN_AGAIN)
     for name in ("total", "efficiency"):
         yield from _number_problems(name, data, name, dims)
+    yield from _text_problems(data)
     yield from _label_problems("", data)
 
 

@@ -16,9 +16,11 @@ from rich.cells import cell_len
 from rich.columns import Columns
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.padding import Padding
+from rich.segment import Segment
 from rich.table import Column, Table
 from rich.text import Text
 
+from epicyclic.errors import printable_lines
 from epicyclic.losses.ranges import share_text
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result
@@ -147,13 +149,25 @@ class _Trimmed:
 _BLANKS = re.compile("[ \t]+$", re.MULTILINE)
 
 
+class _PlainConsole(Console):
+    """A console that shows texts as they are: neither as markup nor as signs that control it."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterator[Segment]:
+        for segment in super().render(renderable, options):
+            text = segment.text if segment.control else printable_lines(segment.text)
+            yield segment._replace(text=text)
+
+
 def terminal() -> Console:
     """The console for results, on standard output."""
-    console = Console(highlight=False)
+    console = _PlainConsole(highlight=False, markup=False, emoji=False)
     if console.is_terminal:
         return console
     width = None if "COLUMNS" in os.environ else PIPE_WIDTH
-    return Console(highlight=False, width=width, file=cast(TextIO, _Trimmed(sys.stdout)))
+    file = cast(TextIO, _Trimmed(sys.stdout))
+    return _PlainConsole(highlight=False, markup=False, emoji=False, width=width, file=file)
 
 
 def result_tables(

@@ -12,6 +12,7 @@ from epicyclic.cli.common import (
     case_argument,
     check_page,
     draw,
+    echo,
     json_option,
     load_with,
     output_option,
@@ -122,7 +123,7 @@ def validate(
     with progress_bar("pictures") as progress:
         page = pages.validation_html(rows, closures, progress)
     write_page(output, page)
-    click.echo(compare.summary(rows, closures))
+    echo(compare.summary(rows, closures))
 
 
 def scores(path: str, plot: Path | None, json_file: str | None, *, models: bool) -> None:
@@ -197,14 +198,14 @@ def reproduce(
                 write_dataset(item.data, output / f"fig-{item.number}{suffix}")
             path = output / f"fig-{item.number}.{picture}"
             write_file(path, picture_bytes(item.picture, path))
-            click.echo(f"Wrote {path}, .nc and .csv.")
+            echo(f"Wrote {path}, .nc and .csv.")
     with progress_bar("figures") as progress:
         rows = compare_published(progress, topic=TOPICS[chapter])
     found.sort(key=lambda item: known.index(item.number))
     write_page(output / PAGE, chapter_html(chapter, found, rows))
     if (table := influence_table(found)).rows:
         terminal().print(as_on_page(table))
-    click.echo(summary(rows))
+    echo(summary(rows))
 
 
 # The command study: pocketing loss over its main parameters.

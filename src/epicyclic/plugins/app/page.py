@@ -81,9 +81,10 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
-        headers = {
-            name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]
-        }
+        headers: dict[str, str] = {}
+        for name, value in scope["headers"]:  # one given twice is a list, and none of what may be
+            key, text = name.decode("latin-1").lower(), value.decode("latin-1")
+            headers[key] = f"{headers[key]}, {text}" if key in headers else text
         if not self._is_own(headers):
             await _refuse(scope, receive, send, _FORBIDDEN, "This is not the address of the app.")
         elif scope["type"] == "http" and self._has_token(scope):

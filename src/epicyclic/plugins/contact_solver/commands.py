@@ -14,6 +14,7 @@ from epicyclic.cli.common import (
     PICTURES,
     contact_set_option,
     draw,
+    echo,
     json_option,
     output_option,
     parse_changes,
@@ -106,7 +107,7 @@ def contact(
             write_file(plot, contact_animation(result))
         else:
             write_file(plot, picture_bytes(contact_figure(result), plot))
-        click.echo(f"Wrote {plot}.", err=json_file == "-")
+        echo(f"Wrote {plot}.", err=json_file == "-")
     if result.status is not Status.CONVERGED:
         sys.exit(EXIT_NO_SOLUTION)
 
@@ -188,12 +189,12 @@ def characterise(
         write = campaign_writer(campaign, output)
         compute(campaign, output / SIMULATIONS, runner, write, "contacts")
         return
-    click.echo(f"{campaign.size} contacts, {folder.finished} of them already simulated.", err=True)
+    echo(f"{campaign.size} contacts, {folder.finished} of them already simulated.", err=True)
     try:
         with progress_bar("contacts") as progress:
             folder.run(replace(runner, progress=progress))
     except (KeyboardInterrupt, Exception):
-        click.echo(
+        echo(
             f"{folder.finished} of {campaign.size} simulations kept in {output}; give the same "
             "command again to continue.",
             err=True,
@@ -257,7 +258,7 @@ def _fit(folders: Sequence[CampaignFolder], output: Path, plot: Path | None) -> 
 
     model = fit_and_write(folders, output)
     terminal().print(oil_model_tables(model))
-    click.echo(f"Wrote {output}.")
+    echo(f"Wrote {output}.")
     if plot is not None:
         from epicyclic.plugins.contact_solver.fit import simulated_quantities
         from epicyclic.plugins.contact_solver.show import oil_model_figure

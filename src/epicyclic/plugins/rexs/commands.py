@@ -14,6 +14,7 @@ from rich.text import Text
 from epicyclic.cli.common import (
     case_argument,
     case_with_remarks,
+    echo,
     load_with,
     output_option,
     parse_changes,
@@ -108,11 +109,11 @@ def import_(
     write_file(target, found.text(parsed))
     problems, notes = _state(found, parsed)
     terminal().print(import_tables(found, parsed, problems, notes))
-    click.echo(f"Wrote {target}.")
+    echo(f"Wrote {target}.")
     if problems:
-        click.echo(f"Set what is missing, then: epicyclic run {target}", err=True)
+        echo(f"Set what is missing, then: epicyclic run {target}", err=True)
         sys.exit(EXIT_INCOMPLETE)
-    click.echo(f"Next: epicyclic run {target}")
+    echo(f"Next: epicyclic run {target}")
 
 
 @rexs.command()
@@ -143,7 +144,7 @@ def export(
     else:
         loaded = load_with(case, changes)
     write_file(output, rexs_bytes(output, solve(loaded), original, component))
-    click.echo(f"Wrote {output}.")
+    echo(f"Wrote {output}.")
 
 
 def _is_key(found: RexsImport, key: str) -> bool:

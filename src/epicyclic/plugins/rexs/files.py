@@ -173,7 +173,11 @@ class XmlContent:
         if _name(root) != "model":
             raise refuse("is not REXS: its first element is not model.", "Name a REXS file.")
         encoding = root.getroottree().docinfo.encoding or "UTF-8"
-        before = _BEFORE_ROOT.match(data.decode(encoding, "replace"))
+        try:
+            before = _BEFORE_ROOT.match(data.decode(encoding, "replace"))
+        except (LookupError, ValueError):  # the library knows more encodings than Python
+            told = f"is in the encoding {one_line(encoding)}, which is not known here."
+            raise refuse(told, "Save it as UTF-8.") from None
         return cls(root, before[0] if before else "")
 
     @classmethod

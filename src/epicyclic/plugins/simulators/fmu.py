@@ -232,7 +232,7 @@ def _write_description(path: Path, data: xr.Dataset, lookup: Lookup, guid: str) 
         instantiationToken=guid,
         description=f"Losses of a gear set, from a loss map: {one_line(data.attrs['title'])}",
         version=metadata.version("epicyclic"),
-        generationTool=data.attrs.get("source", "epicyclic"),
+        generationTool=one_line(data.attrs.get("source", "epicyclic")),
         # its temperature is integrated inside
         modelExchange=None if _lumped(data) else exchange,
         coSimulation=CoSimulation(
@@ -254,7 +254,7 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
     axes, lumped = _si_axes(lookup), _lumped(data)
     about = {
         SURROUNDINGS if lumped and name == "temperature" else name: text.format(
-            shaft=data.attrs["reference_shaft"]
+            shaft=one_line(data.attrs["reference_shaft"])
         )
         for name, text in _ABOUT.items()
         if name in lookup.names or name not in ("temperature", STATE)

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
-from epicyclic.errors import Problem
+from epicyclic.errors import Problem, printable
+from epicyclic.messages import one_line
 from epicyclic.study.maps.formats import Format
 from epicyclic.study.maps.tables import stated
 from epicyclic.study.operating import AXES, PLANE, STATE
@@ -52,7 +53,7 @@ def _script(data: xr.Dataset) -> Iterator[str]:
     if "temperature" in order:
         yield from _vector("Temp_bpts", data["temperature"].values - zero, "K")
     if STATE in order:
-        names = (str(name).replace("'", "''") for name in data[STATE].values)
+        names = (printable(str(name)).replace("'", "''") for name in data[STATE].values)
         quoted = ", ".join(f"'{name}'" for name in names)
         yield f"state_names = {{{quoted}}};"
         yield from _vector(
@@ -212,8 +213,8 @@ def write_modelica(data: xr.Dataset, path: Path) -> None:
     comments = "\n".join(f"// {key}: {text}" for key, text in stated(data).items())
     path.write_text(
         f"{comments}\n"
-        f"// flange_a: {shafts[0]}; flange_b: {shafts[1]}; support: "
-        f"{data.attrs['held_shaft']}\n"
+        f"// flange_a: {one_line(shafts[0])}; flange_b: {one_line(shafts[1])}; support: "
+        f"{one_line(data.attrs['held_shaft'])}\n"
         f"// {worst}.\n"
         f'record {name} "For Modelica.Mechanics.Rotational.Components.LossyGear"\n'
         f'  parameter Real ratio = {format_number(ratio, 15)} "Speed of flange_a over flange_b";\n'

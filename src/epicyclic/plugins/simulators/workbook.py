@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.errors import Problem, Status
+from epicyclic.errors import Problem, Status, printable
 from epicyclic.schema.read import flattened
 from epicyclic.study.maps.formats import Format
 from epicyclic.study.maps.tables import statements
@@ -139,7 +139,7 @@ def _add_chart(sheet: Any, speeds: int, torques: int, oil: str) -> None:
 
 def _sheet_name(state: str, number: int) -> str:
     """A name that Excel takes, of 31 characters at most; with the number where it is cut."""
-    name = re.sub(r"[\[\]:*?/\\]", "_", f"state {state}")
+    name = re.sub(r"[\[\]:*?/\\']", "_", printable(f"state {state}"))
     return name if name == f"state {state}" and len(name) <= 31 else f"{name[:25]} ({number + 1})"
 
 

@@ -69,9 +69,14 @@ def map_case(data: xr.Dataset, changes: Mapping[str, Any] | None = None) -> Case
 
 
 def stated(data: xr.Dataset, axes: Sequence[str] = PLANE) -> dict[str, str]:
-    """The statements of a map, and the values of its axes beyond `axes`, which have one each."""
+    """The statements of a map, and the values of its axes beyond `axes`, which have one each.
+
+    All on one line, as comments of any program are.
+    """
     single = {
-        str(name): f"{data[name].values[0]} {data[name].attrs.get('units', '')}".strip()
+        one_line(str(name)): one_line(
+            f"{data[name].values[0]} {data[name].attrs.get('units', '')}", _LONGEST_STATEMENT
+        )
         for name in data["torque_loss"].dims
         if name not in axes
     }

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from epicyclic.build.machine import layout_of
 from epicyclic.case.case import FILE_KEYS, Case, TrainCase, build_case
 from epicyclic.case.keys import field_at
-from epicyclic.errors import InputError, Problem, Status, one_problem, raise_any
+from epicyclic.errors import InputError, Problem, Status, one_problem, printable, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
@@ -475,7 +475,8 @@ def _unit_of(item: str) -> str:
 # Rows of a sweep as an `xarray.Dataset`, and the files it is kept in.
 
 FORMATS = (".nc", ".csv", ".parquet")
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # What formulas of spreadsheets begin with.
+_FORMULA = ("=", "+", "-", "@", "\t")  # What formulas of spreadsheets begin with.
+_CONTROLS = re.compile(r"[^\t\n -\x7e\xa0-\U0010ffff]")
 _CASE_KEY = "case_key"  # Attribute of a coordinate: the key that it varies.
 _INTERPOLATION_ERROR = "pocket_interpolation_error"
 
@@ -611,14 +612,20 @@ def write_dataset(dataset: xr.Dataset, path: Path) -> None:
 
 
 def csv_safe(table: pd.DataFrame) -> pd.DataFrame:
-    """A table whose texts no spreadsheet takes for formulas: those get an apostrophe in front."""
+    """A table whose texts no spreadsheet takes for formulas: those get an apostrophe in front.
+
+    Control characters are written as escapes: a carriage return would end the row.
+    """
     texts = table.select_dtypes(exclude="number").columns
-    safe = table.assign(**{name: table[name].map(_no_formula) for name in texts})
-    return safe.rename(columns=_no_formula)
+    safe = table.assign(**{name: table[name].map(_csv_text) for name in texts})
+    return safe.rename(columns=_csv_text)
 
 
-def _no_formula(value: Any) -> Any:
-    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
+def _csv_text(value: Any) -> Any:
+    if not isinstance(value, str):
+        return value
+    text = _CONTROLS.sub(lambda found: printable(found[0]), value)
+    return f"'{text}" if text.startswith(_FORMULA) else text
 
 
 def to_table(dataset: xr.Dataset) -> pd.DataFrame:

@@ -165,7 +165,7 @@ class Journal:
     def begin(self, content: Mapping[str, Any]) -> None:
         """Say in the file what the study is, unless it does."""
         heading = {"sweep": self.fingerprint, "study": content}
-        line = json.dumps(heading, separators=(",", ":")).encode()
+        line = _sealed(json.dumps(heading, separators=(",", ":")).encode())
         try:
             with _opened(self.path) as file:
                 there = any(file.readline(_LONGEST_LINE).strip() == line for _ in range(2))
@@ -221,7 +221,8 @@ def _opened(path: Path) -> BinaryIO:
 def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
     """Fingerprint and content of the study of which a file holds points.
 
-    Raises `InputError` if it cannot be read, or does not say of which study it is.
+    Raises `InputError` if it cannot be read, does not say of which study it is, or has been altered
+    since this version wrote it.
     """
     try:
         with _opened(path) as file:
@@ -230,6 +231,9 @@ def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
                 line = file.readline(_LONGEST_LINE)
                 heading = _parse_heading(line)
                 if heading is not None:
+                    own = heading.study.get("version") == metadata.version("epicyclic")
+                    if own and _record_in(line.rstrip(b"\n")) is None:
+                        raise _error(path, "states a study that was altered.")
                     return heading.sweep, heading.study
                 strange += 1 + len(line) // _LONG
     except OSError as error:
@@ -245,13 +249,17 @@ def _sealed(line: bytes) -> bytes:
     return line[:-1] + _CHECK % zlib.crc32(line)
 
 
+def _record_in(line: bytes) -> bytes | None:
+    """What `_sealed` made a line of; None if it has been altered."""
+    record = line[: -len(_CHECK % 0)] + b"}"
+    return record if line == _sealed(record) else None
+
+
 def _parse(line: bytes) -> _Record | None:
     """The record of a line; None if it is none, or has been altered."""
-    record = line[: -len(_CHECK % 0)] + b"}"
-    if line != _sealed(record):
-        return None
+    record = _record_in(line)
     try:
-        return _RECORD.validate_json(record)
+        return None if record is None else _RECORD.validate_json(record)
     except ValidationError:
         return None
 
@@ -655,9 +663,11 @@ def gather(
             )
             raise _shard_error(file, allowed, "Give the files of one study.")
         for point, row in Journal(file, mark).points():
+            if not 0 <= point < plan.size:
+                raise _shard_error(file, _DAMAGED, _COMPUTE_AGAIN)
             if rows.status[point] == NOT_COMPUTED:
                 rows.add(point, row)
-        shares[file] = share_of(plan, said["shard"])
+        shares[file] = share_of(plan, _shard_in(file, said))
     _check_whole(rows, shares)
     return plan, rows, output
 
@@ -672,13 +682,25 @@ def _plan_of(
         raise _shard_error(file, allowed, "Merge it with that version.")
     try:
         plan = kinds[content["kind"]].again(content["plan"], content["source"])
-        output = dict(content["output"])
-    except (KeyError, TypeError, ValueError, AttributeError):
-        plan, output = None, {}
-    if plan is None or fingerprint(plan) != mark:
-        allowed = "is damaged, or a file that its case names has changed."
-        raise _shard_error(file, allowed, "Compute the shard again.")
+        output, found = dict(content["output"]), fingerprint(plan)
+    except Exception:  # a heading that somebody else wrote may hold anything
+        raise _shard_error(file, _DAMAGED, _COMPUTE_AGAIN) from None
+    if found != mark:
+        raise _shard_error(file, _DAMAGED, _COMPUTE_AGAIN)
     return plan, output
+
+
+_DAMAGED = "is damaged, or a file that its case names has changed."
+_COMPUTE_AGAIN = "Compute the shard again."
+_SHARD = TypeAdapter(tuple[int, int] | None)
+
+
+def _shard_in(file: Path, content: Mapping[str, Any]) -> tuple[int, int] | None:
+    """Which share of the points the heading of a file states."""
+    try:
+        return Runner(shard=_SHARD.validate_python(content["shard"])).shard
+    except (KeyError, ValueError):
+        raise _shard_error(file, _DAMAGED, _COMPUTE_AGAIN) from None
 
 
 def _check_whole(rows: Rows, shares: Mapping[Path, Sequence[int]]) -> None:
