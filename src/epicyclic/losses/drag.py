@@ -59,7 +59,7 @@ def bearing_viscous_loss(
     """
     rpm = abs(speed) / RPM
     product = kinematic_viscosity * 1e6 * rpm
-    group = math.pow(product, 2 / 3) if product >= LOW_SPEED_LIMIT else 160.0
+    group = max(160.0, math.pow(product, 2 / 3))  # 158.7 at the limit itself would be a jump
     moment = 1e-7 * factor * group * (pitch_diameter * 1e3) ** 3 * 1e-3
     return moment * abs(speed)
 

@@ -1,0 +1,180 @@
+"""One and the same thing, stated otherwise, gives the same result and the same statements."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import pytest
+
+import asymmetric
+import epicyclic as ep
+import listed_trains
+from epicyclic.study.friction import compare_friction, recommended
+from epicyclic.study.heat import beyond_range
+
+SAME = 1e-9
+COARSE = {"pocket_slices": 8, "pocket_steps": 12, "mesh_positions": 8, "contact_segments": 6}
+
+
+# --- backlash that rounding leaves ----------------------------------------------------------------
+
+INCH = 25.4
+
+
+def pair_without_backlash():
+    """The pair of the source, the thickness of one gear left out: it follows, without backlash."""
+    left_out = {"gear.tooth_thickness": None, "gear.thickness_diameter": None}
+    return ep.load_case("talbot-2012-pair").updated(left_out)
+
+
+@pytest.mark.parametrize(
+    ("changes", "near"),
+    [
+        ({"gears.center_distance": f"{50 / INCH!r} in"}, SAME),
+        ({"gears.transverse_module": f"{2 / INCH!r} in"}, SAME),
+        ({"gears.transverse_pressure_angle": f"{math.radians(20)!r} rad"}, SAME),
+        ({"pinion.thickness_diameter": f"{50e6!r} nm"}, SAME),
+        ({"mesh.normal_backlash": "0 mm"}, SAME),
+        # a change of 1e-12 m, by what it is worth
+        ({"gears.center_distance": "50.000000001 mm"}, 1e-8),
+        ({"gears.center_distance": "49.999999999 mm"}, 1e-8),
+        ({"mesh.normal_backlash": "0.000000001 um"}, 1e-8),
+    ],
+)
+@pytest.mark.parametrize("pocketing", ["incompressible", "isentropic"])
+def test_backlash_that_rounding_leaves_decides_nothing(changes, near, pocketing):
+    case = pair_without_backlash().updated({"models.pocketing": pocketing})
+    case = case.updated({f"numerics.{key}": value for key, value in COARSE.items()})
+    expected = ep.solve(case)
+    found = ep.solve(case.updated(changes))
+    assert expected.losses["mesh_pocketing"] > 10
+    assert found.total == pytest.approx(expected.total, rel=near)
+    assert found.meshes["mesh"].backlash == expected.meshes["mesh"].backlash == 0
+
+
+def test_whether_a_void_is_below_no_pressure_does_not_hang_on_rounding():
+    void = {"models.pocket_void_pressure": "0 bar", "models.pocketing": "incompressible"}
+    case = ep.load_case("talbot-2012-pair").updated(void)
+    for pressure in ("1.01325 bar", "101325.0 Pa", "0.987 bar", "14.7 psi", "0.3 bar"):
+        (told,) = (
+            text
+            for text in ep.solve(case.updated({"surroundings.pressure": pressure})).warnings
+            if "voids" in text or "impossible" in text
+        )
+        assert "contain voids" in told, pressure
+
+
+def test_the_viscous_moment_does_not_jump_where_its_formulas_meet():
+    from epicyclic.losses.drag import RPM, bearing_viscous_loss
+
+    below, above = (
+        bearing_viscous_loss(3.0, 20e-6, 100 * RPM * (1 + part), 0.07) for part in (-1e-12, 1e-12)
+    )
+    assert above == pytest.approx(below, rel=1e-11)
+
+
+# --- which gear is called the pinion --------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("friction", "rolling"),
+    [
+        ("fitted", "fitted"),
+        ("fitted-or-schlenk", "fitted-or-goksem-hargreaves"),
+        ("mixed-ehl+pairing", "mixed-ehl+pairing"),
+        ("mixed-ehl", "mixed-ehl"),
+        ("schlenk", "goksem-hargreaves"),
+        *((name, "auto") for name in ("xu-2007", "doleschel", "matsumoto", "mixed-lubrication")),
+    ],
+)
+@pytest.mark.parametrize("oil", ["75w-90-gear-oil", "atf-dexron-ulv"])
+def test_which_gear_is_called_the_pinion_changes_nothing(friction, rolling, oil):
+    """The gear that drives is stated second then, so that its torque has the other sign."""
+    case = ep.load_case("talbot-2012-pair").given()
+    case["lubricant"]["oil"] = oil
+    case["models"] |= {"friction": friction, "rolling": rolling}
+    case["operation"] |= {"torque": "61 N*m", "speed": "2900 rpm"}
+    case["numerics"] = COARSE
+    case["pinion"] |= {"roughness": "1.5 um", "face_width": "15.7 mm"}
+    case["gear"] |= {"tip_diameter": "53.2 mm", "roughness": "0.41 um"}
+    other = copy.deepcopy(case)
+    other["pinion"], other["gear"] = case["gear"], case["pinion"]
+    other["operation"]["torque"] = "-61 N*m"
+    expected, found = (ep.solve(ep.load_case(it)) for it in (case, other))
+    assert expected.losses["mesh_sliding"] > 1
+    assert found.losses == pytest.approx(expected.losses, rel=SAME)
+    shares = [sorted(flag.share for flag in it.flags) for it in (expected, found)]
+    assert shares[0] == pytest.approx(shares[1], rel=1e-6)
+
+
+# --- attribution in every form --------------------------------------------------------------------
+
+
+def told_of(tables, **models):
+    """What is said of a case at 120 °C, where formulas leave their range."""
+    tables = copy.deepcopy(tables)
+    tables["lubricant"] = {"oil": "atf-talbot-2012"}
+    tables["models"] = {"friction": "mixed-ehl", "rolling": "mixed-ehl"} | models
+    tables["operation"]["oil_inlet_temperature"] = "120 degC"
+    tables["numerics"] = listed_trains.NUMERICS
+    tables.pop("losses", None)
+    case = ep.load_case(tables)
+    result = ep.solve(case)
+    concerned = sorted(  # properties of the oil concern no loss of their own
+        watts for watts, group in result.flags_with_loss if group[0].use.role not in ("drag", "oil")
+    )
+    rows = compare_friction(case, brief=True)
+    return {
+        "total": result.total,
+        "concerned": concerned,
+        "beyond": beyond_range(case, result).share,
+        "outside": {row.name: row.outside for row in rows},
+        "best": recommended(rows),
+    }
+
+
+def renamed_set(tables, name):
+    """The train with another name of its set S."""
+    tables = copy.deepcopy(tables)
+    tables["sets"] = {name: tables["sets"]["S"]}
+    tables["shafts"] = {
+        shaft: [member.replace("S.", f"{name}.") for member in members]
+        for shaft, members in tables["shafts"].items()
+    }
+    return tables
+
+
+@pytest.mark.parametrize(
+    "forms",
+    [
+        pytest.param(
+            lambda: (
+                {key: it for key, it in asymmetric.gear_pair().items() if key != "losses"},
+                listed_trains.train_of_pair(),
+                listed_trains.listed_pair(),
+                renamed_set(listed_trains.train_of_pair(), "first_stage"),
+            ),
+            id="pair",
+        ),
+        pytest.param(
+            lambda: (
+                listed_trains.train_of_planetary(),
+                listed_trains.listed_simple(),
+                renamed_set(listed_trains.listed_simple(), "first_stage"),
+            ),
+            id="planetary",
+        ),
+    ],
+)
+def test_every_form_of_a_set_has_equal_statements(forms):
+    expected, *others = map(told_of, forms())
+    assert max(expected["concerned"]) > 100
+    assert expected["outside"]["mixed-ehl"] > 0.9
+    for found in others:
+        assert found["total"] == pytest.approx(expected["total"], rel=SAME)
+        assert found["concerned"] == pytest.approx(expected["concerned"], rel=1e-6)
+        assert found["beyond"] == pytest.approx(expected["beyond"], rel=1e-6)
+        assert found["outside"] == pytest.approx(expected["outside"], rel=1e-6)
+        assert found["best"][0].name == expected["best"][0].name
+        assert found["best"][1] == expected["best"][1]
