@@ -205,7 +205,7 @@ def same(frozen: Any, found: Any, place: str, floors: dict[str, float]) -> bool:
 def meant(frozen: Any, found: Any, place: str) -> bool:
     """True if it is meant to be different there."""
     return any(
-        fnmatch(place, item["pattern"]) and frozen == item["old"] and found in item["new"]
+        fnmatch(place, item["pattern"]) and frozen == item.get("old") and found in item["new"]
         for item in CHANGED["place"]
     )
 

@@ -10,6 +10,8 @@ import pytest
 import asymmetric
 import epicyclic as ep
 import listed_trains
+from epicyclic.study.bands.plan import known_values, look_nearby
+from epicyclic.study.bands.study import quick_band
 from epicyclic.study.friction import compare_friction, recommended
 from epicyclic.study.heat import beyond_range
 
@@ -178,3 +180,52 @@ def test_every_form_of_a_set_has_equal_statements(forms):
         assert found["outside"] == pytest.approx(expected["outside"], rel=1e-6)
         assert found["best"][0].name == expected["best"][0].name
         assert found["best"][1] == expected["best"][1]
+
+
+# --- bands of what is derived ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("torque", ["0 N*m", "0.07 N*m", "-0.4 N*m", "3 N*m", "-71 N*m"])
+def test_the_band_of_the_efficiency_is_from_the_draws_of_the_loss(torque):
+    """What the other shaft gives or takes follows from the loss; the torque is of one shaft."""
+    case = ep.load_case("talbot-2012-pair").updated({"operation.torque": torque})
+    case = case.updated({f"numerics.{key}": value for key, value in COARSE.items()})
+    exact = {"operation.torque": {"exact": True}, "operation.speed": {"exact": True}}
+    case = case.updated({"uncertainty": exact})
+    result = ep.solve(case)
+    band = quick_band(look_nearby(case, result))
+    *_, losses, efficiencies = band.results
+    power = result.flow.members["pinion"].power
+    entering = [max(power, 0.0) + max(loss - power, 0.0) for loss in losses]
+    expected = [max(0.0, 1 - loss / whole) for loss, whole in zip(losses, entering, strict=True)]
+    assert losses.std() > 0.01 * losses.mean()
+    assert efficiencies == pytest.approx(expected, abs=1e-9)
+    assert band.nearby.nominal[-1] == pytest.approx(result.efficiency, abs=1e-12)
+
+
+def test_no_torque_has_no_efficiency_in_any_sample():
+    case = ep.load_case("talbot-2012-pair")
+    case = case.updated({f"numerics.{key}": value for key, value in COARSE.items()})
+    found = ep.uncertainty(case, samples=16, jobs=1).sel(result="efficiency")
+    assert found["nominal"] == found["low"] == found["high"] == 0
+
+
+# --- assumptions where they cannot act ------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("case", "shared"),
+    [
+        (lambda: ep.load_case("talbot-2012"), ["load_sharing.mesh_load_factor"]),
+        (lambda: ep.load_case("talbot-2012").updated({"planet.count": 1}), []),
+        (lambda: ep.load_case(listed_trains.listed_pair()), []),
+        (lambda: ep.load_case(listed_trains.layshaft()), []),
+        (lambda: ep.load_case(listed_trains.wolfrom()), ["sets.S.load_sharing.mesh_load_factor"]),
+        (lambda: ep.load_case(listed_trains.wolfrom()).updated({"sets.S.planets": 1}), []),
+    ],
+)
+def test_only_planets_that_share_a_load_have_an_assumed_sharing(case, shared):
+    case = case()
+    coarse = {f"numerics.{key}": value for key, value in listed_trains.NUMERICS.items()}
+    values = known_values(case, ep.solve(case.updated(coarse)))
+    assert [value.key for value in values if "load_sharing" in value.key] == shared
