@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import copy
 import math
+import time
 
 import pytest
 
 import asymmetric
 import epicyclic as ep
 import listed_trains
+import trains
+from epicyclic.show.template import case_text
 from epicyclic.study.bands.plan import known_values, look_nearby
 from epicyclic.study.bands.study import quick_band
 from epicyclic.study.friction import compare_friction, recommended
@@ -229,3 +232,126 @@ def test_only_planets_that_share_a_load_have_an_assumed_sharing(case, shared):
     coarse = {f"numerics.{key}": value for key, value in listed_trains.NUMERICS.items()}
     values = known_values(case, ep.solve(case.updated(coarse)))
     assert [value.key for value in values if "load_sharing" in value.key] == shared
+
+
+# --- trains that lose nothing, and long ones ------------------------------------------------------
+
+
+def lossless():
+    return trains.simple(20, 70, "ring", ("sun", "carrier"), efficiency=1.0)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_train_of_which_every_efficiency_is_one_loses_nothing_anywhere(tmp_path):
+    case = ep.load_case(lossless())
+    assert ep.solve(case).total == 0
+    assert quick_band(look_nearby(case, ep.solve(case))).results[-1] == pytest.approx(1.0)
+    grid = {"speed": ["310 rpm", "970 rpm"], "torque": ["1.7 N*m", "5.3 N*m"]}
+    loss_map = ep.loss_map(case, **grid, jobs=1)
+    assert (loss_map["efficiency"] == 1).all()
+    assert (ep.uncertainty(loss_map, samples=16, jobs=1)["high"].sel(result="total") == 0).all()
+    banded = ep.uncertainty(case, samples=16, jobs=1)
+    assert banded["low"].sel(result="efficiency") == banded["nominal"].sel(result="efficiency") == 1
+    compared = ep.compare_cases(case, case, samples=16, jobs=1)
+    assert compared["difference"].sel(result="total") == 0
+    cycle = {"time [s]": [0, 1.3, 2.9], "speed [rpm]": [310, 500, 970], "torque [N*m]": [2, 3, 5]}
+    assert ep.duty_cycle(case, cycle, jobs=1)["total_efficiency"] == 1
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run"],
+        ["run", "--json", "-"],
+        ["report", "-o", "page.html"],
+        ["plot", "losses", "-o", "l.png"],
+    ],
+)
+def test_the_commands_show_a_train_that_loses_nothing(arguments, tmp_path, monkeypatch):
+    from click.testing import CliRunner
+
+    from epicyclic.cli.main import cli
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "case.toml").write_text(case_text(lossless(), []))
+    name, *rest = arguments
+    found = CliRunner().invoke(cli, [name, "case.toml", *rest])
+    assert found.exit_code == 0, found.output
+
+
+def chain(count, *, to_fast=False):
+    """Sets one after the other, each of the ratio 4.5."""
+    sets = {
+        f"S{number}": {"sun": {"teeth": 20}, "ring": {"teeth": 70}, "efficiency": 0.98}
+        for number in range(count)
+    }
+    shafts = {
+        "fast": ["S0.sun"],
+        **{f"m{it}": [f"S{it}.carrier", f"S{it + 1}.sun"] for it in range(count - 1)},
+        "slow": [f"S{count - 1}.carrier"],
+        "housing": [f"S{number}.ring" for number in range(count)],
+    }
+    ends = ("slow", "fast") if to_fast else ("fast", "slow")
+    operation = {"input": ends[0], "output": ends[1], "torque": "7 N*m", "speed": "1300 rpm"}
+    return {"kind": "train", "sets": sets, "shafts": shafts, "operation": operation}
+
+
+def numbers_of(result):
+    return {figure.key: figure.value for figure in result.numbers()}
+
+
+def test_a_long_chain_has_its_ratio():
+    assert numbers_of(ep.solve(ep.load_case(chain(12))))["ratio"] == pytest.approx(
+        4.5**12, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize("to_fast", [False, True])
+@pytest.mark.parametrize("count", [19, 24, 30])
+def test_a_shaft_that_turns_is_not_said_to_stand_still(count, to_fast):
+    with pytest.raises(ep.InputError) as error:
+        ep.load_case(chain(count, to_fast=to_fast))
+    (problem,) = error.value.problems
+    assert f"{4.5**count:.2g} times as fast as shaft slow" in problem.allowed
+    assert "drown in rounding" in problem.allowed
+
+
+def test_a_shaft_that_stands_still_is_said_to():
+    tables = chain(3)
+    tables["shafts"]["aside"] = tables["shafts"].pop("slow")
+    tables["shafts"]["slow"] = ["S3.sun"]
+    tables["sets"]["S3"] = copy.deepcopy(tables["sets"]["S0"])
+    tables["shafts"]["housing"] += ["S3.ring", "S3.carrier"]
+    with pytest.raises(ep.InputError, match="stands still at any speed"):
+        ep.load_case(tables)
+
+
+def test_too_many_sets_are_refused_at_once():
+    start = time.process_time()
+    with pytest.raises(ep.InputError, match="sets = 1000 sets: must be at most 64"):
+        ep.load_case(chain(1000))
+    assert time.process_time() - start < 2
+
+
+# --- shares of a spectrum -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("shares", "told"),
+    [
+        ((0.2, 0.3, 0.5), ""),
+        ((20, 30, 50), ""),
+        ((0.2, 0.3, 0.4), "its shares sum to 0.9, not to 1: multiplied by 1.11111"),
+        ((20, 30, 43), "its shares sum to 93, not to 1: multiplied by 0.0107527"),
+        ((0.333, 0.333, 0.333), "its shares sum to 0.999, not to 1: multiplied by 1.001"),
+    ],
+)
+def test_shares_that_do_not_sum_to_one_are_told_with_their_factor(shares, told, tmp_path):
+    cycle = {"share": shares, "speed [rpm]": [310, 500, 970], "torque [N*m]": [2, 3, 5]}
+    case = ep.load_case(trains.simple(20, 70, "ring", ("sun", "carrier"), efficiency=0.98))
+    found = ep.duty_cycle(case, cycle, jobs=1)
+    assert found.attrs["cycle"].partition("; ")[2] == told
+    whole = sum(shares)
+    parts = {**cycle, "share": [share / whole for share in shares]}
+    expected = ep.duty_cycle(case, parts, jobs=1)
+    assert found["energy_lost"].values == pytest.approx(expected["energy_lost"].values, rel=1e-12)

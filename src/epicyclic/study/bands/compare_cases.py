@@ -133,7 +133,7 @@ def _evaluate(
         drawn=(points[inputs],),
     )
     rows = runner.run(plan)
-    losses = np.array([rows.numbers(name) for name in outputs.numbers])
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, len(rows))
     power, shaft = (rows.numbers(name) for name in (INPUT_POWER, SHAFT_POWER))
     powers = Powers(power, shaft, losses[: len(outputs.losses)].sum(axis=0))
     return outputs, outputs.of(losses, powers, factors_of(values, points))

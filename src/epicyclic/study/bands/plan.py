@@ -93,7 +93,7 @@ class Outputs:
         kinds = self.kinds * (2 if self.tested else 1)
         every = np.array(
             [row * factors.get(kind, 1.0) for row, kind in zip(losses, kinds, strict=True)]
-        )
+        ).reshape(losses.shape)
         scaled, unloaded = every[: len(self.losses)], every[len(self.losses) :]
         independent = (unloaded if self.tested else scaled[~self.load_dependent]).sum(axis=0)
         total = scaled.sum(axis=0)
@@ -109,7 +109,7 @@ def outputs_of(case: Case, result: Result) -> Outputs:
     terms = [term for term in result.terms if not term.left_out]
     return Outputs(
         tuple(term.name for term in terms),
-        np.array([term.group == LOAD_DEPENDENT for term in terms]),
+        np.array([term.group == LOAD_DEPENDENT for term in terms], dtype=bool),
         tuple(model_form_of(term.name, term.method) for term in terms),
         case.models.load_dependent == AS_TESTED,
     )
@@ -228,7 +228,7 @@ def nearby_of(
     """What the losses of all `steps`, shape (2 d, t), say; models leave them as they are."""
     inputs = np.array([not value.is_model_form for value in values], dtype=bool)
     ends = np.tile(losses, (len(values), 2, 1))
-    ends[inputs] = stepped.reshape(-1, 2, losses.size)
+    ends[inputs] = stepped.reshape(inputs.sum(), 2, losses.size)
     own = Powers(*(np.array([it]) for it in (*powers, losses[: len(outputs.losses)].sum())))
     return Nearby(values, outputs, losses, own, ends)
 
@@ -357,11 +357,11 @@ class SampledCase:
 
         In the order of `Outputs.names`.
         """
-        losses = np.array([rows.numbers(name) for name in self.outputs.numbers])
-        losses = losses.reshape(len(losses), len(self.samples), -1, self.plan.count)
-        power, shaft = (
-            rows.numbers(name).reshape(losses.shape[1:]) for name in (INPUT_POWER, SHAFT_POWER)
+        power, shaft, *every = (
+            rows.numbers(name).reshape(len(self.samples), -1, self.plan.count)
+            for name in (INPUT_POWER, SHAFT_POWER, *self.outputs.numbers)
         )
+        losses = np.array(every).reshape(len(every), *power.shape)
         lost = losses[: len(self.outputs.losses)].sum(axis=0)
         return np.array(
             [
@@ -458,7 +458,7 @@ def nearby_at(
         without_table(case), outputs, drawn=(np.empty((0, 1)),) * len(every), points=every
     )
     rows = runner.run(plan)
-    losses = np.array([rows.numbers(name) for name in outputs.numbers]).T
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, len(rows)).T
     powers = np.array([rows.numbers(INPUT_POWER), rows.numbers(SHAFT_POWER)]).T.tolist()
     found, first = [], 0
     for own, those in zip(values, changes, strict=True):

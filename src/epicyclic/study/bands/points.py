@@ -325,7 +325,7 @@ class CycleStudy(Study):
             **about_study(
                 self.case, energies.outputs, self.plan.count, self.seed, data.attrs["failed"]
             ),
-            cycle=f"{self.cycle.source.name}, {self.cycle.rows} rows",
+            cycle=self.cycle.title,
             points=len(energies.points),
         )
 

@@ -197,6 +197,7 @@ _HEADER = re.compile(r"(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 _NUMBER = r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$"
 _SHOWN_HEADERS = 20
 _MOST_STATES = 1000  # A column of more different texts is another one by that name, and left alone.
+SUMS_TO_ONE = 1e-6  # Shares that sum to one but for this do so: it is rounding. [1]
 SHARE_DURATION = 3600.0  # What a cycle of shares lasts. [s]
 
 
@@ -232,6 +233,16 @@ class Cycle:
     ranges: Mapping[str, tuple[float, float]]
     # What its column of states has, in the order in which it appears; none without the column.
     states: tuple[str, ...] = ()
+    whole: float = 1.0  # Sum of its shares, by which they are divided. [1]
+
+    @property
+    def title(self) -> str:
+        """Its name, its rows, and the factor of shares whose sum is neither 1 nor 100 %."""
+        told = f"{self.source.name}, {self.rows} rows"
+        if any(math.isclose(self.whole, whole, rel_tol=SUMS_TO_ONE) for whole in (1.0, 100.0)):
+            return told
+        factor = 1 / self.whole
+        return f"{told}; its shares sum to {self.whole:.6g}, not to 1: multiplied by {factor:.6g}"
 
     def pieces(self, celsius: float | None = None) -> Iterator[Piece]:
         """All points, at their own temperatures or at one.
@@ -300,7 +311,8 @@ def open_cycle(
         if name != STATE
     }
     states = tuple(checks.states) if STATE in columns else ()
-    return Cycle(source, columns, weighting, checks.rows, ranges, states)
+    whole = checks.sums[SHARE] if weighting == SHARE else 1.0
+    return Cycle(source, columns, weighting, checks.rows, ranges, states, whole)
 
 
 # --- headers --------------------------------------------------------------------------------------
