@@ -354,3 +354,40 @@ def test_the_result_of_a_cycle_tells_the_factor_of_its_shares():
     case = ep.load_case(trains.simple(20, 70, "ring", ("sun", "carrier"), efficiency=0.98))
     told = "its shares sum to 0.9, not to 1: multiplied by 1.11111"
     assert ep.duty_cycle(case, cycle, jobs=1).attrs["cycle"].partition("; ")[2] == told
+
+
+# --- order in a file ------------------------------------------------------------------------------
+
+
+def differential(left, right, output, speed):
+    """A differential of spur gears, its cage driven; the wheels in this order."""
+    planets = {left: "inner", right: "outer"}
+    own = {
+        "planets": 2,
+        "mesh_efficiency": 0.97,
+        "meshes": [[left, planets[left]], [planets[left], planets[right]], [planets[right], right]],
+        "gears": {
+            left: {"teeth": 24},
+            planets[left]: {"teeth": 17, "planet": True},
+            planets[right]: {"teeth": 17, "planet": True},
+            right: {"teeth": 24},
+        },
+    }
+    (other,) = {left, right} - {output}
+    shafts = {left: [f"D.{left}"], right: [f"D.{right}"], "cage": ["D.carrier"]}
+    operation = {"input": "cage", "output": output, "torque": "100 N*m", "speed": "500 rpm"}
+    operation["speeds"] = {other: f"{speed} rpm"}
+    return {"kind": "train", "sets": {"D": own}, "shafts": shafts, "operation": operation}
+
+
+@pytest.mark.parametrize("wheels", [("a", "b"), ("b", "a")])
+@pytest.mark.parametrize("output", ["a", "b"])
+def test_straight_ahead_both_wheels_have_the_same_torque_in_any_order(wheels, output):
+    result = ep.solve(ep.load_case(differential(*wheels, output, 500)))
+    torques = [result.flow.members[wheel].torque for wheel in ("a", "b")]
+    assert torques == pytest.approx([-50, -50], rel=SAME)
+    assert any("torques are those without friction" in note for note in result.notes)
+    in_a_bend = ep.solve(ep.load_case(differential(*wheels, output, 510)))
+    torques = [in_a_bend.flow.members[wheel].torque for wheel in ("a", "b")]
+    assert max(torques) - min(torques) > 4
+    assert not any("do not roll" in note for note in in_a_bend.notes)
