@@ -47,7 +47,7 @@ def band_texts(known: Known | None) -> list[str | Listing]:
     low, high = known.ends["total"]
     text = f"95 % band: total loss {known_text(low, high)}"
     low, high = (100 * end for end in known.ends["efficiency"])
-    if math.isfinite(low):
+    if high > 0:  # neither unknown nor without any efficiency
         text += f", efficiency {low:.2f} to {high:.2f} %"
     drivers = ", ".join(
         f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST]
