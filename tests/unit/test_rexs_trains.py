@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import tomllib
 
+import numpy as np
 import pytest
 
 import epicyclic as ep
@@ -277,6 +278,50 @@ def test_positions_along_a_shaft_without_axes(read):
         position = found.tables["positions"]["pair.pinion"]
         assert float(position.split()[0]) == pytest.approx(1e3 * middle)
         assert found.tables["bearings"]["left"]["position"] == "10 mm"
+
+
+def turned(axis, degrees):
+    """Rotation about an axis."""
+    one, two, three = np.array(axis) / np.linalg.norm(axis)
+    cross = np.array([[0, -three, two], [three, 0, -one], [-two, one, 0]])
+    angle = math.radians(degrees)
+    return np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+
+
+@pytest.mark.parametrize("axes", ["of all parts", "of the parts in the unit", "of none"])
+@pytest.mark.parametrize(
+    ("about", "degrees"),
+    [((0, 0, 1), 60.0), ((0, 1, 0), 90.0), ((0, 0, 1), 90.0), ((0.1, 0.7, -0.3), 140.0),
+     ((0.0, 1.0, 2.0), 33.0)],
+)  # fmt: skip
+def test_it_does_not_matter_how_the_gear_unit_stands(read, about, degrees, axes):
+    """With the axis of the gear unit in global coordinates, in its own, or not stated."""
+    rotation = turned(about, degrees)
+    parts = eaxle()
+    expected = read(parts).tables
+    parts = eaxle()
+    for number, component in parts.components.items():
+        for name in ("support_vector", "u_axis_vector"):
+            given = component["attributes"].get(name)
+            if given is not None:
+                parts.set(number, **{name: ((rotation @ given[0]).tolist(), given[1])})
+            if name == "u_axis_vector" and axes == "of none":
+                component["attributes"].pop(name, None)
+    if axes == "of all parts":
+        parts.set(UNIT, u_axis_vector=((rotation @ [1.0, 0, 0]).tolist(), "mm"))
+    elif axes == "of the parts in the unit":
+        parts.set(UNIT, u_axis_vector=([1.0, 0.0, 0.0], "mm"))
+    found = read(parts).tables
+    places = [
+        [lengths["positions"]["pair.pinion"], lengths["positions"]["pair.gear"],
+         *(bearing["position"] for bearing in lengths["bearings"].values())]
+        for lengths in (expected, found)
+    ]  # fmt: skip
+    one, two = ([float(place.split()[0]) for place in own] for own in places)
+    assert len(set(one)) > 2
+    assert two == pytest.approx(one, abs=1e-5)
+    if about[0] == 0:
+        assert found["sets"]["pair"]["direction"] == expected["sets"]["pair"]["direction"]
 
 
 FORMER = {

@@ -187,13 +187,6 @@ REFUSED = {
         ["appears more than once", "--column"],
     ),
     "a gap": (PLAIN.replace("310", ""), ['torque = "" (line 2)', "is empty"]),
-    "shares that miss some": (
-        "share,speed [rpm],torque [N*m]\n0.125,1,2\n0.6,3,4\n0.2,5,6\n",
-        ["adds up to 0.925", "add a row for the missing 0.075".capitalize()],
-    ),
-    "shares that are more": (
-        "share [%],speed [rpm],torque [N*m]\n60,1,2\n50,3,4\n", ["adds up to 110", "Correct"],
-    ),
     "two sheets with tables": (
         {"run 1": [HEAD, *ROWS], "run 2": [HEAD, *ROWS]}, ['"run 1", "run 2"', "--sheet"],
     ),

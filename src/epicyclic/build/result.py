@@ -518,6 +518,13 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
             "loss of the flow through the pockets differs, so the loss jumps within a small "
             "range of torque."
         )
+    held = sorted(key for key in solution.standing if solution.meshes[key])
+    if held:
+        yield (
+            f"{', '.join(in_words(key) for key in held)}: the teeth do not roll on each other, so "
+            "their torques are those without friction. Friction at rest holds other ones too, up "
+            "to what the given efficiency leaves in either direction."
+        )
     if settled.change > AGREEMENT:
         yield (
             f"Temperatures and losses agree to {settled.change:.1g} K only, because a loss "

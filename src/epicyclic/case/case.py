@@ -77,7 +77,7 @@ from epicyclic.case.train_tables import (
     StateTable,
     TrainOperation,
 )
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.assembly import rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.sizing import Found, complete
@@ -455,6 +455,10 @@ class _TrainTables(CaseTable):
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
 
 
+MOST_SETS = 64
+"""Of a train: what is checked grows with their cube, and gearboxes have ten at most."""
+
+
 class _TrainHead(ElementTables, _TrainTables):
     """A train without its sets."""
 
@@ -536,6 +540,10 @@ class TrainCase(_TrainHead):
         given = tables.get("sets")
         raw_sets: dict[str, Any] = given if isinstance(given, dict) else {}
         named = tuple(raw_sets)
+        if len(named) > MOST_SETS:
+            allowed = f"must be at most {MOST_SETS}."
+            remedy = "Split the train at a shaft, and compute each part as a train of its own."
+            raise one_problem("sets", f"{len(named)} sets", allowed, remedy, source)
         sound = {} if before is None else before._unchanged(tables)
         whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound)
         found = [*problems]

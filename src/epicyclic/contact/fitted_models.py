@@ -677,6 +677,10 @@ class OilModel(_Data):
             known = FORMS.get(quantity)
             if known is None:
                 raise ValueError(f"there is no quantity {quantity}")
+            if quantity != "bearing_rolling_loss":  # any of two gears may be the rougher one
+                one, two = fit.domain["roughness1"], fit.domain["roughness2"]
+                both = (min(one[0], two[0]), max(one[1], two[1]))
+                fit.domain.update(roughness1=both, roughness2=both)
             for fitted in fit.forms:
                 form = known.get(fitted.form)
                 if form is None or form.size != len(fitted.coefficients):

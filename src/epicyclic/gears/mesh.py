@@ -21,6 +21,9 @@ from epicyclic.gears.gear import BasicRack, Gear, inverse_involute, involute
 
 Real = TypeVar("Real", float, NDArray[np.float64])
 
+TOUCHING = 0.5e-9
+"""Flanks with less backlash, or thicker by less, touch: no drawing tells that from none. [m]"""
+
 
 @dataclass(frozen=True)
 class Mesh:
@@ -83,6 +86,7 @@ class Mesh:
         width = min(one.face_width, two.face_width)
         tooth1, tooth2 = one.thickness_at(radius1), two.thickness_at(radius1 * ratio)
         backlash = 2 * math.pi * radius1 / one.teeth - tooth1 - tooth2  # (G21)
+        backlash = 0.0 if abs(backlash) < TOUCHING else backlash
         tangent = math.tan(rack.helix_angle) * radius1 / one.reference_radius  # (G15)
         vars(self).update(
             internal=two.internal,

@@ -20,8 +20,6 @@ VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot
 DRAG_METHOD = "drag of a disc in the air-oil mixture"
 DRAG_SOURCE = "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5"
 
-LOW_SPEED_LIMIT = 2000.0
-"""nu n in mm^2/s times rpm below which the friction moment is constant (Palmgren)."""
 TRANSITION_REYNOLDS = 5e5
 """omega r^2/nu at which the flow on the faces turns turbulent, Talbot (2012), Eq. 5.5. [1]"""
 RPM = math.pi / 30  # 1 rpm in rad/s.
@@ -55,11 +53,11 @@ def bearing_viscous_loss(
 
     M0 = 1e-7 f0 (nu n)^(2/3) d_m^3 for nu n >= 2000, else 160e-7 f0 d_m^3; N mm, mm^2/s, rpm, mm.
     Talbot (2012), Eq. 5.6 for the first branch; Harris, Rolling Bearing Analysis, 3rd ed. (1991)
-    for both. They differ by 0.8 % where they meet.
+    for both. They differ by 0.8 % where they meet; here the larger one counts there.
     """
     rpm = abs(speed) / RPM
     product = kinematic_viscosity * 1e6 * rpm
-    group = math.pow(product, 2 / 3) if product >= LOW_SPEED_LIMIT else 160.0
+    group = max(160.0, math.pow(product, 2 / 3))
     moment = 1e-7 * factor * group * (pitch_diameter * 1e3) ** 3 * 1e-3
     return moment * abs(speed)
 

@@ -303,7 +303,8 @@ def _faces(geometry: PocketGeometry, slices: int, end: float | None) -> Floats:
     width = geometry.mesh.face_width
     if end is None:
         return np.linspace(0.0, width, slices + 1)
-    count = max(slices, math.ceil(SLICES_PER_PITCH * _twist(geometry) / geometry.pitch))
+    # a whole number stays one whichever way it is rounded
+    count = max(slices, math.ceil(SLICES_PER_PITCH * _twist(geometry) / geometry.pitch - 1e-9))
     end = min(end, LARGEST_END * width)
     return np.concatenate([[0.0], np.linspace(end, width - end, count - 1), [width]])
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import combinations, islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.gears.gear import HOUSING
-from epicyclic.machine.machine import Machine, Operation
+from epicyclic.machine.machine import Machine, Operation, Terms
 
 # Systems of as many linear equations as unknowns.
 
@@ -106,6 +107,45 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
         near = [known for known in (last, -last, 0.0) if abs(speed - known) <= limit]
         joined[body] = last = near[0] if near else speed
     return dict.fromkeys(machine.resting, 0.0) | joined
+
+
+def exact_speeds(machine: Machine, given: Mapping[str, int]) -> dict[str, Fraction] | None:
+    """Speeds of all bodies without rounding; None if they are not determined, or contradict."""
+    bodies = machine.bodies
+    constraints: list[Terms] = [mesh.terms() for mesh in machine.rows]
+    constraints += [coupling.terms() for coupling in machine.couplings]
+    constraints += [((body, 1.0),) for body in given]
+    done: dict[str, dict[str, Fraction]] = {}  # rows by the body that each stands for
+    for number, terms in enumerate(constraints):
+        row: dict[str, Fraction] = {}
+        for body, coefficient in terms:
+            if body != HOUSING:
+                row[body] = row.get(body, Fraction(0)) + Fraction(coefficient)
+        last = number - len(constraints) + len(given)
+        row["="] = Fraction(list(given.values())[last] if last >= 0 else 0)
+        for body in [body for body in row if body in done]:
+            _take_out(row, body, done[body])
+        left = next((body for body in row if body != "=" and row[body]), None)
+        if left is None:
+            if row["="]:
+                return None
+            continue
+        own = {body: value / row[left] for body, value in row.items() if value or body == "="}
+        for other in done.values():
+            if left in other:
+                _take_out(other, left, own)
+        done[left] = own
+    if len(done) < len(bodies):
+        return None
+    return {body: done[body]["="] for body in bodies}
+
+
+def _take_out(row: dict[str, Fraction], body: str, other: Mapping[str, Fraction]) -> None:
+    """Subtract from `row` what takes a body out of it; `other` has it once."""
+    factor = row.pop(body)
+    for key, value in other.items():
+        if key != body:
+            row[key] = row.get(key, Fraction(0)) - factor * value
 
 
 def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:

@@ -45,6 +45,7 @@ STUDY_RANGES = (
 LARGEST_MACH = 0.5  # Fastest flow over the speed of sound above which waves matter. [1]
 _EDGE = 1e-3  # By how much a value may leave a range that is printed with three or four digits. [1]
 _AT_VOID = 1e-3  # Pressures nearer than this to that of a void are it. [1]
+_ROUNDING = 1e-9  # What is left of a difference of pressures that are equal, over either. [1]
 
 FlowRequest = tuple[FlowFamily, float, MixtureState, float]
 """A flow: its family, then as for `FlowFamily.flow`."""
@@ -258,14 +259,15 @@ def pocket_notes(
         )
     if watts < least:
         return tuple(map(Note, notes))
-    lowest = fluids.pressure + figures.pressure_min
-    if lowest < 0:
+    lowest, near = fluids.pressure + figures.pressure_min, _AT_VOID * settings.void_pressure
+    near = max(near, _ROUNDING * fluids.pressure)
+    if lowest < -near:
         notes.append(
             f"The pressure in the pockets of the {name} falls to {BAR.text(lowest, 3)} absolute, "
             f"which is impossible for a fluid ({lost}); models.pocketing = {settings.model} is "
             "meant for lower speeds."
         )
-    elif settings.model == "incompressible" and lowest <= settings.void_pressure * (1 + _AT_VOID):
+    elif settings.model == "incompressible" and lowest <= settings.void_pressure + near:
         notes.append(
             f"The pockets of the {name} open faster than they fill and contain voids at "
             f"models.pocket_void_pressure ({lost})."

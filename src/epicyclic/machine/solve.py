@@ -203,6 +203,8 @@ class Solution:
     # Meshes that next to no power passes: with the losses of either direction of the power it has
     # the other one, so that the teeth lie on neither flank.
     floating: frozenset[str]
+    # Meshes of given efficiency whose teeth do not roll: friction holds them, either way.
+    standing: frozenset[str]
     state: State  # That the elements saw.
 
     @property
@@ -268,19 +270,30 @@ class Start:
     lossless: Balance
     directions: Directions  # With the given efficiencies.
     ratio: float | None  # Speed of the input over that of the output. [1]
+    efficiencies: Mapping[str, float]  # Given ones, 1 where teeth do not roll. [1]
+    standing: frozenset[str]  # Meshes of given efficiency whose teeth do not roll.
 
 
 def start_of(machine: Machine, operation: Operation) -> Start:
     """Speeds, torques without losses, and the directions of the rolling powers."""
     speeds = speeds_of(machine, operation.speeds)
     lossless = _lossless(machine, operation, speeds)
-    efficiencies = {row.key: row.efficiency for row in machine.rows}
+    efficiencies: dict[str, float] = {}
+    standing: set[str] = set()
+    # of several shafts that are driven, as of a differential: brakes and clutches hold the others
+    driven = [speed for speed in operation.speeds.values() if speed]
+    for row in machine.rows:
+        # teeth that do not roll lose nothing: friction may then act either way, or not at all
+        stands = len(driven) > 1 and row.efficiency < 1 and speeds[row.first] == speeds[row.carrier]
+        efficiencies[row.key] = 1.0 if stands else row.efficiency
+        if stands:
+            standing.add(row.key)
     directions = find_directions(machine, operation, speeds, lossless, efficiencies)
     output = speeds[operation.output]
     ratio = speeds[operation.input] / output if output else None
     if directions.jammed:  # it stands still, whatever the speeds were meant to be
         speeds = dict.fromkeys(speeds, 0.0)
-    return Start(speeds, lossless, directions, ratio)
+    return Start(speeds, lossless, directions, ratio, efficiencies, frozenset(standing))
 
 
 def solve_machine(
@@ -297,7 +310,7 @@ def solve_machine(
     if start is None:
         start = start_of(machine, operation)
     speeds, lossless, directions = start.speeds, start.lossless, start.directions
-    efficiencies: Mapping[str, float] = {row.key: row.efficiency for row in machine.rows}
+    efficiencies = start.efficiencies
     results = {} if earlier is None else earlier.results
     branch = _Branch(machine, operation, start, fluids, {}, results, directions.drives)
     drives = _led(branch)
@@ -338,6 +351,7 @@ def solve_machine(
         jammed=directions.jammed,
         unique=last.balance.unique,
         floating=floating,
+        standing=start.standing,
         state=last.state,
     )
 
@@ -401,7 +415,7 @@ class _Branch:
     @cached_property
     def unlost(self) -> Balance:
         """Torques with no losses but given ones."""
-        given = {row.key: row.efficiency for row in self.machine.rows}
+        given = self.start.efficiencies
         if all(efficiency == 1 for efficiency in given.values()):
             return self.start.lossless
         return balance(self.machine, self.operation, self.start.speeds, self.drives, given)
@@ -472,7 +486,9 @@ class _Branch:
     def _with_losses(self, found: Balance) -> tuple[Balance, dict[str, float]]:
         """Torques with the losses of the elements, and the efficiencies of the meshes."""
         results, speeds = self.results.values(), self.start.speeds
-        efficiencies, frictions = effects_of(self.machine, found.powers, results, self.braking)
+        efficiencies, frictions = effects_of(
+            self.start.efficiencies, found.powers, results, self.braking
+        )
         new = balance(self.machine, self.operation, speeds, self.drives, efficiencies, frictions)
         return new, efficiencies
 
@@ -567,13 +583,13 @@ def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
 
 
 def effects_of(
-    machine: Machine,
+    given: Mapping[str, float],  # Efficiencies of the meshes without the losses of `results`.
     powers: Mapping[str, float],  # Rolling power of each mesh. [W]
     results: Iterable[ElementResult],
     braking: Collection[str] = (),  # Meshes whose losses are friction in any case.
 ) -> tuple[dict[str, float], list[Friction]]:
     """Efficiencies of the meshes, and friction between bodies, that the losses stand for."""
-    efficiencies = {row.key: row.efficiency for row in machine.rows}
+    efficiencies = dict(given)
     frictions = []
     for result in results:
         for loss in result.losses.values():
@@ -607,14 +623,17 @@ def stage_torques(machine: Machine, solution: Solution) -> dict[str, dict[str, f
 
 def _torques(machine: Machine, solution: Solution) -> Iterator[tuple[str, str, float]]:
     """Stage, body and torque taken, one by one."""
-    efficiencies, _ = effects_of(machine, solution.rolling, solution.results.values())
+    given = {
+        row.key: 1.0 if row.key in solution.standing else row.efficiency for row in machine.rows
+    }
+    efficiencies, _ = effects_of(given, solution.rolling, solution.results.values())
     for row in machine.rows:
         eta, drives = efficiencies[row.key], solution.drives[row.key]
         per_tooth = solution.meshes[row.key] / row.teeth[0]
         for body, coefficient in row.terms(1.0 if drives else eta, eta if drives else 1.0):
             yield row.key.partition(".")[0], body, per_tooth * coefficient
     for stage, result in solution.results.items():
-        _, frictions = effects_of(machine, solution.rolling, [result])
+        _, frictions = effects_of(given, solution.rolling, [result])
         for friction in frictions:
             one, two = friction.between
             difference = solution.speeds[one] - solution.speeds[two]

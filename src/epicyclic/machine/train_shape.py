@@ -351,6 +351,8 @@ def _freedom_problems(train: Train, complete: bool) -> list[Problem]:
         if driven not in machine.bodies:
             return []
     found = freedom(machine, driven, others)
+    if (found.blocked or found.loose) and (slow := _far_apart(train, machine, driven, others)):
+        return slow
     key = "operation.state" if train.states else "shafts"
     shown = written(train.operation.state) if train.states else ""
     problems = []
@@ -399,6 +401,8 @@ def _standing_output(
     speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
     if speeds[shape.shaft_of(output) or ""] != 0:
         return []
+    if slow := _far_apart(train, machine, driven, others):
+        return slow
     allowed = f"stands still at any speed of the input shaft {driven} in {_state_words(train)}, so "
     allowed += "no power reaches it."
     turning = [shaft for shaft in shape.shafts if speeds[shaft] != 0 and shaft != driven]
@@ -406,6 +410,24 @@ def _standing_output(
     if not turning:
         remedy = "Join it to the input."
     return [Problem("operation.output", written(output), allowed, remedy)]
+
+
+FAR_APART = 1e8  # Ratio of two speeds from which singular values may be nothing but rounding. [1]
+
+
+def _far_apart(train: Train, machine: Machine, driven: str, others: Sequence[str]) -> list[Problem]:
+    """Why shafts that turn look as if they stood still: the slowest is too slow beside others."""
+    from epicyclic.machine.balance import exact_speeds
+
+    exact = exact_speeds(machine, dict.fromkeys(others, 0) | {driven: 1})
+    turning = sorted((abs(speed), body) for body, speed in (exact or {}).items() if speed)
+    if not turning or turning[-1][0] < FAR_APART * turning[0][0]:
+        return []
+    (slowest, slow), (fastest, fast) = turning[0], turning[-1]
+    allowed = f"turns {float(fastest / slowest):.2g} times as fast as shaft {slow}: "
+    allowed += "speeds so far apart drown in rounding."
+    remedy = f"Leave out sets between {fast} and {slow}, and compute them as a train of their own."
+    return [Problem("shafts", fast, allowed, remedy)]
 
 
 def _state_words(train: Train) -> str:

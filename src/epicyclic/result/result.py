@@ -532,23 +532,23 @@ class Result:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Everything the user should know before trusting the numbers."""
-        return (*self.notes, *describe_flags(self.flags, self._losses_of(), self.total))
+        return (*self.notes, *describe_flags(self.flags, self.losses_of(), self.total))
 
     @property
     def flags_with_loss(self) -> list[tuple[float, list[ValidityFlag]]]:
         """Ranges that models leave, with the loss that each concerns; NaN if unknown. [W]"""
-        return flags_with_loss(self.flags, self._losses_of())
+        return flags_with_loss(self.flags, self.losses_of())
 
-    def _losses_of(self) -> Callable[[ModelUse], float]:
+    def losses_of(self) -> Callable[[ModelUse], float]:
         """What finds the loss that a model was used for, or of which it is a part; else NaN. [W]"""
-        losses = {in_words(term.name): term.watts for term in self.terms}
+        losses = {_same_words(term.name): term.watts for term in self.terms}
 
         def loss_of(use: ModelUse) -> float:
             last = LOSSES_OF_ROLES.get(use.role, use.role)
             stage, colon, _ = use.where.rpartition(": ")
             # the drag of both gears of a pair, or the loss of a bearing of a train
-            whole = in_words(f"{stage}{colon}{last}")
-            return losses.get(f"{use.where} {last}", losses.get(whole, math.nan))
+            found = (_same_words(it) for it in (f"{use.where} {last}", f"{stage}{colon}{last}"))
+            return next((losses[place] for place in found if place in losses), math.nan)
 
         return loss_of
 
@@ -730,6 +730,11 @@ def _number_fields(layout: Layout) -> Iterator[tuple[str, str, str, Callable[[Re
 def in_words(name: str) -> str:
     """A key of a train in words: ``"P1: sun mesh"``."""
     return name.replace("_", " ").replace(".", ": ")
+
+
+def _same_words(name: str) -> str:
+    """A key, or a place as sentences name it: both in the same words, ``"S: a b mesh"``."""
+    return in_words(name).replace("-", " ")
 
 
 def set_of(key: str) -> str:

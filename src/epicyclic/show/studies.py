@@ -515,7 +515,8 @@ def warm_up_tables(data: xr.Dataset) -> RenderableType:
     losses.add_section()
     total = data["total_loss"].values
     losses.add_row("total", f"{total[0]:.1f}", f"{total[-1]:.1f}", style="bold")
-    return titled(one_line(data.attrs["title"]), table, losses, Text(_summary(data)))
+    cycle = [Text(f"cycle: {data.attrs['cycle']}")] if "cycle" in data.attrs else []
+    return titled(one_line(data.attrs["title"]), table, losses, Text(_summary(data)), *cycle)
 
 
 def _summary(data: xr.Dataset) -> str:

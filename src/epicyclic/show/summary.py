@@ -56,7 +56,7 @@ def headline(result: Result, known: Known | None) -> Iterator[str]:
     for it in key_figures(result):
         text = f"{it.cell.text} {it.unit}".rstrip()
         band = ""
-        if it.label == "efficiency" and math.isfinite(ends.get("efficiency", (math.nan,))[0]):
+        if it.label == "efficiency" and ends.get("efficiency", (0.0, 0.0))[1] > 0:
             own = ends["efficiency"]
             text = efficiency_text(result.efficiency or 0.0, ends=own)
             band = efficiency_text(*own, ends=own)

@@ -47,7 +47,7 @@ def band_texts(known: Known | None) -> list[str | Listing]:
     low, high = known.ends["total"]
     text = f"95 % band: total loss {known_text(low, high)}"
     ends = known.ends["efficiency"]
-    if math.isfinite(ends[0]):
+    if ends[1] > 0:  # neither unknown nor without any efficiency
         text += f", efficiency {efficiency_text(*ends, ends=ends)}"
     drivers = ", ".join(
         f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST]

@@ -19,7 +19,7 @@ from epicyclic.machine.gear_mesh import OHLENDORF_SOURCE
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.planets import SHARING_METHODS
 from epicyclic.machine.pocket_flow import POCKETING_SOURCE, pocketing_method
-from epicyclic.result.result import Result, in_words
+from epicyclic.result.result import Result
 from epicyclic.study.solve import build_computed, solve
 from epicyclic.units import known_text, percent
 
@@ -196,13 +196,12 @@ def _reason(flag: ValidityFlag) -> str:
 
 def _outside(result: Result, flags: Sequence[ValidityFlag]) -> float:
     """Share of the sliding loss of all meshes that is outside some range. [1]"""
-    total, outside = 0.0, 0.0
-    for key in result.meshes:
-        watts = result.losses[f"{key}_sliding"]
-        shares = [flag.share for flag in flags if flag.use.where == in_words(key)]
-        total += watts
-        outside += watts * max(shares, default=0.0)
-    return outside / total if total else 0.0
+    total, loss_of = _sliding(result), result.losses_of()
+    outside: dict[str, float] = {}
+    for flag in flags:
+        watts = flag.share * loss_of(flag.use)
+        outside[flag.use.where] = max(outside.get(flag.use.where, 0.0), watts)
+    return math.fsum(outside.values()) / total if total else 0.0
 
 
 def _with(case: Case, models: Mapping[str, str]) -> Case:

@@ -14,7 +14,7 @@ from epicyclic.errors import ConvergenceError, InputError, one_problem
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.heat import COLDEST, HOTTEST
 from epicyclic.messages import refused, written
-from epicyclic.result.result import HeatBalance, Result, in_words
+from epicyclic.result.result import HeatBalance, Result
 from epicyclic.schema.fields import quantity_of
 from epicyclic.study.solve import solve
 from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
@@ -111,7 +111,6 @@ def beyond_range(case: Case, result: Result) -> BeyondRange | None:
 
     Theory (F5).
     """
-    terms = {in_words(term.name): term.watts for term in result.terms}
     hot = [
         flag
         for flag in result.flags
@@ -120,7 +119,8 @@ def beyond_range(case: Case, result: Result) -> BeyondRange | None:
         and flag.high is not None
         and flag.found_high > flag.high
     ]
-    watts = sum(flag.share * terms[f"{flag.use.where} {ROLES[flag.use.role]}"] for flag in hot)
+    loss_of = result.losses_of()
+    watts = sum(flag.share * loss_of(flag.use) for flag in hot)
     if not watts or case.models.oil_beyond_range != "held":
         return None
     low, high = hot[0].low, hot[0].high

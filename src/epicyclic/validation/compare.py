@@ -368,9 +368,9 @@ def _bands(figures: Iterable[Mapping[str, Any]], runner: Runner) -> dict[tuple[A
     nearby = nearby_at(case, solve(case), list(tests.values()), runner)
     for key, own in zip(tests, nearby, strict=True):
         drawn = quick_band(own).results[:, :DRAWS]
-        nominal = own.outputs.of(own.losses[:, None], np.array([own.input_power]), {})
+        nominal = own.outputs.of(own.losses[:, None], own.powers, {})
         whole = np.concatenate([nominal, drawn], axis=1)
-        found[key] = _Band(own.input_power, whole[-4], whole[-3])
+        found[key] = _Band(float(own.powers.entering[0]), whole[-4], whole[-3])
     return found
 
 

@@ -44,6 +44,8 @@ _ABOUT_FORCE = "Needed for the forces on the bearings; or give their radial_forc
 _SHORTEST, _FARTHEST = 1e-6, 1e8
 """Bounds of the length of an axis vector and of the coordinates of parts. [mm]"""
 
+_USUAL = np.array([1.0, 0.0, 0.0])  # Axis of a gear unit that states none.
+_ROUNDED = 1e-9  # Of the product of two unit vectors that are one. [1]
 _SUPPORTS = 2  # Bearings of a shaft whose forces statics gives.
 
 
@@ -60,24 +62,45 @@ def shaft_parts(draft: Draft, model: Model, train: Train) -> None:
 
 
 class _Places:
-    """Places in the axes of the gear unit, along the axis about which the input turns forward."""
+    """Places along the axis about which the input turns forward, however the gear unit stands."""
 
     def __init__(self, draft: Draft, model: Model, train: Train) -> None:
         self.model = model
-        units = model.of_type("gear_unit")
-        axis = _vector(units[0], "u_axis_vector") if units else None
-        length = 0.0 if axis is None else float(np.linalg.norm(axis))
-        usual = np.array([1.0, 0.0, 0.0])
-        self.unit_axis = axis / length if axis is not None and length > _SHORTEST else usual
-        self.axis = self.unit_axis
         driven = train.shafts.get(str(draft.tables.get("operation", {}).get("input")))
-        speed = speed_of(draft, list(driven.parts.values())) if driven is not None else None
         shafts = driven.components if driven is not None else ()
+        self.unit_axis = self._axis_of(
+            [*([] if driven is None else [driven]), *train.shafts.values()]
+        )
+        self.axis = self.unit_axis
+        speed = speed_of(draft, list(driven.parts.values())) if driven is not None else None
         if speed is not None and shafts and speed.number * self.sense(shafts[0]) < 0:
             self.axis = -self.axis
-        across = np.eye(3)[int(np.argmin(np.abs(self.axis)))]
-        second = np.cross(self.axis, across)
-        self.frame = np.array([np.cross(second, self.axis), second])
+        # y of a gear unit along x, turned with its axis the shortest way
+        first = np.array([0.0, 1.0, 0.0])
+        if (along := 1 + float(self.axis @ _USUAL)) > _ROUNDED:
+            first = first - float(first @ self.axis) / along * (self.axis + _USUAL)
+        self.frame = np.array([first, np.cross(self.axis, first)])
+
+    def _axis_of(self, shafts: Sequence[Shaft]) -> FloatArray:
+        """Direction of the shafts: as they state it, as their parts lie, that of the gear unit."""
+        units = self.model.of_type("gear_unit")
+        unit = _unit_vector(_vector(units[0], "u_axis_vector") if units else None)
+        stated = (_vector(part, "u_axis_vector") for shaft in shafts for part in shaft.components)
+        lines = map(self._line, shafts)
+        found = next(
+            (it for one in (*stated, *lines) if (it := _unit_vector(one)) is not None), unit
+        )
+        if found is None:
+            return _USUAL
+        senses = [it for it in (unit, _USUAL) if it is not None and abs(found @ it) > 1 - _ROUNDED]
+        return senses[0] if senses else found  # they tell the sense of an axis that is theirs
+
+    def _line(self, shaft: Shaft) -> FloatArray | None:
+        """From the start of a shaft to the part that is farthest from it. [mm]"""
+        parts = [*shaft.components, *shaft.parts.values()]
+        points = [it for part in parts if (it := self._point(part)) is not None]
+        ways = (point - points[0] for point in points)
+        return max(ways, key=lambda way: float(np.linalg.norm(way)), default=None)
 
     def sense(self, part: Component) -> float:
         """+1 or -1 if a part lies along the axis or against it, 0 across it."""
@@ -152,6 +175,11 @@ def _vector(part: Component, name: str) -> FloatArray | None:
     return np.array(numbers) if is_place else None
 
 
+def _unit_vector(vector: FloatArray | None) -> FloatArray | None:
+    length = 0.0 if vector is None else float(np.linalg.norm(vector))
+    return vector / length if vector is not None and length > _SHORTEST else None
+
+
 def _amount(number: float, origin: str) -> Amount:
     return Amount(round(number, 6), "mm", origin)
 
@@ -178,7 +206,7 @@ def _pair(
     key = f"sets.{name}.direction"
     if angle is not None:
         origin = f"computed from support_vector of {ends[0][0]} and {ends[1][0]}"
-        draft.give(key, f"{angle:.6f} deg", origin)
+        draft.give(key, f"{angle:z.6f} deg", origin)
     elif any(shaft is not None and shaft.name in borne for shaft in shafts):
         draft.lack(key, "support_vector", [end[0] for end in ends], "Default: 0 deg.")
 

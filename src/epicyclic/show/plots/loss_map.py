@@ -197,7 +197,7 @@ def _efficiency_norm(low: float, high: float) -> FuncNorm:
     best = min(high, BEST_EFFICIENCY)
     least = min(max(low, LEAST_EFFICIENCY), best)
     if least == best:
-        best += 100 - BEST_EFFICIENCY
+        least -= 100 - BEST_EFFICIENCY  # of the best there is no better
     return FuncNorm((_log_of_loss, _from_log_of_loss), least, best)
 
 

@@ -16,7 +16,9 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.result.result import Result, versions
 from epicyclic.study.bands.plan import (
     INPUT_POWER,
+    SHAFT_POWER,
     Outputs,
+    Powers,
     SamplePlan,
     check_samples,
     factors_of,
@@ -131,8 +133,10 @@ def _evaluate(
         drawn=(points[inputs],),
     )
     rows = runner.run(plan)
-    losses = np.array([rows.numbers(name) for name in outputs.numbers])
-    return outputs, outputs.of(losses, rows.numbers(INPUT_POWER), factors_of(values, points))
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, len(rows))
+    power, shaft = (rows.numbers(name) for name in (INPUT_POWER, SHAFT_POWER))
+    powers = Powers(power, shaft, losses[: len(outputs.losses)].sum(axis=0))
+    return outputs, outputs.of(losses, powers, factors_of(values, points))
 
 
 def _dataset(

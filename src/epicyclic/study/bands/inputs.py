@@ -119,7 +119,7 @@ def uncertain_values(
 
 
 def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
-    if not has_effect(case, key):
+    if not has_effect(case, key) or not _is_shared(case, key):
         return None
     if key.endswith(FACTOR_KEY):
         return _assumed_factor(case, key)
@@ -134,6 +134,14 @@ def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
             made = made_value(case, parameter, assumption.table, assumption.source)
             return made if isinstance(made, UncertainValue) else None
     return None
+
+
+def _is_shared(case: CaseTable, key: str) -> bool:
+    """False for the sharing of load between planets of which there are no two."""
+    *owner, table, _ = ("", *key_parts(key))
+    if table != "load_sharing":
+        return True
+    return (case.gearings[owner[-1]].count or 1) > 1
 
 
 def _assumed_slope(case: CaseTable, key: str, limit: float) -> UncertainValue:

@@ -17,6 +17,7 @@ from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
 from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import LOAD_DEPENDENT
+from epicyclic.machine.solve import NO_POWER
 from epicyclic.result.result import Result
 from epicyclic.schema.read import plain
 from epicyclic.study.bands.inputs import model_form_of, uncertain_values
@@ -33,7 +34,28 @@ FloatArray = NDArray[np.float64]
 SUMS = ("load_dependent", "load_independent", "total", "efficiency")
 """Results beside the single losses."""
 UNLOADED = "unloaded."  # Before the name of a loss without torque.
-INPUT_POWER = "input_power"
+INPUT_POWER, SHAFT_POWER = "input_power", "shaft_power"
+OF_SHAFT_POWER = ("operation.torque", "operation.speed")
+
+
+def entering(at_shaft: FloatArray, loss: FloatArray) -> FloatArray:
+    """Power that enters at this shaft and the other one, of which this one's is stated. [W]"""
+    found: FloatArray = np.maximum(at_shaft, 0.0) + np.maximum(loss - at_shaft, 0.0)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Powers:
+    """Power that enters where the losses are as solved, and where they are not. [W]"""
+
+    entering: FloatArray
+    shaft: FloatArray  # Of the shaft whose torque is stated.
+    loss: FloatArray
+
+    def with_loss(self, loss: FloatArray, shaft: FloatArray | None = None) -> FloatArray:
+        """Power that enters with another loss, and another power of the shaft. Theory (U7)."""
+        shaft = self.shaft if shaft is None else shaft
+        return self.entering + entering(shaft, loss) - entering(self.shaft, self.loss)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,22 +82,25 @@ class Outputs:
     def of(
         self,
         losses: FloatArray,  # In the order of `numbers`. [W]
-        input_power: FloatArray,  # [W]
+        powers: Powers,
         factors: Mapping[str, FloatArray],  # By kind; 1 for others. [1]
+        shaft: FloatArray | None = None,  # Power of the shaft, if it is not that of `powers`. [W]
     ) -> FloatArray:
         """Results with the losses of each kind times the factor of its model. Theory (U7).
 
-        In the order of `names`; efficiency NaN without power.
+        In the order of `names`; efficiency NaN without power, 0 if losses take all of it.
         """
         kinds = self.kinds * (2 if self.tested else 1)
         every = np.array(
             [row * factors.get(kind, 1.0) for row, kind in zip(losses, kinds, strict=True)]
-        )
+        ).reshape(losses.shape)
         scaled, unloaded = every[: len(self.losses)], every[len(self.losses) :]
         independent = (unloaded if self.tested else scaled[~self.load_dependent]).sum(axis=0)
         total = scaled.sum(axis=0)
+        power = powers.with_loss(total, shaft)
         with np.errstate(divide="ignore", invalid="ignore"):
-            efficiency = np.where(total < input_power, 1 - total / input_power, np.nan)
+            efficiency = np.where(power > 0, np.maximum(0.0, 1 - total / power), np.nan)
+            efficiency[power - total <= NO_POWER * power] = 0.0
         return np.vstack([scaled, total - independent, independent, total, efficiency])
 
 
@@ -84,19 +109,24 @@ def outputs_of(case: Case, result: Result) -> Outputs:
     terms = [term for term in result.terms if not term.left_out]
     return Outputs(
         tuple(term.name for term in terms),
-        np.array([term.group == LOAD_DEPENDENT for term in terms]),
+        np.array([term.group == LOAD_DEPENDENT for term in terms], dtype=bool),
         tuple(model_form_of(term.name, term.method) for term in terms),
         case.models.load_dependent == AS_TESTED,
     )
 
 
+def shaft_power(case: Case) -> float:
+    """Power of the shaft whose torque and speed the case states. [W]"""
+    return case.operation.torque * case.operation.speed
+
+
 def loss_numbers(
     case: Case, outputs: Outputs, flow_tables: FlowTables | None = None
 ) -> dict[str, float]:
-    """`Outputs.numbers` of a case, and its input power. [W]"""
+    """`Outputs.numbers` of a case, its input power, and that of the stated shaft. [W]"""
     plain = case.updated({"models.load_dependent": "computed"}) if outputs.tested else case
     result = solve(plain, flow_tables=flow_tables)
-    found = {**result.losses, INPUT_POWER: result.input_power}
+    found = {**result.losses, INPUT_POWER: result.input_power, SHAFT_POWER: shaft_power(case)}
     if outputs.tested:
         unloaded = solve(without_torque(plain), flow_tables=flow_tables).losses
         found |= {f"{UNLOADED}{name}": watts for name, watts in unloaded.items()}
@@ -129,7 +159,7 @@ class Nearby:
     values: tuple[UncertainValue, ...]
     outputs: Outputs
     losses: FloatArray  # `Outputs.numbers`, at the values of the case. [W]
-    input_power: float  # [W]
+    powers: Powers  # Each of shape (1,).
     # One standard deviation below and above the middle of each input; NaN where there is no result.
     # [W]
     ends: FloatArray
@@ -137,7 +167,7 @@ class Nearby:
     @property
     def nominal(self) -> FloatArray:
         """Results at the values of the case, in the order of `Outputs.names`."""
-        return self.outputs.of(self.losses[:, None], np.array([self.input_power]), {})[:, 0]
+        return self.outputs.of(self.losses[:, None], self.powers, {})[:, 0]
 
     @property
     def active(self) -> tuple[bool, ...]:
@@ -174,13 +204,14 @@ def look_nearby(case: Case, result: Result) -> Nearby:
         losses if _without_effect(plain, changes) else _losses(plain, changes, outputs, flows)
         for changes in steps(values)
     ]
-    return nearby_of(values, outputs, losses, result.input_power, np.array(stepped))
+    powers = (result.input_power, shaft_power(case))
+    return nearby_of(values, outputs, losses, powers, np.array(stepped))
 
 
 def steps(values: Sequence[UncertainValue]) -> list[dict[str, Any]]:
     """What to change in a case: each input one standard deviation down, then up."""
     return [
-        {value.key: value.stated(_at(value, end))}
+        {value.key: value.stated(float(at_deviations(value, end)))}
         for value in values
         if not value.is_model_form
         for end in (-1.0, 1.0)
@@ -191,14 +222,15 @@ def nearby_of(
     values: tuple[UncertainValue, ...],
     outputs: Outputs,
     losses: FloatArray,
-    input_power: float,
+    powers: tuple[float, float],  # That enters, and of the stated shaft.
     stepped: FloatArray,
 ) -> Nearby:
     """What the losses of all `steps`, shape (2 d, t), say; models leave them as they are."""
     inputs = np.array([not value.is_model_form for value in values], dtype=bool)
     ends = np.tile(losses, (len(values), 2, 1))
-    ends[inputs] = stepped.reshape(-1, 2, losses.size)
-    return Nearby(values, outputs, losses, input_power, ends)
+    ends[inputs] = stepped.reshape(inputs.sum(), 2, losses.size)
+    own = Powers(*(np.array([it]) for it in (*powers, losses[: len(outputs.losses)].sum())))
+    return Nearby(values, outputs, losses, own, ends)
 
 
 def _without_effect(case: Case, changes: Mapping[str, Any]) -> bool:
@@ -218,8 +250,8 @@ def _losses(
     return np.array([found[name] for name in outputs.numbers])
 
 
-def _at(value: UncertainValue, deviations: float) -> float:
-    """A value some standard deviations from the middle of its distribution."""
+def at_deviations(value: UncertainValue, deviations: Any) -> Any:
+    """A value one or several standard deviations from the middle of its distribution."""
     if value.kind == "normal":
         found = value.value + deviations * value.spread[0]
     elif value.kind == "lognormal":
@@ -227,7 +259,7 @@ def _at(value: UncertainValue, deviations: float) -> float:
     else:
         low, high = value.spread
         found = (low + high) / 2 + deviations * (high - low) / 2 / HALF_WIDTH
-    return min(max(found, value.low), value.high)
+    return np.clip(found, value.low, value.high)
 
 
 # Samples of what is uncertain in a case, solved at one operating point or at several.
@@ -325,15 +357,18 @@ class SampledCase:
 
         In the order of `Outputs.names`.
         """
-        losses = np.array([rows.numbers(name) for name in self.outputs.numbers])
-        losses = losses.reshape(len(losses), len(self.samples), -1, self.plan.count)
-        power = rows.numbers(INPUT_POWER).reshape(losses.shape[1:])
+        power, shaft, *every = (
+            rows.numbers(name).reshape(len(self.samples), -1, self.plan.count)
+            for name in (INPUT_POWER, SHAFT_POWER, *self.outputs.numbers)
+        )
+        losses = np.array(every).reshape(len(every), *power.shape)
+        lost = losses[: len(self.outputs.losses)].sum(axis=0)
         return np.array(
             [
                 [
                     self.outputs.of(
                         losses[:, point, solved],
-                        power[point, solved],
+                        Powers(power[point, solved], shaft[point, solved], lost[point, solved]),
                         factors_of(own.values, drawn),
                     )
                     for solved, drawn in self._sets(own, mixed)
@@ -423,12 +458,12 @@ def nearby_at(
         without_table(case), outputs, drawn=(np.empty((0, 1)),) * len(every), points=every
     )
     rows = runner.run(plan)
-    losses = np.array([rows.numbers(name) for name in outputs.numbers]).T
-    power = rows.numbers(INPUT_POWER)
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, len(rows)).T
+    powers = np.array([rows.numbers(INPUT_POWER), rows.numbers(SHAFT_POWER)]).T.tolist()
     found, first = [], 0
     for own, those in zip(values, changes, strict=True):
         part = slice(first + 1, first + len(those))
-        found.append(nearby_of(own, outputs, losses[first], float(power[first]), losses[part]))
+        found.append(nearby_of(own, outputs, losses[first], powers[first], losses[part]))
         first += len(those)
     return tuple(found)
 

@@ -18,6 +18,7 @@ from epicyclic.study.bands.plan import (
     Nearby,
     Outputs,
     check_samples,
+    entering,
     nearby_at,
     outputs_of,
     sampled_case,
@@ -212,9 +213,9 @@ class Energies:
             known[:, None], found / np.where(known, by_map, 1.0)[:, None], 1.0
         )
         lost = np.where(np.isfinite(found), lost, np.nan)
-        more = _entering(self.at_shaft[:, None], results[:, -2])
-        more -= _entering(self.at_shaft, self.interpolated.sum(axis=0))[:, None]
-        entering = self.entering + time @ more
+        more = entering(self.at_shaft[:, None], results[:, -2])
+        more -= entering(self.at_shaft, self.interpolated.sum(axis=0))[:, None]
+        power = self.entering + time @ more
         total = lost.sum(axis=0)
         if self.outputs.tested:
             alone, whole = (np.einsum("pn,p->n", results[:, row], time) for row in (-3, -2))
@@ -222,7 +223,7 @@ class Energies:
         else:
             independent = lost[~self.outputs.load_dependent].sum(axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            efficiency = np.where(total < entering, 1 - total / entering, np.nan)
+            efficiency = np.where(power > 0, np.maximum(0.0, 1 - total / power), np.nan)
         kilo, _ = KILOJOULE.scale_and_offset()
         return np.vstack(
             [kilo * np.vstack([lost, total - independent, independent, total]), efficiency]
@@ -238,12 +239,6 @@ class Energies:
             return 0.0 if self.whole else math.nan
         spreads = [np.nanstd(self.of(results, number)[-2], ddof=1) for number in range(count)]
         return float(math.sqrt(count - 1) * np.std(spreads))
-
-
-def _entering(at_shaft: FloatArray, loss: FloatArray) -> FloatArray:
-    """Power that enters at either shaft."""
-    found: FloatArray = np.maximum(at_shaft, 0.0) + np.maximum(loss - at_shaft, 0.0)
-    return found
 
 
 def cycle_study(
@@ -316,12 +311,7 @@ class CycleStudy(Study):
         results = self.sampled.results(rows, mixed=False)
         sets = np.array([energies.of(results[:, number]) for number in (0, 1)])
         both = np.moveaxis(results, 1, 2).reshape(len(results), results.shape[2], -1)
-        nominal = np.array(
-            [
-                it.outputs.of(it.losses[:, None], np.array([it.input_power]), {})
-                for it in self.nearby
-            ]
-        )
+        nominal = np.array([it.outputs.of(it.losses[:, None], it.powers, {}) for it in self.nearby])
         data = sample_variables(
             sets, energies.of(nominal)[:, 0], self._contributions(nominal), self.sampled, rows, "kJ"
         )
@@ -335,7 +325,7 @@ class CycleStudy(Study):
             **about_study(
                 self.case, energies.outputs, self.plan.count, self.seed, data.attrs["failed"]
             ),
-            cycle=f"{self.cycle.source.name}, {self.cycle.rows} rows",
+            cycle=self.cycle.title,
             points=len(energies.points),
         )
 

@@ -20,11 +20,13 @@ from epicyclic.study.bands.inputs import remedy_for
 from epicyclic.study.bands.plan import (
     FEWEST,
     HALF_WIDTH,
+    OF_SHAFT_POWER,
     SUMS,
     Nearby,
     Outputs,
     SampledCase,
     SamplePlan,
+    at_deviations,
     check_samples,
     factors_of,
     look_nearby,
@@ -215,12 +217,11 @@ def summaries(samples: FloatArray) -> dict[str, FloatArray]:
 def contributions(nearby: Nearby) -> FloatArray:
     """Half the change from one standard deviation below to one above, of every result."""
     outputs, values = nearby.outputs, nearby.values
-    power = np.full(2, nearby.input_power)
     found = []
     for value, ends in zip(values, nearby.ends, strict=True):
         factor = np.array([1 / value.spread[0], value.spread[0]])
         factors = factors_of([value], factor[None]) if value.is_model_form else {}
-        below, above = outputs.of(ends.T, power, factors).T
+        below, above = outputs.of(ends.T, nearby.powers, factors).T
         found.append((above - below) / 2)
     return np.array(found)
 
@@ -325,8 +326,12 @@ def quick_band(nearby: Nearby) -> Band:
         for value, row in zip(values, drawn, strict=True)
     ]))  # fmt: skip
     losses = np.maximum(nearby.losses[:, None] + shifts.sum(axis=0), 0.0)
-    power = np.full(DRAWN, nearby.input_power)
-    return Band(nearby, outputs.of(losses, power, factors), _parts(nearby, shifts, factors))
+    shaft = nearby.powers.shaft
+    for value, row in zip(values, drawn, strict=True):
+        if value.key in OF_SHAFT_POWER and value.value:
+            shaft = shaft * at_deviations(value, row) / value.value
+    results = outputs.of(losses, nearby.powers, factors, shaft)
+    return Band(nearby, results, _parts(nearby, shifts, factors))
 
 
 def quick_known(case: Case, result: Result, *, brief: bool = False) -> Known | None:

@@ -232,7 +232,8 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
             for middle in middles
         ]
     )
-    error = np.abs(np.interp(middles, torques, line["total"].values) / direct - 1)
+    with np.errstate(divide="ignore", invalid="ignore"):  # of no loss there is no part
+        error = np.abs(np.interp(middles, torques, line["total"].values) / direct - 1)
     if not np.isfinite(error).any():
         return {}
     worst = int(np.nanargmax(error))

@@ -27,7 +27,7 @@ from epicyclic.study.table_file import (
     unit_problem,
 )
 from epicyclic.study.table_file import Piece as TablePiece
-from epicyclic.units import SECOND, Quantity, format_number
+from epicyclic.units import SECOND, Quantity
 
 # Duty cycles: what the columns of their tables are, and their points in pieces.
 #
@@ -51,9 +51,10 @@ _NUMBER = r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$"
 _WHOLE = re.compile(r"^(\d+)\.0+$")  # A number as spreadsheets write whole ones.
 _SHOWN_HEADERS, _SHOWN_PARTS = 20, 6
 _MOST_STATES = 1000  # A column of more different texts is another one by that name, and left alone.
-_ROUNDED = 0.01  # What rounded shares may miss of their sum.
 _FINITE = "must be a finite number."
 _EARLY = "must be later than in the row before."
+
+SUMS_TO_ONE = 1e-6  # Shares that sum to one but for this do so: it is rounding. [1]
 SHARE_DURATION = 3600.0  # What a cycle of shares lasts. [s]
 
 
@@ -89,6 +90,16 @@ class Cycle:
     ranges: Mapping[str, tuple[float, float]]
     # What its column of states has, in the order in which it appears; none without the column.
     states: tuple[str, ...] = ()
+    whole: float = 1.0  # Sum of its shares, by which they are divided. [1]
+
+    @property
+    def title(self) -> str:
+        """Its name, its rows, and the factor of shares whose sum is neither 1 nor 100 %."""
+        told = f"{self.source.name}, {self.rows} rows"
+        if any(math.isclose(self.whole, whole, rel_tol=SUMS_TO_ONE) for whole in (1.0, 100.0)):
+            return told
+        factor = 1 / self.whole
+        return f"{told}; its shares sum to {self.whole:.6g}, not to 1: multiplied by {factor:.6g}"
 
     def pieces(self, celsius: float | None = None) -> Iterator[Piece]:
         """All points, at their own temperatures or at one.
@@ -159,7 +170,8 @@ def open_cycle(
         if name != STATE
     }
     states = tuple(checks.states) if STATE in columns else ()
-    return Cycle(source, columns, weighting, checks.rows, ranges, states)
+    whole = checks.sums[SHARE] if weighting == SHARE else 1.0
+    return Cycle(source, columns, weighting, checks.rows, ranges, states, whole)
 
 
 # --- headers --------------------------------------------------------------------------------------
@@ -360,22 +372,4 @@ class _Checks:
         for name in (DURATION, SHARE):
             if self.rows and name in self.columns and not self.sums.get(name, 0.0) > 0:
                 found.append(Problem(name, "", "is zero in all rows.", "Give positive values."))
-        return found or list(self._share_problems())
-
-    def _share_problems(self) -> Iterator[Problem]:
-        """Shares must be parts of one, or of a hundred per cent, but for rounding."""
-        whole, largest = self.sums.get(SHARE, 0.0), self.high.get(SHARE, 0.0)
-        in_percent = SHARE in self.columns and self.columns[SHARE].header.endswith("[%]")
-        if in_percent or (largest > 1 and 50 <= whole <= 150):
-            wanted = 100.0
-        elif SHARE in self.columns and largest < 1:
-            wanted = 1.0
-        else:  # numbers of any kind, whose sum is the whole
-            return
-        rest = wanted - whole
-        if abs(rest) <= _ROUNDED * wanted:
-            return
-        part = f"add a row for the missing {format_number(rest, 4)}" if rest > 0 else "correct them"
-        allowed = f"adds up to {format_number(whole)}, neither to 1 nor to 100 %."
-        remedy = f'{part.capitalize()}, or call the column "duration [h]" if it has hours.'
-        yield Problem(SHARE, "", allowed, remedy)
+        return found

@@ -403,7 +403,7 @@ def _to_dataset(lookup: Lookup, totals: Totals, error: Deviation) -> xr.Dataset:
 
     entering, leaving = totals.energy_in.sum(axis=1), totals.energy_out.sum(axis=1)
     duration = totals.duration.sum(axis=1)
-    by_component = totals.node_work @ lookup.torques.reshape(len(lookup.components), -1).T
+    by_component = totals.node_work @ lookup.torques.reshape(len(lookup.components), lookup.size).T
     seconds, energy, pure = SECOND.display, KILOJOULE.display, "1"
     kilo, _ = KILOJOULE.scale_and_offset()
     outside = totals.outside / duration.sum()
@@ -469,7 +469,7 @@ def _attributes(data: xr.Dataset, cycle: Cycle, clamp: bool) -> dict[str, str]:
     return {
         "title": data.attrs["title"],
         "source": data.attrs.get("source", ""),
-        "cycle": f"{cycle.source.name}, {cycle.rows} rows",
+        "cycle": cycle.title,
         "reference_shaft": shaft,
         "output_shaft": output,
         "sign_convention": data.attrs.get("sign_convention", ""),

@@ -308,7 +308,9 @@ def make_lookup(data: xr.Dataset) -> Lookup:
         if array.attrs.get("units") == WATT.display and name not in _SUMS
         if not array.isnull().all()  # left out of the case
     ]
-    watts = np.stack([chosen[name].transpose(*names).fillna(0).values for name in components])
+    shape = [chosen.sizes[name] for name in names]
+    watts = np.array([chosen[name].transpose(*names).fillna(0).values for name in components])
+    watts = watts.reshape(len(components), *shape)
     watts = watts[:, _nearest_moving(axes[0])]
     total = watts.sum(axis=0)
     shares = watts / np.where(total > 0, total, 1.0)

@@ -276,7 +276,8 @@ def warm_up(
     model = build(warm).thermal
     assert isinstance(model, NetworkModel)
     begin = np.full(len(model.capacities()), start)
-    drive = _constant(warm) if cycle is None else _driven(warm, seconds, open_cycle(cycle))
+    driven = None if cycle is None else open_cycle(cycle)
+    drive = _constant(warm) if driven is None else _driven(warm, seconds, driven)
     own = model.settings
     low = min(start, own.inlet, own.ambient, own.coolant)
     high = max(start, own.inlet, own.ambient, own.coolant) + HEADROOM
@@ -298,7 +299,8 @@ def warm_up(
         knots += new
     if hottest > HOTTEST:
         raise _runaway(tables, course)
-    return _to_dataset(warm, tables, drive, told, seconds, settled)
+    found = _to_dataset(warm, tables, drive, told, seconds, settled)
+    return found if driven is None else found.assign_attrs(cycle=driven.title)
 
 
 def _with_fixed_jets(case: Case) -> Case:
