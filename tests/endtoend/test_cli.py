@@ -373,3 +373,17 @@ def test_changes_of_the_command_come_before_the_checks(epicyclic, tmp_path):
     assert both.returncode == 2
     assert "gear.face_width" in both.stderr
     assert "pinion.teeth = 2" in both.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "former"),
+    [(("pockets", "table"), "pockets-table"), (("pockets", "study"), "study"),
+     (("validate", "reproduce"), "reproduce")],
+)  # fmt: skip
+def test_commands_under_another_one_have_their_former_names_too(epicyclic, words, former):
+    now, then = epicyclic(*words, "--help"), epicyclic(former, "--help")
+    assert now.returncode == then.returncode == 0
+    assert now.stdout == then.stdout
+    listed = re.findall(r"^  ([a-z-]+) ", epicyclic("--help").stdout, re.MULTILINE)
+    assert words[0] in listed
+    assert former not in listed

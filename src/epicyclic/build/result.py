@@ -77,6 +77,7 @@ ISO 6336-2, limit of ISO 6336-5, grade MQ (general knowledge). [Pa]"""
 BEARING_PRESSURE = 4.0e9
 """Pressure of a roller on its race at the static load rating of ISO 76 (general knowledge). [Pa]"""
 IDLE_PART = 0.3  # Part of the most loaded roller without load from which a result says so. [1]
+SOFT = 20e9  # Modulus below which a material is a plastic: metals have 40 GPa or more. [Pa]
 LEAST_CONTACT = 0.75  # Share of the contact lines that carries below which a result says so. [1]
 
 
@@ -226,6 +227,16 @@ def load_notes(case: SetCase) -> Iterator[str]:
         yield (
             f"models.load_distribution = {model} ignores micro-geometry and misalignment; "
             "compliance takes them into account."
+        )
+    soft = [
+        name.replace("_", " ")
+        for name, table in gearing.tables.items()
+        if table.material.elastic_modulus < SOFT
+    ]
+    if soft:
+        yield (
+            f"No friction model covers plastic gears ({', '.join(soft)}): all hold for metal in "
+            "oil, and the band does not contain that difference."
         )
     for name, table, ring in gearing.rings():
         thickness, key = rim_thickness(table), gearing.key(name)

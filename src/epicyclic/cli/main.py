@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NoReturn
@@ -45,11 +45,26 @@ from epicyclic.registry import load, offered
 # the program an error arose.
 
 
+UNDER: Mapping[tuple[str, ...], str] = {
+    ("pockets", "table"): "pockets-table",
+    ("pockets", "study"): "study",
+    ("validate", "reproduce"): "reproduce",
+}
+"""Commands that stand under another one, by both words, and their former names."""
+
+
 class _Commands(click.Group):
     """The commands of this package, and those of plug-ins, which are imported when called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted({*self.commands, *offered("commands")})
+        return sorted({*self.commands, *offered("commands")} - {*UNDER.values()})
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if name := UNDER.get(tuple(args[:2])):
+            args = [name, *args[2:]]
+        return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name in self.commands or cmd_name not in offered("commands"):

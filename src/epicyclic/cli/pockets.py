@@ -48,7 +48,13 @@ ANIMATION = ".gif"
     help="Animate each mesh in FILE-MESH.gif, with the pressure as colour.",
 )
 def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Path | None) -> None:
-    """Show the pockets between the teeth: shape, pressure, speed of the flow, power."""
+    """Show the pockets between the teeth: shape, pressure, speed of the flow, power.
+
+    \b
+    epicyclic pockets CASE          one state in detail
+    epicyclic pockets table CASE    pocketing loss over speed and temperature, to a file
+    epicyclic pockets study CASE    pocketing loss over helix, width, backlash and module
+    """
     from epicyclic.cli.common import working
     from epicyclic.show.studies import pocket_tables
     from epicyclic.show.terminal import terminal

@@ -131,13 +131,27 @@ def _outside(result: Result) -> float:
     return max(watts, default=0.0) / result.total if result.total else 0.0
 
 
+def _notes(result: Result) -> Iterator[tuple[float, str]]:
+    """Notes in short with the watts concerned; what is said of several sets stands once."""
+    stages = {in_words(key.rpartition(".")[0]) for key in result.losses}
+    owners: dict[str, list[str]] = {}
+    watts: dict[str, float] = {}
+    for note in result.notes:
+        if note.startswith(NOT_INCLUDED):
+            continue
+        owner, colon, text = note.partition(": ")
+        if not colon or owner.replace("_", " ") not in stages:
+            owner, text = "", note
+        text = _END_OF_SENTENCE.split(text)[0].rstrip(".") + "."
+        owners.setdefault(text, []).append(owner)
+        watts[text] = watts.get(text, 0.0) + note_watts(note)
+    for text, names in owners.items():
+        yield watts[text], f"{', '.join(names)}: {text}" if any(names) else text
+
+
 def first_warnings(result: Result) -> Listing:
     """The warnings that concern most of the loss, in short; nothing if none matters."""
-    found = [
-        (note_watts(note), _END_OF_SENTENCE.split(note)[0].rstrip(".") + ".")
-        for note in result.notes
-        if not note.startswith(NOT_INCLUDED)
-    ]
+    found = list(_notes(result))
     for watts, group in result.flags_with_loss:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
         size = "" if math.isnan(watts) else f"; {known_text(watts)} of the loss"

@@ -74,7 +74,13 @@ def validate(
     plot: Path | None,
     output: Path | None,
 ) -> None:
-    """Compare with published figures: published, computed, difference, verdict."""
+    """Compare with published figures: published, computed, difference, verdict.
+
+    \b
+    epicyclic validate                       published figures
+    epicyclic validate --measured            losses that others measured
+    epicyclic validate reproduce CHAPTER     a chapter of the dissertation, computed again
+    """
     # computing and drawing are loaded by those who ask for them: the command line starts quickly
     from epicyclic.show.terminal import as_on_page, terminal
     from epicyclic.study.sweeps.runner import Runner
