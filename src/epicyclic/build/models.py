@@ -107,6 +107,9 @@ class SetCase:
         """Its models by key, ``auto`` replaced by what it stands for."""
         models, table = self.models, self.lubrication
         pocketing: str = models.pocketing
+        drag: str = models.drag
+        if drag == "auto":
+            drag = "diab-ville-velex" if models.preset == "general" else "seetharaman-kahraman"
         if pocketing == "auto":
             pocketing = "isentropic" if oil_share(self).share < LEAST_OIL else "incompressible"
         found: dict[str, str] = {
@@ -115,7 +118,7 @@ class SetCase:
             "load_distribution": models.load_distribution,
             "mesh": models.mesh,
             "pocketing": pocketing,
-            "drag": models.drag,
+            "drag": drag,
         }
         if table is not None:
             found["lubrication"] = table.method

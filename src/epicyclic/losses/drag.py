@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.losses.windage import turbulent_rim
 from epicyclic.oil.oil import MixtureState
 from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
@@ -17,8 +18,6 @@ from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
 VISCOUS_METHOD = "viscous moment after Palmgren and Harris"
 VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot (2012), Eq. 5.6"
-DRAG_METHOD = "drag of a disc in the air-oil mixture"
-DRAG_SOURCE = "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5"
 
 LOW_SPEED_LIMIT = 2000.0
 """nu n in mm^2/s times rpm below which the friction moment is constant (Palmgren)."""
@@ -126,11 +125,19 @@ def disc_drag_flags(
     total = sum(drag)
     if total == 0:
         return ()
-    use = ModelUse("drag", "seetharaman-kahraman", where)
-    values = {"reynolds_number": reynolds_number(radius, speed, mixture)}
-    return check_ranges(use, (_RIM,), values, part=drag.rim / total) + check_ranges(
-        use, (_FACES, _CREEPING), values, part=drag.faces / total
+    use, reynolds = (
+        ModelUse("drag", "seetharaman-kahraman", where),
+        reynolds_number(radius, speed, mixture),
     )
+    values = {"reynolds_number": reynolds}
+    return check_ranges(
+        use,
+        (_RIM,),
+        values,
+        part=drag.rim / total,
+        watts=drag.rim,
+        could_be=drag.rim * reynolds / 4 * turbulent_rim(reynolds),
+    ) + check_ranges(use, (_FACES, _CREEPING), values, part=drag.faces / total, watts=drag.faces)
 
 
 def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float:

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import (
     CHURNING_MODELS,
-    DRAG_METHOD,
-    DRAG_SOURCE,
     JET_METHOD,
     JET_SOURCE,
     VISCOUS_METHOD,
@@ -26,6 +24,17 @@ from epicyclic.losses.drag import (
     viscous_flags,
 )
 from epicyclic.losses.ranges import ValidityFlag
+from epicyclic.losses.windage import (
+    DRAG_METHODS,
+    MIST_SHARE,
+    DragModel,
+    Fluid,
+    Turning,
+    anderson_loewenthal,
+    drag,
+    drag_flags,
+    tooth_windage,
+)
 from epicyclic.machine.element import LOAD_INDEPENDENT, Loss, State
 
 Outcome = tuple[Loss, tuple[ValidityFlag, ...]]
@@ -62,16 +71,39 @@ class Disc:
 
     where: str  # For the flags: ``"sun"``.
     body: str
-    radius: float  # [m]
-    width: float  # [m]
+    turning: Turning
     oil_fraction: float  # Oil in the mixture, by volume. [1]
+    model: DragModel
     sump: Sump | None = None  # Oil that it dips into, which then drags in place of the mixture.
     jets: Jets | None = None
+    against: str = HOUSING  # The body with which the mixture around it turns.
+    count: int = 1  # Of bodies alike.
 
     @property
     def dips(self) -> bool:
         """Whether it reaches into a sump."""
         return self.sump is not None and self.sump.part.immersed > 0
+
+    def fluid(self, state: State) -> Fluid:
+        """What it turns in."""
+        return Fluid(
+            state.fluids.mixed(self.oil_fraction),
+            state.fluids.mixed(min(self.oil_fraction, MIST_SHARE)),
+            state.fluids.oil.dynamic_viscosity,
+        )
+
+    def windage(self, state: State) -> dict[str, float]:
+        """Its windage by each model of teeth, and by one that takes all oil for a fluid. [W]"""
+        speed, teeth = state.speeds[self.body] - state.speeds[self.against], self.turning.teeth
+        if teeth is None or not speed or self.dips:
+            return {}
+        fluid, gap = self.fluid(state), self.turning.axial_gap
+        one, all_oil = (
+            tooth_windage(teeth, speed, it.density, gap) for it in (fluid.mist, fluid.mixture)
+        )
+        other = anderson_loewenthal(teeth, speed, fluid.oil_viscosity)
+        found = {"diab-ville-velex": one, "with all the oil": all_oil, "anderson-loewenthal": other}
+        return {name: self.count * watts for name, watts in found.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,29 +123,37 @@ def disc_loss(
 ) -> Outcome:
     """The drag of `discs` together, each on its own shaft, and its flags. Theory (N2)."""
     flags: tuple[ValidityFlag, ...] = ()
-    drags: dict[str, float] = {}
+    drags: dict[tuple[str, str], float] = {}
     methods: dict[str, str] = {}
     for disc in discs:
-        speed = state.speeds[disc.body]
+        speed = state.speeds[disc.body] - state.speeds[disc.against]
+        body = disc.turning
         if disc.sump is not None and disc.dips:
             model = CHURNING_MODELS[disc.sump.model]
-            drag = disc.sump.power(disc.sump.model, speed, state)
+            watts = disc.sump.power(disc.sump.model, speed, state)
             flags += churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
             methods[model.title] = model.source
         else:
-            mixture = state.fluids.mixed(disc.oil_fraction)
-            own = disc_drag(disc.radius, disc.width, speed, mixture)
-            drag = sum(own)
-            flags += disc_drag_flags(disc.where, disc.radius, own, speed, mixture)
-            methods[DRAG_METHOD] = DRAG_SOURCE
+            if disc.model == "seetharaman-kahraman":
+                mixture = state.fluids.mixed(disc.oil_fraction)
+                smooth = disc_drag(body.radius, body.width, speed, mixture)
+                watts = sum(smooth)
+                flags += disc_drag_flags(disc.where, body.radius, smooth, speed, mixture)
+            else:
+                fluid = disc.fluid(state)
+                parts = drag(body, speed, fluid, disc.model)
+                watts = disc.count * sum(parts)
+                flags += drag_flags(disc.where, body, parts, speed, fluid, disc.model)
+            title, source = DRAG_METHODS[disc.model]
+            methods[title] = source
         if disc.jets is not None:
-            drag += _jet_loss(disc.jets, speed, state, struck)
+            watts += _jet_loss(disc.jets, speed, state, struck)
             methods[JET_METHOD] = JET_SOURCE
-        drags[disc.body] = drag
-    watts = sum(drags.values())
-    brakes = tuple((body, HOUSING, drag / watts) for body, drag in drags.items() if drag)
+        drags[disc.body, disc.against] = watts
+    total = sum(drags.values())
+    brakes = tuple((*pair, own / total) for pair, own in drags.items() if own)
     method, source = "; ".join(methods), "; ".join(methods.values())
-    return Loss(LOAD_INDEPENDENT, watts, method, source, brakes=brakes), flags
+    return Loss(LOAD_INDEPENDENT, total, method, source, brakes=brakes), flags
 
 
 def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:
@@ -124,6 +164,15 @@ def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:
     return jet_loss(
         state.fluids.oil.density, jets.flow / struck, pitch_speed, jets.speed, jets.side
     )
+
+
+def windage_of(discs: Iterable[Disc], state: State) -> dict[str, float]:
+    """Windage of all gears after each model, beside one another. [W]"""
+    found: dict[str, float] = {}
+    for disc in discs:
+        for name, watts in disc.windage(state).items():
+            found[name] = found.get(name, 0.0) + watts
+    return found
 
 
 def churned(discs: Iterable[Disc], state: State) -> dict[str, float]:

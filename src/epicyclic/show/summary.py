@@ -12,7 +12,7 @@ from rich.constrain import Constrain
 from rich.text import Text
 
 from epicyclic.build.result import NOT_INCLUDED
-from epicyclic.losses.ranges import range_text
+from epicyclic.losses.ranges import concern_text, range_text, what_it_may_be
 from epicyclic.machine.element import note_watts
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result, in_words
@@ -140,9 +140,9 @@ def first_warnings(result: Result) -> Listing:
     ]
     for watts, group in result.flags_with_loss:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
-        size = "" if math.isnan(watts) else f"; {known_text(watts)} of the loss"
+        size = "" if math.isnan(watts) else f"; {concern_text(watts, group)} of the loss"
         text = f"{sentence(range_text(group)).rstrip('.')} ({', '.join(uses)}){size}."
-        found.append((math.inf if math.isnan(watts) else watts, text))
+        found.append((what_it_may_be(watts, group), text))
     heavy = [pair for pair in found if pair[0] >= CONCERNED * result.total and pair[0] > 0]
     heavy.sort(key=lambda pair: -pair[0])
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))
