@@ -141,14 +141,16 @@ def gear_set(
         },
         thrust=thrust,
         choices=choices,
-        reference=_reference(case, bodies, order),
+        reference=None
+        if case.models.mesh_loads == "with-losses"
+        else _reference(case, bodies, order),
     )
 
 
 def _reference(case: SetCase, bodies: Mapping[str, str], order: Sequence[str]) -> Reference | None:
     """Where the loads of meshes are those without losses; a set of several ways has none."""
     levers = case.gearing.levers
-    if case.models.mesh_loads == "with-losses" or not levers:
+    if not levers:
         return None
     loaded, *others = order
     between = [bodies[member] for member in others]

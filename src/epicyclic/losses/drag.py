@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
-from epicyclic.losses.windage import turbulent_rim
+from epicyclic.losses.windage import rim_coefficient
 from epicyclic.oil.oil import MixtureState
 from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
@@ -125,10 +125,8 @@ def disc_drag_flags(
     total = sum(drag)
     if total == 0:
         return ()
-    use, reynolds = (
-        ModelUse("drag", "seetharaman-kahraman", where),
-        reynolds_number(radius, speed, mixture),
-    )
+    use = ModelUse("drag", "seetharaman-kahraman", where)
+    reynolds = reynolds_number(radius, speed, mixture)
     values = {"reynolds_number": reynolds}
     return check_ranges(
         use,
@@ -136,7 +134,7 @@ def disc_drag_flags(
         values,
         part=drag.rim / total,
         watts=drag.rim,
-        could_be=drag.rim * reynolds / 4 * turbulent_rim(reynolds),
+        could_be=drag.rim * reynolds / 4 * rim_coefficient(reynolds),
     ) + check_ranges(use, (_FACES, _CREEPING), values, part=drag.faces / total, watts=drag.faces)
 
 

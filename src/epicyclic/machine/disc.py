@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from epicyclic.gears.gear import HOUSING
@@ -23,19 +23,17 @@ from epicyclic.losses.drag import (
     jet_loss,
     viscous_flags,
 )
-from epicyclic.losses.ranges import ValidityFlag
-from epicyclic.losses.windage import (
-    DRAG_METHODS,
-    MIST_SHARE,
-    DragModel,
-    Fluid,
-    Turning,
-    anderson_loewenthal,
-    drag,
-    drag_flags,
-    tooth_windage,
-)
+from epicyclic.losses.ranges import ModelUse, ValidityFlag, check_ranges
+from epicyclic.losses.windage import DISCS, DRAG_METHODS, MIST_SHARE, DragModel, Turning, drag
 from epicyclic.machine.element import LOAD_INDEPENDENT, Loss, State
+
+BESIDE: Mapping[str, tuple[DragModel, bool]] = {
+    "theodorsen-regier": ("theodorsen-regier", False),
+    "anderson-loewenthal": ("anderson-loewenthal", False),
+    "diab-ville-velex": ("diab-ville-velex", False),
+    "diab-ville-velex with all the oil": ("diab-ville-velex", True),
+}
+"""Models of the drag of gears that a result shows beside one another, and whether all oil flows."""
 
 Outcome = tuple[Loss, tuple[ValidityFlag, ...]]
 
@@ -84,27 +82,6 @@ class Disc:
         """Whether it reaches into a sump."""
         return self.sump is not None and self.sump.part.immersed > 0
 
-    def fluid(self, state: State) -> Fluid:
-        """What it turns in."""
-        return Fluid(
-            state.fluids.mixed(self.oil_fraction),
-            state.fluids.mixed(min(self.oil_fraction, MIST_SHARE)),
-            state.fluids.oil.dynamic_viscosity,
-        )
-
-    def windage(self, state: State) -> dict[str, float]:
-        """Its windage by each model of teeth, and by one that takes all oil for a fluid. [W]"""
-        speed, teeth = state.speeds[self.body] - state.speeds[self.against], self.turning.teeth
-        if teeth is None or not speed or self.dips:
-            return {}
-        fluid, gap = self.fluid(state), self.turning.axial_gap
-        one, all_oil = (
-            tooth_windage(teeth, speed, it.density, gap) for it in (fluid.mist, fluid.mixture)
-        )
-        other = anderson_loewenthal(teeth, speed, fluid.oil_viscosity)
-        found = {"diab-ville-velex": one, "with all the oil": all_oil, "anderson-loewenthal": other}
-        return {name: self.count * watts for name, watts in found.items()}
-
 
 @dataclass(frozen=True, slots=True)
 class ThrustBearing:
@@ -134,18 +111,26 @@ def disc_loss(
             flags += churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
             methods[model.title] = model.source
         else:
+            mixture = state.fluids.mixed(disc.oil_fraction)
             if disc.model == "seetharaman-kahraman":
-                mixture = state.fluids.mixed(disc.oil_fraction)
                 smooth = disc_drag(body.radius, body.width, speed, mixture)
                 watts = sum(smooth)
                 flags += disc_drag_flags(disc.where, body.radius, smooth, speed, mixture)
             else:
-                fluid = disc.fluid(state)
-                parts = drag(body, speed, fluid, disc.model)
+                mist = state.fluids.mixed(min(disc.oil_fraction, MIST_SHARE))
+                viscosity = state.fluids.oil.dynamic_viscosity
+                parts = drag(body, speed, mixture, mist, viscosity, disc.model)
                 watts = disc.count * sum(parts)
-                flags += drag_flags(disc.where, body, parts, speed, fluid, disc.model)
-            title, source = DRAG_METHODS[disc.model]
-            methods[title] = source
+                if parts.faces:
+                    reynolds = abs(speed) * body.radius**2 / mixture.kinematic_viscosity
+                    flags += check_ranges(
+                        ModelUse("drag", disc.model, disc.where),
+                        (DISCS,),
+                        {"reynolds_number": reynolds},
+                        part=parts.faces / sum(parts),
+                        watts=disc.count * parts.faces,
+                    )
+            methods[DRAG_METHODS[disc.model].title] = DRAG_METHODS[disc.model].source
         if disc.jets is not None:
             watts += _jet_loss(disc.jets, speed, state, struck)
             methods[JET_METHOD] = JET_SOURCE
@@ -166,13 +151,24 @@ def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:
     )
 
 
-def windage_of(discs: Iterable[Disc], state: State) -> dict[str, float]:
-    """Windage of all gears after each model, beside one another. [W]"""
-    found: dict[str, float] = {}
+def drags_by_model(discs: Iterable[Disc], state: State) -> dict[str, float]:
+    """Drag of the gears that do not dip, after each model that knows teeth. [W]
+
+    The last one takes all the oil around the teeth for a fluid that flows through them.
+    """
+    oil, found = state.fluids.oil, dict.fromkeys(BESIDE, 0.0)
     for disc in discs:
-        for name, watts in disc.windage(state).items():
-            found[name] = found.get(name, 0.0) + watts
-    return found
+        speed = state.speeds[disc.body] - state.speeds[disc.against]
+        dips = disc.sump is not None and disc.dips
+        if disc.turning.teeth is None or dips or not speed:
+            continue
+        whole = state.fluids.mixed(disc.oil_fraction)
+        mist = state.fluids.mixed(min(disc.oil_fraction, MIST_SHARE))
+        for name, (model, all_oil) in BESIDE.items():
+            through = whole if all_oil else mist
+            parts = drag(disc.turning, speed, whole, through, oil.dynamic_viscosity, model)
+            found[name] += disc.count * sum(parts)
+    return {name: watts for name, watts in found.items() if watts}
 
 
 def churned(discs: Iterable[Disc], state: State) -> dict[str, float]:
