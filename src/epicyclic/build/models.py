@@ -67,7 +67,11 @@ from epicyclic.registry import load, offered
 
 # A gear set with computed losses as the builders see it, whichever case it is part of.
 
-GENERAL = {"friction": "mixed-lubrication", "rolling": "goksem-hargreaves"}
+GENERAL = {
+    "friction": "mixed-lubrication",
+    "rolling": "goksem-hargreaves",
+    "drag": "diab-ville-velex",
+}
 """What ``auto`` stands for with the preset ``general``."""
 
 
@@ -109,7 +113,8 @@ class SetCase:
         pocketing: str = models.pocketing
         drag: str = models.drag
         if drag == "auto":
-            drag = "diab-ville-velex" if models.preset == "general" else "seetharaman-kahraman"
+            general = models.preset == "general"
+            drag = (general and GENERAL.get("drag")) or "seetharaman-kahraman"
         if pocketing == "auto":
             pocketing = "isentropic" if oil_share(self).share < LEAST_OIL else "incompressible"
         found: dict[str, str] = {

@@ -48,8 +48,8 @@ DRAG_METHODS: Mapping[DragModel, DragMethod] = {
         "Y. Diab, F. Ville, P. Velex, C. Changenet, J. Mech. Des. 126 (2004) 903, second hand; "
         + _SMOOTH,
         "teeth: tests in air, within 20 % for spur and 50 % for helical gears of such models after "
-        "Dynamics 5 (2025) 33, abstract; with more oil than a mist no law is known, and the loss lies between "
-        "those of a mist and of all the oil",
+        "Dynamics 5 (2025) 33, abstract; with more oil than a mist no law is known, and the loss "
+        "lies between those of a mist and of all the oil",
     ),
     "anderson-loewenthal": DragMethod(
         "windage of gears after Anderson and Loewenthal; drag of other rims and faces",
@@ -71,6 +71,7 @@ OFFSET = 0.6
 MIST_SHARE = 0.001
 """Share of oil by volume up to which drops follow the flow through the teeth; with more they meet
 and join (S. Elghobashi, Appl. Sci. Res. 52 (1994) 309, general knowledge). [1]"""
+LEAST_REYNOLDS = 1e-6  # Held there, deep in creeping flow, whose law is exact at any. [1]
 FREE_FLANGE = 0.5  # Distance of a flange over the radius from which it has no effect (Diab). [1]
 BLUNT = 1.2  # Drag coefficient of a long cylinder across the flow (Hoerner), general knowledge. [1]
 DISCS = Range(
@@ -208,7 +209,7 @@ def drag(
     oil_viscosity: float,  # Dynamic. [Pa s]
     model: DragModel,
 ) -> Parts:
-    """The drag of a body. Theory (V7) to (V12). [W]
+    """The drag of a body. Theory (V11), (V12), (V13). [W]
 
     Skin friction in the mixture, whose share of oil was found for it; teeth, and what stands across
     the flow, push the mist. The formula of Anderson and Loewenthal is for one part of oil in 34.25
@@ -225,7 +226,7 @@ def drag(
     """
     omega, r, teeth = abs(speed), body.radius, body.teeth
     reynolds = omega * r**2 / mixture.kinematic_viscosity
-    if not reynolds * omega:
+    if not omega:
         return Parts(0.0, 0.0, 0.0)
     form = BLUNT / 2 * mist.density * body.across * omega**3
     if model == "anderson-loewenthal" and teeth is not None:
@@ -237,9 +238,10 @@ def drag(
         coefficient = tooth_coefficient(teeth, body.axial_gap)
         form += coefficient * mist.density * omega**3 * teeth.pitch_radius**5 / 2
     around, beside = (None if it is None else it / r for it in (body.radial_gap, body.axial_gap))
-    group = mixture.density * omega**3 * r**4
+    held = max(reynolds, LEAST_REYNOLDS)
+    group = held * mixture.dynamic_viscosity * omega**2 * r**2
     return Parts(
-        math.pi * rim_coefficient(reynolds, around) * group * body.width,
-        face_coefficient(reynolds, beside) * group * r / 2,
+        math.pi * rim_coefficient(held, around) * group * body.width,
+        face_coefficient(held, beside) * group * r / 2,
         form,
     )
