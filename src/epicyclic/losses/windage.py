@@ -139,7 +139,8 @@ def face_coefficient(
     free = laminar + share * (0.146 * reynolds**-0.2 - laminar)
     if gap is None:
         return free
-    apart = norm([3.7 / root, 0.102 * reynolds**-0.2], LARGEST) * math.pow(gap, 0.1)
+    creeping = 64 / (3 * reynolds)
+    apart = norm([creeping, 3.7 / root, 0.102 * reynolds**-0.2], LARGEST) * math.pow(gap, 0.1)
     near = 2 * math.pi / (gap * reynolds), 0.08 * math.pow(gap, -1 / 6) * reynolds**-0.25
     return float(norm([*near, norm([apart, free], -LARGEST)], LARGEST))
 

@@ -241,7 +241,10 @@ def _stored(solid: Solid, volume: float) -> float:
 def _outside(own: GearSet, one: OneGear) -> float:
     """Radius of the outside of a ring gear, which its disc has. [m]"""
     return max(
-        disc.turning.radius for discs in own.discs.values() for disc in discs if disc.body == one.body
+        disc.turning.radius
+        for discs in own.discs.values()
+        for disc in discs
+        if disc.body == one.body
     )
 
 
