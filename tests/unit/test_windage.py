@@ -92,8 +92,8 @@ def test_the_power_has_no_kink_from_creeping_to_turbulent(model, gaps):
 
 def test_far_walls_are_none_and_near_ones_shear_the_gap():
     for reynolds in (7.0, 900.0, 2.3e4, 3e5, 5e6):
-        assert rim_coefficient(reynolds, 1e4) == pytest.approx(rim_coefficient(reynolds), rel=1e-3)
-        assert face_coefficient(reynolds, 1e5) == pytest.approx(
+        assert rim_coefficient(reynolds, 1e9) == pytest.approx(rim_coefficient(reynolds), rel=1e-3)
+        assert face_coefficient(reynolds, 1e9) == pytest.approx(
             face_coefficient(reynolds), rel=1e-3
         )
     # Couette flow in a gap of 0.4 mm: tau = mu omega r/t, within the curvature

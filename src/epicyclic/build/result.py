@@ -470,11 +470,11 @@ def _standing(
         for role, phrase in standing_of(own).items():
             compared = supplies[key].comparison if role == "churning" else ""
             yield joined_key(key, role), f"{compared}; {phrase}" if compared else phrase
-    for key, own in built.sets.items():
+    for key, turning in built.sets.items():
         model = cast(DragModel, built.set_cases[key].chosen["drag"])
         if model == "seetharaman-kahraman":  # gears have no teeth
             continue
-        found = drags_by_model(chain(*own.discs.values()), state).items()
+        found = drags_by_model(chain(*turning.discs.values()), state).items()
         beside = ", ".join(f"{name} {watts:.3g} W" for name, watts in found)
         phrase = f"{model}: {DRAG_METHODS[model].reliability}"
         yield joined_key(key, "drag"), f"gears: {beside}; {phrase}" if beside else phrase

@@ -110,7 +110,7 @@ def rim_coefficient(
         laminar /= 1 - (1 + gap) ** -2
         transition = max(transition, TAYLOR_NUMBER * gap**-1.5)
         within = gap * reynolds
-        walls = [1.03 * within**-0.5, 0.065 * within**-0.2]
+        walls = [1.03 / math.sqrt(within), 0.065 * math.pow(within, -0.2)]
         held = math.pow(gap, 0.3) / 2 * norm(walls, LARGEST)
         turbulent = float(norm([held, turbulent], -LARGEST))
     share = 1 / (1 + math.pow(transition / reynolds, TRANSITION_POWER))
@@ -136,11 +136,13 @@ def face_coefficient(
     root = math.sqrt(reynolds)
     laminar = 3.87 / root * float(norm([64 / (3 * 3.87) / root, 1.0], LARGEST))
     share = 1 / (1 + math.pow(FACE_TRANSITION / reynolds, TRANSITION_POWER))
-    free = laminar + share * (0.146 * reynolds**-0.2 - laminar)
+    free = laminar + share * (0.146 * math.pow(reynolds, -0.2) - laminar)
     if gap is None:
         return free
     creeping = 64 / (3 * reynolds)
-    apart = norm([creeping, 3.7 / root, 0.102 * reynolds**-0.2], LARGEST) * math.pow(gap, 0.1)
+    apart = norm([creeping, 3.7 / root, 0.102 * math.pow(reynolds, -0.2)], LARGEST) * math.pow(
+        gap, 0.1
+    )
     near = 2 * math.pi / (gap * reynolds), 0.08 * math.pow(gap, -1 / 6) * reynolds**-0.25
     return float(norm([*near, norm([apart, free], -LARGEST)], LARGEST))
 
