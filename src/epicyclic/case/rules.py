@@ -117,12 +117,10 @@ def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> Iterat
         yield Problem(f"{key}.rollers_per_row", "", allowed, "Use fewer or thinner rollers.")
 
 
-def check_carrier(carrier: Carrier) -> Iterator[Problem]:
-    """The plates of an open carrier take part of its width."""
-    if carrier.open_width > carrier.width:
-        allowed = f"must be at most carrier.width, {millimetres(carrier.width)}."
-        remedy = "Give the distance between its plates, or leave it out for a closed disc."
-        yield Problem("carrier.open_width", millimetres(carrier.open_width), allowed, remedy)
+def _too_open(carrier: Carrier) -> list[Problem]:
+    allowed = f"must be at most carrier.width, {millimetres(carrier.width)}."
+    remedy = "Give the distance between its plates, or leave it out for a closed disc."
+    return [Problem("carrier.open_width", millimetres(carrier.open_width), allowed, remedy)]
 
 
 def check_bores(
@@ -167,8 +165,9 @@ def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
         if name not in known
         for remedy in [did_you_mean(name, known) or f"The losses are {', '.join(known)}."]
     ]
-    planets = [*_planet_problems(table, gearing)]
-    planets += [] if table.carrier is None else check_carrier(table.carrier)
+    planets, carrier = [*_planet_problems(table, gearing)], table.carrier
+    if carrier is not None and carrier.open_width > carrier.width:
+        planets += _too_open(carrier)
     return [*_name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
 
 
@@ -377,7 +376,7 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
 _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_rollers, ("planet_bearing",)),
-    (check_carrier, ("carrier",)),
+    (lambda it: _too_open(it) if it.open_width > it.width else (), ("carrier",)),
     (check_cage, ("planet_bearing", "models")),
     (_check_friction_table, ("friction_table",)),
     (_check_resolution, ("models", "numerics")),

@@ -105,13 +105,13 @@ def rim_coefficient(
     """
     laminar, transition = 4 / reynolds, RIM_TRANSITION
     root = SLOPE * lambertw(reynolds * math.exp(-OFFSET / SLOPE) / SLOPE).real
-    turbulent = float(root) ** -2
+    turbulent = 1 / float(root) ** 2
     if gap is not None:
         laminar /= 1 - (1 + gap) ** -2
         transition = max(transition, TAYLOR_NUMBER * gap**-1.5)
         within = gap * reynolds
         walls = [1.03 / math.sqrt(within), 0.065 * math.pow(within, -0.2)]
-        held = math.pow(gap, 0.3) / 2 * norm(walls, LARGEST)
+        held = math.pow(gap, 0.3) / 2 * float(norm(walls, LARGEST))
         turbulent = float(norm([held, turbulent], -LARGEST))
     share = 1 / (1 + math.pow(transition / reynolds, TRANSITION_POWER))
     return laminar + share * (turbulent - laminar)
@@ -140,11 +140,10 @@ def face_coefficient(
     if gap is None:
         return free
     creeping = 64 / (3 * reynolds)
-    apart = norm([creeping, 3.7 / root, 0.102 * math.pow(reynolds, -0.2)], LARGEST) * math.pow(
-        gap, 0.1
-    )
-    near = 2 * math.pi / (gap * reynolds), 0.08 * math.pow(gap, -1 / 6) * reynolds**-0.25
-    return float(norm([*near, norm([apart, free], -LARGEST)], LARGEST))
+    apart = [creeping, 3.7 / root, 0.102 * math.pow(reynolds, -0.2)]
+    held = float(norm([math.pow(gap, 0.1) * float(norm(apart, LARGEST)), free], -LARGEST))
+    merged = 0.08 * math.pow(gap, -1 / 6) / math.sqrt(root)
+    return float(norm([2 * math.pi / (gap * reynolds), merged, held], LARGEST))
 
 
 @dataclass(frozen=True, slots=True)
