@@ -101,7 +101,9 @@ def gear_set(
     gearing = case.gearing
     discs = dict(_discs(case, bodies))
     choices = {
-        name: LossChoice(option.include, option.factor) for name, option in case.losses.items()
+        name: LossChoice(option.include, option.factor)
+        for name, option in case.losses.items()
+        if name != "planets_drag" or name in discs  # which not every model of drag has
     }
     lacking = {
         "carrier_drag": (case.carrier, "[carrier]"),
@@ -137,7 +139,7 @@ def gear_set(
         missing={
             name: f"the case has no {table}"
             for name, (part, table) in lacking.items()
-            if part is None and name in choices and name not in discs
+            if part is None and name in choices
         },
         thrust=thrust,
         choices=choices,
@@ -342,6 +344,6 @@ def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tupl
         turning = Turning(radius, max(width - table.open_width, 0.0), None, *gaps, across)
         share, sump = oil_share(case).share, _sump(case, "carrier", part)
         model = cast(DragModel, case.chosen["drag"])
-        carried.insert(0, Disc("carrier", bodies[CARRIER], turning, share, model, sump))
+        yield "carrier_drag", (Disc("carrier", bodies[CARRIER], turning, share, model, sump),)
     if carried:
-        yield "carrier_drag", tuple(carried)
+        yield "planets_drag", tuple(carried)

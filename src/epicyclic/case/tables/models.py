@@ -475,6 +475,7 @@ class PlanetaryLosses(Table):
     sun_drag: LossOption = _AS_COMPUTED
     ring_drag: LossOption = _AS_COMPUTED
     carrier_drag: LossOption = _AS_COMPUTED
+    planets_drag: LossOption = _AS_COMPUTED
     thrust_bearing_viscous: LossOption = _AS_COMPUTED
 
 
