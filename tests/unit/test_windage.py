@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.losses.drag import disc_drag, disc_drag_flags
+from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, disc_drag_flags
 from epicyclic.losses.ranges import describe_flags, flags_with_loss, what_it_may_be
 from epicyclic.losses.windage import (
     DRAG_METHODS,
@@ -235,3 +236,16 @@ def test_warnings_weigh_what_the_drag_could_be_and_each_part_by_itself():
     assert turbulent > 5 * rims
     (text,) = describe_flags(flags, lambda use: 1e3 * rims, total=40 * turbulent)
     assert f"{rims:.3g} W, which could be {turbulent:.3g} W in all" in text
+
+
+def test_the_regimes_of_churning_pass_into_one_another_without_a_kink():
+    part = Dipped(0.061, 0.065, 0.031, 0.027, 0.0042, 29, 0.0093, 0.35, 0.17)
+    speeds = np.linspace(150.0, 330.0, 721)  # acceleration parameter 450 to 2200 m/s^2
+    oil = SumpOil(861.0, 33e-6, 1.7e-3)
+    for smooth, most in ((True, 0.1), (False, math.inf)):
+        own = replace(oil, smooth=smooth)
+        torques = np.array([changenet_velex(part, speed, own) for speed in speeds])
+        exponent = np.diff(np.log(torques)) / np.diff(np.log(speeds))
+        jump = np.abs(np.diff(exponent)).max()
+        assert jump < most
+        assert smooth or jump > 0.5

@@ -74,7 +74,8 @@ def _sump(case: SetCase, name: str, part: Dipped) -> Sump | None:
         depth = max(part.tip_radius + table.oil_level, 0.0)
     volume = case.thermal.oil_volume if table.oil_volume is None else table.oil_volume
     assert volume is not None
-    return Sump(replace(part, depth=depth), volume, table.churning)
+    smooth = case.chosen["drag"] != "seetharaman-kahraman"
+    return Sump(replace(part, depth=depth), volume, table.churning, smooth)
 
 
 # From the tables of a set to the element that loses its power.

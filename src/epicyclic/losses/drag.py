@@ -189,6 +189,7 @@ class SumpOil:
     density: float  # [kg/m^3]
     kinematic_viscosity: float  # [m^2/s]
     volume: float  # [m^3]
+    smooth: bool = False  # Whether regimes of flow pass into one another without a kink.
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,8 +246,8 @@ def changenet_velex(
 ) -> float:
     """Churning torque after Changenet and Velex (2007), second hand. Theory (N3), (N5). [N m]
 
-    C = rho omega^2 S_m R^3 C_m/2; C_m by the regime of flow, between the two regimes linear in the
-    acceleration parameter.
+    C = rho omega^2 S_m R^3 C_m/2; C_m by the regime of flow, between the two regimes a smooth
+    passage in the acceleration parameter.
 
     Examples
     --------
@@ -259,6 +260,8 @@ def changenet_velex(
         return 0.0
     parameter = acceleration_parameter(part, omega)
     slow = min(max((FAST - parameter) / (FAST - SLOW), 0.0), 1.0)
+    if oil.smooth:
+        slow = slow**2 * (3 - 2 * slow)
     coefficient = slow * _slow_coefficient(part, omega, oil)
     coefficient += (1 - slow) * _fast_coefficient(part, omega, oil)
     return oil.density * omega**2 * wetted_area(part) * part.radius**3 * coefficient / 2

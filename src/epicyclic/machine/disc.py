@@ -45,11 +45,12 @@ class Sump:
     part: Dipped  # How far it does.
     volume: float  # Volume of the oil. [m^3]
     model: ChurningModel  # Model of its churning.
+    smooth: bool  # As of `SumpOil`.
 
     def power(self, model: ChurningModel, speed: float, state: State) -> float:
         """Churning power. [W]"""
         oil = state.fluids.oil
-        known = SumpOil(oil.density, oil.kinematic_viscosity, self.volume)
+        known = SumpOil(oil.density, oil.kinematic_viscosity, self.volume, self.smooth)
         return CHURNING_MODELS[model].torque(self.part, speed, known) * abs(speed)
 
 
