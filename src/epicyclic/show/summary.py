@@ -26,7 +26,7 @@ from epicyclic.units import CELSIUS, known_text, percent, unit_text
 
 MOST_WARNINGS = 3  # On the first screen.
 CONCERNED = 0.01  # Part of the total loss from which a warning stands on the first screen. [1]
-MOST_OF_SET = 12  # Losses of a single set; smaller ones are in the sums alone.
+MOST_OF_SET = 10  # Losses of a single set; smaller ones are in the sums alone.
 MOST_ROWS = 20  # Of the losses of a train; smaller ones are put together.
 _BROAD = 0.5  # Part of the loss outside the ranges of its models from which that is said first. [1]
 WIDTH = 80  # Characters of its lines at most.
