@@ -24,6 +24,7 @@ ADDED_TO_THE_CORE = {
     "the first screen, points to check": 350,
     "tables as rigs write them, scatter and models in fits, sheets of maps": 1180,
     "equal results for equal cases, hostile files and names": 380,
+    "drag at any speed": 450,
 }
 ADDED = {
     **ADDED_TO_THE_CORE,

@@ -27,6 +27,7 @@ PLANETARY_LOSSES = [
     "sun_drag",
     "ring_drag",
     "carrier_drag",
+    "planets_drag",
     "thrust_bearing_viscous",
 ]
 

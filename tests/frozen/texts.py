@@ -68,8 +68,8 @@ def kept(content: Any) -> Any:
     """The words of a text, or of lists and tables of them, without what was added since."""
     if isinstance(content, dict):
         return {key: kept(item) for key, item in content.items()}
-    if isinstance(content, list):
-        return [kept(item) for item in content if not _is_new(item)]
+    if isinstance(content, list):  # without items that are nothing else
+        return [new for it in content if not _is_new(it) for new in [kept(it)] if new or not it]
     content = words(content)
     for pattern in ADDED if isinstance(content, str) else ():
         content = pattern.sub("", content)

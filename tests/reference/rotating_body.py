@@ -71,3 +71,49 @@ def cylinder_power(
     stress = 2 * dynamic_viscosity * speed
     area = 2 * math.pi * radius * length
     return stress * area * radius * speed
+
+
+def dawson_windage(
+    root_diameter: float,  # [m]
+    width: float,  # [m]
+    module: float,  # [m]
+    rpm: float,
+) -> float:
+    """Windage of a spur gear in the open in air: 1e-20 n^2.9 (0.16 D^3.9 + D^2.9 b^0.75 m^1.15) kW.
+
+    Returns
+    -------
+    float
+        [W]
+
+    References
+    ----------
+    P. H. Dawson, Proc. IMechE 198A (1984) 51; mm and rpm; second hand.
+    """
+    d, b, m = 1e3 * root_diameter, 1e3 * width, 1e3 * module
+    return 1e3 * 1e-20 * rpm**2.9 * (0.16 * d**3.9 + d**2.9 * b**0.75 * m**1.15)
+
+
+def dimensional_windage(
+    teeth: int,
+    pitch_radius: float,  # [m]
+    width: float,  # [m]
+    speed: float,  # [rad/s]
+    density: float,  # [kg/m^3]
+    viscosity: float,  # [Pa s]
+) -> float:
+    """Windage in the open by C = 60 Re^-1/4 (b/R)^0.8 z^-0.4 2 (1/2)^0.56, P = C rho w^3 R^5/2.
+
+    Returns
+    -------
+    float
+        [W]
+
+    References
+    ----------
+    Y. Diab, F. Ville, P. Velex, C. Changenet, J. Mech. Des. 126 (2004) 903, dimensional analysis;
+    second hand.
+    """
+    reynolds = density * speed * pitch_radius**2 / viscosity
+    shape = (width / pitch_radius) ** 0.8 * teeth**-0.4 * 2 * 0.5**0.56
+    return 60 * reynolds**-0.25 * shape * density * speed**3 * pitch_radius**5 / 2

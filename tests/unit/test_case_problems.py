@@ -180,7 +180,7 @@ def test_values_are_shown_as_they_were_written(every_kind):
         ("losses", "sun_drag", {"include": "false"}, "losses.sun_drag.include", "Write true or"),
         ("lubricant", "oil", None, "lubricant.oil", 'Add oil = "75w-90-gear-oil"'),
         ("models", "drag", "seetharaman", "models.drag", "seetharaman-kahraman"),
-        ("models", "drag", "none", "models.drag", 'Write "seetharaman-kahraman".'),
+        ("models", "drag", "none", "models.drag", "Choose one of them."),
         ("losses", "drag", {}, "losses.drag", "Did you mean"),
         ("sun", "torque", "5 N*m", "sun.torque", "It belongs to operation."),
         ("sun", "sun.teeth", 73, 'sun."sun.teeth"', "Did you mean 'teeth'?"),

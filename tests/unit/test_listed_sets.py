@@ -72,6 +72,7 @@ def test_losses_have_the_names_of_their_meshes_bodies_and_gears():
         "sun_drag",
         "ring_drag",
         "carrier_drag",
+        "planets_drag",
     )
     fixed = gearing_of("layshaft")
     assert fixed.terms[-4:] == ("drive_drag", "lay_wheel_drag", "lay_pinion_drag", "driven_drag")

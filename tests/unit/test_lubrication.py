@@ -167,7 +167,7 @@ def test_oil_is_fed_to_every_mesh_of_every_planet():
 @pytest.mark.parametrize("model", ["changenet-velex", "iso-14179-1"])
 def test_what_dips_churns_and_the_rest_drags(model):
     case = planetary(DIP | {"churning": model})
-    result = ep.solve(case)
+    result = ep.solve(case.updated({"models.drag": "seetharaman-kahraman"}))  # planets do not drag
     torque = {"changenet-velex": changenet_velex, "iso-14179-1": iso_14179_1}[model]
     sun = case.gearings[""].gear("sun")
     ring = case.gearings[""].gear("ring")
@@ -200,7 +200,8 @@ def test_what_dips_churns_and_the_rest_drags(model):
 
 
 def test_a_gear_above_the_oil_turns_in_the_mixture():
-    case = planetary(DIP | {"oil_level": "-60 mm"})
+    laminar = {"models.drag": "seetharaman-kahraman"}
+    case = planetary(DIP | {"oil_level": "-60 mm"}).updated(laminar)
     result = ep.solve(case)
     sun = case.gearings[""].gear("sun")
     mixture = mixture_state(oil_of(case), 0.1, case.surroundings.pressure)
@@ -324,7 +325,8 @@ def test_the_share_widens_the_band_of_the_total():
             {name: own.losses[name] for name in nearby.outputs.losses}, rel=1e-9
         )
     band = quick_band(nearby)
-    assert band.drivers[0][0] == "lubrication.oil_share_factor"
+    drivers = [name for name, _ in band.drivers[:2]]
+    assert set(drivers) == {"lubrication.oil_share_factor", "model_form.windage"}
     total = band.results[nearby.outputs.names.index("total")]
     low, high = np.quantile(total, [0.025, 0.975])
     assert low < ep.solve(case).total < high
@@ -343,9 +345,11 @@ def test_churning_has_a_factor_of_its_own():
     assert kinds["drag"] == "churning"
     (value,) = [one for one in nearby.values if one.key == "model_form.churning"]
     assert value.spread == (2.0,)
-    assert "model_form.drag" not in {one.key for one in nearby.values}
-    mixture = look_nearby(pair(), ep.solve(pair()))
-    assert "model_form.drag" in {one.key for one in mixture.values}
+    assert not {"model_form.drag", "model_form.windage"} & {one.key for one in nearby.values}
+    for model, kind in (("auto", "windage"), ("theodorsen-regier", "drag")):
+        case = pair().updated({"models.drag": model})
+        mixture = look_nearby(case, ep.solve(case))
+        assert f"model_form.{kind}" in {one.key for one in mixture.values}
 
 
 # --- temperatures ---------------------------------------------------------------------------------

@@ -34,6 +34,7 @@ ALL_LOSSES = (
     "sun_drag",
     "ring_drag",
     "carrier_drag",
+    "planets_drag",
     "thrust_bearing_viscous",
 )
 

@@ -236,6 +236,12 @@ def test_flows_remembered_are_as_good_as_solved():
     isothermal = ep.solve(
         ep.load_case(TALBOT).updated({"operation.oil_inlet_temperature": f"{oil!r} K"})
     )
-    for name in ("sun_mesh_pocketing", "ring_mesh_pocketing", "sun_drag", "carrier_drag"):
+    for name in (
+        "sun_mesh_pocketing",
+        "ring_mesh_pocketing",
+        "sun_drag",
+        "carrier_drag",
+        "planets_drag",
+    ):
         assert result.losses[name] == pytest.approx(isothermal.losses[name], rel=1e-5), name
         assert not math.isnan(result.losses[name])

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import cast
 
 from epicyclic.build.models import SetCase, contact_modulus, mesh_models, oil_share, solid_of
 from epicyclic.case.tables.elements import PlanetBearing as BearingTable
@@ -22,6 +23,7 @@ from epicyclic.losses.drag import Dipped
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.rolling import FittedRolling
+from epicyclic.losses.windage import DragModel, Teeth, Turning
 from epicyclic.machine.disc import Disc, Jets, Sump, ThrustBearing
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import GearMesh, MeshModels
@@ -51,8 +53,14 @@ def gear_disc(case: SetCase, body: str, gear: Gear, table: StatedGear) -> Disc:
     jets = None
     if oil is not None and oil.method == "jet" and oil.oil_flow:
         jets = Jets(oil.oil_flow, oil.jet_speed, oil.nozzle_side, gear.reference_radius)
+    teeth = None
+    if not gear.internal:
+        space = 2 * (math.pi / gear.teeth - gear.half_angle_at(radius))
+        teeth = Teeth(gear.teeth, gear.reference_radius, radius, gear.face_width, space)
+    turning = Turning(radius, gear.face_width, teeth, table.shroud_gap, table.flange_gap)
     share, sump = oil_share(case).share, _sump(case, gear.name, part)
-    return Disc(gear.name, body, radius, gear.face_width, share, sump, jets)
+    model = cast(DragModel, case.chosen["drag"])
+    return Disc(gear.name, body, turning, share, model, sump, jets)
 
 
 def _sump(case: SetCase, name: str, part: Dipped) -> Sump | None:
@@ -66,7 +74,8 @@ def _sump(case: SetCase, name: str, part: Dipped) -> Sump | None:
         depth = max(part.tip_radius + table.oil_level, 0.0)
     volume = case.thermal.oil_volume if table.oil_volume is None else table.oil_volume
     assert volume is not None
-    return Sump(replace(part, depth=depth), volume, table.churning)
+    smooth = case.chosen["drag"] != "seetharaman-kahraman"
+    return Sump(replace(part, depth=depth), volume, table.churning, smooth)
 
 
 # From the tables of a set to the element that loses its power.
@@ -93,7 +102,9 @@ def gear_set(
     gearing = case.gearing
     discs = dict(_discs(case, bodies))
     choices = {
-        name: LossChoice(option.include, option.factor) for name, option in case.losses.items()
+        name: LossChoice(option.include, option.factor)
+        for name, option in case.losses.items()
+        if name != "planets_drag" or name in discs  # which not every model of drag has
     }
     lacking = {
         "carrier_drag": (case.carrier, "[carrier]"),
@@ -133,14 +144,16 @@ def gear_set(
         },
         thrust=thrust,
         choices=choices,
-        reference=_reference(case, bodies, order),
+        reference=None
+        if case.models.mesh_loads == "with-losses"
+        else _reference(case, bodies, order),
     )
 
 
 def _reference(case: SetCase, bodies: Mapping[str, str], order: Sequence[str]) -> Reference | None:
     """Where the loads of meshes are those without losses; a set of several ways has none."""
     levers = case.gearing.levers
-    if case.models.mesh_loads == "with-losses" or not levers:
+    if not levers:
         return None
     loaded, *others = order
     between = [bodies[member] for member in others]
@@ -312,9 +325,26 @@ def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tupl
                 for it in gears
             ),
         )
-    if case.carrier is not None:  # its flow is told apart by a gear beside it
-        radius, width = case.carrier.outer_diameter / 2, case.carrier.width
+    carried, table, across = [], case.carrier, 0.0
+    number, moves_planets = gearing.count or 1, case.chosen["drag"] != "seetharaman-kahraman"
+    for planet in gearing.planets if moves_planets else ():
+        for name in gearing.gears_of(planet):
+            disc = gear_disc(case, bodies[planet], gearing.gear(name), gearing.tables[name])
+            # it turns in what the carrier takes along
+            disc = replace(disc, sump=None, jets=None, against=bodies[CARRIER], count=number)
+            carried.append(disc)
+            if table is not None:
+                open_width = min(table.open_width, disc.turning.width)
+                distance = gearing.pins[planet].radius
+                across += number * 2 * disc.turning.radius * open_width * distance**3
+    if table is not None:  # its flow in a sump is told apart by a gear beside it
+        radius, width = table.outer_diameter / 2, table.width
         mate = gearing.gear(next(gears[0] for gears in gearing.drags.values()))
         part = Dipped(radius, radius, width, 0.0, mate.rack.normal_module)
+        gaps = table.shroud_gap, table.flange_gap
+        turning = Turning(radius, max(width - table.open_width, 0.0), None, *gaps, across)
         share, sump = oil_share(case).share, _sump(case, "carrier", part)
-        yield "carrier_drag", (Disc("carrier", bodies[CARRIER], radius, width, share, sump),)
+        model = cast(DragModel, case.chosen["drag"])
+        yield "carrier_drag", (Disc("carrier", bodies[CARRIER], turning, share, model, sump),)
+    if carried:
+        yield "planets_drag", tuple(carried)

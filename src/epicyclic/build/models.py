@@ -67,7 +67,11 @@ from epicyclic.registry import load, offered
 
 # A gear set with computed losses as the builders see it, whichever case it is part of.
 
-GENERAL = {"friction": "mixed-lubrication", "rolling": "goksem-hargreaves"}
+GENERAL = {
+    "friction": "mixed-lubrication",
+    "rolling": "goksem-hargreaves",
+    "drag": "diab-ville-velex",
+}
 """What ``auto`` stands for with the preset ``general``."""
 
 
@@ -107,6 +111,10 @@ class SetCase:
         """Its models by key, ``auto`` replaced by what it stands for."""
         models, table = self.models, self.lubrication
         pocketing: str = models.pocketing
+        drag: str = models.drag
+        if drag == "auto":
+            general = models.preset == "general"
+            drag = (general and GENERAL.get("drag")) or "seetharaman-kahraman"
         if pocketing == "auto":
             pocketing = "isentropic" if oil_share(self).share < LEAST_OIL else "incompressible"
         found: dict[str, str] = {
@@ -115,7 +123,7 @@ class SetCase:
             "load_distribution": models.load_distribution,
             "mesh": models.mesh,
             "pocketing": pocketing,
-            "drag": models.drag,
+            "drag": drag,
         }
         if table is not None:
             found["lubrication"] = table.method

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from itertools import chain
+from typing import Any, cast
 
 import numpy as np
 
@@ -24,7 +25,8 @@ from epicyclic.losses.friction import CONTAINS_ROLLING, TALBOT_FLUID
 from epicyclic.losses.ranges import SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
-from epicyclic.machine.disc import churned
+from epicyclic.losses.windage import DRAG_METHODS, DragModel
+from epicyclic.machine.disc import churned, drags_by_model
 from epicyclic.machine.element import OIL, Note, State, joined_key, note_watts
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSet, GearSetResult
@@ -390,7 +392,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
             for key, own in built.set_cases.items()
             for name, model in own.chosen.items()
         },
-        standing=dict(_standing(built, supplies)),
+        standing=dict(_standing(built, supplies, solution.state)),
         flags=(*flags, *_flags(solution)),
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
@@ -468,7 +470,9 @@ def _methods(built: Built) -> Iterator[tuple[str, tuple[str, str]]]:
             yield joined_key(key, "load_sharing"), SHARING_METHODS[own.sharing.method]
 
 
-def _standing(built: Built, supplies: Mapping[str, OilSupply]) -> Iterator[tuple[str, str]]:
+def _standing(
+    built: Built, supplies: Mapping[str, OilSupply], state: State
+) -> Iterator[tuple[str, str]]:
     for key, supply in supplies.items():
         idle = supply.method == "dip" and not supply.churning
         remark = "; no turning part reaches the oil" if idle else ""
@@ -477,6 +481,14 @@ def _standing(built: Built, supplies: Mapping[str, OilSupply]) -> Iterator[tuple
         for role, phrase in standing_of(own).items():
             compared = supplies[key].comparison if role == "churning" else ""
             yield joined_key(key, role), f"{compared}; {phrase}" if compared else phrase
+    for key, turning in built.sets.items():
+        model = cast(DragModel, built.set_cases[key].chosen["drag"])
+        if model == "seetharaman-kahraman":  # gears have no teeth
+            continue
+        found = drags_by_model(chain(*turning.discs.values()), state).items()
+        beside = ", ".join(f"{name} {watts:.3g} W" for name, watts in found)
+        phrase = f"{model}: {DRAG_METHODS[model].reliability}"
+        yield joined_key(key, "drag"), f"gears: {beside}; {phrase}" if beside else phrase
     for element in built.machine.elements:
         if isinstance(element, ShaftBearing):
             name = element.model.name

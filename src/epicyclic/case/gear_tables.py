@@ -6,7 +6,15 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength, ThicknessFit
+from epicyclic.case.tables.base import (
+    FLANGE_GAP,
+    SHROUD_GAP,
+    Gap,
+    NamedMaterial,
+    Roughness,
+    ShortLength,
+    ThicknessFit,
+)
 from epicyclic.gears.flanks import ReliefShape
 from epicyclic.gears.stated import THICKNESS
 from epicyclic.schema.table import Table, option
@@ -131,6 +139,8 @@ class GearTable(Table):
         "material": None,
         "tool_tip_radius": None,
         "micro_geometry": None,
+        "shroud_gap": None,
+        "flange_gap": None,
     }
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
         THICKNESS,
@@ -178,6 +188,8 @@ class GearTable(Table):
         "Tip radius of the cutting tool, which forms the root fillet. Default: 0.38 m_n (rack) "
         "or 0.2 m_n (shaper), or less where the mate needs a longer involute."
     )
+    shroud_gap: Gap | None = SHROUD_GAP
+    flange_gap: Gap | None = FLANGE_GAP
     micro_geometry: MicroGeometryTable | None = option(
         "Modifications and deviations of the flanks."
     )

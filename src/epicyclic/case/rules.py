@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epicyclic.case.expand import expand
-from epicyclic.case.tables.elements import PlanetBearing, ShaftBearingTable
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, ShaftBearingTable
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -117,6 +117,12 @@ def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> Iterat
         yield Problem(f"{key}.rollers_per_row", "", allowed, "Use fewer or thinner rollers.")
 
 
+def _too_open(carrier: Carrier) -> list[Problem]:
+    allowed = f"must be at most carrier.width, {millimetres(carrier.width)}."
+    remedy = "Give the distance between its plates, or leave it out for a closed disc."
+    return [Problem("carrier.open_width", millimetres(carrier.open_width), allowed, remedy)]
+
+
 def check_bores(
     gearing: Gearing,
     # By the key of a bearing: its table, and the planets that it carries.
@@ -159,7 +165,9 @@ def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
         if name not in known
         for remedy in [did_you_mean(name, known) or f"The losses are {', '.join(known)}."]
     ]
-    planets = _planet_problems(table, gearing)
+    planets, carrier = [*_planet_problems(table, gearing)], table.carrier
+    if carrier is not None and carrier.open_width > carrier.width:
+        planets += _too_open(carrier)
     return [*name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
 
 
@@ -368,6 +376,7 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
 _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = (
     (_check_operation, ("operation",)),
     (check_rollers, ("planet_bearing",)),
+    (lambda it: _too_open(it) if it.open_width > it.width else (), ("carrier",)),
     (check_cage, ("planet_bearing", "models")),
     (_check_friction_table, ("friction_table",)),
     (_check_resolution, ("models", "numerics")),

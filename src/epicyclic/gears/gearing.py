@@ -112,7 +112,7 @@ class Gearing:
             *(f"{body}_bearing_{k}" for body in self.planets for k in ("mechanical", "viscous")),
             *(f"{key}_pocketing" for key in keys),
             *self.drags,
-            *(("carrier_drag",) if self.planets else ()),
+            *(("carrier_drag", "planets_drag") if self.planets else ()),
         )
 
     @property

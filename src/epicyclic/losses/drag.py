@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.losses.windage import rim_coefficient
 from epicyclic.oil.oil import MixtureState
 from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
@@ -17,8 +18,6 @@ from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
 VISCOUS_METHOD = "viscous moment after Palmgren and Harris"
 VISCOUS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991); Talbot (2012), Eq. 5.6"
-DRAG_METHOD = "drag of a disc in the air-oil mixture"
-DRAG_SOURCE = "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5"
 
 TRANSITION_REYNOLDS = 5e5
 """omega r^2/nu at which the flow on the faces turns turbulent, Talbot (2012), Eq. 5.5. [1]"""
@@ -125,10 +124,16 @@ def disc_drag_flags(
     if total == 0:
         return ()
     use = ModelUse("drag", "seetharaman-kahraman", where)
-    values = {"reynolds_number": reynolds_number(radius, speed, mixture)}
-    return check_ranges(use, (_RIM,), values, part=drag.rim / total) + check_ranges(
-        use, (_FACES, _CREEPING), values, part=drag.faces / total
-    )
+    reynolds = reynolds_number(radius, speed, mixture)
+    values = {"reynolds_number": reynolds}
+    return check_ranges(
+        use,
+        (_RIM,),
+        values,
+        part=drag.rim / total,
+        watts=drag.rim,
+        could_be=drag.rim * reynolds / 4 * rim_coefficient(reynolds),
+    ) + check_ranges(use, (_FACES, _CREEPING), values, part=drag.faces / total, watts=drag.faces)
 
 
 def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float:
@@ -182,6 +187,7 @@ class SumpOil:
     density: float  # [kg/m^3]
     kinematic_viscosity: float  # [m^2/s]
     volume: float  # [m^3]
+    smooth: bool = False  # Whether regimes of flow pass into one another without a kink.
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,8 +244,8 @@ def changenet_velex(
 ) -> float:
     """Churning torque after Changenet and Velex (2007), second hand. Theory (N3), (N5). [N m]
 
-    C = rho omega^2 S_m R^3 C_m/2; C_m by the regime of flow, between the two regimes linear in the
-    acceleration parameter.
+    C = rho omega^2 S_m R^3 C_m/2; C_m by the regime of flow, between the two regimes a smooth
+    passage in the acceleration parameter.
 
     Examples
     --------
@@ -252,6 +258,8 @@ def changenet_velex(
         return 0.0
     parameter = acceleration_parameter(part, omega)
     slow = min(max((FAST - parameter) / (FAST - SLOW), 0.0), 1.0)
+    if oil.smooth:
+        slow = slow**2 * (3 - 2 * slow)
     coefficient = slow * _slow_coefficient(part, omega, oil)
     coefficient += (1 - slow) * _fast_coefficient(part, omega, oil)
     return oil.density * omega**2 * wetted_area(part) * part.radius**3 * coefficient / 2

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple, Protocol, TypeVar
 
@@ -161,6 +161,10 @@ class ValidityFlag:
     share : float
         Part of the loss, or of the contact, that lies outside. [1]
     source : str
+    watts : float or None
+        Loss that it concerns, where that is not `share` of a term. [W]
+    could_be : float
+        What that loss would be by the law that holds there; 0 if nobody says. [W]
     """
 
     use: ModelUse
@@ -172,6 +176,8 @@ class ValidityFlag:
     unit: str
     share: float
     source: str
+    watts: float | None = None
+    could_be: float = 0.0
 
 
 class Flags:
@@ -215,15 +221,15 @@ def describe_flags(
 ) -> tuple[str, ...]:
     """One sentence for each quantity and range left, those that concern most of the loss first."""
     concerned = flags_with_loss(flags, loss_of)
-    small = [pair for pair in concerned if pair[0] < SMALLEST_APART * total]
+    small = [pair for pair in concerned if what_it_may_be(*pair) < SMALLEST_APART * total]
     large = [pair for pair in concerned if pair not in small]
-    large.sort(key=lambda pair: -math.inf if math.isnan(pair[0]) else -pair[0])
+    large.sort(key=lambda pair: -what_it_may_be(*pair))
     sentences = [_sentence(watts, group) for watts, group in large]
     if len(small) == 1:
         sentences.append(_sentence(*small[0]))
     elif small:
         ranges = "; ".join(range_text(group) for _, group in small)
-        watts = max(watts for watts, _ in small)
+        watts = max(what_it_may_be(*pair) for pair in small)
         sentences.append(f"{OUT_OF_RANGE}, each for at most {WATT.text(watts, 2)}: {ranges}.")
     return tuple(sentences)
 
@@ -240,13 +246,31 @@ def flags_with_loss(
         key = (flag.quantity, flag.unit, flag.low, flag.high, flag.source)
         groups.setdefault(key, []).append(flag)
     return [
-        (sum(flag.share * loss_of(flag.use) for flag in group), group) for group in groups.values()
+        (
+            sum(
+                flag.share * loss_of(flag.use) if flag.watts is None else flag.watts
+                for flag in group
+            ),
+            group,
+        )
+        for group in groups.values()
     ]
+
+
+def what_it_may_be(watts: float, group: Iterable[ValidityFlag]) -> float:
+    """What a range left may mean: the loss concerned, or what it would be; infinite if unknown."""
+    return math.inf if math.isnan(watts) else max(watts, sum(flag.could_be for flag in group))
+
+
+def concern_text(watts: float, group: Iterable[ValidityFlag]) -> str:
+    """The loss that a range left concerns, ``"26.5 W, which could be 683 W"``."""
+    most = what_it_may_be(watts, group)
+    return known_text(watts) + (f", which could be {known_text(most)}" if most > watts else "")
 
 
 def _sentence(watts: float, group: list[ValidityFlag]) -> str:
     models = ", ".join(f"{flag.use} {share_text(flag.share)}" for flag in group)
-    size = "" if math.isnan(watts) else f"; {known_text(watts)} in all"
+    size = "" if math.isnan(watts) else f"; {concern_text(watts, group)} in all"
     return f"{range_left(group)} Share of the loss: {models}{size}."
 
 
@@ -286,10 +310,13 @@ def check_ranges(
     values: Mapping[str, FloatArray | float],
     weight: FloatArray | float = 1.0,  # The loss at each value.
     part: float = 1.0,  # Part of the whole loss that the model is asked for here. [1]
+    watts: float | None = None,  # As of `ValidityFlag`. [W]
+    could_be: float = 0.0,  # As of `ValidityFlag`. [W]
 ) -> tuple[ValidityFlag, ...]:
     """Flags for every quantity that leaves its range. Theory (P8)."""
     left = [(item, values[item.name]) for item in ranges if not _holds(item, values[item.name])]
-    return tuple(_flag(use, item, value, weight, part) for item, value in left)
+    flags = tuple(_flag(use, item, value, weight, part) for item, value in left)
+    return tuple(replace(flag, watts=watts, could_be=could_be) for flag in flags)
 
 
 def check_contacts(

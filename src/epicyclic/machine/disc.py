@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import (
     CHURNING_MODELS,
-    DRAG_METHOD,
-    DRAG_SOURCE,
     JET_METHOD,
     JET_SOURCE,
     VISCOUS_METHOD,
@@ -25,8 +23,17 @@ from epicyclic.losses.drag import (
     jet_loss,
     viscous_flags,
 )
-from epicyclic.losses.ranges import ValidityFlag
+from epicyclic.losses.ranges import ModelUse, ValidityFlag, check_ranges
+from epicyclic.losses.windage import DISCS, DRAG_METHODS, MIST_SHARE, DragModel, Turning, drag
 from epicyclic.machine.element import LOAD_INDEPENDENT, Loss, State
+
+BESIDE: Mapping[str, tuple[DragModel, bool]] = {
+    "theodorsen-regier": ("theodorsen-regier", False),
+    "anderson-loewenthal": ("anderson-loewenthal", False),
+    "diab-ville-velex": ("diab-ville-velex", False),
+    "diab-ville-velex with all the oil": ("diab-ville-velex", True),
+}
+"""Models of the drag of gears that a result shows beside one another, and whether all oil flows."""
 
 Outcome = tuple[Loss, tuple[ValidityFlag, ...]]
 
@@ -38,11 +45,12 @@ class Sump:
     part: Dipped  # How far it does.
     volume: float  # Volume of the oil. [m^3]
     model: ChurningModel  # Model of its churning.
+    smooth: bool  # As of `SumpOil`.
 
     def power(self, model: ChurningModel, speed: float, state: State) -> float:
         """Churning power. [W]"""
         oil = state.fluids.oil
-        known = SumpOil(oil.density, oil.kinematic_viscosity, self.volume)
+        known = SumpOil(oil.density, oil.kinematic_viscosity, self.volume, self.smooth)
         return CHURNING_MODELS[model].torque(self.part, speed, known) * abs(speed)
 
 
@@ -62,11 +70,13 @@ class Disc:
 
     where: str  # For the flags: ``"sun"``.
     body: str
-    radius: float  # [m]
-    width: float  # [m]
+    turning: Turning
     oil_fraction: float  # Oil in the mixture, by volume. [1]
+    model: DragModel
     sump: Sump | None = None  # Oil that it dips into, which then drags in place of the mixture.
     jets: Jets | None = None
+    against: str = HOUSING  # The body with which the mixture around it turns.
+    count: int = 1  # Of bodies alike.
 
     @property
     def dips(self) -> bool:
@@ -91,29 +101,45 @@ def disc_loss(
 ) -> Outcome:
     """The drag of `discs` together, each on its own shaft, and its flags. Theory (N2)."""
     flags: tuple[ValidityFlag, ...] = ()
-    drags: dict[str, float] = {}
+    drags: dict[tuple[str, str], float] = {}
     methods: dict[str, str] = {}
     for disc in discs:
-        speed = state.speeds[disc.body]
+        speed = state.speeds[disc.body] - state.speeds[disc.against]
+        body = disc.turning
         if disc.sump is not None and disc.dips:
             model = CHURNING_MODELS[disc.sump.model]
-            drag = disc.sump.power(disc.sump.model, speed, state)
+            watts = disc.sump.power(disc.sump.model, speed, state)
             flags += churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
             methods[model.title] = model.source
         else:
             mixture = state.fluids.mixed(disc.oil_fraction)
-            own = disc_drag(disc.radius, disc.width, speed, mixture)
-            drag = sum(own)
-            flags += disc_drag_flags(disc.where, disc.radius, own, speed, mixture)
-            methods[DRAG_METHOD] = DRAG_SOURCE
+            if disc.model == "seetharaman-kahraman":
+                smooth = disc_drag(body.radius, body.width, speed, mixture)
+                watts = sum(smooth)
+                flags += disc_drag_flags(disc.where, body.radius, smooth, speed, mixture)
+            else:
+                mist = state.fluids.mixed(min(disc.oil_fraction, MIST_SHARE))
+                viscosity = state.fluids.oil.dynamic_viscosity
+                parts = drag(body, speed, mixture, mist, viscosity, disc.model)
+                watts = disc.count * sum(parts)
+                if parts.faces:
+                    reynolds = abs(speed) * body.radius**2 / mixture.kinematic_viscosity
+                    flags += check_ranges(
+                        ModelUse("drag", disc.model, disc.where),
+                        (DISCS,),
+                        {"reynolds_number": reynolds},
+                        part=parts.faces / sum(parts),
+                        watts=disc.count * parts.faces,
+                    )
+            methods[DRAG_METHODS[disc.model].title] = DRAG_METHODS[disc.model].source
         if disc.jets is not None:
-            drag += _jet_loss(disc.jets, speed, state, struck)
+            watts += _jet_loss(disc.jets, speed, state, struck)
             methods[JET_METHOD] = JET_SOURCE
-        drags[disc.body] = drag
-    watts = sum(drags.values())
-    brakes = tuple((body, HOUSING, drag / watts) for body, drag in drags.items() if drag)
+        drags[disc.body, disc.against] = watts
+    total = sum(drags.values())
+    brakes = tuple((*pair, own / total) for pair, own in drags.items() if own)
     method, source = "; ".join(methods), "; ".join(methods.values())
-    return Loss(LOAD_INDEPENDENT, watts, method, source, brakes=brakes), flags
+    return Loss(LOAD_INDEPENDENT, total, method, source, brakes=brakes), flags
 
 
 def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:
@@ -124,6 +150,26 @@ def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:
     return jet_loss(
         state.fluids.oil.density, jets.flow / struck, pitch_speed, jets.speed, jets.side
     )
+
+
+def drags_by_model(discs: Iterable[Disc], state: State) -> dict[str, float]:
+    """Drag of the gears that do not dip, after each model that knows teeth. [W]
+
+    The last one takes all the oil around the teeth for a fluid that flows through them.
+    """
+    oil, found = state.fluids.oil, dict.fromkeys(BESIDE, 0.0)
+    for disc in discs:
+        speed = state.speeds[disc.body] - state.speeds[disc.against]
+        dips = disc.sump is not None and disc.dips
+        if disc.turning.teeth is None or dips or not speed:
+            continue
+        whole = state.fluids.mixed(disc.oil_fraction)
+        mist = state.fluids.mixed(min(disc.oil_fraction, MIST_SHARE))
+        for name, (model, all_oil) in BESIDE.items():
+            through = whole if all_oil else mist
+            parts = drag(disc.turning, speed, whole, through, oil.dynamic_viscosity, model)
+            found[name] += disc.count * sum(parts)
+    return {name: watts for name, watts in found.items() if watts}
 
 
 def churned(discs: Iterable[Disc], state: State) -> dict[str, float]:

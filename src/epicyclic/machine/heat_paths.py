@@ -130,7 +130,7 @@ def _ring_to_housing(own: GearSet, one: OneGear, wetting: Wetting) -> Iterator[L
     for discs in own.discs.values():
         for disc in discs:
             if disc.body == one.body:
-                area = 2 * math.pi * disc.radius * disc.width
+                area = 2 * math.pi * disc.turning.radius * disc.turning.width
                 key = f"{one.node}-housing"
                 yield Link(key, one.node, HOUSING, wetting.press_fit * area, SEAT, ESTIMATE)
 
@@ -161,7 +161,7 @@ def _carrier_to_oil(own: GearSet, state: State, wetting: Wetting) -> Iterator[Li
     if not any(planet.bearing for planet in own.planets):
         return
     known = [disc for discs in own.discs.values() for disc in discs if disc.where == "carrier"]
-    radius = known[0].radius if known else max(planet.pin_radius for planet in own.planets)
+    radius = known[0].turning.radius if known else max(planet.pin_radius for planet in own.planets)
     speed = abs(state.speeds[own.carrier])
     node = carrier_node(own)
     area = _faces(radius, 0.0)
@@ -241,7 +241,10 @@ def _stored(solid: Solid, volume: float) -> float:
 def _outside(own: GearSet, one: OneGear) -> float:
     """Radius of the outside of a ring gear, which its disc has. [m]"""
     return max(
-        disc.radius for discs in own.discs.values() for disc in discs if disc.body == one.body
+        disc.turning.radius
+        for discs in own.discs.values()
+        for disc in discs
+        if disc.body == one.body
     )
 
 
@@ -249,7 +252,7 @@ def _carrier_volume(own: GearSet) -> float:
     """Volume of the disc of the carrier, or of one that reaches around the pins. [m^3]"""
     discs = [disc for discs in own.discs.values() for disc in discs if disc.where == "carrier"]
     if discs:
-        return math.pi * discs[0].radius ** 2 * discs[0].width
+        return math.pi * discs[0].turning.radius ** 2 * discs[0].turning.width
     pins = [planet.bearing.bearing.inner_diameter for planet in own.planets if planet.bearing]
     radius = max(planet.pin_radius for planet in own.planets) + max(pins)
     width = max(one.gear.face_width for one in gears_of(own)) + SEAT_LENGTH * max(pins)

@@ -72,6 +72,7 @@ _ROLES = {
     "rolling": "rolling loss",
     "bearing": "planet bearing",
     "shaft_bearing": "shaft bearing",
+    "drag": "drag",
 }
 _ERRORS = ("pocket_power_difference", "pocket_interpolation_error")
 """Figures of meshes that tell how well others are computed; there are none of what is solved."""

@@ -12,7 +12,7 @@ from rich.constrain import Constrain
 from rich.text import Text
 
 from epicyclic.build.result import NOT_INCLUDED
-from epicyclic.losses.ranges import range_text
+from epicyclic.losses.ranges import concern_text, range_text, what_it_may_be
 from epicyclic.machine.element import note_watts
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result, in_words
@@ -26,7 +26,7 @@ from epicyclic.units import CELSIUS, known_text, percent, unit_text
 
 MOST_WARNINGS = 3  # On the first screen.
 CONCERNED = 0.01  # Part of the total loss from which a warning stands on the first screen. [1]
-MOST_OF_SET = 12  # Losses of a single set; smaller ones are in the sums alone.
+MOST_OF_SET = 10  # Losses of a single set; smaller ones are in the sums alone.
 MOST_ROWS = 20  # Of the losses of a train; smaller ones are put together.
 _BROAD = 0.5  # Part of the loss outside the ranges of its models from which that is said first. [1]
 WIDTH = 80  # Characters of its lines at most.
@@ -154,9 +154,9 @@ def first_warnings(result: Result) -> Listing:
     found = list(_notes(result))
     for watts, group in result.flags_with_loss:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
-        size = "" if math.isnan(watts) else f"; {known_text(watts)} of the loss"
+        size = "" if math.isnan(watts) else f"; {concern_text(watts, group)} of the loss"
         text = f"{sentence(range_text(group)).rstrip('.')} ({', '.join(uses)}){size}."
-        found.append((math.inf if math.isnan(watts) else watts, text))
+        found.append((what_it_may_be(watts, group), text))
     heavy = [pair for pair in found if pair[0] >= CONCERNED * result.total and pair[0] > 0]
     heavy.sort(key=lambda pair: -pair[0])
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))

@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 from epicyclic.build.machine import build
 from epicyclic.build.models import SetCase, set_cases, standing_of
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
-from epicyclic.losses.drag import DRAG_METHOD, DRAG_SOURCE, VISCOUS_METHOD, VISCOUS_SOURCE
+from epicyclic.losses.drag import VISCOUS_METHOD, VISCOUS_SOURCE
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.losses.ranges import ValidityFlag, range_left, share_text
 from epicyclic.losses.rolling import FittedOrSchlenk
+from epicyclic.losses.windage import DRAG_METHODS, DragModel
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.gear_mesh import OHLENDORF_SOURCE
 from epicyclic.machine.gear_set import GearSet
@@ -249,7 +251,7 @@ def _methods_of_set(case: SetCase, own: GearSet) -> dict[str, tuple[str, str]]:
     distribution = LOAD_DISTRIBUTIONS[case.models.load_distribution]
     methods["load distribution"] = (distribution.title, distribution.source)
     methods["pocketing"] = (pocketing_method(case.chosen["pocketing"], None), POCKETING_SOURCE)
-    methods["drag"] = (DRAG_METHOD, DRAG_SOURCE)
+    methods["drag"] = DRAG_METHODS[cast(DragModel, case.chosen["drag"])][:2]
     if own.sharing is not None:
         methods["load sharing"] = SHARING_METHODS[own.sharing.method]
     for planet in own.planets:

@@ -105,6 +105,9 @@ def roughness_told(text: object) -> tuple[float, str] | None:
 
 Stress = Annotated[float, Quantity("a stress", "Pa", "MPa", low=0.0, high=1e6, open_low=True)]
 
+Gap = Annotated[float, Quantity("a gap", "m", "mm", low=0.0, high=1e4, open_low=True)]
+SHROUD_GAP: Any = option("From its rim to a shroud around it. Default: no shroud.")
+FLANGE_GAP: Any = option("From its faces to walls beside them. Default: no walls.")
 ShortLength = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5)]
 
 

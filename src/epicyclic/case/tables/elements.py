@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, Tag
 
-from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength
+from epicyclic.case.tables.base import (
+    FLANGE_GAP,
+    SHROUD_GAP,
+    Gap,
+    NamedMaterial,
+    Roughness,
+    ShortLength,
+)
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import did_you_mean, millimetres, written
@@ -65,10 +72,15 @@ class PlanetBearing(Table):
 
 
 class Carrier(Table):
-    """The planet carrier as a disc, for its drag."""
+    """The planet carrier, for its drag: a closed disc, or plates with planets between them."""
 
     outer_diameter: Length
     width: Length
+    open_width: ShortLength = option(
+        "Part of the width over which the planets stand in the flow between two plates.", "0 mm"
+    )
+    shroud_gap: Gap | None = SHROUD_GAP
+    flange_gap: Gap | None = FLANGE_GAP
 
 
 class ThrustBearing(Table):

@@ -380,7 +380,19 @@ class GearPairModels(Table):
     pocket_end_length: Number = option(
         "Of the control volumes at the ends of the face, in normal modules.", 1.0, ge=0.1, le=10
     )
-    drag: Literal["seetharaman-kahraman"] = "seetharaman-kahraman"
+    drag: Literal[
+        "auto",
+        "diab-ville-velex",
+        "anderson-loewenthal",
+        "theodorsen-regier",
+        "seetharaman-kahraman",
+    ] = option(
+        "Of rims, faces and teeth in air, mist or mixture. diab-ville-velex: laminar to turbulent, "
+        "with windage of the teeth; anderson-loewenthal: gears in much air and little oil; "
+        "theodorsen-regier: smooth bodies; seetharaman-kahraman: laminar rims. auto: "
+        "diab-ville-velex, or seetharaman-kahraman with the preset talbot-2012.",
+        "auto",
+    )
     temperatures: TemperatureModel = option(
         "inlet: all parts are at the oil inlet temperature; flank: gears are heated by their "
         "own meshes; network: heat flows between all parts, the oil and the surroundings.",
@@ -463,6 +475,7 @@ class PlanetaryLosses(Table):
     sun_drag: LossOption = _AS_COMPUTED
     ring_drag: LossOption = _AS_COMPUTED
     carrier_drag: LossOption = _AS_COMPUTED
+    planets_drag: LossOption = _AS_COMPUTED
     thrust_bearing_viscous: LossOption = _AS_COMPUTED
 
 
