@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, Tag
+from pydantic import AfterValidator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
 
 from epicyclic.case.tables.base import NamedMaterial, Roughness, ShortLength
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
@@ -19,6 +21,36 @@ from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature
 
 if TYPE_CHECKING:
     from epicyclic.losses.loss_table import LossTable
+
+
+def _known_designation(text: str) -> str:
+    from epicyclic.losses.designations import designated  # cases without one need it not
+
+    try:
+        designated(text)
+    except KeyError as error:
+        allowed = 'a size of the ISO plans, such as "6208", "NU 2210", "32006", "NKI 40/30"'
+        remedy = error.args[0] or "Give the dimensions of the bearing instead"
+        context = {"allowed": allowed, "remedy": remedy}
+        raise PydanticCustomError("preset", "is not known; it must be {allowed}", context) from None
+    return text
+
+
+Designation = Annotated[str, Field(max_length=40), AfterValidator(_known_designation)]
+
+
+def _of_shaft_bearing(raw: dict[str, Any]) -> dict[str, Any]:
+    """The keys of a shaft bearing that its designation gives; those of the user go first."""
+    from epicyclic.losses.designations import designated_or_any
+
+    found = designated_or_any(raw["designation"])
+    sizes = {"bore": found.bore, "outside_diameter": found.outside_diameter, "width": found.width}
+    keys = {key: f"{1e3 * size:g} mm" for key, size in sizes.items()}
+    keys |= {"type": found.type, "cage": found.cage}
+    keys |= {"series": found.series} if found.series and raw.get("model") == "skf-2018" else {}
+    if found.contact_angle and not {"axial_factor", "contact_angle"} & raw.keys():
+        keys["contact_angle"] = f"{math.degrees(found.contact_angle):.4g} deg"
+    return keys | raw
 
 
 class PlanetBearing(Table):
@@ -196,7 +228,11 @@ class ShaftBearingTable(ElementTable):
 
     shaft: str = Field(description="The shaft in its bore.")
     against: str = option("The body that holds its outer ring.", "housing")
-    type: Literal["deep-groove", "cylindrical", "tapered", "needle"]
+    designation: Designation | None = option(
+        "6208, NU 2210, 32006, NKI 40/30, ...: type and sizes by the ISO plans and estimated load "
+        "ratings, where they are not given."
+    )
+    type: Literal["deep-groove", "cylindrical", "tapered", "needle", "angular-contact"]
     bore: Length
     outside_diameter: Length
     width: Length | None = option("Needed for the drag of rollers in an oil bath.")
@@ -217,7 +253,8 @@ class ShaftBearingTable(ElementTable):
         "C0, for ball bearings with harris and skf-2018."
     )
     contact_angle: ContactAngle | None = option(
-        "Contact angle of a tapered roller bearing, instead of axial_factor."
+        "Contact angle of a tapered roller bearing, instead of axial_factor, or of angular contact "
+        "balls."
     )
     axial_factor: Number | None = option(
         "Y of a tapered roller bearing, 0.4 cot of the angle.", gt=0, le=10
@@ -225,21 +262,28 @@ class ShaftBearingTable(ElementTable):
     position: Position | None = option("Along the shaft, for its reactions to the gear forces.")
     locating: bool = option("true: the bearing takes axial force.", False)
     axial_sense: Literal["both", "positive", "negative"] = option(
-        "Direction along the axis in which a locating bearing holds the shaft.", "both"
+        "Direction along the axis in which a locating, tapered or angular contact bearing holds "
+        "the shaft.",
+        "both",
     )
+    arrangement: Literal["X", "O"] | None = option(
+        "Of two tapered or angular contact bearings, instead of axial_sense. Default: X."
+    )
+    preload: Force | None = option("Axial preload of such a pair.")
+    preload_displacement: ShortLength | None = option("The same as the approach of its rings.")
     radial_force: Force | None = option("Radial force instead of the reaction to the gear forces.")
     axial_force: Force | None = option(
         "Axial force in addition to radial_force. Default: none if radial_force is given."
     )
     viscous_factor: Number | None = option(
-        "f0 of palmgren and harris. Default: deep-groove 2, cylindrical 3 or 7.5 (full "
-        "complement), tapered 6, needle 12.",
+        "f0 of palmgren and harris. Default: deep-groove 2, angular-contact 3.3, cylindrical 3 or "
+        "7.5 (full complement), tapered 6, needle 12.",
         ge=0,
         le=100,
     )
     palmgren_coefficient: Number | None = option(
-        "f1 of palmgren. Default: 0.0003, full complement 0.00055, tapered 0.0004, needle 0.0005 "
-        "(estimate).",
+        "f1 of palmgren. Default: 0.0003, full complement 0.00055, tapered 0.0004, angular-contact "
+        "0.0005, needle 0.0005 (estimate).",
         gt=0,
         le=0.05,
     )
@@ -272,11 +316,22 @@ class ShaftBearingTable(ElementTable):
     reference_speed: ReferenceSpeed | None = option("For the minimum load of cylindrical rollers.")
     table: LossTableTable | None = option("Loss table for model = table.")
 
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            {**_of_shaft_bearing(raw)} if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
+
     def problems(self) -> Iterator[Problem]:
         # cases without bearings need it not
+        from epicyclic.losses.designations import designated_or_any
         from epicyclic.losses.shaft_bearing import DEFAULT_VISCOUS_FACTORS, bearing_types
 
         kind, model = self.type, self.model
+        if self.designation and (own := designated_or_any(self.designation).type) != kind:
+            reason = f"is that of a {own} bearing, and type is {kind}."
+            yield Problem("designation", written(self.designation), reason, "Delete one of them.")
+            return
         if self.bore >= self.outside_diameter:
             reason = f"must be less than outside_diameter, {millimetres(self.outside_diameter)}."
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
@@ -284,6 +339,7 @@ class ShaftBearingTable(ElementTable):
             remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
             yield Problem("cage", written(self.cage), f"is not made as a {kind} bearing.", remedy)
         yield from _angle_problems(self)
+        yield from _pair_problems(self)
         yield from super().problems()
         yield from _force_problems(self)
         if kind not in bearing_types(model):
@@ -293,7 +349,8 @@ class ShaftBearingTable(ElementTable):
         yield from _own_table_problems(self, LossTableTable.AXES)
         if model == "skf-2018":
             yield from _skf_problems(self)
-        needs_rating = kind == "deep-groove" and model in ("harris", "skf-2018")
+        balls = kind in ("deep-groove", "angular-contact")
+        needs_rating = balls and model in ("harris", "skf-2018") and not self.designation
         if needs_rating and not self.static_load_rating:
             reason = f"is missing; the model {model} needs it for ball bearings."
             yield Problem("static_load_rating", "", reason, "Add C0 from the catalogue.")
@@ -328,9 +385,16 @@ class SealTable(ElementTable):
 
 
 def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
-    """The contact angle of tapered rollers, stated once."""
+    """The contact angle of tapered rollers and angular contact balls, stated once."""
     angles = [key for key in ("axial_factor", "contact_angle") if getattr(table, key) is not None]
-    if table.type != "tapered":
+    if table.type == "angular-contact":
+        for key in ("axial_factor", *_OF_TAPERED):
+            if getattr(table, key) is not None:
+                yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
+        if table.contact_angle is None:
+            reason, remedy = "is missing.", 'Add that of the catalogue: "40 deg" of 72 B and 73 B.'
+            yield Problem("contact_angle", "", reason, remedy)
+    elif table.type != "tapered":
         for key in [*angles, *(key for key in _OF_TAPERED if getattr(table, key) is not None)]:
             yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
     elif table.model != "table" and not angles:
@@ -343,6 +407,18 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     elif table.model == "zhou-hoeprich" and table.width is table.roller_length is None:
         reason = "is missing; it tells how long the rollers are."
         yield Problem("width", "", reason, "Add B from the catalogue, or roller_length.")
+
+
+def _pair_problems(table: ShaftBearingTable) -> Iterator[Problem]:
+    """What of a pair of bearings with contact angles is out of place, or stated twice."""
+    if table.type not in ("tapered", "angular-contact"):
+        for key in ("arrangement", "preload", "preload_displacement"):
+            if getattr(table, key) is not None:
+                reason = "belongs to tapered and angular contact bearings."
+                yield Problem(key, "", reason, "Delete it.")
+    elif table.arrangement and table.axial_sense != "both":
+        reason = "is given together with axial_sense; each follows from the other."
+        yield Problem("arrangement", written(table.arrangement), reason, "Delete one.")
 
 
 def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
