@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 from epicyclic.build.elements import axial_preload, build_element, catalogue_bearing, is_angular
 from epicyclic.build.gear_sets import gear_set
@@ -24,7 +25,15 @@ from epicyclic.contact.temperatures import LUBRICATION_FACTORS
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import Flags, ValidityFlag
-from epicyclic.machine.convection import Fluid, air, mixture, oil_conductivity, oil_heat_capacity
+from epicyclic.machine.convection import (
+    GRAVITY_TEMPERATURE,
+    WATER,
+    Fluid,
+    air,
+    mixture,
+    oil_conductivity,
+    oil_heat_capacity,
+)
 from epicyclic.machine.element import (
     OIL,
     Element,
@@ -50,6 +59,7 @@ from epicyclic.machine.heat import (
     settle,
 )
 from epicyclic.machine.machine import GearSeat, Machine, Operation, ShaftLayout, Support
+from epicyclic.machine.planet_pin import PinFigures
 from epicyclic.machine.planets import PlanetLoad
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import lossless_state, solve_machine
@@ -60,8 +70,6 @@ from epicyclic.result.result import Layout, in_words
 # From the tables of a case to the model of its temperatures.
 
 
-GRAVITY_TEMPERATURE = 288.75  # 15.6 degC, at which the specific gravity of petroleum is stated. [K]
-WATER = 999.0  # Density of water there. [kg/m^3]
 IN_BATH = ("dip", "submerged")
 
 
@@ -542,6 +550,7 @@ def _layout(case: TrainCase, elements: list[Element]) -> Layout:
             losses += [f"{name}.{term}" for term in element.choices]
             meshes += [f"{name}.{mesh.key}" for mesh in element.meshes]
             bearings += [f"{name}.{planet.key}" for planet in element.planets if planet.bearing]
+            parts += [(f"{name}.{key}", kind) for key, kind in pin_figures(element)]
         else:
             losses += [f"{name}.{term}" for term in element.terms]
             parts += [(f"{name}.{item}", kind) for item, kind in element.figure_types]
@@ -554,6 +563,11 @@ def _layout(case: TrainCase, elements: list[Element]) -> Layout:
         parts=tuple(parts),
         fluid=case.computed,
     )
+
+
+def pin_figures(own: GearSet) -> list[tuple[str, type[Any]]]:
+    """The figures of the films on plain pins, which other planets do not have."""
+    return [(key, kind) for key, kind in own.figure_types if issubclass(kind, PinFigures)]
 
 
 # From any case to the machine that it describes.
@@ -596,6 +610,7 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
             members,
             tuple(mesh.key for mesh in gearing.meshes),
             tuple(f"{planet}_bearing" for planet in gearing.planets),
+            parts=tuple(pin_figures(element)),
             shares=bool(gearing.planets),
         ),
     )

@@ -37,6 +37,7 @@ from epicyclic.case.tables.elements import (
     ElementTable,
     ElementTables,
     PlanetBearing,
+    PlanetPin,
     ThrustBearing,
     between,
 )
@@ -812,6 +813,7 @@ class PlanetaryCase(_SetTables):
     sun_mesh: SetMesh = SetMesh()
     ring_mesh: SetMesh = SetMesh()
     planet_bearing: PlanetBearing | None = None
+    planet_pin: PlanetPin | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None

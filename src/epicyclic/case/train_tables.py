@@ -20,7 +20,7 @@ from epicyclic.case.gear_tables import (
     internal_if_negative,
     with_positive_teeth,
 )
-from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, PlanetPin, ThrustBearing
 from epicyclic.case.tables.models import (
     GearPairLosses,
     GearPairModels,
@@ -100,6 +100,7 @@ class PlanetarySet(Table):
     sun_mesh: SetMesh = SetMesh()
     ring_mesh: SetMesh = SetMesh()
     planet_bearing: PlanetBearing | None = None
+    planet_pin: PlanetPin | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
@@ -234,6 +235,7 @@ class ListedSet(_Listed):
         "Bearing of every planet that planet_bearings does not name."
     )
     planet_bearings: dict[str, PlanetBearing] = option("Bearings by the body of the planet.", {})
+    planet_pin: PlanetPin | None = option("Plain pin of planets without such a bearing.")
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     lubrication: LubricationTable | None = LUBRICATION

@@ -22,6 +22,7 @@ from epicyclic.machine.element import (
     joined_key,
 )
 from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshResult, solve_mesh
+from epicyclic.machine.planet_pin import PinFigures, PlanetPin, solve_pin
 from epicyclic.machine.planets import (
     BearingFigures,
     LoadSharing,
@@ -86,7 +87,7 @@ class Planet:
     meshes: tuple[PlanetMesh, ...]
     mass: float = 0.0  # Mass of one planet with its rollers. [kg]
     mass_estimated: bool = False  # True if no case states it.
-    bearing: PlanetBearing | None = None
+    bearing: PlanetBearing | PlanetPin | None = None
     no_bearing: str = ""  # Why there is none.
     tilts: bool = False  # True if the planet tilts in its bearing and misaligns its meshes.
     nodes: tuple[str, str] = (OIL, OIL)  # The thermal nodes of the planets and of their pins.
@@ -101,7 +102,7 @@ class Planet:
         contacts = self._contacts(duties)
         centrifugal = self.centrifugal(carrier_speed)
         idle = all(contact.duty.torque1 == 0 for contact in contacts)
-        if not self.tilts or self.bearing is None or idle:
+        if not self.tilts or not isinstance(self.bearing, PlanetBearing) or idle:
             load = planet_load(contacts, centrifugal)
         else:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
@@ -243,6 +244,11 @@ class GearSet:
         return (
             *((mesh.key, MeshFigures) for mesh in self.meshes),
             *((planet.key, BearingFigures) for planet in self.planets if planet.bearing),
+            *(
+                (f"{planet.key}_film", PinFigures)
+                for planet in self.planets
+                if isinstance(planet.bearing, PlanetPin)
+            ),
         )
 
     def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
@@ -314,7 +320,8 @@ class GearSet:
             return (1.0,)
         bearing = self.planets[0].bearing
         duties = self.duties(state, torques, 1 / self.count)
-        return planet_shares(self.sharing, duties, None if bearing is None else bearing.bearing)
+        rollers = bearing.bearing if isinstance(bearing, PlanetBearing) else None
+        return planet_shares(self.sharing, duties, rollers)
 
     def _torques(self, state: State, drags: Drags | None = None) -> dict[str, float]:
         """Torque at the first gear of each mesh, all planets together."""
@@ -397,16 +404,20 @@ class GearSet:
             duties |= {duty.gears.key: duty for duty in tilted}
             if planet.bearing is not None:
                 notes += planet.notes(carrier, load)
+            speed = state.speeds[planet.body] - carrier
+            oil = state.fluids.at(joined_key(self.key, planet.key))
             if planet.bearing is None:
                 bearings.append(missing_bearing(planet.key, planet.no_bearing))
+            elif isinstance(planet.bearing, PlanetPin):
+                bearings.append(solve_pin(planet.key, planet.bearing, load, planets, oil, speed))
+                notes += bearings[-1].notes
             else:
-                speed = state.speeds[planet.body] - carrier
                 bearing = solve_bearing(
                     planet.key,
                     planet.bearing,
                     load,
                     planets,
-                    state.fluids.at(joined_key(self.key, planet.key)),
+                    oil,
                     speed,
                     last_rollers.get((planet.key, share)),
                 )

@@ -17,7 +17,7 @@ from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
-from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature
+from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature, VolumeFlow
 
 if TYPE_CHECKING:
     from epicyclic.losses.loss_table import LossTable
@@ -94,6 +94,21 @@ class PlanetBearing(Table):
     )
     row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
     material: NamedMaterial = option("Material of rollers and races.", "steel")
+
+
+class PlanetPin(Table):
+    """The plain pin on which a planet turns, a journal bearing."""
+
+    pin_diameter: Length
+    length: Length = Field(description="Of the bore that runs on the pin.")
+    diametral_clearance: SmallLength
+    pin_roughness: Roughness
+    bore_roughness: Roughness
+    boundary_friction: Number | None = option(
+        "Of asperities in mixed friction. Default: that of the oil.", gt=0, le=1
+    )
+    oil_flow: VolumeFlow = option("Oil supplied to one pin, which carries heat away.", "0 l/min")
+    material: NamedMaterial = option("Material of the pin.", "steel")
 
 
 class Carrier(Table):
