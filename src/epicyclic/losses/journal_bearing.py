@@ -82,30 +82,34 @@ class JournalState:
 class _Curves:
     """Sommerfeld number, attitude and side flow over x = ln(eps/(1 - eps)).
 
-    ln S is nearly straight over x at both ends, where it goes on so.
+    ln S and ln tan(phi) are nearly straight over x at both ends, where they go on so.
     """
 
     x: FloatArray  # Rising.
     log_sommerfeld: FloatArray
-    attitude: FloatArray
+    log_attitude: FloatArray  # ln tan(phi)
     flow: FloatArray  # Q/(omega R C L eps)
 
     def at(self, x: float) -> tuple[float, float, float]:
         """S, phi and Q/(omega R C L)."""
-        known, logs = self.x, self.log_sommerfeld
-        logarithm = float(np.interp(x, known, logs))
+        flow = float(np.interp(x, self.x, self.flow)) / (1 + math.exp(-x))
+        S, tangent = (self._straight(x, logs) for logs in (self.log_sommerfeld, self.log_attitude))
+        return math.exp(S), math.atan(math.exp(tangent)), flow
+
+    def _straight(self, x: float, logs: FloatArray) -> float:
+        """Between the known values, and beyond them along the last two."""
+        known, found = self.x, float(np.interp(x, self.x, logs))
         for end, inner in ((0, 1), (-1, -2)):
             beyond = x - known[end]
             if beyond * (known[end] - known[inner]) > 0:
                 slope = (logs[end] - logs[inner]) / (known[end] - known[inner])
-                logarithm += float(slope * beyond)
-        flow = float(np.interp(x, known, self.flow)) / (1 + math.exp(-x))
-        return math.exp(logarithm), float(np.interp(x, known, self.attitude)), flow
+                found += float(slope * beyond)
+        return found
 
 
 @lru_cache(maxsize=64)
 def journal_curves(slenderness: float) -> _Curves:
-    """Solutions of Reynolds' equation for one L/D. Theory (H1), (H2)."""
+    """Solutions of Reynolds' equation for one L/D. Theory (Z1), (Z2)."""
     found = []
     for eps in ECCENTRICITIES:
         towards, across, flow, sweeps = journal_pressure(
@@ -114,17 +118,17 @@ def journal_curves(slenderness: float) -> _Curves:
         assert sweeps > 0, "the relaxation converges for every eccentricity of the list"
         S = 1 / (6 * math.pi * math.hypot(towards, across))
         x = math.log(eps / (1 - eps))
-        found.append((x, math.log(S), math.atan2(across, towards), flow / eps))
+        found.append((x, math.log(S), math.log(across / towards), flow / eps))
     return _Curves(*(np.array(column) for column in zip(*found, strict=True)))
 
 
 def sommerfeld_number(slenderness: float, eccentricity: float) -> tuple[float, float, float]:
-    """S = eta N (R/C)^2 L D/W, the attitude in rad and Q/(omega R C L). Theory (H1). [1]"""
+    """S = eta N (R/C)^2 L D/W, the attitude in rad and Q/(omega R C L). Theory (Z1). [1]"""
     return journal_curves(slenderness).at(math.log(eccentricity / (1 - eccentricity)))
 
 
 def friction_variable(sommerfeld: float, eccentricity: float, attitude: float) -> float:
-    """(R/C) f of the moving surface, with a full film all around. Theory (H3). [1]
+    """(R/C) f of the moving surface, with a full film all around. Theory (Z3). [1]
 
     Examples
     --------
@@ -136,7 +140,7 @@ def friction_variable(sommerfeld: float, eccentricity: float, attitude: float) -
 
 
 def asperity_force(bearing: JournalBearing, x: float) -> float:
-    """Force of the asperities along the line of centres, at ln(eps/(1 - eps)). Theory (H4). [N]"""
+    """Force of the asperities along the line of centres, at ln(eps/(1 - eps)). Theory (Z4). [N]"""
     eps, narrowest = 1 / (1 + math.exp(-x)), 1 / (1 + math.exp(x))
     # film less the narrowest one, over the clearance, up to where asperities touch
     room = _CONTACT_FROM * bearing.roughness * 2 / bearing.diametral_clearance - narrowest
@@ -152,7 +156,7 @@ def asperity_force(bearing: JournalBearing, x: float) -> float:
 
 
 def film_viscosity(oil: OilState, temperature: float) -> float:
-    """Dynamic viscosity near the state of an oil, on its line of ASTM D341. Theory (H6). [Pa s]"""
+    """Dynamic viscosity near the state of an oil, on its line of ASTM D341. Theory (Z6). [Pa s]"""
     nu = 1e6 * oil.kinematic_viscosity
     Z = nu + 0.7
     slope = oil.temperature * oil.thermoviscosity * nu / (Z * math.log(Z))
@@ -163,7 +167,7 @@ def film_viscosity(oil: OilState, temperature: float) -> float:
 def loaded_journal(
     bearing: JournalBearing, force: float, speed: float, viscosity: float
 ) -> tuple[float, float, float]:
-    """ln(eps/(1 - eps)), attitude and asperity force under a load. Theory (H4).
+    """ln(eps/(1 - eps)), attitude and asperity force under a load. Theory (Z4).
 
     Film and asperities carry together; both rise with the eccentricity. Where neither can, at the
     narrowest film that is tried, the surfaces carry the rest.
@@ -204,7 +208,7 @@ def solve_journal(
     oil: OilState,  # As it enters.
     heat_capacity: float,  # Of the oil. [J/(kg K)]
 ) -> JournalState:
-    """Film, loss and temperature that agree. Theory (H3), (H5).
+    """Film, loss and temperature that agree. Theory (Z3), (Z5).
 
     The loss warms the oil that leaves at the sides, and pin and planet; the film has the mean of
     its temperatures at inlet and outlet.
