@@ -132,3 +132,77 @@ def test_wrong_designations_are_one_problem(keys, part):
     case = ep.load_case("train-eaxle")
     problem = only(problems_of(case.updated, {"bearings.motor_rear": table}))
     assert problem.key == f"bearings.motor_rear.{part}"
+
+
+# --- planets --------------------------------------------------------------------------------------
+
+TALBOT = "talbot-2012"
+
+
+def _planets(**keys):
+    case = ep.load_case(TALBOT).updated({"planet_bearing": None})
+    return case.updated({"planet_bearing": keys})
+
+
+def test_planet_bearing_by_designation():
+    case = _planets(designation="K 26x34x20", diametral_clearance="9 um")
+    own = case.planet_bearing
+    assert (own.type, own.roller_diameter, own.diametral_clearance) == ("needle", 4e-3, 9e-6)
+    assert own.pin_diameter == pytest.approx(26e-3, abs=0.03e-3)
+    assert ep.solve(case).losses["planet_bearing_mechanical"] > 0
+
+
+def test_spherical_planet_bearing_aligns_itself():
+    keys = {"designation": "NU 1005", "rollers_per_row": 11, "rows": 2}
+    cylindrical, spherical = (
+        ep.solve(_planets(**keys, type=kind, palmgren_coefficient=0.0004)
+                 .updated({"models.bearing": "palmgren", "gears.helix_angle": "11 deg"}))
+        for kind in ("cylindrical", "spherical")
+    )  # fmt: skip
+    # the couple of helical meshes loads other rollers, and Palmgren's loss is that of the force
+    assert spherical.bearing.roller_load_max < cylindrical.bearing.roller_load_max
+    assert spherical.losses["planet_bearing_mechanical"] == pytest.approx(
+        cylindrical.losses["planet_bearing_mechanical"], rel=1e-9
+    )
+
+
+@pytest.mark.parametrize(
+    ("keys", "changes", "key"),
+    [
+        ({"designation": "6205"}, {}, "planet_bearing.designation"),
+        ({"designation": "NU 1099"}, {}, "planet_bearing.designation"),
+        ({"designation": "NU 1005", "type": "spherical"}, {"models.bearing": "mixed-ehl"},
+         "models.bearing"),
+    ],
+)  # fmt: skip
+def test_planet_bearings_of_wrong_types(keys, changes, key):
+    case = ep.load_case(TALBOT).updated({"planet_bearing": None})
+    problem = only(problems_of(case.updated, {"planet_bearing": keys, **changes}))
+    assert problem.key == key
+    if keys["designation"] == "6205":
+        assert "needle, cylindrical or spherical" in problem.allowed
+
+
+def test_centrifugal_force_on_a_roller():
+    """A needle of 4 mm x 9.5 mm at 92 mm and 4000 rpm presses with 15.2 N (printed)."""
+    force = 7850 * math.pi / 4 * 4e-3**2 * 9.5e-3 * 92e-3 * (4000 * math.pi / 30) ** 2
+    assert force == pytest.approx(15.2, rel=0.01)
+    fast = ep.load_case(TALBOT).updated(
+        {"operation.speed": "60000 rpm", "operation.torque": "9 N*m", "planet.mass": "0.03 kg"}
+    )
+    notes = [note for note in ep.solve(fast).warnings if "presses each roller outward" in note]
+    (note,) = notes
+    # the carrier turns at 60,000 rpm over the ratio of the set
+    own, gearbox = fast.planet_bearing, ep.solve(fast)
+    speed = gearbox.flow.members["carrier"].speed
+    radius = fast.gearings[""].pins["planet"].radius
+    mass = own.material.density * math.pi / 4 * own.roller_diameter**2 * own.roller_length
+    assert f"{mass * radius * speed**2:.3g} N" in note
+
+
+def test_thrust_bearing_by_designation():
+    case = ep.load_case(TALBOT).updated({"thrust_bearing": {"designation": "51108"}})
+    assert case.thrust_bearing.mean_diameter == pytest.approx(50e-3)
+    wrong = {"thrust_bearing": {"designation": "51199"}}
+    problem = only(problems_of(ep.load_case(TALBOT).updated, wrong))
+    assert problem.key == "thrust_bearing.designation"

@@ -81,6 +81,9 @@ CAGED_PALMGREN = 0.0003
 """f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
 FULL_COMPLEMENT_PALMGREN = 0.00055
 """f1 of a full-complement roller bearing. Talbot (2012), p. 56. [1]"""
+SPHERICAL_PALMGREN = 0.00025
+"""f1 of spherical roller bearings, 0.0005 (P0/C0)^0.33 at a tenth of the static rating; catalogue
+of FAG, second hand. [1]"""
 VISCOUS_FACTOR_PER_ROW = 3.0
 """f0 of one row of caged cylindrical rollers, middle of 2.2-4.0. Talbot (2012), p. 130. [1]"""
 
@@ -285,6 +288,8 @@ def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBea
     factor, palmgren = table.viscous_factor, table.palmgren_coefficient
     if palmgren is None:
         palmgren = CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
+        if table.type == "spherical":
+            palmgren = SPHERICAL_PALMGREN
     return PlanetBearing(
         bearing=roller_bearing(table, case.numerics),
         model=case.fitted_rolling("bearing_rolling_loss") if is_fitted else name,
@@ -293,6 +298,8 @@ def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBea
         conductivity=table.material.thermal_conductivity,
         oil_held=case.models.oil_beyond_range == "held",
         palmgren_beyond=name == FITTED_OR_PALMGREN,
+        roller_density=table.material.density,
+        aligns_itself=table.type == "spherical",
     )
 
 

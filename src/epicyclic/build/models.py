@@ -132,7 +132,8 @@ class SetCase:
         bearing = self.bearings[body]
         if isinstance(bearing, PlanetPin):
             return "reynolds"
-        if self.models.bearing == "auto" and bearing is not None and bearing.cage != "caged":
+        plain = bearing is None or (bearing.cage == "caged" and bearing.type != "spherical")
+        if self.models.bearing == "auto" and not plain:
             return "palmgren"
         return self._model("bearing", FITTED_OR_PALMGREN, "palmgren")
 

@@ -237,6 +237,13 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
 
 def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]:
     """The model of the bearing loss must be for bearings of this kind."""
+    if bearing.type == "spherical" and (models.bearing not in ("auto", "palmgren")):
+        allowed = "has no spherical rollers."
+        remedy = 'Write bearing = "palmgren" or "auto".'
+        return [Problem("models.bearing", f'"{models.bearing}"', allowed, remedy)]
+    if bearing.type == "spherical" and models.planet_tilt == "coupled":
+        allowed = "does not apply to spherical roller bearings, which align themselves."
+        return [Problem("models.planet_tilt", '"coupled"', allowed, 'Write "left-out".')]
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
     allowed = "applies to caged bearings; rollers of a full-complement bearing rub on each other, "

@@ -243,9 +243,9 @@ def with_elements(bearing: DesignatedBearing, diameter: float | None = None) -> 
     )
 
 
-def designated_or_any(text: object) -> DesignatedBearing:
-    """The bearing of a designation; any other if there is none, whose key has that problem."""
+def designated_or_any(text: object, other: str = "6208") -> DesignatedBearing:
+    """The bearing of a designation; another if there is none, whose key has that problem."""
     try:
-        return designated(text if isinstance(text, str) else "6208")
+        return designated(text if isinstance(text, str) else other)
     except KeyError:
-        return designated("6208")
+        return designated(other)

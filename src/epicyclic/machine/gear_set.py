@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -113,15 +114,33 @@ class Planet:
         return self.mass * self.pin_radius * carrier_speed**2
 
     def notes(self, carrier_speed: float, load: PlanetLoad) -> tuple[str, ...]:
-        """That its mass is estimated, where that matters."""
-        force = self.centrifugal(carrier_speed)
+        """That its mass is estimated, and what its rollers weigh, where that matters.
+
+        Theory (B20).
+        """
+        force, where = self.centrifugal(carrier_speed), self.key.replace("_", " ")
+        found: tuple[str, ...] = ()
+        if isinstance(self.bearing, PlanetBearing):
+            rollers = self.bearing.bearing
+            volume = math.pi / 4 * rollers.roller_diameter**2 * rollers.roller_length
+            pull = self.bearing.roller_density * volume * self.pin_radius * carrier_speed**2
+            count = rollers.rows * rollers.rollers_per_row
+            if count * pull > WORTH_A_NOTE * load.force:
+                found = (self._roller_note(where, pull, load.force),)
         if not self.mass_estimated or force < WORTH_A_NOTE * load.force:
-            return ()
-        where = self.key.replace("_", " ")
+            return found
         return (
+            *found,
             f"{where}: the mass of a planet is not given. Estimated from its dimensions, it is "
             f"{format_number(self.mass, 3)} kg and its centrifugal force is "
             f"{NEWTON.text(force, 3)} of the {NEWTON.text(load.force, 3)} on the bearing.",
+        )
+
+    def _roller_note(self, where: str, pull: float, force: float) -> str:
+        return (
+            f"{where}: the carrier presses each roller outward with {NEWTON.text(pull, 3)}, beside "
+            f"{NEWTON.text(force, 3)} on the bearing. Unloaded rollers roll under this force and "
+            "press on their cage, which the loss leaves out."
         )
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:

@@ -472,6 +472,8 @@ class PlanetBearing:
     oil_held: bool = True  # False to continue the model mixed-ehl beyond its oil.
     # True if Palmgren's coefficient takes over where a fitted loss was not simulated.
     palmgren_beyond: bool = False
+    roller_density: float = 7850.0  # [kg/m^3]
+    aligns_itself: bool = False  # True if it takes no moment.
 
     @property
     def method(self) -> tuple[str, str]:
@@ -538,6 +540,8 @@ def solve_bearing(
 ) -> BearingResult:
     """Losses of `count` planet bearings under the same load."""
     bearing = own.bearing
+    if own.aligns_itself:
+        load = PlanetLoad(load.force, 0.0, 0.0)
     if last is None:
         loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     else:

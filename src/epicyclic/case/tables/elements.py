@@ -53,6 +53,42 @@ def _of_shaft_bearing(raw: dict[str, Any]) -> dict[str, Any]:
     return keys | raw
 
 
+PLANET_BEARINGS = ("needle", "cylindrical", "spherical")
+
+
+def _known_planet_bearing(text: str) -> str:
+    from epicyclic.losses.designations import designated
+
+    kind = designated(_known_designation(text)).type
+    if kind not in PLANET_BEARINGS:
+        context = {"remedy": 'Choose one such as "NU 2210", "22220", "NKI 40/30" or "K 40x48x20"'}
+        reason = (
+            f"is a {kind} bearing; planets have {', '.join(PLANET_BEARINGS[:-1])} or spherical "
+        )
+        raise PydanticCustomError("preset", f"{reason}roller bearings, or [planet_pin]", context)
+    return text
+
+
+PlanetDesignation = Annotated[str, Field(max_length=40), AfterValidator(_known_planet_bearing)]
+
+
+def _of_planet_bearing(raw: dict[str, Any]) -> dict[str, Any]:
+    """The keys of a planet bearing that its designation gives; those of the user go first."""
+    from epicyclic.losses.designations import designated_or_any, radial_clearance
+
+    found = designated_or_any(raw["designation"], "NU 2210")
+    if found.type not in PLANET_BEARINGS:  # its key has that problem
+        found = designated_or_any("NU 2210")
+    clearance = radial_clearance(found.bore)
+    inner = found.pitch_diameter - found.element_diameter - clearance / 2
+    sizes = {"roller_diameter": found.element_diameter, "roller_length": found.element_length}
+    sizes |= {"pin_diameter": inner, "diametral_clearance": clearance}
+    keys: dict[str, Any] = {key: f"{1e3 * size:.6g} mm" for key, size in sizes.items()}
+    keys |= {"rows": found.rows, "rollers_per_row": found.elements, "cage": found.cage}
+    keys |= {"roller_roughness": "0.1 um", "race_roughness": "0.15 um"}
+    return keys | {"type": found.type} | raw
+
+
 class PlanetBearing(Table):
     """The roller bearing between planet and pin."""
 
@@ -70,6 +106,13 @@ class PlanetBearing(Table):
         "material": None,
     }
 
+    designation: PlanetDesignation | None = option(
+        "NU 2210, SL18 5010, 22220, NKI 40/30, K 40x48x20: the rollers that fit into the sizes of "
+        "the ISO plans, with normal clearance and ground races, where they are not given."
+    )
+    type: Literal["needle", "cylindrical", "spherical"] = option(
+        "spherical: aligns itself, so that it takes no couple of the meshes.", "cylindrical"
+    )
     rows: int = Field(ge=1, le=4)
     rollers_per_row: int = Field(ge=3, le=200)
     roller_diameter: Length
@@ -86,7 +129,10 @@ class PlanetBearing(Table):
     )
     cage: Literal["caged", "full-complement"] = "caged"
     palmgren_coefficient: Number | None = option(
-        "f1 of the palmgren method. Default: 0.0003 caged, 0.00055 full complement.", gt=0, le=0.05
+        "f1 of the palmgren method. Default: 0.0003 caged, 0.00055 full complement, 0.00025 "
+        "spherical.",
+        gt=0,
+        le=0.05,
     )
     crown_drop: SmallLength = option("Drop of the profile at the roller's end (estimate).", "3 um")
     crown_length_fraction: Number = option(
@@ -94,6 +140,12 @@ class PlanetBearing(Table):
     )
     row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
     material: NamedMaterial = option("Material of rollers and races.", "steel")
+
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            _of_planet_bearing(raw) if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
 
 
 class PlanetPin(Table):
@@ -111,6 +163,31 @@ class PlanetPin(Table):
     material: NamedMaterial = option("Material of the pin.", "steel")
 
 
+def _known_thrust_bearing(text: str) -> str:
+    from epicyclic.losses.designations import thrust_bearing
+
+    try:
+        thrust_bearing(text)
+    except KeyError as error:
+        remedy = error.args[0] or "Give mean_diameter instead"
+        reason = 'is not known; it must be a size of ISO 104, such as "51108"'
+        raise PydanticCustomError("preset", reason, {"remedy": remedy}) from None
+    return text
+
+
+ThrustDesignation = Annotated[str, Field(max_length=40), AfterValidator(_known_thrust_bearing)]
+
+
+def _of_thrust_bearing(raw: dict[str, Any]) -> dict[str, Any]:
+    from epicyclic.losses.designations import thrust_bearing
+
+    try:
+        bore, outside, _ = thrust_bearing(str(raw["designation"]))
+    except KeyError:  # its key has that problem
+        bore, outside, _ = thrust_bearing("51108")
+    return {"mean_diameter": f"{1e3 * (bore + outside) / 2:g} mm"} | raw
+
+
 class Carrier(Table):
     """The planet carrier as a disc, for its drag."""
 
@@ -121,12 +198,20 @@ class Carrier(Table):
 class ThrustBearing(Table):
     """A thrust bearing that carries negligible load, for its viscous loss."""
 
+    designation: ThrustDesignation | None = option("51108, ...: its mean diameter by ISO 104.")
+
     mean_diameter: Length
     between: Literal[
         "sun-carrier", "sun-ring", "ring-carrier", "sun-housing", "carrier-housing"
     ] = option("The two parts whose speeds differ.", "carrier-housing")
     viscous_factor: Number = option("f0 (Harris).", 3.5, ge=0, le=100)
     count: int = Field(default=1, ge=1, le=10)
+
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            _of_thrust_bearing(raw) if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
 
 
 Force = Annotated[float, Quantity("a force", "N", "N", low=0.0, high=1e9)]
@@ -333,7 +418,7 @@ class ShaftBearingTable(ElementTable):
 
     _fill = model_validator(mode="before")(
         lambda raw: (
-            {**_of_shaft_bearing(raw)} if isinstance(raw, dict) and raw.get("designation") else raw
+            _of_shaft_bearing(raw) if isinstance(raw, dict) and raw.get("designation") else raw
         )
     )
 
