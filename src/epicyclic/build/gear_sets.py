@@ -29,8 +29,7 @@ from epicyclic.machine.disc import Disc, Jets, Sump, ThrustBearing
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import GearMesh, MeshModels
 from epicyclic.machine.gear_set import GearSet, LossChoice, Planet, PlanetMesh, Reference
-from epicyclic.machine.planet_pin import PlanetPin
-from epicyclic.machine.planets import LoadSharing, PlanetBearing
+from epicyclic.machine.planets import LoadSharing, PlanetBearing, PlanetPin
 from epicyclic.oil.oil import oil_state
 
 # How the oil of a case meets the bodies that turn in it.

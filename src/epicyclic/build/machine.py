@@ -59,8 +59,7 @@ from epicyclic.machine.heat import (
     settle,
 )
 from epicyclic.machine.machine import GearSeat, Machine, Operation, ShaftLayout, Support
-from epicyclic.machine.planet_pin import PinFigures
-from epicyclic.machine.planets import PlanetLoad
+from epicyclic.machine.planets import PinFigures, PlanetLoad, PlanetPin
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import lossless_state, solve_machine
 from epicyclic.machine.train_shape import mesh_rows
@@ -599,6 +598,7 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
     bodies = {body: body for body in (*members, *gearing.planets)}
     element = gear_set("", own, bodies, (operation.input, operation.output, *others), tables)
     rows = tuple(mesh_rows("", gearing, bodies))
+    own_bearing = element.planets[0].bearing if element.planets else None
     return Built(
         machine=Machine(tuple(bodies), rows, (element,)),
         operation=operation,
@@ -610,7 +610,7 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
             members,
             tuple(mesh.key for mesh in gearing.meshes),
             tuple(f"{planet}_bearing" for planet in gearing.planets),
-            parts=tuple(pin_figures(element)),
+            parts=tuple(pin_figures(element)) if isinstance(own_bearing, PlanetPin) else (),
             shares=bool(gearing.planets),
         ),
     )

@@ -36,8 +36,8 @@ from epicyclic.case.tables.elements import (
     Carrier,
     ElementTable,
     ElementTables,
+    PlainPins,
     PlanetBearing,
-    PlanetPin,
     ThrustBearing,
     between,
 )
@@ -800,7 +800,7 @@ class _SetTables(CaseTable):
         return self._gearings
 
 
-class PlanetaryCase(_SetTables):
+class PlanetaryCase(_SetTables, PlainPins):
     """A planetary gear set with its oil, surroundings and operating point."""
 
     kind: Literal["planetary"]
@@ -813,7 +813,6 @@ class PlanetaryCase(_SetTables):
     sun_mesh: SetMesh = SetMesh()
     ring_mesh: SetMesh = SetMesh()
     planet_bearing: PlanetBearing | None = None
-    planet_pin: PlanetPin | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None

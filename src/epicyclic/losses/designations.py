@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
@@ -249,3 +249,85 @@ def designated_or_any(text: object, other: str = "6208") -> DesignatedBearing:
         return designated(text if isinstance(text, str) else other)
     except KeyError:
         return designated(other)
+
+
+# What a case takes of a designation: strings and numbers as a file has them.
+
+PLANET_BEARINGS = ("needle", "cylindrical", "spherical")
+
+
+def _shaft_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of a shaft bearing that its designation gives."""
+    found = designated_or_any(raw["designation"])
+    sizes = {"bore": found.bore, "outside_diameter": found.outside_diameter, "width": found.width}
+    keys: dict[str, Any] = {key: f"{1e3 * size:g} mm" for key, size in sizes.items()}
+    keys |= {"type": found.type, "cage": found.cage}
+    keys |= {"series": found.series} if found.series and raw.get("model") == "skf-2018" else {}
+    if found.contact_angle and not {"axial_factor", "contact_angle"} & raw.keys():
+        keys["contact_angle"] = f"{math.degrees(found.contact_angle):.4g} deg"
+    return keys
+
+
+def _planet_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of a planet bearing that its designation gives."""
+    found = designated_or_any(raw["designation"], "NU 2210")
+    if found.type not in PLANET_BEARINGS:  # its key has that problem
+        found = designated_or_any("NU 2210")
+    clearance = radial_clearance(found.bore)
+    inner = found.pitch_diameter - found.element_diameter - clearance / 2
+    sizes = {"roller_diameter": found.element_diameter, "roller_length": found.element_length}
+    sizes |= {"pin_diameter": inner, "diametral_clearance": clearance}
+    keys: dict[str, Any] = {key: f"{1e3 * size:.6g} mm" for key, size in sizes.items()}
+    keys |= {"rows": found.rows, "rollers_per_row": found.elements, "cage": found.cage}
+    keys |= {"roller_roughness": "0.1 um", "race_roughness": "0.15 um"}
+    return keys | {"type": found.type}
+
+
+def _thrust_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of a thrust bearing that its designation gives."""
+    try:
+        bore, outside, _ = thrust_bearing(str(raw["designation"]))
+    except KeyError:  # its key has that problem
+        bore, outside, _ = thrust_bearing("51108")
+    return {"mean_diameter": f"{1e3 * (bore + outside) / 2:g} mm"}
+
+
+def _checked(text: str) -> DesignatedBearing:
+    try:
+        return designated(text)
+    except KeyError as error:
+        reason = "is not known; it must be a size of the ISO plans, such as "
+        reason += '"6208", "NU 2210", "32006", "NKI 40/30"'
+        raise KeyError(reason, error.args[0] or "Give the dimensions instead") from None
+
+
+def _checked_planet(text: str) -> None:
+    kind = _checked(text).type
+    if kind not in PLANET_BEARINGS:
+        reason = (
+            f"is a {kind} bearing; planets have needle, cylindrical or spherical rollers, or a "
+        )
+        remedy = 'Choose one such as "NU 2210", "22220", "NKI 40/30" or "K 40x48x20"'
+        raise KeyError(f"{reason}a [planet_pin]", remedy)
+
+
+def _checked_thrust(text: str) -> None:
+    try:
+        thrust_bearing(text)
+    except KeyError as error:
+        reason = 'is not known; it must be a size of ISO 104, such as "51108"'
+        raise KeyError(reason, error.args[0] or "Give mean_diameter instead") from None
+
+
+CHECKS: Mapping[str, Callable[[str], object]] = {
+    "shaft": _checked,
+    "planet": _checked_planet,
+    "thrust": _checked_thrust,
+}
+"""Raise `KeyError` with a reason and a remedy for designations of no such bearing."""
+KEYS: Mapping[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
+    "shaft": _shaft_keys,
+    "planet": _planet_keys,
+    "thrust": _thrust_keys,
+}
+"""The keys that a designation gives."""

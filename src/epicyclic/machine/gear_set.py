@@ -23,17 +23,19 @@ from epicyclic.machine.element import (
     joined_key,
 )
 from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshResult, solve_mesh
-from epicyclic.machine.planet_pin import PinFigures, PlanetPin, solve_pin
 from epicyclic.machine.planets import (
     BearingFigures,
     LoadSharing,
+    PinFigures,
     PlanetBearing,
     PlanetContact,
     PlanetLoad,
+    PlanetPin,
     missing_bearing,
     planet_load,
     planet_shares,
     solve_bearing,
+    solve_pin,
     tilt_planet,
 )
 from epicyclic.machine.pocket_flow import MeshFlow, mesh_flows

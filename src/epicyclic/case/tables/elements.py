@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -23,70 +22,38 @@ if TYPE_CHECKING:
     from epicyclic.losses.loss_table import LossTable
 
 
-def _known_designation(text: str) -> str:
-    from epicyclic.losses.designations import designated  # cases without one need it not
+def _of(kind: str) -> AfterValidator:
+    """That a designation is one of a kind of bearings."""
 
-    try:
-        designated(text)
-    except KeyError as error:
-        allowed = 'a size of the ISO plans, such as "6208", "NU 2210", "32006", "NKI 40/30"'
-        remedy = error.args[0] or "Give the dimensions of the bearing instead"
-        context = {"allowed": allowed, "remedy": remedy}
-        raise PydanticCustomError("preset", "is not known; it must be {allowed}", context) from None
-    return text
+    def known(text: str) -> str:
+        from epicyclic.losses import designations  # cases without one need it not
 
+        try:
+            designations.CHECKS[kind](text)
+        except KeyError as error:
+            context = {"remedy": error.args[1]}
+            raise PydanticCustomError("preset", error.args[0], context) from None
+        return text
 
-Designation = Annotated[str, Field(max_length=40), AfterValidator(_known_designation)]
-
-
-def _of_shaft_bearing(raw: dict[str, Any]) -> dict[str, Any]:
-    """The keys of a shaft bearing that its designation gives; those of the user go first."""
-    from epicyclic.losses.designations import designated_or_any
-
-    found = designated_or_any(raw["designation"])
-    sizes = {"bore": found.bore, "outside_diameter": found.outside_diameter, "width": found.width}
-    keys = {key: f"{1e3 * size:g} mm" for key, size in sizes.items()}
-    keys |= {"type": found.type, "cage": found.cage}
-    keys |= {"series": found.series} if found.series and raw.get("model") == "skf-2018" else {}
-    if found.contact_angle and not {"axial_factor", "contact_angle"} & raw.keys():
-        keys["contact_angle"] = f"{math.degrees(found.contact_angle):.4g} deg"
-    return keys | raw
+    return AfterValidator(known)
 
 
-PLANET_BEARINGS = ("needle", "cylindrical", "spherical")
+def _filled(kind: str) -> Any:
+    """Keys that a designation gives, where the user gives it and not them."""
+
+    def fill(raw: dict[str, Any]) -> dict[str, Any]:
+        from epicyclic.losses import designations
+
+        return designations.KEYS[kind](raw) | raw
+
+    return model_validator(mode="before")(
+        lambda raw: fill(raw) if isinstance(raw, dict) and raw.get("designation") else raw
+    )
 
 
-def _known_planet_bearing(text: str) -> str:
-    from epicyclic.losses.designations import designated
-
-    kind = designated(_known_designation(text)).type
-    if kind not in PLANET_BEARINGS:
-        context = {"remedy": 'Choose one such as "NU 2210", "22220", "NKI 40/30" or "K 40x48x20"'}
-        reason = (
-            f"is a {kind} bearing; planets have {', '.join(PLANET_BEARINGS[:-1])} or spherical "
-        )
-        raise PydanticCustomError("preset", f"{reason}roller bearings, or [planet_pin]", context)
-    return text
-
-
-PlanetDesignation = Annotated[str, Field(max_length=40), AfterValidator(_known_planet_bearing)]
-
-
-def _of_planet_bearing(raw: dict[str, Any]) -> dict[str, Any]:
-    """The keys of a planet bearing that its designation gives; those of the user go first."""
-    from epicyclic.losses.designations import designated_or_any, radial_clearance
-
-    found = designated_or_any(raw["designation"], "NU 2210")
-    if found.type not in PLANET_BEARINGS:  # its key has that problem
-        found = designated_or_any("NU 2210")
-    clearance = radial_clearance(found.bore)
-    inner = found.pitch_diameter - found.element_diameter - clearance / 2
-    sizes = {"roller_diameter": found.element_diameter, "roller_length": found.element_length}
-    sizes |= {"pin_diameter": inner, "diametral_clearance": clearance}
-    keys: dict[str, Any] = {key: f"{1e3 * size:.6g} mm" for key, size in sizes.items()}
-    keys |= {"rows": found.rows, "rollers_per_row": found.elements, "cage": found.cage}
-    keys |= {"roller_roughness": "0.1 um", "race_roughness": "0.15 um"}
-    return keys | {"type": found.type} | raw
+ShaftDesignation = Annotated[str, Field(max_length=40), _of("shaft")]
+PlanetDesignation = Annotated[str, Field(max_length=40), _of("planet")]
+ThrustDesignation = Annotated[str, Field(max_length=40), _of("thrust")]
 
 
 class PlanetBearing(Table):
@@ -141,11 +108,7 @@ class PlanetBearing(Table):
     row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
     material: NamedMaterial = option("Material of rollers and races.", "steel")
 
-    _fill = model_validator(mode="before")(
-        lambda raw: (
-            _of_planet_bearing(raw) if isinstance(raw, dict) and raw.get("designation") else raw
-        )
-    )
+    _fill = _filled("planet")
 
 
 class PlanetPin(Table):
@@ -163,29 +126,10 @@ class PlanetPin(Table):
     material: NamedMaterial = option("Material of the pin.", "steel")
 
 
-def _known_thrust_bearing(text: str) -> str:
-    from epicyclic.losses.designations import thrust_bearing
+class PlainPins(Table):
+    """What has planets that may turn on plain pins."""
 
-    try:
-        thrust_bearing(text)
-    except KeyError as error:
-        remedy = error.args[0] or "Give mean_diameter instead"
-        reason = 'is not known; it must be a size of ISO 104, such as "51108"'
-        raise PydanticCustomError("preset", reason, {"remedy": remedy}) from None
-    return text
-
-
-ThrustDesignation = Annotated[str, Field(max_length=40), AfterValidator(_known_thrust_bearing)]
-
-
-def _of_thrust_bearing(raw: dict[str, Any]) -> dict[str, Any]:
-    from epicyclic.losses.designations import thrust_bearing
-
-    try:
-        bore, outside, _ = thrust_bearing(str(raw["designation"]))
-    except KeyError:  # its key has that problem
-        bore, outside, _ = thrust_bearing("51108")
-    return {"mean_diameter": f"{1e3 * (bore + outside) / 2:g} mm"} | raw
+    planet_pin: PlanetPin | None = None
 
 
 class Carrier(Table):
@@ -207,11 +151,7 @@ class ThrustBearing(Table):
     viscous_factor: Number = option("f0 (Harris).", 3.5, ge=0, le=100)
     count: int = Field(default=1, ge=1, le=10)
 
-    _fill = model_validator(mode="before")(
-        lambda raw: (
-            _of_thrust_bearing(raw) if isinstance(raw, dict) and raw.get("designation") else raw
-        )
-    )
+    _fill = _filled("thrust")
 
 
 Force = Annotated[float, Quantity("a force", "N", "N", low=0.0, high=1e9)]
@@ -328,7 +268,7 @@ class ShaftBearingTable(ElementTable):
 
     shaft: str = Field(description="The shaft in its bore.")
     against: str = option("The body that holds its outer ring.", "housing")
-    designation: Designation | None = option(
+    designation: ShaftDesignation | None = option(
         "6208, NU 2210, 32006, NKI 40/30, ...: type and sizes by the ISO plans and estimated load "
         "ratings, where they are not given."
     )
@@ -416,11 +356,7 @@ class ShaftBearingTable(ElementTable):
     reference_speed: ReferenceSpeed | None = option("For the minimum load of cylindrical rollers.")
     table: LossTableTable | None = option("Loss table for model = table.")
 
-    _fill = model_validator(mode="before")(
-        lambda raw: (
-            _of_shaft_bearing(raw) if isinstance(raw, dict) and raw.get("designation") else raw
-        )
-    )
+    _fill = _filled("shaft")
 
     def problems(self) -> Iterator[Problem]:
         # cases without bearings need it not
