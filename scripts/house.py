@@ -18,13 +18,17 @@ from itertools import combinations
 from pathlib import Path
 
 SOURCE = Path(__file__).parents[1] / "src" / "epicyclic"
-ADDED_TO_THE_CORE = {"friction of rough flanks": 340, "tapered bearings, rolling contained": 290}
+ADDED_TO_THE_CORE = {
+    "friction of rough flanks": 340,
+    "tapered bearings, rolling contained": 290,
+    "bearings by designation, pairs of bearings, plain pins": 1_000,
+}
 ADDED = {**ADDED_TO_THE_CORE, "losses that others measured": 640}
 """Lines of what was added since the house was built, which the changelog counts apart."""
 CEILINGS = {
     "lines": 72_000 + sum(ADDED.values()),
     "lines of the core": 56_000 + sum(ADDED_TO_THE_CORE.values()),
-    "lines of case": 4_500,
+    "lines of case": 4_520,
     "files": 280,
     "longest chain of imports": 25,
     "modules loaded by epicyclic.case.case": 45,

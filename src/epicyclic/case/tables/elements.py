@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -22,38 +23,28 @@ if TYPE_CHECKING:
     from epicyclic.losses.loss_table import LossTable
 
 
-def _of(kind: str) -> AfterValidator:
-    """That a designation is one of a kind of bearings."""
+def _known(kind: str, text: str) -> str:
+    """A designation that is one of a kind of bearings."""
+    from epicyclic.losses import designations  # cases without one need it not
 
-    def known(text: str) -> str:
-        from epicyclic.losses import designations  # cases without one need it not
-
-        try:
-            designations.CHECKS[kind](text)
-        except KeyError as error:
-            context = {"remedy": error.args[1]}
-            raise PydanticCustomError("preset", error.args[0], context) from None
-        return text
-
-    return AfterValidator(known)
+    try:
+        designations.CHECKS[kind](text)
+    except KeyError as error:
+        context = {"remedy": error.args[1]}
+        raise PydanticCustomError("preset", error.args[0], context) from None
+    return text
 
 
-def _filled(kind: str) -> Any:
-    """Keys that a designation gives, where the user gives it and not them."""
+def _filled(kind: str, raw: dict[str, Any]) -> dict[str, Any]:
+    """A table with the keys that its designation gives; those of the user go first."""
+    from epicyclic.losses import designations
 
-    def fill(raw: dict[str, Any]) -> dict[str, Any]:
-        from epicyclic.losses import designations
-
-        return designations.KEYS[kind](raw) | raw
-
-    return model_validator(mode="before")(
-        lambda raw: fill(raw) if isinstance(raw, dict) and raw.get("designation") else raw
-    )
+    return designations.KEYS[kind](raw) | raw
 
 
-ShaftDesignation = Annotated[str, Field(max_length=40), _of("shaft")]
-PlanetDesignation = Annotated[str, Field(max_length=40), _of("planet")]
-ThrustDesignation = Annotated[str, Field(max_length=40), _of("thrust")]
+ShaftDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "shaft"))]
+PlanetDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "planet"))]
+ThrustDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "thrust"))]
 
 
 class PlanetBearing(Table):
@@ -108,7 +99,11 @@ class PlanetBearing(Table):
     row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
     material: NamedMaterial = option("Material of rollers and races.", "steel")
 
-    _fill = _filled("planet")
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            _filled("planet", raw) if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
 
 
 class PlanetPin(Table):
@@ -151,7 +146,11 @@ class ThrustBearing(Table):
     viscous_factor: Number = option("f0 (Harris).", 3.5, ge=0, le=100)
     count: int = Field(default=1, ge=1, le=10)
 
-    _fill = _filled("thrust")
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            _filled("thrust", raw) if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
 
 
 Force = Annotated[float, Quantity("a force", "N", "N", low=0.0, high=1e9)]
@@ -356,7 +355,11 @@ class ShaftBearingTable(ElementTable):
     reference_speed: ReferenceSpeed | None = option("For the minimum load of cylindrical rollers.")
     table: LossTableTable | None = option("Loss table for model = table.")
 
-    _fill = _filled("shaft")
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            _filled("shaft", raw) if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
 
     def problems(self) -> Iterator[Problem]:
         # cases without bearings need it not
