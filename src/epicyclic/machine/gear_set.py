@@ -19,6 +19,7 @@ from epicyclic.machine.element import (
     ElementResult,
     Figures,
     Loss,
+    Note,
     State,
     joined_key,
 )
@@ -44,6 +45,7 @@ from epicyclic.units import NEWTON, format_number
 WORTH_A_NOTE = 0.1
 """Centrifugal force of an estimated mass over the load on a bearing, from which a note says so: it
 stands square to the force of the teeth, and changes the load by 0.5 %. [1]"""
+LEAST_PULL = 10.0  # Force of rotation on a roller from which a note says so. [N]
 ROUNDING = 1e-12  # Torques as small as this, relatively, are the rounding of a difference. [1]
 
 
@@ -127,7 +129,7 @@ class Planet:
             volume = math.pi / 4 * rollers.roller_diameter**2 * rollers.roller_length
             pull = self.bearing.roller_density * volume * self.pin_radius * carrier_speed**2
             count = rollers.rows * rollers.rollers_per_row
-            if count * pull > WORTH_A_NOTE * load.force:
+            if pull > LEAST_PULL and count * pull > WORTH_A_NOTE * load.force:
                 found = (self._roller_note(where, pull, load.force),)
         if not self.mass_estimated or force < WORTH_A_NOTE * load.force:
             return found
@@ -138,8 +140,8 @@ class Planet:
             f"{NEWTON.text(force, 3)} of the {NEWTON.text(load.force, 3)} on the bearing.",
         )
 
-    def _roller_note(self, where: str, pull: float, force: float) -> str:
-        return (
+    def _roller_note(self, where: str, pull: float, force: float) -> Note:
+        return Note(
             f"{where}: the carrier presses each roller outward with {NEWTON.text(pull, 3)}, beside "
             f"{NEWTON.text(force, 3)} on the bearing. Unloaded rollers roll under this force and "
             "press on their cage, which the loss leaves out."
