@@ -257,3 +257,68 @@ def test_torque_does_not_load_the_bearings_of_a_symmetric_planet_ring():
     for reaction in found:
         assert reaction.force.radial < 10 * ROUNDING * one
     assert found[0].z == pytest.approx(3 * 50.0 / RADIUS * TAN_BETA, rel=ROUNDING)
+
+
+# --- bearings with contact angles -----------------------------------------------------------------
+
+PUSHED = ShaftLoad(0.03, (2100.0, -900.0, 1700.0), (40.0, 70.0))
+
+
+def pair(sense, ratios=(0.3125, 0.41), places=(0.0, 0.095), preload=0.0):
+    """Two bearings that take forces in opposite senses, the first one in `sense`."""
+    other = "negative" if sense == "positive" else "positive"
+    return [
+        Support(place, axial, ratio, preload)
+        for place, axial, ratio in zip(places, (sense, other), ratios, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("sense", ["positive", "negative"])
+@pytest.mark.parametrize("thrust", [-9000.0, -600.0, 0.0, 130.0, 8000.0])
+def test_bearings_with_contact_angles_press_each_other(sense, thrust):
+    load = ShaftLoad(0.03, (2100.0, -900.0, thrust), (40.0, 70.0))
+    supports = pair(sense)
+    found = [reaction.force for reaction in bearing_reactions(supports, [load])]
+    induced = [one.thrust_ratio * own.radial for one, own in zip(supports, found, strict=True)]
+    sign = 1 if sense == "positive" else -1
+    # F_1 - F_2 = K along the first; neither below what it induces, and one of the two at it
+    assert found[0].axial - found[1].axial == pytest.approx(sign * thrust, rel=1e-9, abs=1e-9)
+    over = [own.axial - least for own, least in zip(found, induced, strict=True)]
+    assert min(over) == pytest.approx(0.0, abs=1e-9)
+    assert max(over) >= 0
+
+
+def test_mirrored_arrangements_give_mirrored_reactions():
+    for sense in ("positive", "negative"):
+        supports = pair(sense)
+        found = bearing_reactions(supports, [PUSHED])
+        # seen from the other end: z and y turn round, and each bearing takes the other sense
+        turned = [
+            Support(-one.position, pair(one.axial)[1].axial, one.thrust_ratio) for one in supports
+        ]
+        x, y, z = PUSHED.force
+        seen = ShaftLoad(-0.03, (x, -y, -z), (PUSHED.moment[0], -PUSHED.moment[1]))
+        for own, mirrored in zip(found, bearing_reactions(turned, [seen]), strict=True):
+            assert (own.x, -own.y, -own.z) == pytest.approx((mirrored.x, mirrored.y, mirrored.z))
+
+
+def test_preload_is_shared_until_one_bearing_is_free():
+    axial = [
+        [own.force.axial for own in bearing_reactions(pair("positive", preload=preload), [PUSHED])]
+        for preload in (0.0, 3000.0, 5000.0)
+    ]
+    assert axial[1] == pytest.approx([3000 + 850, 3000 - 850])
+    assert axial[2] == pytest.approx([5000 + 850, 5000 - 850])
+    # beyond twice the preload one bearing has only what its radial force induces
+    pulled = ShaftLoad(0.03, (2100.0, -900.0, 30e3), (40.0, 70.0))
+    first, second = bearing_reactions(pair("positive", preload=3000.0), [pulled])
+    assert second.force.axial == pytest.approx(0.41 * second.force.radial)
+    assert first.force.axial == pytest.approx(30e3 + second.force.axial)
+
+
+def test_one_angular_bearing_against_a_locating_one():
+    supports = [Support(0.0, "positive", 0.5), Support(0.2, "both")]
+    load = ShaftLoad(0.05, (0.0, 4000.0, -100.0))
+    angular, ball = bearing_reactions(supports, [load])
+    assert angular.force.axial == pytest.approx(0.5 * 3000)
+    assert ball.z == pytest.approx(1600)

@@ -12,7 +12,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic import library
-from epicyclic.build.elements import build_element
+from epicyclic.build.elements import build_element, catalogue_bearing
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import bearing_viscous_loss
@@ -20,6 +20,7 @@ from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.shaft_bearing import (
     RIB_ROUGHNESS,
     STARVATION,
+    AxialSpring,
     BearingLoad,
     CatalogueBearing,
     PalmgrenModel,
@@ -33,6 +34,7 @@ from epicyclic.losses.shaft_bearing import (
     harris_coefficient,
     load_moment,
     minimum_load,
+    preload_of,
     roller_loads,
     rolling_force,
     seal_moment,
@@ -747,3 +749,122 @@ def test_unknown_shafts_are_found(oil, tmp_path):
     assert first.key == "shaft"
     assert "'input'" in first.remedy
     assert second.key == "against"
+
+
+# --- angular contact bearings and pairs -----------------------------------------------------------
+
+
+def test_loads_of_angular_contact_balls():
+    # at 40 degrees 0.9 cot(alpha) = 1.073, Y0 = 0.26 and e = 1.14 of ISO 281 and 76
+    bearing = CatalogueBearing(
+        "angular-contact", 40e-3, 80e-3, axial_factor=0.4 / math.tan(math.radians(40)),
+        static_load_rating=23e3,
+    )  # fmt: skip
+    load = BearingLoad(1000.0, 2500.0)
+    assert friction_load(bearing, load) == pytest.approx(1.07257 * 2500 - 100, rel=1e-5)
+    assert static_load(bearing, load) == pytest.approx(500 + 0.26 * 2500, rel=1e-9)
+    assert bearing.thrust_ratio == pytest.approx(1.14)
+    assert harris_coefficient(bearing, load) == pytest.approx(0.001 * 0.05**0.33, rel=1e-9)
+    # a = B/2 + (d + D)/4 tan(alpha), as catalogues print: 34 mm for a 7208 B
+    assert 9e-3 + bearing.centre_offset == pytest.approx(34e-3, abs=0.5e-3)
+
+
+def test_pressure_centre_of_a_tapered_bearing():
+    # 30208: a = 16 mm from the back face of T = 19.75 mm, e = 1.5 tan(alpha) = 0.37 (catalogue)
+    taper = replace(TAPER, axial_factor=1.6)
+    assert 19.75e-3 / 2 + taper.centre_offset == pytest.approx(17e-3, abs=1.1e-3)
+    assert taper.thrust_ratio == pytest.approx(1 / 3.2)
+
+
+def test_preload_by_displacement():
+    springs = AxialSpring(15, 10.4e-3, 12.6e-3, 0.245), AxialSpring(17, 11e-3, 0.0, 0.7)
+    force = preload_of(25e-6, springs)
+    assert sum(spring.approach(force) for spring in springs) == pytest.approx(25e-6, rel=1e-9)
+    # rollers nearly linear, balls with the power 2/3 (Palmgren)
+    assert springs[0].approach(2 * force) == pytest.approx(2**0.9 * springs[0].approach(force))
+    assert springs[1].approach(8 * force) == pytest.approx(4 * springs[1].approach(force))
+
+
+TAPERED_PAIR = {
+    "bearings.middle_front": {
+        "shaft": "middle", "position": "-4 mm", "designation": "32009", "model": "palmgren"},
+    "bearings.middle_rear": {
+        "shaft": "middle", "position": "74 mm", "designation": "32008", "model": "palmgren"},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def pair_case():
+    none = dict.fromkeys(TAPERED_PAIR)
+    return ep.load_case("train-eaxle").updated(none).updated(TAPERED_PAIR)
+
+
+def _axial(case):
+    figures = ep.solve(case).parts
+    return {
+        name: figures[f"{name}.bearing"].axial_force for name in ("middle_front", "middle_rear")
+    }
+
+
+def test_pair_in_a_case_induces_thrust_and_states_its_arrangement(pair_case):
+    result = ep.solve(pair_case)
+    assert sum("X is assumed" in note for note in result.warnings) == 2
+    for name in ("middle_front", "middle_rear"):
+        own = result.parts[f"{name}.bearing"]
+        ratio = catalogue_bearing(pair_case.bearings[name]).thrust_ratio
+        assert own.axial_force >= ratio * own.radial_force * (1 - 1e-9)
+    named = pair_case.updated({"bearings.middle_front.arrangement": "X"})
+    same = ep.solve(named)
+    assert same.total == result.total
+    assert not any("X is assumed" in note for note in same.warnings)
+    other = ep.solve(pair_case.updated({"bearings.middle_rear.arrangement": "O"}))
+    assert other.total != result.total
+
+
+def test_arrangements_mirrored_give_mirrored_results(pair_case):
+    """In a mirror across the shafts all positions and hands turn round, and X stays X."""
+    for arrangement in ("X", "O"):
+        own = pair_case.updated({"bearings.middle_front.arrangement": arrangement})
+        turned = own.updated(
+            {
+                **{
+                    f'positions."{key}"': f"{-1e3 * place} mm"
+                    for key, place in own.positions.items()
+                },
+                **{
+                    f"bearings.{name}.position": f"{-1e3 * table.position} mm"
+                    for name, table in own.bearings.items()
+                    if table.position is not None
+                },
+                "sets.pair.hand": "right",
+                "sets.planets.hand": "left",
+            }
+        )
+        assert ep.solve(turned).total == pytest.approx(ep.solve(own).total, rel=1e-9)
+        assert _axial(turned) == pytest.approx(_axial(own), rel=1e-9)
+
+
+def test_preload_in_a_case(pair_case):
+    least = min(_axial(pair_case).values())
+    pressed = _axial(pair_case.updated({"bearings.middle_rear.preload": "90 kN"}))
+    assert min(pressed.values()) > 60e3 > least
+    near = _axial(pair_case.updated({"bearings.middle_rear.preload_displacement": "80 um"}))
+    assert min(near.values()) > least
+
+
+@pytest.mark.parametrize(
+    ("keys", "key"),
+    [
+        ({"bearings.motor_rear.preload": "1 kN"}, "motor_rear.preload"),
+        ({"bearings.motor_rear.arrangement": "O"}, "motor_rear.arrangement"),
+        ({"bearings.middle_rear.arrangement": "O", "bearings.middle_front.arrangement": "X"},
+         "middle_front.arrangement"),
+        ({"bearings.middle_rear.arrangement": "O", "bearings.middle_rear.axial_sense": "positive"},
+         "middle_rear.arrangement"),
+        ({"bearings.middle_rear.type": "angular-contact", "bearings.middle_rear.designation": None,
+          "bearings.middle_rear.bore": "40 mm", "bearings.middle_rear.outside_diameter": "80 mm"},
+         "middle_rear.contact_angle"),
+    ],
+)  # fmt: skip
+def test_pairs_that_contradict_themselves(pair_case, keys, key):
+    assert only(problems_of(pair_case.updated, keys)).key == f"bearings.{key}"

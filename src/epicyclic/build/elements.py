@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from epicyclic.case.tables.elements import DragTable, SealTable, ShaftBearingTable, between
+from epicyclic.losses.designations import DesignatedBearing, designated, with_elements
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
     DEFAULT_FLANGE_COEFFICIENTS,
@@ -22,6 +23,7 @@ from epicyclic.losses.shaft_bearing import (
     ROLLER_FILL,
     ROLLER_LENGTH,
     STARVATION,
+    AxialSpring,
     BearingLoad,
     BearingModel,
     CatalogueBearing,
@@ -31,6 +33,7 @@ from epicyclic.losses.shaft_bearing import (
     TableModel,
     TaperedModel,
     full_film_friction,
+    preload_of,
     seal_moment,
     skf_constants,
     skf_supply,
@@ -51,7 +54,7 @@ def _bearing(
     return ShaftBearing(
         key=name,
         between=bodies,
-        bearing=_catalogue_bearing(table),
+        bearing=catalogue_bearing(table),
         model=_bearing_model(table, oil, folder),
         force=force,
         minimum_load_factor=table.minimum_load_factor,
@@ -59,20 +62,55 @@ def _bearing(
     )
 
 
-def _catalogue_bearing(table: ShaftBearingTable) -> CatalogueBearing:
+def catalogue_bearing(table: ShaftBearingTable) -> CatalogueBearing:
+    """The bearing that a table describes, with estimated ratings if it names a designation."""
     axial_factor = table.axial_factor
     if axial_factor is None and table.contact_angle is not None:
         axial_factor = 0.4 / math.tan(table.contact_angle)
+    dynamic, static, estimated = table.dynamic_load_rating, table.static_load_rating, ""
+    if table.designation is not None and (dynamic is None or static is None):
+        own = designated(table.designation)
+        estimated = table.designation
+        dynamic = dynamic or own.dynamic_load_rating
+        static = static or own.static_load_rating
     return CatalogueBearing(
         type=table.type,
         bore=table.bore,
         outside_diameter=table.outside_diameter,
         width=_known(table.width),
         cage=table.cage,
-        dynamic_load_rating=_known(table.dynamic_load_rating),
-        static_load_rating=_known(table.static_load_rating),
+        dynamic_load_rating=_known(dynamic),
+        static_load_rating=_known(static),
         axial_factor=_known(axial_factor),
+        estimated=estimated,
     )
+
+
+def is_angular(table: ShaftBearingTable) -> bool:
+    """True if radial force induces an axial one in the bearing."""
+    return table.type in ("tapered", "angular-contact")
+
+
+def axial_preload(table: ShaftBearingTable, other: ShaftBearingTable) -> float:
+    """Axial force with which two bearings of a shaft press each other from the start. [N]"""
+    force = max(table.preload or 0.0, other.preload or 0.0)
+    approach = max(table.preload_displacement or 0.0, other.preload_displacement or 0.0)
+    if approach:
+        force = max(force, preload_of(approach, (_spring(table), _spring(other))))
+    return force
+
+
+def _spring(table: ShaftBearingTable) -> AxialSpring:
+    angle = catalogue_bearing(table).contact_angle
+    size = 1e3 * table.bore, 1e3 * table.outside_diameter, 1e3 * (table.width or 0.0)
+    if table.type == "angular-contact":
+        fits = with_elements(DesignatedBearing("", table.type, *size, angle))
+        return AxialSpring(fits.elements, fits.element_diameter, 0.0, angle)
+    diameter, count = _rollers(table)
+    length = table.roller_length or ROLLER_LENGTH * (
+        table.width or 0.8 * (table.outside_diameter - table.bore) / 2
+    )
+    return AxialSpring(count, diameter, length, angle)
 
 
 def _known(value: float | None) -> float:
@@ -102,12 +140,18 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
     )
 
 
+def _rollers(table: ShaftBearingTable) -> tuple[float, int]:
+    """Diameter and number of the rollers of a tapered bearing."""
+    diameter = table.roller_diameter or ROLLER_DIAMETER * (table.outside_diameter - table.bore)
+    pitch_circle = math.pi * (table.outside_diameter + table.bore) / 2
+    return diameter, table.rollers or max(4, int(ROLLER_FILL * pitch_circle / diameter))
+
+
 def _tapered_model(table: ShaftBearingTable, oil: Oil, length: float) -> TaperedModel:
     height = table.outside_diameter - table.bore
-    diameter = table.roller_diameter or ROLLER_DIAMETER * height
-    pitch_circle = math.pi * (table.outside_diameter + table.bore) / 2
+    diameter, count = _rollers(table)
     return TaperedModel(
-        rollers=table.rollers or max(4, int(ROLLER_FILL * pitch_circle / diameter)),
+        rollers=count,
         roller_diameter=diameter,
         roller_length=length,
         rib_height=table.rib_height or RIB_HEIGHT * height,

@@ -10,6 +10,7 @@ from typing import cast
 
 from epicyclic.build.models import SetCase, contact_modulus, mesh_models, oil_share, solid_of
 from epicyclic.case.tables.elements import PlanetBearing as BearingTable
+from epicyclic.case.tables.elements import PlanetPin as PinTable
 from epicyclic.case.tables.models import Numerics
 from epicyclic.contact.elastic_teeth import GearBody, Rim
 from epicyclic.contact.line_contact import Flanks
@@ -20,15 +21,18 @@ from epicyclic.gears.gearing import Gearing, outside_radius, outward_of, rim_thi
 from epicyclic.gears.mesh import Mesh
 from epicyclic.gears.stated import StatedGear
 from epicyclic.losses.drag import Dipped
+from epicyclic.losses.journal_bearing import JournalBearing
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.losses.windage import DragModel, Teeth, Turning
+from epicyclic.machine.convection import GRAVITY_TEMPERATURE, WATER
 from epicyclic.machine.disc import Disc, Jets, Sump, ThrustBearing
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import GearMesh, MeshModels
 from epicyclic.machine.gear_set import GearSet, LossChoice, Planet, PlanetMesh, Reference
-from epicyclic.machine.planets import LoadSharing, PlanetBearing
+from epicyclic.machine.planets import LoadSharing, PlanetBearing, PlanetPin
+from epicyclic.oil.oil import oil_state
 
 # How the oil of a case meets the bodies that turn in it.
 
@@ -85,6 +89,9 @@ CAGED_PALMGREN = 0.0003
 """f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
 FULL_COMPLEMENT_PALMGREN = 0.00055
 """f1 of a full-complement roller bearing. Talbot (2012), p. 56. [1]"""
+SPHERICAL_PALMGREN = 0.00025
+"""f1 of spherical roller bearings, 0.0005 (P0/C0)^0.33 at a tenth of the static rating; catalogue
+of FAG, second hand. [1]"""
 VISCOUS_FACTOR_PER_ROW = 3.0
 """f0 of one row of caged cylindrical rollers, middle of 2.2-4.0. Talbot (2012), p. 130. [1]"""
 
@@ -223,6 +230,11 @@ def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
     ]
     made = [(gearing.gear(name), table) for name, table in gears.items()]
     pin = f"{planet}_pin" if gearing.listed else "pin"
+    own: PlanetBearing | PlanetPin | None = None
+    if isinstance(bearing, PinTable):
+        own = planet_pin(case, bearing, planet)
+    elif bearing is not None:
+        own = planet_bearing(case, bearing, planet)
     no_bearing = f"bearing of {planet}" if gearing.listed else "[planet_bearing]"
     return Planet(
         key=f"{planet}_bearing",
@@ -231,7 +243,7 @@ def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
         meshes=tuple(_planet_meshes(gearing, planet)),
         mass=sum(stated) if stated else planet_mass(made, bearing),
         mass_estimated=not stated,
-        bearing=None if bearing is None else planet_bearing(case, bearing, planet),
+        bearing=own,
         no_bearing=f"the case has no {no_bearing}",
         tilts=case.models.planet_tilt == "coupled",
         nodes=(joined_key(key, planet), joined_key(key, pin)),
@@ -258,13 +270,17 @@ def _planet_meshes(gearing: Gearing, planet: str) -> Iterator[PlanetMesh]:
             )
 
 
-def planet_mass(gears: Iterable[tuple[Gear, StatedGear]], bearing: BearingTable | None) -> float:
+def planet_mass(
+    gears: Iterable[tuple[Gear, StatedGear]], bearing: BearingTable | PinTable | None
+) -> float:
     """Mass of a planet with its rollers, from its sizes: discs to the reference circles. [kg]
 
     Theory (B19).
     """
     bore = rollers = 0.0
-    if bearing is not None:
+    if isinstance(bearing, PinTable):
+        bore = bearing.pin_diameter + bearing.diametral_clearance
+    elif bearing is not None:
         bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
         volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
         rollers = bearing.rows * bearing.rollers_per_row * volume * bearing.material.density
@@ -284,6 +300,8 @@ def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBea
     factor, palmgren = table.viscous_factor, table.palmgren_coefficient
     if palmgren is None:
         palmgren = CAGED_PALMGREN if table.cage == "caged" else FULL_COMPLEMENT_PALMGREN
+        if table.type == "spherical":
+            palmgren = SPHERICAL_PALMGREN
     return PlanetBearing(
         bearing=roller_bearing(table, case.numerics),
         model=case.fitted_rolling("bearing_rolling_loss") if is_fitted else name,
@@ -292,7 +310,29 @@ def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBea
         conductivity=table.material.thermal_conductivity,
         oil_held=case.models.oil_beyond_range == "held",
         palmgren_beyond=name == FITTED_OR_PALMGREN,
+        roller_density=table.material.density,
+        aligns_itself=table.type == "spherical",
     )
+
+
+def planet_pin(case: SetCase, table: PinTable, planet: str) -> PlanetPin:
+    """The plain pin of a planet in the bore of its widest gear."""
+    oil, own = case.lubricant.oil, case.gearing.gears_of(planet)
+    material = case.gearing.tables[max(own, key=lambda name: case.gearing.gear(name).face_width)]
+    friction, capacity = table.boundary_friction, oil.specific_heat_capacity
+    stated = oil_state(oil, GRAVITY_TEMPERATURE)
+    bearing = JournalBearing(
+        inner_diameter=table.pin_diameter,
+        length=table.length,
+        diametral_clearance=table.diametral_clearance,
+        roughness=math.hypot(table.pin_roughness, table.bore_roughness),
+        # E' of asperities is half of E_eq
+        contact_modulus=contact_modulus(table.material, material.material) / 2,
+        boundary_friction=stated.boundary_friction if friction is None else friction,
+        conductance=table.pin_diameter * table.material.thermal_conductivity,
+        oil_flow=table.oil_flow,
+    )
+    return PlanetPin(bearing, stated.density / WATER, None if capacity is None else capacity.value)
 
 
 def roller_bearing(table: BearingTable, numerics: Numerics) -> RollerBearing:

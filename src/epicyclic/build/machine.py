@@ -7,8 +7,9 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
-from epicyclic.build.elements import build_element
+from epicyclic.build.elements import axial_preload, build_element, catalogue_bearing, is_angular
 from epicyclic.build.gear_sets import gear_set
 from epicyclic.build.models import SetCase, fluids_of, oil_share, set_cases, with_lubrication
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
@@ -24,7 +25,15 @@ from epicyclic.contact.temperatures import LUBRICATION_FACTORS
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import Flags, ValidityFlag
-from epicyclic.machine.convection import Fluid, air, mixture, oil_conductivity, oil_heat_capacity
+from epicyclic.machine.convection import (
+    GRAVITY_TEMPERATURE,
+    WATER,
+    Fluid,
+    air,
+    mixture,
+    oil_conductivity,
+    oil_heat_capacity,
+)
 from epicyclic.machine.element import (
     OIL,
     Element,
@@ -50,7 +59,7 @@ from epicyclic.machine.heat import (
     settle,
 )
 from epicyclic.machine.machine import GearSeat, Machine, Operation, ShaftLayout, Support
-from epicyclic.machine.planets import PlanetLoad
+from epicyclic.machine.planets import PinFigures, PlanetLoad, PlanetPin
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import lossless_state, solve_machine
 from epicyclic.machine.train_shape import mesh_rows
@@ -60,8 +69,6 @@ from epicyclic.result.result import Layout, in_words
 # From the tables of a case to the model of its temperatures.
 
 
-GRAVITY_TEMPERATURE = 288.75  # 15.6 degC, at which the specific gravity of petroleum is stated. [K]
-WATER = 999.0  # Density of water there. [kg/m^3]
 IN_BATH = ("dip", "submerged")
 
 
@@ -358,15 +365,53 @@ class Built:
 
 def shaft_layouts(case: TrainCase, sets: Mapping[str, GearSet]) -> Iterator[ShaftLayout]:
     """What stands along each shaft with a bearing whose force is computed."""
-    supports: dict[str, dict[str, Support]] = {}
+    for shaft, tables in _borne(case).items():
+        own = {name: _support(tables, name) for name in tables}
+        yield ShaftLayout(own, tuple(_seats(case, shaft, sets)))
+
+
+Tables = Mapping[str, ShaftBearingTable]
+
+
+def _borne(case: TrainCase) -> Mapping[str, Tables]:
+    """The bearings whose forces are computed, by their shafts and names."""
+    found: dict[str, dict[str, ShaftBearingTable]] = {}
     for kind, name, table in case.elements:
         if kind == "bearings" and isinstance(table, ShaftBearingTable) and needs_force(table):
-            shaft = case.shape.names[table.shaft]
-            supports.setdefault(shaft, {})[name] = Support(
-                table.position or 0.0, table.axial_sense if table.locating else "none"
-            )
-    for shaft, own in supports.items():
-        yield ShaftLayout(own, tuple(_seats(case, shaft, sets)))
+            found.setdefault(case.shape.names[table.shaft], {})[name] = table
+    return found
+
+
+def _support(tables: Tables, name: str) -> Support:
+    """A bearing of a shaft as a support, at its pressure centre. Theory (J30)."""
+    table = tables[name]
+    bearing, place = catalogue_bearing(table), table.position or 0.0
+    sense, outer = table.axial_sense if table.locating else "none", 0.0
+    others = [other for key, other in tables.items() if key != name]
+    if bearing.thrust_ratio and table.axial_sense != "both":
+        sense = table.axial_sense
+    elif bearing.thrust_ratio and len(others) == 1:
+        (other,) = others
+        arrangement = table.arrangement or other.arrangement
+        if arrangement or is_angular(other) or (other.locating and not table.locating):
+            first = place < (other.position or 0.0)
+            sense = "positive" if first == (arrangement == "O") else "negative"
+    if bearing.thrust_ratio and sense in ("positive", "negative"):
+        outer = -bearing.centre_offset if sense == "positive" else bearing.centre_offset
+    preload = max((axial_preload(table, others[0]) for _ in others[:1]), default=0.0)
+    return Support(place + outer, sense, bearing.thrust_ratio, preload)
+
+
+def _assumed_pairs(case: TrainCase) -> set[str]:
+    """Bearings of pairs whose arrangement nobody states."""
+    return {
+        name
+        for tables in _borne(case).values()
+        if len(tables) == 2
+        and all(is_angular(one) and one.axial_sense == "both" for one in tables.values())
+        and not any(one.arrangement for one in tables.values())
+        for name in tables
+    }
 
 
 def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator[GearSeat]:
@@ -480,11 +525,15 @@ def _distances(case: TrainCase) -> dict[str, int]:
 
 def _parts(case: TrainCase) -> Iterator[Element]:
     """Bearings, seals and other drags."""
+    assumed = _assumed_pairs(case)
     for kind, name, table in case.elements:
         assert case.lubricant is not None
-        yield build_element(
+        element = build_element(
             kind, name, table, shafts=case.shape.names, oil=case.lubricant.oil, folder=case.folder
         )
+        if name in assumed and isinstance(element, ShaftBearing):
+            element = replace(element, arrangement_assumed=True)
+        yield element
 
 
 def _layout(case: TrainCase, elements: list[Element]) -> Layout:
@@ -500,6 +549,7 @@ def _layout(case: TrainCase, elements: list[Element]) -> Layout:
             losses += [f"{name}.{term}" for term in element.choices]
             meshes += [f"{name}.{mesh.key}" for mesh in element.meshes]
             bearings += [f"{name}.{planet.key}" for planet in element.planets if planet.bearing]
+            parts += [(f"{name}.{key}", kind) for key, kind in pin_figures(element)]
         else:
             losses += [f"{name}.{term}" for term in element.terms]
             parts += [(f"{name}.{item}", kind) for item, kind in element.figure_types]
@@ -512,6 +562,11 @@ def _layout(case: TrainCase, elements: list[Element]) -> Layout:
         parts=tuple(parts),
         fluid=case.computed,
     )
+
+
+def pin_figures(own: GearSet) -> list[tuple[str, type[Any]]]:
+    """The figures of the films on plain pins, which other planets do not have."""
+    return [(key, kind) for key, kind in own.figure_types if issubclass(kind, PinFigures)]
 
 
 # From any case to the machine that it describes.
@@ -543,6 +598,7 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
     bodies = {body: body for body in (*members, *gearing.planets)}
     element = gear_set("", own, bodies, (operation.input, operation.output, *others), tables)
     rows = tuple(mesh_rows("", gearing, bodies))
+    own_bearing = element.planets[0].bearing if element.planets else None
     return Built(
         machine=Machine(tuple(bodies), rows, (element,)),
         operation=operation,
@@ -554,6 +610,7 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
             members,
             tuple(mesh.key for mesh in gearing.meshes),
             tuple(f"{planet}_bearing" for planet in gearing.planets),
+            parts=tuple(pin_figures(element)) if isinstance(own_bearing, PlanetPin) else (),
             shares=bool(gearing.planets),
         ),
     )

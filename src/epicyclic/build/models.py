@@ -10,7 +10,7 @@ from typing import Protocol, cast
 
 from epicyclic import library
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
-from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, PlanetPin, ThrustBearing
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -87,7 +87,8 @@ class SetCase:
     numerics: Numerics
     losses: Mapping[str, LossOption]  # In the order in which they are shown.
     sharing: LoadSharing | None  # None without planets.
-    bearings: Mapping[str, PlanetBearing | None]  # By the body of the planets.
+    # By the body of the planets.
+    bearings: Mapping[str, PlanetBearing | PlanetPin | None]
     carrier: Carrier | None
     thrust_bearing: ThrustBearing | None
     lubrication: LubricationTable | None
@@ -137,7 +138,10 @@ class SetCase:
     def bearing_model(self, body: str) -> str:
         """The model of the loss of the bearing of a planet."""
         bearing = self.bearings[body]
-        if self.models.bearing == "auto" and bearing is not None and bearing.cage != "caged":
+        if isinstance(bearing, PlanetPin):
+            return "reynolds"
+        plain = bearing is None or (bearing.cage == "caged" and bearing.type != "spherical")
+        if self.models.bearing == "auto" and not plain:
             return "palmgren"
         return self._model("bearing", FITTED_OR_PALMGREN, "palmgren")
 
@@ -217,6 +221,7 @@ def set_cases(case: Case) -> dict[str, SetCase]:
     for name, table in tables.items():
         gearing, parts = case.gearings[name], vars(table)
         bearing, own = parts.get("planet_bearing"), parts.get("planet_bearings", {})
+        bearing = bearing or parts.get("planet_pin")
         losses = dict(table.losses)
         if isinstance(table, ListedSet):
             losses = {term: losses.get(term, LossOption()) for term in gearing.terms}

@@ -38,6 +38,7 @@ from epicyclic.case.tables.elements import (
     Carrier,
     ElementTable,
     ElementTables,
+    PlainPins,
     PlanetBearing,
     ThrustBearing,
     between,
@@ -843,7 +844,7 @@ class _SetTables(CaseTable):
         return self._gearings
 
 
-class PlanetaryCase(_SetTables):
+class PlanetaryCase(_SetTables, PlainPins):
     """A planetary gear set with its oil, surroundings and operating point."""
 
     kind: Literal["planetary"]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epicyclic.case.expand import expand
-from epicyclic.case.tables.elements import Carrier, PlanetBearing, ShaftBearingTable
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, PlanetPin, ShaftBearingTable
 from epicyclic.case.tables.models import (
     ContactSolver,
     FrictionTable,
@@ -84,9 +84,10 @@ def cross_check(
         problems += check_ways_out(thermal, models.temperatures, own)
     if gearing is not None and not checked:
         problems += set_problems(gearing)
-        bearing = sections.get("planet_bearing")
-        if isinstance(bearing, PlanetBearing) and gearing.planets:
-            problems += check_bores(gearing, {"planet_bearing": (bearing, gearing.planets)})
+        for key in ("planet_bearing", "planet_pin"):
+            bearing = sections.get(key)
+            if isinstance(bearing, PlanetBearing | PlanetPin) and gearing.planets:
+                problems += check_bores(gearing, {key: (bearing, gearing.planets)})
     sharing = sections.get("load_sharing")
     toothed = {"sun", "planet", "ring"} <= sections.keys()
     if isinstance(sharing, LoadSharing) and toothed and not checked:
@@ -126,12 +127,14 @@ def _too_open(carrier: Carrier) -> list[Problem]:
 def check_bores(
     gearing: Gearing,
     # By the key of a bearing: its table, and the planets that it carries.
-    bearings: Mapping[str, tuple[PlanetBearing, Sequence[str]]],
+    bearings: Mapping[str, tuple[PlanetBearing | PlanetPin, Sequence[str]]],
 ) -> Iterator[Problem]:
     """Bearings must fit into the root circles of their planets."""
     sound, _ = gears_by_name(gearing)  # others are reported with the gears
     for key, (bearing, planets) in bearings.items():
-        bore = bearing.pin_diameter + 2 * bearing.roller_diameter + bearing.diametral_clearance
+        bore = bearing.pin_diameter + bearing.diametral_clearance
+        if isinstance(bearing, PlanetBearing):
+            bore += 2 * bearing.roller_diameter
         for body in planets:
             roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
             if roots and bore >= 2 * min(roots):
@@ -147,13 +150,25 @@ def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Proble
     for name, bearing in own.items():
         yield from check_rollers(bearing, f"planet_bearings.{name}")
         yield from check_cage(bearing, table.models)
-    found = {
+    found: dict[str, tuple[PlanetBearing | PlanetPin, Sequence[str]]] = {
         f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
     }
     if table.planet_bearing is not None:
         others = [body for body in gearing.planets if body not in own]
         found["planet_bearing"] = table.planet_bearing, others
+    if table.planet_pin is not None:
+        found["planet_pin"] = (
+            table.planet_pin,
+            [body for body in gearing.planets if body not in own],
+        )
+        if table.planet_bearing is not None:
+            yield from _both_bearings(table.planet_bearing, table.planet_pin)
     yield from check_bores(gearing, found)
+
+
+def _both_bearings(_: PlanetBearing, __: PlanetPin) -> Iterator[Problem]:
+    allowed = "is given together with [planet_bearing]; a planet turns on one of them."
+    yield Problem("planet_pin", "", allowed, "Delete one of the two tables.")
 
 
 def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
@@ -195,7 +210,7 @@ def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
         if table.planets is not None:
             allowed = "is given, but no gear is on a carrier."
             yield Problem("planets", str(table.planets), allowed, remedy)
-        for name in ("planet_bearing", "carrier"):
+        for name in ("planet_bearing", "planet_pin", "carrier"):
             if getattr(table, name) is not None:
                 yield Problem(name, "", "belongs to planets, and the set has none.", remedy)
     for name in table.planet_bearings:
@@ -230,6 +245,13 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
 
 def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]:
     """The model of the bearing loss must be for bearings of this kind."""
+    if bearing.type == "spherical" and (models.bearing not in ("auto", "palmgren")):
+        allowed = "has no spherical rollers."
+        remedy = 'Write bearing = "palmgren" or "auto".'
+        return [Problem("models.bearing", f'"{models.bearing}"', allowed, remedy)]
+    if bearing.type == "spherical" and models.planet_tilt == "coupled":
+        allowed = "does not apply to spherical roller bearings, which align themselves."
+        return [Problem("models.planet_tilt", '"coupled"', allowed, 'Write "left-out".')]
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
     allowed = "applies to caged bearings; rollers of a full-complement bearing rub on each other, "
@@ -378,6 +400,7 @@ _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = 
     (check_rollers, ("planet_bearing",)),
     (lambda it: _too_open(it) if it.open_width > it.width else (), ("carrier",)),
     (check_cage, ("planet_bearing", "models")),
+    (_both_bearings, ("planet_bearing", "planet_pin")),
     (_check_friction_table, ("friction_table",)),
     (_check_resolution, ("models", "numerics")),
     (_check_void, ("models", "surroundings")),
@@ -462,6 +485,16 @@ def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Prob
         allowed = f"has {len(own)} bearings on {shaft}; statics gives the forces of only two."
         yield Problem("bearings", names, allowed, "Give radial_force of all but two.")
     places = [table.position for table in own.values() if table.position is not None]
+    pair = {table.type for table in own.values()} <= {"tapered", "angular-contact"}
+    for name, table in own.items():
+        for key in ("preload", "preload_displacement"):
+            angular = table.type in ("tapered", "angular-contact")
+            if angular and getattr(table, key) is not None and not (pair and len(own) == 2):
+                allowed = f"needs two tapered or angular contact bearings on {shaft}."
+                yield Problem(f"bearings.{name}.{key}", "", allowed, "Delete it.")
+    if len({table.arrangement for table in own.values()} - {None}) > 1:
+        allowed = f"differs between the bearings of {shaft}."
+        yield Problem(f"bearings.{next(iter(own))}.arrangement", "", allowed, "Give it once.")
     if len(own) == 2 and len(places) == 2 and places[0] == places[1]:
         key = f"bearings.{next(iter(own))}.position"
         allowed = f"is also that of the other bearing of {shaft}."

@@ -20,7 +20,13 @@ from epicyclic.case.gear_tables import (
     internal_if_negative,
     with_positive_teeth,
 )
-from epicyclic.case.tables.elements import Carrier, PlanetBearing, ThrustBearing
+from epicyclic.case.tables.elements import (
+    Carrier,
+    PlainPins,
+    PlanetBearing,
+    PlanetPin,
+    ThrustBearing,
+)
 from epicyclic.case.tables.models import (
     GearPairLosses,
     GearPairModels,
@@ -90,7 +96,7 @@ class GivenListedGear(GivenGear):
     planet: bool | None = _PLANET
 
 
-class PlanetarySet(Table):
+class PlanetarySet(PlainPins):
     """A planetary set whose losses are computed: the tables of a planetary case."""
 
     gears: Gears
@@ -234,6 +240,7 @@ class ListedSet(_Listed):
         "Bearing of every planet that planet_bearings does not name."
     )
     planet_bearings: dict[str, PlanetBearing] = option("Bearings by the body of the planet.", {})
+    planet_pin: PlanetPin | None = option("Plain pin of planets without such a bearing.")
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     lubrication: LubricationTable | None = LUBRICATION

@@ -63,6 +63,8 @@ BEARING_RELIABILITY = {
     "mixed-ehl": "calibrated on three printed losses of one bearing; a fourth, with smoother "
     "rollers, is reproduced within 10 %",
     "palmgren": "its source gives a range of a factor of 2 for caged rollers",
+    "reynolds": "solutions of a rigid aligned bearing, within 1 % of published ones; not compared "
+    "with measured planets, and in mixed friction as uncertain as its boundary friction",
 }
 """How well each model is known to be right, as a phrase."""
 

@@ -11,6 +11,7 @@ from importlib import resources
 from typing import Any, ClassVar, Literal
 
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure, inlet_film_factor
+from epicyclic.losses.designations import between
 from epicyclic.losses.drag import (
     RPM,
     SPEED_PARAMETER,
@@ -24,10 +25,16 @@ from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.oil.oil import OilState
 from epicyclic.units import MILLIMETRE, MILLIPASCAL_SECOND, NUMBER
 
-BearingType = Literal["deep-groove", "cylindrical", "tapered", "needle"]
+BearingType = Literal["deep-groove", "cylindrical", "tapered", "needle", "angular-contact"]
 Cage = Literal["caged", "full-complement"]
 
-BEARING_TYPES: tuple[BearingType, ...] = ("deep-groove", "cylindrical", "tapered", "needle")
+BEARING_TYPES: tuple[BearingType, ...] = (
+    "deep-groove",
+    "cylindrical",
+    "tapered",
+    "needle",
+    "angular-contact",
+)
 DEFAULT_VISCOUS_FACTORS: Mapping[tuple[BearingType, Cage], float] = {
     ("deep-groove", "caged"): 2.0,
     ("cylindrical", "caged"): 3.0,
@@ -35,6 +42,7 @@ DEFAULT_VISCOUS_FACTORS: Mapping[tuple[BearingType, Cage], float] = {
     ("tapered", "caged"): 6.0,
     ("needle", "caged"): 12.0,
     ("needle", "full-complement"): 12.0,
+    ("angular-contact", "caged"): 3.3,
 }
 """f0 in an oil bath, Harris (1991); general knowledge. The keys are the bearings there are. [1]"""
 DEFAULT_COEFFICIENTS: Mapping[tuple[BearingType, Cage], float] = {
@@ -44,8 +52,9 @@ DEFAULT_COEFFICIENTS: Mapping[tuple[BearingType, Cage], float] = {
     ("tapered", "caged"): 0.0004,
     ("needle", "caged"): 0.0005,
     ("needle", "full-complement"): 0.00055,
+    ("angular-contact", "caged"): 0.0005,
 }
-"""f1, Harris (1991); second hand. Deep groove: at a seventh of the static rating. Caged needle
+"""f1, Harris (1991); second hand. Balls: at a seventh of the static rating. Caged needle
 rollers: an estimate, printed values run up to 0.002. [1]"""
 DEFAULT_FLANGE_COEFFICIENTS: Mapping[Cage, float] = {"caged": 0.002, "full-complement": 0.003}
 """f_f of cylindrical roller bearings with oil, Harris (1991); general knowledge. [1]"""
@@ -56,6 +65,13 @@ DEFAULT_MINIMUM_LOAD_FACTORS: Mapping[BearingType, float] = {
 """k_r in the middle of SKF's product tables; general knowledge. [1]"""
 MINIMUM_LOAD_SHARE = 0.02
 """Least load of tapered and needle roller bearings over their dynamic load rating (SKF). [1]"""
+MINIMUM_BALL_SHARE = 0.01
+"""The same of angular contact ball bearings, SKF's rule of thumb for balls; second hand. [1]"""
+_STATIC_AXIAL = ((15, 0.46), (20, 0.42), (25, 0.38), (30, 0.33), (35, 0.29), (40, 0.26), (45, 0.22))
+"""Y0 of angular contact ball bearings by their angle in degrees, ISO 76. [1]"""
+_THRUST_RATIOS = ((15, 0.46), (20, 0.57), (25, 0.68), (30, 0.8), (35, 0.95), (40, 1.14), (45, 1.34))
+"""e of angular contact ball bearings by their angle in degrees, ISO 281; at 15 degrees, where it
+depends on the load, its middle. [1]"""
 PALMGREN_METHOD = "load-dependent moment after Palmgren"
 HARRIS_METHOD = "load-dependent moment after Harris"
 HARRIS_SOURCE = "T. A. Harris, Rolling Bearing Analysis, 3rd ed. (1991), second hand"
@@ -107,8 +123,29 @@ class CatalogueBearing:
     cage: Cage = "caged"  # ``"caged"`` or ``"full-complement"``.
     dynamic_load_rating: float = math.nan  # C; NaN where it is unknown. [N]
     static_load_rating: float = math.nan  # C0; NaN where it is unknown. [N]
-    # Y of a tapered roller bearing, 0.4 cot of its contact angle; NaN for other types. [1]
+    # 0.4 cot of the contact angle, Y of a tapered roller bearing; NaN without such an angle. [1]
     axial_factor: float = math.nan
+    # A designation whose load ratings here are estimates; empty if they are not.
+    estimated: str = ""
+
+    @property
+    def contact_angle(self) -> float:
+        """Of a tapered or angular contact bearing. [rad]"""
+        return math.atan(0.4 / self.axial_factor)
+
+    @property
+    def thrust_ratio(self) -> float:
+        """Axial force that a radial one induces, over it; 0 without an angle. Theory (J29). [1]"""
+        if self.type == "tapered":
+            return 1 / (2 * self.axial_factor)
+        if self.type == "angular-contact":
+            return between(_THRUST_RATIOS, math.degrees(self.contact_angle))
+        return 0.0
+
+    @property
+    def centre_offset(self) -> float:
+        """From the middle to where the lines of contact meet the axis. Theory (J30). [m]"""
+        return self.pitch_diameter / 2 * math.tan(self.contact_angle) if self.thrust_ratio else 0.0
 
     @property
     def pitch_diameter(self) -> float:
@@ -130,11 +167,12 @@ class FrictionPart:
 def bearing_types(model: str) -> tuple[BearingType, ...]:
     """The bearing types of a model, as a case names it.
 
-    Neither Harris's table nor SKF's has needle roller bearings.
+    Neither Harris's table nor SKF's here has needle roller bearings, SKF's no angular contact ones.
     """
     if model == "zhou-hoeprich":
         return ("tapered",)
-    return BEARING_TYPES if model in ("auto", "palmgren", "table") else BEARING_TYPES[:3]
+    lacking = {"harris": ("needle",), "skf-2018": ("needle", "angular-contact")}
+    return tuple(kind for kind in BEARING_TYPES if kind not in lacking.get(model, ()))
 
 
 # --- Palmgren and Harris --------------------------------------------------------------------------
@@ -143,9 +181,12 @@ def bearing_types(model: str) -> tuple[BearingType, ...]:
 def friction_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
     """Load P1 that sets the load-dependent friction of a bearing. Theory (J1). [N]
 
-    Deep groove: the larger of F_r and 3 F_a - 0.1 F_r; tapered: of F_r and 2 Y F_a; cylindrical and
-    needle: F_r. Harris (1991), second hand.
+    Deep groove: the larger of F_r and 3 F_a - 0.1 F_r; angular contact: of F_r and
+    0.9 cot(alpha) F_a - 0.1 F_r; tapered: of F_r and 2 Y F_a; cylindrical and needle: F_r. Harris
+    (1991), second hand.
     """
+    if bearing.type == "angular-contact":
+        return max(load.radial, 2.25 * bearing.axial_factor * load.axial - 0.1 * load.radial)
     if bearing.type == "deep-groove":
         return max(load.radial, 3 * load.axial - 0.1 * load.radial)
     if bearing.type == "tapered" and load.axial > 0:
@@ -156,9 +197,12 @@ def friction_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
 def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
     """Equivalent static load P0 of ISO 76. Theory (J2). [N]
 
-    Deep groove: the larger of F_r and 0.6 F_r + 0.5 F_a; tapered: of F_r and 0.5 F_r + 0.55 Y F_a;
-    cylindrical and needle: F_r.
+    Deep groove: the larger of F_r and 0.6 F_r + 0.5 F_a; angular contact: of F_r and
+    0.5 F_r + Y0 F_a; tapered: of F_r and 0.5 F_r + 0.55 Y F_a; cylindrical and needle: F_r.
     """
+    if bearing.type == "angular-contact":
+        Y0 = between(_STATIC_AXIAL, math.degrees(bearing.contact_angle))
+        return max(load.radial, 0.5 * load.radial + Y0 * load.axial)
     if bearing.type == "deep-groove":
         return max(load.radial, 0.6 * load.radial + 0.5 * load.axial)
     if bearing.type == "tapered" and load.axial > 0:
@@ -169,15 +213,17 @@ def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
 def harris_coefficient(bearing: CatalogueBearing, load: BearingLoad) -> float:
     """Coefficient f1 after Harris. Theory (J3). [1]
 
-    Deep groove: 0.0009 (P0/C0)^0.55; rollers: constant, 0.0003 caged cylindrical, 0.00055 full
-    complement, 0.0004 tapered. Harris (1991), second hand. Raises `ValueError` for needle roller
-    bearings, which Harris's table does not have.
+    Deep groove: 0.0009 (P0/C0)^0.55; angular contact: 0.001 (P0/C0)^0.33; rollers: constant, 0.0003
+    caged cylindrical, 0.00055 full complement, 0.0004 tapered. Harris (1991), second hand. Raises
+    `ValueError` for needle roller bearings, which Harris's table does not have.
     """
     if bearing.type not in bearing_types("harris"):
         raise ValueError(f"Harris gives no coefficient for {bearing.type} bearings")
-    if bearing.type != "deep-groove":
+    if bearing.type not in ("deep-groove", "angular-contact"):
         return DEFAULT_COEFFICIENTS[bearing.type, bearing.cage]
     ratio = static_load(bearing, load) / bearing.static_load_rating
+    if bearing.type == "angular-contact":
+        return 0.001 * math.pow(ratio, 0.33)
     return 0.0009 * math.pow(ratio, 0.55)
 
 
@@ -279,11 +325,55 @@ class TableModel:
         )
 
 
+# --- preload --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class AxialSpring:
+    """How the rings of a tapered or angular contact bearing approach each other."""
+
+    elements: int
+    diameter: float  # D_w. [m]
+    length: float  # Of a roller; 0 for balls. [m]
+    contact_angle: float  # [rad]
+
+    def approach(self, force: float) -> float:
+        """Axial approach of the rings under an axial force, after Palmgren. Theory (J32). [m]
+
+        Examples
+        --------
+        >>> round(1e6 * AxialSpring(14, 12e-3, 0.0, 0.7).approach(1000.0), 1)
+        7.2
+        """
+        sine = math.sin(self.contact_angle)
+        Q = force / (self.elements * sine)
+        if not self.length:
+            return 1e-3 * 4.4e-4 / sine * math.cbrt(Q**2 / (1e3 * self.diameter))
+        return 1e-3 * 7.7e-5 / sine * math.pow(Q, 0.9) / math.pow(1e3 * self.length, 0.8)
+
+
+def preload_of(displacement: float, springs: tuple[AxialSpring, AxialSpring]) -> float:
+    """Force with which two bearings press each other if their rings approach so far. [N]
+
+    `displacement` is that of both bearings together. [m]
+    """
+    from scipy.optimize import brentq
+
+    high = 1.0
+    while sum(spring.approach(high) for spring in springs) < displacement:
+        high *= 2
+    return float(
+        brentq(
+            lambda force: sum(spring.approach(force) for spring in springs) - displacement, 0, high
+        )
+    )
+
+
 # --- load and range -------------------------------------------------------------------------------
 
 
 def minimum_load(
-    bearing: CatalogueBearing,  # Tapered and needle rollers need its dynamic load rating.
+    bearing: CatalogueBearing,  # All but deep groove and cylindrical need its dynamic load rating.
     speed: float,  # Speed of one ring against the other. [rad/s]
     viscosity: float,  # Kinematic, of the oil. [m^2/s]
     # k_r of the product table; by default 0.025 (deep groove) or 0.15 (cylindrical). [1]
@@ -298,6 +388,8 @@ def minimum_load(
     """
     if bearing.type in ("tapered", "needle"):
         return MINIMUM_LOAD_SHARE * bearing.dynamic_load_rating
+    if bearing.type == "angular-contact":
+        return MINIMUM_BALL_SHARE * bearing.dynamic_load_rating
     k_r = DEFAULT_MINIMUM_LOAD_FACTORS[bearing.type] if factor is None else factor
     size = 1e3 * k_r * (10 * bearing.pitch_diameter) ** 2
     if bearing.type == "deep-groove":

@@ -16,6 +16,9 @@ from epicyclic.oil.oil import AIR_GAS_CONSTANT, MixtureState, air_viscosity
 AIR_HEAT_CAPACITY = 1004.7  # 3.5 R of dry air, ISO 2533. [J/(kg K)]
 KELVIN = 273.15  # 0 degC in kelvin.
 
+GRAVITY_TEMPERATURE = 288.75  # 15.6 degC, at which the specific gravity of petroleum is stated. [K]
+WATER = 999.0  # Density of water there. [kg/m^3]
+
 
 @dataclass(frozen=True, slots=True)
 class Fluid:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -18,6 +19,7 @@ from epicyclic.machine.element import (
     ElementResult,
     Figures,
     Loss,
+    Note,
     State,
     joined_key,
 )
@@ -25,13 +27,16 @@ from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshRes
 from epicyclic.machine.planets import (
     BearingFigures,
     LoadSharing,
+    PinFigures,
     PlanetBearing,
     PlanetContact,
     PlanetLoad,
+    PlanetPin,
     missing_bearing,
     planet_load,
     planet_shares,
     solve_bearing,
+    solve_pin,
     tilt_planet,
 )
 from epicyclic.machine.pocket_flow import MeshFlow, mesh_flows
@@ -40,6 +45,7 @@ from epicyclic.units import NEWTON, format_number
 WORTH_A_NOTE = 0.1
 """Centrifugal force of an estimated mass over the load on a bearing, from which a note says so: it
 stands square to the force of the teeth, and changes the load by 0.5 %. [1]"""
+LEAST_PULL = 10.0  # Force of rotation on a roller from which a note says so. [N]
 ROUNDING = 1e-12  # Torques as small as this, relatively, are the rounding of a difference. [1]
 
 
@@ -86,7 +92,7 @@ class Planet:
     meshes: tuple[PlanetMesh, ...]
     mass: float = 0.0  # Mass of one planet with its rollers. [kg]
     mass_estimated: bool = False  # True if no case states it.
-    bearing: PlanetBearing | None = None
+    bearing: PlanetBearing | PlanetPin | None = None
     no_bearing: str = ""  # Why there is none.
     tilts: bool = False  # True if the planet tilts in its bearing and misaligns its meshes.
     nodes: tuple[str, str] = (OIL, OIL)  # The thermal nodes of the planets and of their pins.
@@ -101,7 +107,7 @@ class Planet:
         contacts = self._contacts(duties)
         centrifugal = self.centrifugal(carrier_speed)
         idle = all(contact.duty.torque1 == 0 for contact in contacts)
-        if not self.tilts or self.bearing is None or idle:
+        if not self.tilts or not isinstance(self.bearing, PlanetBearing) or idle:
             load = planet_load(contacts, centrifugal)
         else:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
@@ -112,15 +118,33 @@ class Planet:
         return self.mass * self.pin_radius * carrier_speed**2
 
     def notes(self, carrier_speed: float, load: PlanetLoad) -> tuple[str, ...]:
-        """That its mass is estimated, where that matters."""
-        force = self.centrifugal(carrier_speed)
+        """That its mass is estimated, and what its rollers weigh, where that matters.
+
+        Theory (B20).
+        """
+        force, where = self.centrifugal(carrier_speed), self.key.replace("_", " ")
+        found: tuple[str, ...] = ()
+        if isinstance(self.bearing, PlanetBearing):
+            rollers = self.bearing.bearing
+            volume = math.pi / 4 * rollers.roller_diameter**2 * rollers.roller_length
+            pull = self.bearing.roller_density * volume * self.pin_radius * carrier_speed**2
+            count = rollers.rows * rollers.rollers_per_row
+            if pull > LEAST_PULL and count * pull > WORTH_A_NOTE * load.force:
+                found = (self._roller_note(where, pull, load.force),)
         if not self.mass_estimated or force < WORTH_A_NOTE * load.force:
-            return ()
-        where = self.key.replace("_", " ")
+            return found
         return (
+            *found,
             f"{where}: the mass of a planet is not given. Estimated from its dimensions, it is "
             f"{format_number(self.mass, 3)} kg and its centrifugal force is "
             f"{NEWTON.text(force, 3)} of the {NEWTON.text(load.force, 3)} on the bearing.",
+        )
+
+    def _roller_note(self, where: str, pull: float, force: float) -> Note:
+        return Note(
+            f"{where}: the carrier presses each roller outward with {NEWTON.text(pull, 3)}, beside "
+            f"{NEWTON.text(force, 3)} on the bearing. Unloaded rollers roll under this force and "
+            "press on their cage, which the loss leaves out."
         )
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
@@ -243,6 +267,11 @@ class GearSet:
         return (
             *((mesh.key, MeshFigures) for mesh in self.meshes),
             *((planet.key, BearingFigures) for planet in self.planets if planet.bearing),
+            *(
+                (f"{planet.key}_film", PinFigures)
+                for planet in self.planets
+                if isinstance(planet.bearing, PlanetPin)
+            ),
         )
 
     def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
@@ -314,7 +343,8 @@ class GearSet:
             return (1.0,)
         bearing = self.planets[0].bearing
         duties = self.duties(state, torques, 1 / self.count)
-        return planet_shares(self.sharing, duties, None if bearing is None else bearing.bearing)
+        rollers = bearing.bearing if isinstance(bearing, PlanetBearing) else None
+        return planet_shares(self.sharing, duties, rollers)
 
     def _torques(self, state: State, drags: Drags | None = None) -> dict[str, float]:
         """Torque at the first gear of each mesh, all planets together."""
@@ -397,16 +427,20 @@ class GearSet:
             duties |= {duty.gears.key: duty for duty in tilted}
             if planet.bearing is not None:
                 notes += planet.notes(carrier, load)
+            speed = state.speeds[planet.body] - carrier
+            oil = state.fluids.at(joined_key(self.key, planet.key))
             if planet.bearing is None:
                 bearings.append(missing_bearing(planet.key, planet.no_bearing))
+            elif isinstance(planet.bearing, PlanetPin):
+                bearings.append(solve_pin(planet.key, planet.bearing, load, planets, oil, speed))
+                notes += bearings[-1].notes
             else:
-                speed = state.speeds[planet.body] - carrier
                 bearing = solve_bearing(
                     planet.key,
                     planet.bearing,
                     load,
                     planets,
-                    state.fluids.at(joined_key(self.key, planet.key)),
+                    oil,
                     speed,
                     last_rollers.get((planet.key, share)),
                 )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from epicyclic.contact.temperatures import Solid
 from epicyclic.gears.gear import HOUSING, Gear
+from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.machine.convection import SPLASHED_WALL, Fluid, dipped_disc, disc_coefficient
 from epicyclic.machine.element import OIL, ElementResult, State, joined_key
 from epicyclic.machine.gear_set import GearSet, Planet
@@ -220,7 +221,12 @@ def gear_set_capacities(own: GearSet) -> dict[str, float]:
         if planet.bearing is not None:
             bearing = planet.bearing.bearing
             diameter = bearing.inner_diameter
-            length = bearing.rows * bearing.roller_length + SEAT_LENGTH * diameter
+            rows = (
+                bearing.rows * bearing.roller_length
+                if isinstance(bearing, RollerBearing)
+                else bearing.length
+            )
+            length = rows + SEAT_LENGTH * diameter
             pin = _stored(STEEL, math.pi / 4 * diameter**2 * length)
             found[planet.nodes[1]] = own.count * pin
             found[carrier_node(own)] = _stored(STEEL, CARRIER_FILL * _carrier_volume(own))

@@ -31,10 +31,13 @@ NEGLIGIBLE = 1e-9
 class Support:
     """A bearing that supports a shaft radially."""
 
-    position: float  # z. [m]
+    position: float  # z, where its reaction meets the axis. [m]
     # The sense of an axial force of the shaft that the bearing takes: ``"positive"`` if it holds a
     # shaft that is pushed towards +z, ``"negative"``, ``"both"``, ``"none"``.
     axial: AxialSense = "none"
+    # Axial force that a radial one induces, over it; 0 for bearings without a contact angle. [1]
+    thrust_ratio: float = 0.0
+    preload: float = 0.0  # Axial, of this bearing and the one that it is set against. [N]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +75,9 @@ def bearing_reactions(
         R_2y = -sum(F_y (z - z_1) - M_x)/(z_2 - z_1)
 
     and the forces R_1 = -R_2 - sum F. The axial force -sum F_z falls on the first support that
-    takes it in this sense; on the first of all if none is marked. Raises `ValueError` if statics
-    alone does not give the reactions; the message says why.
+    takes it in this sense; on the first of all if none is marked. Bearings with a contact angle
+    that another one is set against press each other, (J31). Raises `ValueError` if statics alone
+    does not give the reactions; the message says why.
     """
     if not supports:
         raise ValueError("the shaft has no bearing to carry its loads")
@@ -95,12 +99,42 @@ def bearing_reactions(
         second = -about_first.sum(axis=0) / span
     else:
         _check_single(forces, moments, arms, about_first)
-    axial = _axial_bearing(supports, float(total[2]))
-    radial = (-second - total[:2], second)
-    return tuple(
-        Reaction(float(r[0]), float(r[1]), -float(total[2]) if number == axial else 0.0)
-        for number, r in enumerate(radial[: len(supports)])
-    )
+    radial = (-second - total[:2], second)[: len(supports)]
+    axial = _axial_reactions(supports, [math.hypot(*r) for r in radial], float(total[2]))
+    return tuple(Reaction(float(r[0]), float(r[1]), z) for r, z in zip(radial, axial, strict=True))
+
+
+_TAKES: Mapping[AxialSense, tuple[int, ...]] = {
+    "none": (),
+    "both": (1, -1),
+    "positive": (1,),
+    "negative": (-1,),
+}
+"""Senses of an axial force that a support takes."""
+
+
+def _axial_reactions(
+    supports: Sequence[Support], radial: Sequence[float], thrust: float
+) -> list[float]:
+    """Axial forces of the bearings on the shaft. Theory (J31). [N]
+
+    Of a bearing with a contact angle and the one that it is set against, each carries at least what
+    its own radial force induces, and what the other and the thrust press on it.
+    """
+    for number, other in ((0, 1), (1, 0)) if len(supports) == 2 else ():
+        one, two = supports[number], supports[other]
+        senses = _TAKES[one.axial]
+        if not one.thrust_ratio or len(senses) != 1 or -senses[0] not in _TAKES[two.axial]:
+            continue
+        sense, preload = senses[0], max(one.preload, two.preload)
+        pressed = two.thrust_ratio * radial[other] + sense * thrust
+        # clamped bearings of equal stiffness share an outer force until one of them is free
+        clamped = preload + sense * thrust / 2 if preload else 0.0
+        force = max(one.thrust_ratio * radial[number], pressed, clamped)
+        found = {number: -sense * force, other: sense * force - thrust}
+        return [found[0], found[1]]
+    axial = _axial_bearing(supports, thrust)
+    return [-thrust if number == axial else 0.0 for number in range(len(supports))]
 
 
 def _check_single(

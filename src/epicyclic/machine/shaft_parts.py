@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
 
+from epicyclic.losses.designations import RATING_BAND
 from epicyclic.losses.drag import RPM as ONE_RPM
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
@@ -285,6 +286,7 @@ class ShaftBearing:
     minimum_load_factor: float | None = None  # k_r of SKF; None for the default of the type. [1]
     # Reference speed of a cylindrical roller bearing, for its minimum load. [rad/s]
     reference_speed: float | None = None
+    arrangement_assumed: bool = False  # True if nobody states how it is set against the other one.
 
     figure_types: ClassVar = (("bearing", ShaftBearingFigures),)
 
@@ -356,6 +358,23 @@ class ShaftBearing:
                 "slip; the loss is that of the actual load without slip."
             )
             notes.append(Note(text, watts))
+        if self.arrangement_assumed and load.axial > 0:
+            text = (
+                f"{self.key}: the arrangement with the other bearing of its shaft is not given; X "
+                'is assumed, as is usual for gear shafts. Write arrangement = "X" or "O".'
+            )
+            notes.append(Note(text, watts))
+        if self.bearing.estimated:
+            own = self.bearing
+            text = (
+                f"{self.key}: the load ratings of {own.estimated} are estimates after ISO 281 and "
+                f"ISO 76, C {format_number(own.dynamic_load_rating / 1e3, 3)} kN and C0 "
+                f"{format_number(own.static_load_rating / 1e3, 3)} kN, each "
+                f"±{percent(RATING_BAND, 0)}; limits follow from them, and the friction of balls "
+                "with harris and skf-2018. Give those of the catalogue."
+            )
+            rated = self.model.name in ("harris", "skf-2018") and self.bearing.type != "tapered"
+            notes.append(Note(text, watts if rated else 0.0))
         best, error = TAPERED_ERRORS["zhou-hoeprich"], TAPERED_ERRORS.get(self.model.name, 0.0)
         if self.bearing.type == "tapered" and error > best:
             text = (

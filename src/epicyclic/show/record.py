@@ -203,6 +203,7 @@ def _bearing_of(case: Case, key: str) -> RollerBearing:
     name, _, planets = key.rpartition(".")
     found = next(one.bearing for one in build(case).sets[name].planets if one.key == planets)
     assert found is not None
+    assert isinstance(found.bearing, RollerBearing)
     return found.bearing
 
 

@@ -197,6 +197,7 @@ def planet_bearing(built: Built) -> RollerBearing:
     """The planet bearing of the set of the dissertation."""
     (planet,) = built.sets[""].planets
     assert planet.bearing is not None
+    assert isinstance(planet.bearing.bearing, RollerBearing)
     return planet.bearing.bearing
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, Tag
+from pydantic import AfterValidator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
 
 from epicyclic.case.tables.base import (
     FLANGE_GAP,
@@ -22,10 +24,34 @@ from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
-from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature
+from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature, VolumeFlow
 
 if TYPE_CHECKING:
     from epicyclic.losses.loss_table import LossTable
+
+
+def _known(kind: str, text: str) -> str:
+    """A designation that is one of a kind of bearings."""
+    from epicyclic.losses import designations  # cases without one need it not
+
+    try:
+        designations.CHECKS[kind](text)
+    except KeyError as error:
+        context = {"remedy": error.args[1]}
+        raise PydanticCustomError("preset", error.args[0], context) from None
+    return text
+
+
+def _filled(kind: str, raw: dict[str, Any]) -> dict[str, Any]:
+    """A table with the keys that its designation gives; those of the user go first."""
+    from epicyclic.losses import designations
+
+    return designations.KEYS[kind](raw) | raw
+
+
+ShaftDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "shaft"))]
+PlanetDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "planet"))]
+ThrustDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "thrust"))]
 
 
 class PlanetBearing(Table):
@@ -45,6 +71,13 @@ class PlanetBearing(Table):
         "material": None,
     }
 
+    designation: PlanetDesignation | None = option(
+        "NU 2210, SL18 5010, 22220, NKI 40/30, K 40x48x20: the rollers that fit into the sizes of "
+        "the ISO plans, with normal clearance and ground races, where they are not given."
+    )
+    type: Literal["needle", "cylindrical", "spherical"] = option(
+        "spherical: aligns itself, so that it takes no couple of the meshes.", "cylindrical"
+    )
     rows: int = Field(ge=1, le=4)
     rollers_per_row: int = Field(ge=3, le=200)
     roller_diameter: Length
@@ -61,7 +94,10 @@ class PlanetBearing(Table):
     )
     cage: Literal["caged", "full-complement"] = "caged"
     palmgren_coefficient: Number | None = option(
-        "f1 of the palmgren method. Default: 0.0003 caged, 0.00055 full complement.", gt=0, le=0.05
+        "f1 of the palmgren method. Default: 0.0003 caged, 0.00055 full complement, 0.00025 "
+        "spherical.",
+        gt=0,
+        le=0.05,
     )
     crown_drop: SmallLength = option("Drop of the profile at the roller's end (estimate).", "3 um")
     crown_length_fraction: Number = option(
@@ -69,6 +105,33 @@ class PlanetBearing(Table):
     )
     row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
     material: NamedMaterial = option("Material of rollers and races.", "steel")
+
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            _filled("planet", raw) if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
+
+
+class PlanetPin(Table):
+    """The plain pin on which a planet turns, a journal bearing."""
+
+    pin_diameter: Length
+    length: Length = Field(description="Of the bore that runs on the pin.")
+    diametral_clearance: SmallLength
+    pin_roughness: Roughness
+    bore_roughness: Roughness
+    boundary_friction: Number | None = option(
+        "Of asperities in mixed friction. Default: that of the oil.", gt=0, le=1
+    )
+    oil_flow: VolumeFlow = option("Oil supplied to one pin, which carries heat away.", "0 l/min")
+    material: NamedMaterial = option("Material of the pin.", "steel")
+
+
+class PlainPins(Table):
+    """What has planets that may turn on plain pins."""
+
+    planet_pin: PlanetPin | None = None
 
 
 class Carrier(Table):
@@ -86,12 +149,20 @@ class Carrier(Table):
 class ThrustBearing(Table):
     """A thrust bearing that carries negligible load, for its viscous loss."""
 
+    designation: ThrustDesignation | None = option("51108, ...: its mean diameter by ISO 104.")
+
     mean_diameter: Length
     between: Literal[
         "sun-carrier", "sun-ring", "ring-carrier", "sun-housing", "carrier-housing"
     ] = option("The two parts whose speeds differ.", "carrier-housing")
     viscous_factor: Number = option("f0 (Harris).", 3.5, ge=0, le=100)
     count: int = Field(default=1, ge=1, le=10)
+
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            _filled("thrust", raw) if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
 
 
 Force = Annotated[float, Quantity("a force", "N", "N", low=0.0, high=1e9)]
@@ -208,7 +279,11 @@ class ShaftBearingTable(ElementTable):
 
     shaft: str = Field(description="The shaft in its bore.")
     against: str = option("The body that holds its outer ring.", "housing")
-    type: Literal["deep-groove", "cylindrical", "tapered", "needle"]
+    designation: ShaftDesignation | None = option(
+        "6208, NU 2210, 32006, NKI 40/30, ...: type and sizes by the ISO plans and estimated load "
+        "ratings, where they are not given."
+    )
+    type: Literal["deep-groove", "cylindrical", "tapered", "needle", "angular-contact"]
     bore: Length
     outside_diameter: Length
     width: Length | None = option("Needed for the drag of rollers in an oil bath.")
@@ -229,7 +304,8 @@ class ShaftBearingTable(ElementTable):
         "C0, for ball bearings with harris and skf-2018."
     )
     contact_angle: ContactAngle | None = option(
-        "Contact angle of a tapered roller bearing, instead of axial_factor."
+        "Contact angle of a tapered roller bearing, instead of axial_factor, or of angular contact "
+        "balls."
     )
     axial_factor: Number | None = option(
         "Y of a tapered roller bearing, 0.4 cot of the angle.", gt=0, le=10
@@ -237,21 +313,28 @@ class ShaftBearingTable(ElementTable):
     position: Position | None = option("Along the shaft, for its reactions to the gear forces.")
     locating: bool = option("true: the bearing takes axial force.", False)
     axial_sense: Literal["both", "positive", "negative"] = option(
-        "Direction along the axis in which a locating bearing holds the shaft.", "both"
+        "Direction along the axis in which a locating, tapered or angular contact bearing holds "
+        "the shaft.",
+        "both",
     )
+    arrangement: Literal["X", "O"] | None = option(
+        "Of two tapered or angular contact bearings, instead of axial_sense. Default: X."
+    )
+    preload: Force | None = option("Axial preload of such a pair.")
+    preload_displacement: ShortLength | None = option("The same as the approach of its rings.")
     radial_force: Force | None = option("Radial force instead of the reaction to the gear forces.")
     axial_force: Force | None = option(
         "Axial force in addition to radial_force. Default: none if radial_force is given."
     )
     viscous_factor: Number | None = option(
-        "f0 of palmgren and harris. Default: deep-groove 2, cylindrical 3 or 7.5 (full "
-        "complement), tapered 6, needle 12.",
+        "f0 of palmgren and harris. Default: deep-groove 2, angular-contact 3.3, cylindrical 3 or "
+        "7.5 (full complement), tapered 6, needle 12.",
         ge=0,
         le=100,
     )
     palmgren_coefficient: Number | None = option(
-        "f1 of palmgren. Default: 0.0003, full complement 0.00055, tapered 0.0004, needle 0.0005 "
-        "(estimate).",
+        "f1 of palmgren. Default: 0.0003, full complement 0.00055, tapered 0.0004, angular-contact "
+        "0.0005, needle 0.0005 (estimate).",
         gt=0,
         le=0.05,
     )
@@ -284,11 +367,22 @@ class ShaftBearingTable(ElementTable):
     reference_speed: ReferenceSpeed | None = option("For the minimum load of cylindrical rollers.")
     table: LossTableTable | None = option("Loss table for model = table.")
 
+    _fill = model_validator(mode="before")(
+        lambda raw: (
+            _filled("shaft", raw) if isinstance(raw, dict) and raw.get("designation") else raw
+        )
+    )
+
     def problems(self) -> Iterator[Problem]:
         # cases without bearings need it not
+        from epicyclic.losses.designations import designated_or_any
         from epicyclic.losses.shaft_bearing import DEFAULT_VISCOUS_FACTORS, bearing_types
 
         kind, model = self.type, self.model
+        if self.designation and (own := designated_or_any(self.designation).type) != kind:
+            reason = f"is that of a {own} bearing, and type is {kind}."
+            yield Problem("designation", written(self.designation), reason, "Delete one of them.")
+            return
         if self.bore >= self.outside_diameter:
             reason = f"must be less than outside_diameter, {millimetres(self.outside_diameter)}."
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
@@ -296,6 +390,7 @@ class ShaftBearingTable(ElementTable):
             remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
             yield Problem("cage", written(self.cage), f"is not made as a {kind} bearing.", remedy)
         yield from _angle_problems(self)
+        yield from _pair_problems(self)
         yield from super().problems()
         yield from _force_problems(self)
         if kind not in bearing_types(model):
@@ -305,7 +400,8 @@ class ShaftBearingTable(ElementTable):
         yield from _own_table_problems(self, LossTableTable.AXES)
         if model == "skf-2018":
             yield from _skf_problems(self)
-        needs_rating = kind == "deep-groove" and model in ("harris", "skf-2018")
+        balls = kind in ("deep-groove", "angular-contact")
+        needs_rating = balls and model in ("harris", "skf-2018") and not self.designation
         if needs_rating and not self.static_load_rating:
             reason = f"is missing; the model {model} needs it for ball bearings."
             yield Problem("static_load_rating", "", reason, "Add C0 from the catalogue.")
@@ -340,9 +436,16 @@ class SealTable(ElementTable):
 
 
 def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
-    """The contact angle of tapered rollers, stated once."""
+    """The contact angle of tapered rollers and angular contact balls, stated once."""
     angles = [key for key in ("axial_factor", "contact_angle") if getattr(table, key) is not None]
-    if table.type != "tapered":
+    if table.type == "angular-contact":
+        for key in ("axial_factor", *_OF_TAPERED):
+            if getattr(table, key) is not None:
+                yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
+        if table.contact_angle is None:
+            reason, remedy = "is missing.", 'Add that of the catalogue: "40 deg" of 72 B and 73 B.'
+            yield Problem("contact_angle", "", reason, remedy)
+    elif table.type != "tapered":
         for key in [*angles, *(key for key in _OF_TAPERED if getattr(table, key) is not None)]:
             yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
     elif table.model != "table" and not angles:
@@ -355,6 +458,18 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     elif table.model == "zhou-hoeprich" and table.width is table.roller_length is None:
         reason = "is missing; it tells how long the rollers are."
         yield Problem("width", "", reason, "Add B from the catalogue, or roller_length.")
+
+
+def _pair_problems(table: ShaftBearingTable) -> Iterator[Problem]:
+    """What of a pair of bearings with contact angles is out of place, or stated twice."""
+    if table.type not in ("tapered", "angular-contact"):
+        for key in ("arrangement", "preload", "preload_displacement"):
+            if getattr(table, key) is not None:
+                reason = "belongs to tapered and angular contact bearings."
+                yield Problem(key, "", reason, "Delete it.")
+    elif table.arrangement and table.axial_sense != "both":
+        reason = "is given together with axial_sense; each follows from the other."
+        yield Problem("arrangement", written(table.arrangement), reason, "Delete one.")
 
 
 def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:

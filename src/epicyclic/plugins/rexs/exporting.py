@@ -295,7 +295,7 @@ def _planet(
     builder.relate("planet_pin", planetary_stage=stage, shaft=pin)
     gears = {**central, body: _gear(builder, case.gearing, body, shaft, name)}
     bearing = case.bearings[body]
-    if bearing is not None:
+    if isinstance(bearing, PlanetBearing):  # REXS has no plain pins
         _bearing(builder, bearing, pin, shaft, name)
     for mesh in case.gearing.meshes:
         _stage(builder, (stage, oil), case.gearing, mesh, gears)
