@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from epicyclic.gears.gear import Gear, half_angle_from_profile_shift, involute
-from epicyclic.gears.mesh import Mesh
 
 MODULE = 2e-3
 """Of the gears, near enough: sets how far the tools reach and move. [m]"""
@@ -48,7 +47,9 @@ def shaper_polygon(gear, tool, rounding):
     high = gear.reference_radius
     for _ in range(100):  # the backlash falls while the cutter moves towards the ring
         middle = (low + high) / 2
-        loose = Mesh("cut", cutter, gear, middle).backlash > 0.0
+        radius = middle * tool.teeth / (gear.teeth - tool.teeth)  # of the pitch circle
+        thick = cutter.thickness_at(radius) + gear.thickness_at(radius * gear.teeth / tool.teeth)
+        loose = 2 * math.pi * radius / tool.teeth > thick
         low, high = (middle, high) if loose else (low, middle)
     tip = gear.root_radius - low
     outermost = math.sqrt((tip + 2 * rounding) ** 2 - cutter.base_radius**2)

@@ -56,7 +56,7 @@ def test_excel_has_units_inputs_and_statements(data, tmp_path):
     path = tmp_path / "map.xlsx"
     ep.write_map(data, path)
     book = openpyxl.load_workbook(path, data_only=False)
-    assert book.sheetnames == ["map", "inputs", "about"]
+    assert book.sheetnames == ["map", "oil at 90 °C", "inputs", "about"]
     names, units, *rows = book["map"].iter_rows(values_only=True)
     assert len(rows) == 15
     by_name = dict(zip(names, units, strict=True))

@@ -125,7 +125,7 @@ def outcome(seed: int) -> str:
     return "solved"
 
 
-MAY_BE_MISSING = ("efficiency", "power_ratio", "ratio")
+MAY_BE_MISSING = ("efficiency", "load_dependent_efficiency", "power_ratio", "ratio")
 """None without power, or with an output that stands still."""
 
 

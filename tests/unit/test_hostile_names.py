@@ -89,7 +89,7 @@ def test_names_end_no_row_and_no_sheet(data, tmp_path):
     assert len(rows) == data["total"].size
     ep.write_map(data, tmp_path / "m.xlsx")
     book = openpyxl.load_workbook(tmp_path / "m.xlsx")
-    assert len(book.sheetnames) == len(HOSTILE) + 3
+    assert len(book.sheetnames) == 2 * len(HOSTILE) + 3  # points and a matrix for each
     ep.write_map(data, tmp_path / "m.mat")
 
 

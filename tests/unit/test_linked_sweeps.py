@@ -203,8 +203,8 @@ def test_table_of_points(case, tmp_path):
     ("content", "words"),
     [
         ("sun.teeth\n", "no rows"),
-        ("sun.teeth,planet.count\n73,3\n74\n", "planet.count.*no value in row 2"),
-        ("sun.teeth,planet.count\n73,3,4,5\n74,3\n", "is not a table"),
+        ("sun.teeth,planet.count\n73,3\n74\n", "2 columns, but line 3 has 1"),
+        ("sun.teeth,planet.count\n73,3,4,5\n74,3\n", "2 columns, but line 2 has 4"),
         ("sun.teeth,sun.teeth\n1,2\n", "two columns"),
         ("sun.teeth [1],sun.teeth\n1,2\n", "two columns"),
     ],

@@ -319,7 +319,7 @@ def test_the_command_on_a_map(plain_map, over_map, tmp_path):
         (["talbot-2012", "--points", "9"], "--points: requires a cycle"),
         (["talbot-2012", "--temperature", "50 degC"], "--temperature: requires"),
         (["map.nc", "--set", "a=1", "--speed", "900 rpm"], "--speed: applies to a case alone"),
-        (["talbot-2012", "none.csv"], "is not a file"),
+        (["talbot-2012", "none.csv"], "cannot be read"),
     ],
 )
 def test_options_that_do_not_go_together(arguments, message):

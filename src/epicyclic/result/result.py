@@ -512,7 +512,9 @@ class Result:
     @property
     def load_dependent_efficiency(self) -> float | None:
         """1 less load-dependent loss over input power, eta_LD. Theory (P11). [1]"""
-        return None if self.efficiency is None else 1 - self.load_dependent / self.input_power
+        if self.efficiency is None or not self.input_power:
+            return None
+        return 1 - self.load_dependent / self.input_power
 
     @property
     def branch(self) -> BranchFigures | None:

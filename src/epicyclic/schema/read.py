@@ -48,6 +48,8 @@ def split_key(key: str) -> tuple[str, str]:
 
 def with_unit_of_key(value: Any, unit: str) -> Any:
     """Numbers, also of an array, as a case file has them if their key has a unit."""
+    if isinstance(value, np.ndarray) and not value.ndim:
+        value = value.item()
     if isinstance(value, np.ndarray | list | tuple):
         return [with_unit_of_key(item, unit) for item in value]
     is_number = isinstance(value, numbers.Real) and not isinstance(value, bool | np.bool)

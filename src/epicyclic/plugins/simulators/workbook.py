@@ -83,7 +83,7 @@ def _append_matrices(book: Any, data: xr.Dataset, prefix: str = "") -> None:
     for celsius in data["temperature"].values if "temperature" in data.dims else [None]:
         oil = "" if celsius is None else f"oil at {format_number(float(celsius))} °C"
         at = plane if celsius is None else plane.sel(temperature=celsius)
-        title = re.sub(r"[\[\]:*?/\\]", "_", f"{prefix}{oil or 'speed by torque'}")
+        title = _NOT_IN_TITLES.sub("_", printable(f"{prefix}{oil or 'speed by torque'}"))
         sheet = book.create_sheet(title[:31])
         sheet.freeze_panes = "B1"
         for number, (name, style) in enumerate(_MATRICES.items()):
@@ -137,9 +137,12 @@ def _add_chart(sheet: Any, speeds: int, torques: int, oil: str) -> None:
     sheet.add_chart(chart, f"{get_column_letter(torques + 3)}2")
 
 
+_NOT_IN_TITLES = re.compile(r"[\[\]:*?/\\']")
+
+
 def _sheet_name(state: str, number: int) -> str:
     """A name that Excel takes, of 31 characters at most; with the number where it is cut."""
-    name = re.sub(r"[\[\]:*?/\\']", "_", printable(f"state {state}"))
+    name = _NOT_IN_TITLES.sub("_", printable(f"state {state}"))
     return name if name == f"state {state}" and len(name) <= 31 else f"{name[:25]} ({number + 1})"
 
 
