@@ -119,7 +119,9 @@ def test_a_stored_result_in_one_line(talbot_record):
 def test_a_planet_branch_and_the_load_dependent_efficiency(result):
     """Talbot (2012), Eq. 5.14: by its parts, and a third of six less three planets."""
     losses, branch = result.losses, result.branch
-    spin = [name for name in losses if name.endswith(("pocketing", "bearing_viscous"))]
+    spin = [
+        name for name in losses if name.endswith(("pocketing", "bearing_viscous", "planets_drag"))
+    ]
     spin.remove("thrust_bearing_viscous")
     assert branch.load_independent == pytest.approx(sum(losses[name] for name in spin) / 3)
     assert branch.load_dependent == pytest.approx(result.load_dependent / 3)

@@ -522,7 +522,7 @@ class Result:
         planets = len(self.planet_shares)
         if self.train is not None or not planets:
             return None
-        contacts = (*self.layout.meshes, *self.layout.bearings)
+        contacts = (*self.layout.meshes, *self.layout.bearings, "planets_drag")
         spin = sum(
             term.watts
             for term in self.terms
