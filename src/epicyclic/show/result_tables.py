@@ -118,29 +118,37 @@ def share_row(
 def losses_table(result: Result, *, most: int | None = None) -> Table:
     """The losses of a single set, group by group.
 
-    With `most`, the largest ones in so many rows with as many digits as are known.
+    With `most`, the largest ones in so many rows with as many digits as are known: all drags
+    together, and smaller losses as others.
     """
     unit, size, decimals = (WATT.display, 1.0, 1) if most is None else _known_unit(result)
-    least = 0.0
+    losses, groups, left_out = result.losses, result.groups, result.not_included
+    shown_from, least = -math.inf, 0.5 * size / 10**decimals
     if most is not None:
-        largest = sorted(result.losses.values(), reverse=True)[:most]
-        least = max(largest[-1], 0.5 * size / 10**decimals)
+        drags = [name for name in losses if name.endswith("_drag")]
+        if drags:
+            kept = {name: watts for name, watts in losses.items() if name not in drags}
+            losses = {**kept, "drag": sum(losses[name] for name in drags)}
+            groups = {**groups, "drag": groups[drags[0]]}
+        shown_from = max(sorted(losses.values(), reverse=True)[:most][-1], least)
     rows: list[tuple[Cell, ...]] = []
     strong = []
     grouping = result.inputs["models"].get("load_dependent")
     tested = ", as tested" if grouping == "as-tested" else ""
-    groups, left_out = result.groups, result.not_included
     for group in dict.fromkeys(groups.values()):
-        for name, watts in result.losses.items():
-            if groups[name] != group or (most is not None and watts < least):
+        key, rest = group.replace("-", "_"), 0.0
+        for name, watts in losses.items():
+            if groups[name] != group:
                 continue
-            words = Cell(name.replace("_", " "))
-            if name in left_out:
-                rows.append((words, Cell("not included"), Cell(""), Cell("")))
+            if watts < shown_from:
+                rest += watts
+            elif name in left_out:
+                rows.append((Cell(in_words(name)), Cell("not included"), Cell(""), Cell("")))
             else:
                 cells = share_row(result, watts, f"losses.{name}", decimals, size)
-                rows.append((words, *cells))
-        key = group.replace("-", "_")
+                rows.append((Cell(in_words(name)), *cells))
+        if rest >= least:
+            rows.append((Cell("others"), *share_row(result, rest, "", decimals, size)))
         strong.append(len(rows))
         sums = share_row(result, getattr(result, key), key, decimals, size)
         rows.append((Cell(f"{group}{tested}"), *sums))
