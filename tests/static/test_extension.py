@@ -101,18 +101,18 @@ FIGURE: list[Edit] = [
 
 FAMILY: list[Edit] = [
     (
-        "losses/windage.py",
+        "losses/made_up.py",
         "",
-        '"""Windage of a carrier, made up."""\n\n\ndef windage(speed):\n'
+        '"""Loss of a carrier, made up."""\n\n\ndef made_up(speed):\n'
         '    """Loss. [W]"""\n    return 1e-6 * abs(speed) ** 3\n',
     ),
     (
         "machine/gear_set.py",
         "        if self.thrust is not None:\n",
-        """        if "carrier_windage" in self.choices:
-            watts = windage(state.speeds[self.carrier])
-            losses["carrier_windage"] = Loss(
-                LOAD_INDEPENDENT, watts, "windage", "a test", brakes=((self.carrier, HOUSING, 1.0),)
+        """        if "carrier_made_up" in self.choices:
+            watts = made_up(state.speeds[self.carrier])
+            losses["carrier_made_up"] = Loss(
+                LOAD_INDEPENDENT, watts, "made up", "a test", brakes=((self.carrier, HOUSING, 1.0),)
             )
         if self.thrust is not None:
 """,
@@ -120,13 +120,13 @@ FAMILY: list[Edit] = [
     (
         "machine/gear_set.py",
         "from epicyclic.machine.disc import",
-        "from epicyclic.losses.windage import windage\nfrom epicyclic.machine.disc import",
+        "from epicyclic.losses.made_up import made_up\nfrom epicyclic.machine.disc import",
     ),
     (
         "case/tables/models.py",
         "    thrust_bearing_viscous: LossOption = _AS_COMPUTED\n",
         "    thrust_bearing_viscous: LossOption = _AS_COMPUTED\n"
-        "    carrier_windage: LossOption = _AS_COMPUTED\n",
+        "    carrier_made_up: LossOption = _AS_COMPUTED\n",
     ),
 ]
 
@@ -167,7 +167,7 @@ print(numbers[mesh + "total_contact_ratio"] / total)
     "family": """
 result = ep.solve(case)
 speed = result.flow.members["carrier"].speed
-print(result.losses["carrier_windage"] / (1e-6 * abs(speed) ** 3))
+print(result.losses["carrier_made_up"] / (1e-6 * abs(speed) ** 3))
 """,
 }
 ADDITIONS = {
