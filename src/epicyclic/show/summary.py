@@ -56,14 +56,14 @@ def headline(result: Result, known: Known | None) -> Iterator[str]:
     for it in key_figures(result):
         text = f"{it.cell.text} {it.unit}".rstrip()
         band = ""
-        if it.label == "efficiency" and ends.get("efficiency", (0.0, 0.0))[1] > 0:
+        if it.cell.key == "efficiency" and ends.get("efficiency", (0.0, 0.0))[1] > 0:
             own = ends["efficiency"]
             text = efficiency_text(result.efficiency or 0.0, ends=own)
             band = efficiency_text(*own, ends=own)
-        elif it.label == "total loss" and "total" in ends:
+        elif it.cell.key == "total" and "total" in ends:
             text = known_text(result.total, beside=ends["total"][1])
             band = known_text(*ends["total"], beside=result.total)
-        elif it.label.startswith("load-"):
+        elif it.cell.key in ("load_dependent", "load_independent"):
             continue  # the table has them
         band = f"95 % band {band}" if band else ""
         yield f"{it.label:{_LABEL}}{text:{_VALUE}}{band}".rstrip()
