@@ -86,11 +86,6 @@ def catalogue_bearing(table: ShaftBearingTable) -> CatalogueBearing:
     )
 
 
-def is_angular(table: ShaftBearingTable) -> bool:
-    """True if radial force induces an axial one in the bearing."""
-    return table.type in ("tapered", "angular-contact")
-
-
 def axial_preload(table: ShaftBearingTable, other: ShaftBearingTable) -> float:
     """Axial force with which two bearings of a shaft press each other from the start. [N]"""
     force = max(table.preload or 0.0, other.preload or 0.0)

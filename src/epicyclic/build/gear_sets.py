@@ -25,7 +25,7 @@ from epicyclic.losses.journal_bearing import JournalBearing
 from epicyclic.losses.planet_bearing import FITTED_OR_PALMGREN, RollerBearing
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.rolling import FittedRolling
-from epicyclic.losses.windage import DragModel, Teeth, Turning
+from epicyclic.losses.windage import LAMINAR_RIMS, DragModel, Teeth, Turning
 from epicyclic.machine.convection import GRAVITY_TEMPERATURE, WATER
 from epicyclic.machine.disc import Disc, Jets, Sump, ThrustBearing
 from epicyclic.machine.element import joined_key
@@ -78,7 +78,7 @@ def _sump(case: SetCase, name: str, part: Dipped) -> Sump | None:
         depth = max(part.tip_radius + table.oil_level, 0.0)
     volume = case.thermal.oil_volume if table.oil_volume is None else table.oil_volume
     assert volume is not None
-    smooth = case.chosen["drag"] != "seetharaman-kahraman"
+    smooth = case.chosen["drag"] != LAMINAR_RIMS
     return Sump(replace(part, depth=depth), volume, table.churning, smooth)
 
 
@@ -366,7 +366,7 @@ def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tupl
             ),
         )
     carried, table, across = [], case.carrier, 0.0
-    number, moves_planets = gearing.count or 1, case.chosen["drag"] != "seetharaman-kahraman"
+    number, moves_planets = gearing.count or 1, case.chosen["drag"] != LAMINAR_RIMS
     for planet in gearing.planets if moves_planets else ():
         for name in gearing.gears_of(planet):
             disc = gear_disc(case, bodies[planet], gearing.gear(name), gearing.tables[name])

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-from epicyclic.build.elements import axial_preload, build_element, catalogue_bearing, is_angular
+from epicyclic.build.elements import axial_preload, build_element, catalogue_bearing
 from epicyclic.build.gear_sets import gear_set
 from epicyclic.build.models import SetCase, fluids_of, oil_share, set_cases, with_lubrication
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
@@ -393,7 +393,7 @@ def _support(tables: Tables, name: str) -> Support:
     elif bearing.thrust_ratio and len(others) == 1:
         (other,) = others
         arrangement = table.arrangement or other.arrangement
-        if arrangement or is_angular(other) or (other.locating and not table.locating):
+        if arrangement or other.is_angular or (other.locating and not table.locating):
             first = place < (other.position or 0.0)
             sense = "positive" if first == (arrangement == "O") else "negative"
     if bearing.thrust_ratio and sense in ("positive", "negative"):
@@ -408,7 +408,7 @@ def _assumed_pairs(case: TrainCase) -> set[str]:
         name
         for tables in _borne(case).values()
         if len(tables) == 2
-        and all(is_angular(one) and one.axial_sense == "both" for one in tables.values())
+        and all(one.is_angular and one.axial_sense == "both" for one in tables.values())
         and not any(one.arrangement for one in tables.values())
         for name in tables
     }

@@ -59,6 +59,7 @@ from epicyclic.losses.rolling import (
     FittedRolling,
     RollingModel,
 )
+from epicyclic.losses.windage import LAMINAR_RIMS
 from epicyclic.machine.element import Fluids, fluids_at
 from epicyclic.machine.gear_mesh import MeshModels
 from epicyclic.machine.gear_set import LossChoice
@@ -114,8 +115,7 @@ class SetCase:
         pocketing: str = models.pocketing
         drag: str = models.drag
         if drag == "auto":
-            general = models.preset == "general"
-            drag = (general and GENERAL.get("drag")) or "seetharaman-kahraman"
+            drag = GENERAL["drag"] if models.preset == "general" else LAMINAR_RIMS
         if pocketing == "auto":
             pocketing = "isentropic" if oil_share(self).share < LEAST_OIL else "incompressible"
         found: dict[str, str] = {

@@ -25,7 +25,7 @@ from epicyclic.losses.friction import CONTAINS_ROLLING, TALBOT_FLUID
 from epicyclic.losses.ranges import SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
-from epicyclic.losses.windage import DRAG_METHODS, DragModel
+from epicyclic.losses.windage import DRAG_METHODS, LAMINAR_RIMS, DragModel
 from epicyclic.machine.disc import churned, drags_by_model
 from epicyclic.machine.element import OIL, Note, State, joined_key, note_watts
 from epicyclic.machine.gear_mesh import MeshFigures
@@ -483,7 +483,7 @@ def _standing(
             yield joined_key(key, role), f"{compared}; {phrase}" if compared else phrase
     for key, turning in built.sets.items():
         model = cast(DragModel, built.set_cases[key].chosen["drag"])
-        if model == "seetharaman-kahraman":  # gears have no teeth
+        if model == LAMINAR_RIMS:  # gears have no teeth
             continue
         found = drags_by_model(chain(*turning.discs.values()), state).items()
         beside = ", ".join(f"{name} {watts:.3g} W" for name, watts in found)

@@ -485,11 +485,10 @@ def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Prob
         allowed = f"has {len(own)} bearings on {shaft}; statics gives the forces of only two."
         yield Problem("bearings", names, allowed, "Give radial_force of all but two.")
     places = [table.position for table in own.values() if table.position is not None]
-    pair = {table.type for table in own.values()} <= {"tapered", "angular-contact"}
+    pair = len(own) == 2 and all(table.is_angular for table in own.values())
     for name, table in own.items():
         for key in ("preload", "preload_displacement"):
-            angular = table.type in ("tapered", "angular-contact")
-            if angular and getattr(table, key) is not None and not (pair and len(own) == 2):
+            if table.is_angular and getattr(table, key) is not None and not pair:
                 allowed = f"needs two tapered or angular contact bearings on {shaft}."
                 yield Problem(f"bearings.{name}.{key}", "", allowed, "Delete it.")
     if len({table.arrangement for table in own.values()} - {None}) > 1:

@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
-from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from epicyclic.messages import did_you_mean
 
@@ -75,10 +76,8 @@ class DesignatedBearing:
     def static_load_rating(self) -> float:
         """C0 of ISO 76, from the elements. Theory (J28). [N]"""
         D_w, cosine = 1e3 * self.element_diameter, math.cos(self.contact_angle)
-        gamma, count = (
-            self.element_diameter * cosine / self.pitch_diameter,
-            self.rows * self.elements,
-        )
+        gamma = self.element_diameter * cosine / self.pitch_diameter
+        count = self.rows * self.elements
         if not self.element_length:
             return static_ball_factor(gamma) * count * D_w**2 * cosine
         return 44 * (1 - gamma) * count * 1e3 * self.element_length * D_w * cosine
@@ -100,21 +99,7 @@ def roller_factor(gamma: float) -> float:
 
 def static_ball_factor(gamma: float) -> float:
     """f_0 of ISO 76 for balls, straight between a few values of its table. Theory (J28). [1]"""
-    return between(((0.0, 14.7), (0.09, 16.5), (0.2, 14.0), (0.3, 11.6), (0.4, 9.4)), gamma)
-
-
-def between(points: tuple[tuple[float, float], ...], at: float) -> float:
-    """Straight between points, held outside them.
-
-    Examples
-    --------
-    >>> between(((1.0, 4.0), (3.0, 5.0)), 2.0), between(((1.0, 4.0), (3.0, 5.0)), 9.0)
-    (4.5, 5.0)
-    """
-    for (low, first), (high, second) in pairwise(points):
-        if at <= high:
-            return first + (second - first) * max(0.0, at - low) / (high - low)
-    return points[-1][1]
+    return float(np.interp(gamma, (0.0, 0.09, 0.2, 0.3, 0.4), (14.7, 16.5, 14.0, 11.6, 9.4)))
 
 
 def designated(text: str) -> DesignatedBearing:
@@ -144,9 +129,7 @@ def designated(text: str) -> DesignatedBearing:
         size for size in known if name.startswith(size) and not name[len(size) :][:1].isdigit()
     ]
     if not sizes:
-        shown = {one.designation.replace(" ", ""): one.designation for one in known.values()}
-        near = did_you_mean(name, shown)
-        raise KeyError(near.replace(near[14:-2], shown[near[14:-2]]) if near else "")
+        raise KeyError(did_you_mean(text.upper(), [one.designation for one in known.values()]))
     size = max(sizes, key=len)
     bearing = replace(known[size], designation=text)
     if bearing.type == "angular-contact":

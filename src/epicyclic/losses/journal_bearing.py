@@ -11,7 +11,7 @@ import numpy as np
 
 from epicyclic.kernels.journal_bearing import FloatArray, journal_pressure
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
-from epicyclic.oil.oil import OilState
+from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState
 from epicyclic.units import CELSIUS, NUMBER
 
 ECCENTRICITIES = (0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.9, 0.94, 0.97, 0.985)
@@ -22,6 +22,9 @@ STEEPEST = 14.0  # Largest |ln(eps/(1 - eps))| that is tried: films of 1e-6 of t
 # Pressure of asperities over E' after J. A. Greenwood and J. H. Tripp (1971), second hand, for
 # sigma beta eta = 0.05 and sigma/beta = 0.01, usual values of ground steel.
 _ASPERITIES = 16 * math.sqrt(2) * math.pi / 15 * 0.05**2 * math.sqrt(0.01)
+_F52_FACTOR, _F52_EXPONENT = 4.4086e-5, 6.804
+"""F_5/2 of Greenwood and Tripp as a factor times a power of 4 - h/sigma: Y. Hu, H. S. Cheng et al.,
+J. Tribol. 116 (1994) 470, second hand. [1]"""
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(32)
 _CONTACT_FROM = 4.0  # Film over the composite roughness from which asperities touch. [1]
 HOTTEST = 150.0
@@ -149,19 +152,19 @@ def asperity_force(bearing: JournalBearing, x: float) -> float:
     end = math.acos(max(-1.0, 1 - room / eps))
     theta = _POINTS * end
     touching = (room - eps * (1 - np.cos(theta))) * bearing.diametral_clearance / 2
-    scale = _ASPERITIES * bearing.contact_modulus * 4.4086e-5
-    pressure = scale * (np.maximum(touching, 0.0) / bearing.roughness) ** 6.804
+    scale = _ASPERITIES * bearing.contact_modulus * _F52_FACTOR
+    pressure = scale * (np.maximum(touching, 0.0) / bearing.roughness) ** _F52_EXPONENT
     area = bearing.length * bearing.inner_diameter / 2 * end
     return float((_WEIGHTS * pressure * np.cos(theta)).sum() * area)
 
 
 def film_viscosity(oil: OilState, temperature: float) -> float:
     """Dynamic viscosity near the state of an oil, on its line of ASTM D341. Theory (Z6). [Pa s]"""
-    nu = 1e6 * oil.kinematic_viscosity
-    Z = nu + 0.7
+    nu = oil.kinematic_viscosity / MM2_PER_S
+    Z = nu + D341_OFFSET
     slope = oil.temperature * oil.thermoviscosity * nu / (Z * math.log(Z))
     log_Z = math.log(Z) * math.pow(oil.temperature / temperature, slope)
-    return oil.density * 1e-6 * max(math.exp(log_Z) - 0.7, 0.0)
+    return oil.density * MM2_PER_S * max(math.exp(log_Z) - D341_OFFSET, 0.0)
 
 
 def loaded_journal(

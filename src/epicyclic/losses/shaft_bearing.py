@@ -10,8 +10,9 @@ from functools import cache, lru_cache
 from importlib import resources
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_pressure, inlet_film_factor
-from epicyclic.losses.designations import between
 from epicyclic.losses.drag import (
     RPM,
     SPEED_PARAMETER,
@@ -67,9 +68,10 @@ MINIMUM_LOAD_SHARE = 0.02
 """Least load of tapered and needle roller bearings over their dynamic load rating (SKF). [1]"""
 MINIMUM_BALL_SHARE = 0.01
 """The same of angular contact ball bearings, SKF's rule of thumb for balls; second hand. [1]"""
-_STATIC_AXIAL = ((15, 0.46), (20, 0.42), (25, 0.38), (30, 0.33), (35, 0.29), (40, 0.26), (45, 0.22))
+_ANGLES = (15, 20, 25, 30, 35, 40, 45)
+_STATIC_AXIAL = _ANGLES, (0.46, 0.42, 0.38, 0.33, 0.29, 0.26, 0.22)
 """Y0 of angular contact ball bearings by their angle in degrees, ISO 76. [1]"""
-_THRUST_RATIOS = ((15, 0.46), (20, 0.57), (25, 0.68), (30, 0.8), (35, 0.95), (40, 1.14), (45, 1.34))
+_THRUST_RATIOS = _ANGLES, (0.46, 0.57, 0.68, 0.8, 0.95, 1.14, 1.34)
 """e of angular contact ball bearings by their angle in degrees, ISO 281; at 15 degrees, where it
 depends on the load, its middle. [1]"""
 PALMGREN_METHOD = "load-dependent moment after Palmgren"
@@ -139,7 +141,7 @@ class CatalogueBearing:
         if self.type == "tapered":
             return 1 / (2 * self.axial_factor)
         if self.type == "angular-contact":
-            return between(_THRUST_RATIOS, math.degrees(self.contact_angle))
+            return float(np.interp(math.degrees(self.contact_angle), *_THRUST_RATIOS))
         return 0.0
 
     @property
@@ -201,7 +203,7 @@ def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
     0.5 F_r + Y0 F_a; tapered: of F_r and 0.5 F_r + 0.55 Y F_a; cylindrical and needle: F_r.
     """
     if bearing.type == "angular-contact":
-        Y0 = between(_STATIC_AXIAL, math.degrees(bearing.contact_angle))
+        Y0 = float(np.interp(math.degrees(bearing.contact_angle), *_STATIC_AXIAL))
         return max(load.radial, 0.5 * load.radial + Y0 * load.axial)
     if bearing.type == "deep-groove":
         return max(load.radial, 0.6 * load.radial + 0.5 * load.axial)

@@ -17,6 +17,8 @@ from epicyclic.units import NUMBER
 DragModel = Literal[
     "seetharaman-kahraman", "theodorsen-regier", "diab-ville-velex", "anderson-loewenthal"
 ]
+LAMINAR_RIMS: DragModel = "seetharaman-kahraman"
+"""That of the dissertation, without teeth, planets and turbulence."""
 _SMOOTH = (
     "T. Theodorsen, A. Regier, NACA Report 793 (1944); T. von Karman, ZAMM 1 (1921) 233; walls "
     "beside: E. Bilgen, R. Boulos, J. Fluids Eng. 95 (1973) 122, J. W. Daily, R. E. Nece, J. Basic "
@@ -33,7 +35,7 @@ class DragMethod(NamedTuple):
 
 
 DRAG_METHODS: Mapping[DragModel, DragMethod] = {
-    "seetharaman-kahraman": DragMethod(
+    LAMINAR_RIMS: DragMethod(
         "drag of a disc in the air-oil mixture",
         "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5",
         "rims are laminar at any speed: 10 to 40 times too little at usual ones",

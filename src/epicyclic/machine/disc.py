@@ -24,7 +24,15 @@ from epicyclic.losses.drag import (
     viscous_flags,
 )
 from epicyclic.losses.ranges import ModelUse, ValidityFlag, check_ranges
-from epicyclic.losses.windage import DISCS, DRAG_METHODS, MIST_SHARE, DragModel, Turning, drag
+from epicyclic.losses.windage import (
+    DISCS,
+    DRAG_METHODS,
+    LAMINAR_RIMS,
+    MIST_SHARE,
+    DragModel,
+    Turning,
+    drag,
+)
 from epicyclic.machine.element import LOAD_INDEPENDENT, Loss, State
 
 BESIDE: Mapping[str, tuple[DragModel, bool]] = {
@@ -113,7 +121,7 @@ def disc_loss(
             methods[model.title] = model.source
         else:
             mixture = state.fluids.mixed(disc.oil_fraction)
-            if disc.model == "seetharaman-kahraman":
+            if disc.model == LAMINAR_RIMS:
                 smooth = disc_drag(body.radius, body.width, speed, mixture)
                 watts = sum(smooth)
                 flags += disc_drag_flags(disc.where, body.radius, smooth, speed, mixture)

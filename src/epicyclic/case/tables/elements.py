@@ -373,6 +373,11 @@ class ShaftBearingTable(ElementTable):
         )
     )
 
+    @property
+    def is_angular(self) -> bool:
+        """True if radial force induces an axial one in the bearing."""
+        return self.type in ("tapered", "angular-contact")
+
     def problems(self) -> Iterator[Problem]:
         # cases without bearings need it not
         from epicyclic.losses.designations import designated_or_any
@@ -462,7 +467,7 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
 
 def _pair_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     """What of a pair of bearings with contact angles is out of place, or stated twice."""
-    if table.type not in ("tapered", "angular-contact"):
+    if not table.is_angular:
         for key in ("arrangement", "preload", "preload_displacement"):
             if getattr(table, key) is not None:
                 reason = "belongs to tapered and angular contact bearings."
