@@ -8,6 +8,7 @@ import pytest
 
 from epicyclic.build import models
 from epicyclic.case.tables import uncertainty
+from epicyclic.losses.windage import LAMINAR_RIMS
 from epicyclic.study.bands import inputs
 
 BOUNDARY = uncertainty.DistributionTable(uniform=(0.08, 0.13))
@@ -16,7 +17,7 @@ BOUNDARY = uncertainty.DistributionTable(uniform=(0.08, 0.13))
 @pytest.fixture(autouse=True)
 def former_models(monkeypatch):
     """Cases as with the preset talbot-2012, without a key for it."""
-    monkeypatch.setattr(models, "GENERAL", {})
+    monkeypatch.setattr(models, "GENERAL", {"drag": LAMINAR_RIMS})
     monkeypatch.setattr(uncertainty, "has_rough_flanks", lambda models: False)
 
 
