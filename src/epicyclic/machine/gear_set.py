@@ -447,7 +447,9 @@ class GearSet:
                     oil,
                     speed,
                     last_rollers.get((planet.key, share)),
+                    planet.pin_radius * carrier**2,
                 )
+                notes += bearing.notes
                 rollers[planet.key, share] = bearing.loads
                 bearings.append(bearing)
         meshes = [
