@@ -62,6 +62,7 @@ from epicyclic.case.tables.operation import (
     Surroundings,
     ThermalTable,
 )
+from epicyclic.case.tables.strength import STRENGTH, StrengthTable
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, stated_values
 from epicyclic.case.train_tables import (
     ComputedSet,
@@ -454,6 +455,7 @@ class _TrainTables(CaseTable):
     contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 MOST_SETS = 64
@@ -870,6 +872,7 @@ class PlanetaryCase(_SetTables, PlainPins):
     numerics: Numerics = Numerics()
     losses: PlanetaryLosses = PlanetaryLosses()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 class GearPairCase(_SetTables):
@@ -892,6 +895,7 @@ class GearPairCase(_SetTables):
     numerics: Numerics = Numerics()
     losses: GearPairLosses = GearPairLosses()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 Case = PlanetaryCase | GearPairCase | TrainCase
