@@ -79,7 +79,7 @@ from epicyclic.case.train_tables import (
     TrainOperation,
 )
 from epicyclic.errors import InputError, Problem, one_problem
-from epicyclic.gears.assembly import rack_problems, set_problems
+from epicyclic.gears.assembly import place_problems, rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.sizing import Found, complete
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
@@ -224,7 +224,8 @@ class CaseTable(Table):
                 )
             ),
         ]
-        made = cls._made(validation.case, tables, source, found)
+        sound = None if validation.problems else validation.case
+        made = cls._made(sound, tables, source, list(dict.fromkeys(found)))
         made._found, made._sound = told, valid.sections
         if gearing is not None:
             made._gearings = {"": gearing}
@@ -320,7 +321,7 @@ def with_sizes(
     """A validation with what its gears leave out; without [gears] if that cannot be found.
 
     Also what was found and how signs and roughness were understood, and the gears of a planetary
-    set or a pair if nothing is wrong with their tables.
+    set or a pair if nothing is wrong with their tables, whether they are complete or not.
     """
     told: tuple[Found, ...] = ()
     if validation.case is not None and known is None:
@@ -340,7 +341,8 @@ def with_sizes(
     whole, found, problems = complete(gearing, raw) if known is None else (*known, [])
     if problems:
         del sections["gears"]
-        return Validation(None, sections, [*validation.problems, *problems]), told, None
+        found_wrong = [*validation.problems, *problems]
+        return Validation(validation.case, sections, found_wrong), told, gearing
     assert whole.shared is not None
     now: dict[str, Any] = {"gears": whole.shared, **whole.tables}
     changed = {key: table for key, table in now.items() if table is not sections[key]}
@@ -463,6 +465,13 @@ MOST_SETS = 64
 class _TrainHead(ElementTables, _TrainTables):
     """A train without its sets."""
 
+    @property
+    def elements(self) -> Iterator[tuple[str, str, ElementTable]]:
+        """Kind, name and table of every bearing, seal and other drag."""
+        for kind in ElementTables.model_fields:
+            for name, table in getattr(self, kind).items():
+                yield kind, name, table
+
 
 class TrainCase(_TrainHead):
     """A train: gear sets joined by shafts."""
@@ -486,13 +495,6 @@ class TrainCase(_TrainHead):
         """The state in which it runs: what is braked and joined."""
         name = self.operation.state
         return StateTable() if name is None else self.states[name]
-
-    @property
-    def elements(self) -> Iterator[tuple[str, str, ElementTable]]:
-        """Kind, name and table of every bearing, seal and other drag."""
-        for kind in ElementTables.model_fields:
-            for name, table in getattr(self, kind).items():
-                yield kind, name, table
 
     @property
     def computed(self) -> bool:
@@ -580,6 +582,7 @@ class TrainCase(_TrainHead):
                 shapes[name], wrong = expand(dict(read.table), joined.get(name, ()))
                 if isinstance(read.table, GivenListedSet):
                     wrong = [*wrong, *name_problems(shapes[name])]
+                    wrong += [] if wrong else place_problems(shapes[name])
                 complete = complete and not wrong
                 found += [_below(f"sets.{name}", problem) for problem in wrong]
                 if isinstance(read.table, ListedSet) and not wrong:
@@ -589,6 +592,8 @@ class TrainCase(_TrainHead):
                     found += [as_given(_below(f"sets.{name}", lack), tables) for lack in lacks]
         case = whole.case
         if case is None or len(sets) < len(named) or not named:
+            # what depends on shafts and their members is not known
+            found += [] if case is None else _element_problems(case, named, None)
             return cls._made(None, tables, source, found)
         values = {key: getattr(case, key) for key in type(case).model_fields}
         train = cls.model_construct(**values | {"sets": sets})
@@ -597,7 +602,7 @@ class TrainCase(_TrainHead):
         train._shape, wrong = shape_of_train(shapes, train.shafts)
         complete = complete and not wrong
         found += wrong
-        found += _element_problems(train)
+        found += _element_problems(train, named, train)
         found += operation_problems(train, complete)
         found += bearing_force_problems(train, complete)
         return cls._made(cast(Self, train), tables, source, found)
@@ -635,9 +640,9 @@ def _texts(value: Any) -> Iterator[str]:
 
 
 class _ReadSet(NamedTuple):
-    """A set, or its problems."""
+    """A set and its problems."""
 
-    table: SetTable | None
+    table: SetTable | None  # None if a table of it is not valid by itself.
     problems: list[Problem]
     found: tuple[Found, ...] = ()
 
@@ -698,7 +703,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         allowed = "conflicts with mesh_efficiency."
         remedy = "Give one of them: that of the set from sun to ring, or that of each mesh."
         problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
-    return _ReadSet(None if problems else read.case, problems, told)
+    return _ReadSet(read.case, list(dict.fromkeys(problems)), told)
 
 
 def form_of_set(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
@@ -779,20 +784,22 @@ def _complete(
             own[name] = former.model_copy(update={"center_distance": mesh.own_distance})
     changed = {"members": dict(whole.tables), "gears": whole.shared, "mesh": own}
     table = table.model_copy(update=changed)
-    if not problems:
-        problems = [*listed_problems(table, whole), *set_problems(whole)]
-        if not any(rack_problems(whole)):
-            problems += check_listed_bearings(table, whole)
+    problems += [*listed_problems(table, whole), *set_problems(whole)]
+    if not any(rack_problems(whole)):
+        problems += check_listed_bearings(table, whole)
     return (table, whole), told, list(dict.fromkeys(problems))
 
 
 # --- bearings, seals, drags -----------------------------------------------------------------------
 
 
-def _element_problems(train: TrainCase) -> list[Problem]:
+def _element_problems(
+    head: _TrainHead, sets: Sequence[str], train: TrainCase | None
+) -> list[Problem]:
+    """Problems of bearings, seals and drags; without a train only what needs no shafts."""
     problems = []
-    taken = dict.fromkeys(train.sets, "sets")
-    for kind, name, table in train.elements:
+    taken = dict.fromkeys(sets, "sets")
+    for kind, name, table in head.elements:
         key = f"{kind}.{name}"
         if not PART_NAME.fullmatch(name):
             allowed = f"is not a valid name for a part: {PART_NAME_RULE}."
@@ -802,14 +809,14 @@ def _element_problems(train: TrainCase) -> list[Problem]:
             problems.append(Problem(key, "", allowed, "Choose another name."))
         taken[name] = kind
         found = list(table.problems())
-        if not found and train.lubricant is not None:
+        if not found and train is not None and train.lubricant is not None:
             try:
                 between(table, train.shape.names)
                 table.points(train.folder)
             except InputError as error:
                 found = list(error.problems)
         problems += [_below(key, problem) for problem in found]
-    if not train.computed:
+    if train is None or not train.computed:
         return problems
     if train.lubricant is None:
         remedy = "Add it; 'epicyclic oils' lists the built-in ones."
