@@ -81,7 +81,7 @@ from epicyclic.case.train_tables import (
     TrainOperation,
 )
 from epicyclic.errors import InputError, Problem, one_problem
-from epicyclic.gears.assembly import rack_problems, set_problems
+from epicyclic.gears.assembly import place_problems, rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.sizing import Found, complete
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
@@ -236,7 +236,8 @@ class CaseTable(Table):
         if validation.case is not None and getattr(validation.case, "seals", None):
             validation.case._source = source
             found += _part_problems(validation.case, {name: name for name in _SHAFTS}, {})
-        made = cls._made(validation.case, tables, source, found)
+        sound = None if validation.problems else validation.case
+        made = cls._made(sound, tables, source, list(dict.fromkeys(found)))
         made._found, made._sound = told, valid.sections
         if gearing is not None:
             made._gearings = {"": gearing}
@@ -332,7 +333,7 @@ def with_sizes(
     """A validation with what its gears leave out; without [gears] if that cannot be found.
 
     Also what was found and how signs and roughness were understood, and the gears of a planetary
-    set or a pair if nothing is wrong with their tables.
+    set or a pair if nothing is wrong with their tables, whether they are complete or not.
     """
     told: tuple[Found, ...] = ()
     if validation.case is not None and known is None:
@@ -352,7 +353,8 @@ def with_sizes(
     whole, found, problems = complete(gearing, raw) if known is None else (*known, [])
     if problems:
         del sections["gears"]
-        return Validation(None, sections, [*validation.problems, *problems]), told, None
+        found_wrong = [*validation.problems, *problems]
+        return Validation(validation.case, sections, found_wrong), told, gearing
     assert whole.shared is not None
     now: dict[str, Any] = {"gears": whole.shared, **whole.tables}
     changed = {key: table for key, table in now.items() if table is not sections[key]}
@@ -586,6 +588,7 @@ class TrainCase(_TrainHead):
                 shapes[name], wrong = expand(dict(read.table), joined.get(name, ()))
                 if isinstance(read.table, GivenListedSet):
                     wrong = [*wrong, *name_problems(shapes[name])]
+                    wrong += [] if wrong else place_problems(shapes[name])
                 complete = complete and not wrong
                 found += [_below(f"sets.{name}", problem) for problem in wrong]
                 if isinstance(read.table, ListedSet) and not wrong:
@@ -595,6 +598,8 @@ class TrainCase(_TrainHead):
                     found += [as_given(_below(f"sets.{name}", lack), tables) for lack in lacks]
         case = whole.case
         if case is None or len(sets) < len(named) or not named:
+            # what depends on shafts and their members is not known
+            found += [] if case is None else _element_problems(case, named, None)
             return cls._made(None, tables, source, found)
         values = {key: getattr(case, key) for key in type(case).model_fields}
         train = cls.model_construct(**values | {"sets": sets})
@@ -603,7 +608,7 @@ class TrainCase(_TrainHead):
         train._shape, wrong = shape_of_train(shapes, train.shafts)
         complete = complete and not wrong
         found += wrong
-        found += _element_problems(train)
+        found += _element_problems(train, named, train)
         found += operation_problems(train, complete)
         found += bearing_force_problems(train, complete)
         return cls._made(cast(Self, train), tables, source, found)
@@ -641,9 +646,9 @@ def _texts(value: Any) -> Iterator[str]:
 
 
 class _ReadSet(NamedTuple):
-    """A set, or its problems."""
+    """A set and its problems."""
 
-    table: SetTable | None
+    table: SetTable | None  # None if a table of it is not valid by itself.
     problems: list[Problem]
     found: tuple[Found, ...] = ()
 
@@ -704,7 +709,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         allowed = "conflicts with mesh_efficiency."
         remedy = "Give one of them: that of the set from sun to ring, or that of each mesh."
         problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
-    return _ReadSet(None if problems else read.case, problems, told)
+    return _ReadSet(read.case, list(dict.fromkeys(problems)), told)
 
 
 def form_of_set(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
@@ -785,10 +790,9 @@ def _complete(
             own[name] = former.model_copy(update={"center_distance": mesh.own_distance})
     changed = {"members": dict(whole.tables), "gears": whole.shared, "mesh": own}
     table = table.model_copy(update=changed)
-    if not problems:
-        problems = [*listed_problems(table, whole), *set_problems(whole)]
-        if not any(rack_problems(whole)):
-            problems += check_listed_bearings(table, whole)
+    problems += [*listed_problems(table, whole), *set_problems(whole)]
+    if not any(rack_problems(whole)):
+        problems += check_listed_bearings(table, whole)
     return (table, whole), told, list(dict.fromkeys(problems))
 
 
@@ -800,9 +804,12 @@ _SHAFTS = ("sun", "ring", "carrier")
 
 
 def _part_problems(
-    case: CaseTable, shafts: Mapping[str, str], taken: Mapping[str, str]
+    case: CaseTable, shafts: Mapping[str, str] | None, taken: Mapping[str, str]
 ) -> list[Problem]:
-    """What is wrong with the names and tables of parts; `taken` has names and their tables."""
+    """What is wrong with the names and tables of parts; `taken` has names and their tables.
+
+    Without shafts only what needs none of them.
+    """
     problems = []
     for kind, name, table in case.elements:
         key = f"{kind}.{name}"
@@ -814,7 +821,7 @@ def _part_problems(
             problems.append(Problem(key, "", allowed, "Choose another name."))
         taken = {**taken, name: kind}
         found = list(table.problems())
-        if not found and getattr(case, "lubricant", None) is not None:
+        if not found and shafts is not None and getattr(case, "lubricant", None) is not None:
             try:
                 between(table, shafts)
                 table.points(case.folder)
@@ -824,9 +831,13 @@ def _part_problems(
     return problems
 
 
-def _element_problems(train: TrainCase) -> list[Problem]:
-    problems = _part_problems(train, train.shape.names, dict.fromkeys(train.sets, "sets"))
-    if not train.computed:
+def _element_problems(
+    head: _TrainHead, sets: Sequence[str], train: TrainCase | None
+) -> list[Problem]:
+    """Problems of bearings, seals and drags; without a train only what needs no shafts."""
+    shafts = None if train is None else train.shape.names
+    problems = _part_problems(head if train is None else train, shafts, dict.fromkeys(sets, "sets"))
+    if train is None or not train.computed:
         return problems
     if train.lubricant is None:
         remedy = "Add it; 'epicyclic oils' lists the built-in ones."
