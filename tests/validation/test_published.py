@@ -187,6 +187,7 @@ def test_tolerances_of_the_first_issue_hold(rows):
         assert abs(by_what[what].difference) <= limit, what
 
 
+@pytest.mark.slow
 def test_command_prints_the_table(monkeypatch, rows, capsys):
     from click.testing import CliRunner
 

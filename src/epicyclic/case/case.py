@@ -63,6 +63,7 @@ from epicyclic.case.tables.operation import (
     Surroundings,
     ThermalTable,
 )
+from epicyclic.case.tables.strength import STRENGTH, StrengthTable
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, stated_values
 from epicyclic.case.train_tables import (
     ComputedSet,
@@ -465,6 +466,7 @@ class _TrainTables(CaseTable):
     contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 MOST_SETS = 64
@@ -886,6 +888,7 @@ class PlanetaryCase(_SetTables, PlainPins):
     numerics: Numerics = Numerics()
     losses: PlanetaryLosses = PlanetaryLosses()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 class GearPairCase(_SetTables):
@@ -908,6 +911,7 @@ class GearPairCase(_SetTables):
     numerics: Numerics = Numerics()
     losses: GearPairLosses = GearPairLosses()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 Case = PlanetaryCase | GearPairCase | TrainCase

@@ -334,7 +334,11 @@ class GearSet:
         duties = []
         for mesh in self.meshes:
             torque, speed = share * torques[mesh.key], state.speeds[mesh.bodies[0]] - carrier
-            duties.append(MeshDuty(mesh, torque, speed, torque * speed >= 0))
+            drives1 = torque * speed >= 0
+            if not drives1:
+                mirrored = replace(mesh.deviations, mirrored=True)
+                mesh = replace(mesh, deviations=mirrored)
+            duties.append(MeshDuty(mesh, torque, speed, drives1))
         return tuple(duties)
 
     def shares(self, state: State, torques: Mapping[str, float]) -> tuple[float, ...]:
