@@ -1016,10 +1016,18 @@ def _no_such_case(name: object) -> Problem:
     return Problem("CASE", written(name), allowed, remedy)
 
 
+_OTHER_GEARS = ("bevel", "hypoid", "worm", "face", "crossed", "spiroid")
+"""Words for gears whose axes are not parallel."""
+
+
 def _build_any(tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()) -> Case:
     """The case of `tables`; if they name no kind, every problem under the likeliest one."""
     given = tables.get("kind")
     name = given if isinstance(given, str) and given in KINDS else ""
+    if not name and any(word in str(given).lower() for word in _OTHER_GEARS):
+        allowed = "is not modelled: bevel, hypoid, worm and face gears have no parallel axes."
+        remedy = "Enter their measured loss in a train: [drags.NAME], or efficiency of a set."
+        raise InputError([Problem("kind", written(given), allowed, remedy)], source)
     if not name:
         name = misspelt(str(given), KINDS) or max(
             KINDS, key=lambda kind: len(tables.keys() & tables_of(KINDS[kind]).keys())
