@@ -32,7 +32,8 @@ GROUP_COLOURS = {"load-dependent": COLOURS[0], "load-independent": COLOURS[4]}
 EDGE: Any = {"edgecolor": "black", "linewidth": 0.5}
 SUM_COLOUR = "0.45"
 ROOM = 1.32  # Length of the axis over that of the longest bar, for the numbers beside the bars. [1]
-MOST_BARS, OTHERS = 16, "others"  # Of a picture; smaller losses are put together.
+MOST_BARS = 16  # Losses of a set; of more, those of a mesh, bearing or body are one.
+MOST_ROWS, OTHERS = 20, "others"  # Of a picture; smaller losses are put together.
 
 
 def plot_losses(result: Result, ax: Axes) -> Axes:
@@ -90,7 +91,8 @@ def _draw(ax: Axes, parts: Mapping[str, Mapping[str, float]], starts: FloatArray
     """Bars from `starts` on, a colour for each group."""
     for group, colour in GROUP_COLOURS.items():
         watts = np.array([own.get(group, 0.0) for own in parts.values()])
-        ax.barh(range(len(parts)), watts, left=starts, color=colour, label=group, **EDGE)
+        (rows,) = watts.nonzero()
+        ax.barh(rows, watts[rows], left=starts[rows], color=colour, label=group, **EDGE)
         starts = starts + watts
 
 
@@ -114,9 +116,9 @@ def _parts(result: Result, scale: float) -> dict[str, dict[str, float]]:
         if term.name in labels:
             own = parts.setdefault(in_words(labels[term.name]), {})
             own[term.group] = own.get(term.group, 0.0) + term.watts / scale
-    if len(parts) > MOST_BARS:
+    if len(parts) > MOST_ROWS:
         by_size = sorted(parts, key=lambda name: -sum(parts[name].values()))
-        small = [parts.pop(name) for name in by_size[MOST_BARS - 1 :]]
+        small = [parts.pop(name) for name in by_size[MOST_ROWS - 1 :]]
         parts[OTHERS] = {
             group: sum(own.get(group, 0.0) for own in small) for group in GROUP_COLOURS
         }
@@ -211,10 +213,9 @@ def _light(colour: str) -> tuple[float, ...]:
 
 
 def _names(data: xr.Dataset, drivers: Iterable[str]) -> list[str]:
-    """What inputs are called, or several that are correlated; of a set that is not alone with it."""
-    known = dict(
-        zip(map(str, data["input"].values), map(str, data["input_name"].values), strict=True)
-    )
+    """What inputs are called, or several that are correlated; with the set where two are alike."""
+    keys, names = (map(str, data[name].values) for name in ("input", "input_name"))
+    known = dict(zip(keys, names, strict=True))
     found = [{key: in_few_words(known[key]) for key in it.split(" + ")} for it in drivers]
     counts = Counter(name for own in found for name in own.values())
     return [
