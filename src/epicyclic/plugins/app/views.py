@@ -354,7 +354,8 @@ class TurningView:
             svg, data = await self._do(tasks.turning, study.case, what, IN_PAGE, 0.0)
             if place.is_gone:
                 return
-            place.show([Drawing(what, self._titles[what], svg.decode())], study)
+            drawing = Drawing(what, self._titles[what], svg.decode(), point=data.pop("point"))
+            place.show([drawing], study)
             place.age(study)
             data["phase"] = self._phase
             (picture,) = place.pictures

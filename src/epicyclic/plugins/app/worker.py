@@ -417,23 +417,28 @@ def turning(
     """Gears that turn, as a file at one phase, or for a page with what its script needs."""
     found = _stored(Study(case), progress)
     assert isinstance(found, ResultRecord)
-    drawn = _turning(found, what, None if ending == IN_PAGE else phase)
+    point = operating_line(found.result.inputs["operation"])
     if ending != IN_PAGE:
+        drawn = _turning(found, what, (found.title, point), phase)
         return figure_bytes(drawn.figure, ending), {}
+    drawn = _turning(found, what, ("", ""), None)  # which stand beside it
+    drawn.ax.set_title("", loc="left")
     key = f"turning-{what.removeprefix(MESH)}"
     svg = svg_text(drawn.figure, key).encode()
     layers = [asdict(layer) | {"name": f"{key}-{layer.name}"} for layer in drawn.layers()]
-    return svg, {"layers": layers, "phases": drawn.phases, "position": f"{key}-{POSITION}"}
+    position = f"{key}-{POSITION}"
+    return svg, {"layers": layers, "phases": drawn.phases, "position": position, "point": point}
 
 
-def _turning(found: ResultRecord, what: str, phase: float | None) -> Turning:
-    caption = operating_line(found.result.inputs["operation"])
+def _turning(
+    found: ResultRecord, what: str, words: tuple[str, str], phase: float | None
+) -> Turning:
     sets = sets_of(found.group("gears"))
     if not what.startswith(MESH):
-        return turning_set(sets[what], found.title, caption, phase or 0.0)
+        return turning_set(sets[what], *words, phase or 0.0)
     key = what.removeprefix(MESH)
     view, mesh = found.group("views")[key], found.group("meshes")[key]
-    return turning_mesh(view, sets[set_of(key)], mesh, found.title, caption, phase)
+    return turning_mesh(view, sets[set_of(key)], mesh, *words, phase)
 
 
 def saved(study: Study, name: str, original: str | None, progress: Progress) -> tuple[str, bytes]:

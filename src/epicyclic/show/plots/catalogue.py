@@ -22,7 +22,7 @@ from matplotlib.container import BarContainer
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, PathPatch, StepPatch
+from matplotlib.patches import Patch, StepPatch
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.text import Annotation
 from matplotlib.tri import LinearTriInterpolator
@@ -438,12 +438,22 @@ DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 DIGITS = 7  # Significant digits of values in the page.
 COLOUR_STEPS = 32
 GRID = 61  # Places along each side of a field whose values are known at scattered points.
-AXIS = {"automargin": True, "exponentformat": "none", "separatethousands": False}
+FONT = {"size": 12}
+AXIS = {
+    "ticks": "outside",
+    "tickcolor": "rgba(0,0,0,0)",
+    "automargin": True,
+    "exponentformat": "none",
+    "separatethousands": False,
+}
 
 
 def explorable(ax: Axes) -> dict[str, Any] | None:
     """Data and layout for plotly.js, or None if nothing on the Axes can be explored."""
-    if any(isinstance(one, PathPatch) and not isinstance(one, StepPatch) for one in ax.patches):
+    bars = [bar for bar in ax.containers if isinstance(bar, BarContainer)]
+    known = {patch for bar in bars for patch in bar.patches}
+    others = [one for one in ax.patches if one not in known and not isinstance(one, StepPatch)]
+    if any(_shape(ax, one) is None for one in others):
         return None  # a drawing
     labels = _of_axis(ax.get_xlabel()), _of_axis(ax.get_ylabel())
     traces: list[dict[str, Any]] = []
@@ -455,14 +465,15 @@ def explorable(ax: Axes) -> dict[str, Any] | None:
         elif isinstance(it, FillBetweenPolyCollection):
             traces.append(_area(it, is_band=bool(ax.get_lines())))
     traces += [trace for line in ax.get_lines() if (trace := _line(ax, line, labels))]
-    bars = [bar for bar in ax.containers if isinstance(bar, BarContainer)]
     is_polar = isinstance(ax, PolarAxes)
     traces += [_polar_bars(bar) if is_polar else _bars(ax, bar) for bar in bars]
     traces += [_steps(patch, labels) for patch in ax.patches if isinstance(patch, StepPatch)]
     if not traces:
         return None
     layout = _polar_layout() if is_polar else _layout(ax)
-    marks: list[Line2D | Patch] = [*ax.get_lines(), *ax.patches]
+    marks: list[Line2D | Patch] = [*ax.get_lines(), *others]
+    for trace in traces:
+        trace["showlegend"] = bool(trace.get("name"))
     shapes = [shape for mark in marks if (shape := _shape(ax, mark))]
     layout["shapes"] = shapes
     names = {one["name"] for one in (*traces, *shapes) if one.get("name")}
@@ -486,7 +497,8 @@ def _layout(ax: Axes) -> dict[str, Any]:
     for name, axis in (("xaxis", ax.xaxis), ("yaxis", ax.yaxis)):
         ends, is_log = axis.get_view_interval(), axis.get_scale() == "log"
         layout[name] = AXIS | {
-            "title": {"text": _escaped(axis.label.get_text()).replace("\n", "<br>"), "standoff": 8},
+            "title": {"text": _escaped(axis.label.get_text()).replace("\n", "<br>")}
+            | {"standoff": 8, "font": FONT},
             "type": "log" if is_log else "linear",
             "range": _list(np.log10(ends) if is_log else ends),
         }

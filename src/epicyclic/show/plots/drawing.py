@@ -231,7 +231,7 @@ def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> Floats:
 POSITION = "position"
 """Layers of a mesh position are called so, with its number and that of their Axes."""
 POINTS_PER_INCH = 72
-SET_SIZE, MESH_SIZE = (7.2, 6.4), (12.8, 5.6)  # Width and height of the drawings. [inch]
+SET_SIZE, MESH_SIZE = (6.2, 5.6), (8.8, 4.2)  # Width and height of the drawings. [inch]
 LARGEST_DOT = 260.0  # Area of the contact of a tooth pair that carries all. [point^2]
 LINE_WIDTH = 4.0
 

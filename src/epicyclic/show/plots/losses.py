@@ -277,9 +277,10 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     ax.axvline(float(one["mean"]) * scale, color="black", lw=1.2, ls="--", label="mean")
     low_text, high_text = (f"{it:.2f}" if percent else format_number(it, 3) for it in (low, high))
     what = "total loss" if unit in {"W", "kW"} else "energy lost"
+    what, unit = ("efficiency", "%") if percent else (what, unit)
     ax.set(
-        title=f"95 %: {low_text} to {high_text} {'%' if percent else unit}",
-        xlabel="efficiency, %" if percent else f"{what}, {unit}",
+        title=f"{what.capitalize()}: 95 % from {low_text} to {high_text} {unit}",
+        xlabel=f"{what}, {unit}",
         ylabel="samples",
     )
     ax.xaxis.set_major_locator(MaxNLocator(TICKS))
