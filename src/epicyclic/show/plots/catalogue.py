@@ -25,7 +25,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, StepPatch
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.text import Annotation
-from matplotlib.tri import LinearTriInterpolator
+from scipy.interpolate import LinearNDInterpolator
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.result.result import in_words, set_of
@@ -672,8 +672,9 @@ def _field(field: QuadMesh | TriMesh, labels: tuple[str, str]) -> dict[str, Any]
     else:
         known = field._triangulation  # type: ignore[attr-defined]
         x, y = (np.linspace(one.min(), one.max(), GRID) for one in (known.x, known.y))
-        found: Any = LinearTriInterpolator(known, masked)(*np.meshgrid(x, y))
-        values = found.filled(math.nan)
+        points = np.column_stack([known.x, known.y])
+        field_at = LinearNDInterpolator(points, masked.filled(math.nan), rescale=True)
+        values = field_at(*np.meshgrid(x, y))
     steps, norm, cmap = np.linspace(0, 1, COLOUR_STEPS), field.norm, field.get_cmap()
     low, high = (float(np.asarray(end)) for end in (norm.vmin, norm.vmax))
     colours = map(to_hex, cmap(norm(low + steps * (high - low))))
