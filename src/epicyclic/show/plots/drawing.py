@@ -19,7 +19,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from epicyclic.result.result import in_words
-from epicyclic.show.plots.mesh import top_of_scale
+from epicyclic.show.plots.mesh import scale_of
 from epicyclic.show.plots.style import COLOUR_MAP, COLOURS, label_of, legend_below, styled_figure
 
 # Drawings to scale: the gear set in the transverse plane, and the teeth of a mesh in contact.
@@ -47,7 +47,7 @@ def plot_gear_set(
 ) -> Axes:
     """All gears at their places, to scale, seen along the axis."""
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
-    fills = _fills(gears)
+    fills = fills_of(gears)
     order = sorted(gears.items(), key=_is_behind)
     for row, (name, gear) in enumerate(order):
         label = f"{in_words(name)}, {int(gear.attrs['teeth'])} teeth"
@@ -89,7 +89,7 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
         _scalar(gears[name], "reference_diameter") / gears[name].attrs["teeth"] for name in names
     )
     half = SHOWN_MODULES * module
-    fills = _fills(gears)
+    fills = fills_of(gears)
     for number, name in enumerate(names):
         gear, center = gears[name], np.array([view["center_x"][number], view["center_y"][number]])
         turn = math.radians(float(view["direction"][number])) - math.pi / 2
@@ -136,12 +136,12 @@ def _hides(front: xr.Dataset, gear: xr.Dataset) -> bool:
     return not gear.attrs["internal"] and seen < height and _centers(front) == _centers(gear)
 
 
-def _fills(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
+def fills_of(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
     """Colour of each gear: one for each kind, in several shades."""
     kinds: dict[str, list[str]] = {}
     for name, gear in gears.items():
         alone = "planet" if gear.sizes["place"] > 1 else "sun"
-        around = gear.attrs["internal"] or name == "gear"
+        around = gear.attrs["internal"] or gear.attrs["name"] == "gear"
         kinds.setdefault("ring" if around else alone, []).append(name)
     return {
         name: shade
@@ -231,7 +231,7 @@ def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> Floats:
 POSITION = "position"
 """Layers of a mesh position are called so, with its number and that of their Axes."""
 POINTS_PER_INCH = 72
-SET_SIZE, MESH_SIZE = (7.2, 6.4), (12.8, 5.6)  # Width and height of the drawings. [inch]
+SET_SIZE, MESH_SIZE = (6.2, 5.6), (8.8, 4.2)  # Width and height of the drawings. [inch]
 LARGEST_DOT = 260.0  # Area of the contact of a tooth pair that carries all. [point^2]
 LINE_WIDTH = 4.0
 
@@ -428,22 +428,13 @@ def _draw_plane(mesh: xr.Dataset, ax: Axes) -> None:
         xlabel=label_of(mesh["path_position"]),
         ylabel=label_of(mesh["face_position"]),
     )
-    _, told = _top(mesh)
-    ax.figure.colorbar(
-        ScalarMappable(_scale(mesh), COLOUR_MAP),
-        ax=ax,
-        label=f"{label_of(mesh['line_load'])}{told}",
-        extend="max" if told else "neither",
-    )
+    colours = ScalarMappable(_scale(mesh), COLOUR_MAP)
+    ax.figure.colorbar(colours, ax=ax, label=label_of(mesh["line_load"]))
 
 
 def _scale(mesh: xr.Dataset) -> Normalize:
-    return Normalize(0.0, _top(mesh)[0] or 1.0)
-
-
-def _top(mesh: xr.Dataset) -> tuple[float, str]:
     loads = mesh["line_load"].to_numpy()
-    return top_of_scale(loads[np.isfinite(loads)])
+    return scale_of(np.append(loads[np.isfinite(loads)], 0.0), 0.0)
 
 
 def _draw_lines(mesh: xr.Dataset, number: int, ax: Axes) -> None:
