@@ -120,8 +120,9 @@ class FlowFamily:
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
         """Figures of the flow itself. Parameters as for `pocket_flow`."""
-        if self.number(speed, mixture, pressure) == LEAST_NUMBER:
-            scaled = self.scaled(LEAST_NUMBER)
+        least = self.number(speed, mixture, pressure) == LEAST_NUMBER
+        if least or self.scales(speed, mixture, pressure):
+            scaled = kept_figures(self, LEAST_NUMBER)
             if np.isfinite(scaled).all():
                 return from_scaled(scaled, speed, mixture.density)
         return flow_figures(self.flow(speed, mixture, pressure))
@@ -273,7 +274,7 @@ def make_tables(
                 return {family: table.finished() for family, table in growing.items()}
             for family in {family for family, _ in wanted}:
                 _ = family.geometry  # once, before threads ask for it at the same time
-            solved = list(pool.map(_scaled, *zip(*wanted, strict=True)))
+            solved = list(pool.map(kept_figures, *zip(*wanted, strict=True)))
             for family, table in growing.items():
                 table.take(
                     {
@@ -285,7 +286,8 @@ def make_tables(
 
 
 @lru_cache(maxsize=KEPT_MOST)
-def _scaled(family: FlowFamily, number: float) -> Floats:
+def kept_figures(family: FlowFamily, number: float) -> Floats:
+    """As `FlowFamily.scaled`, solved once."""
     return family.scaled(number)
 
 
