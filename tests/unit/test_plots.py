@@ -63,6 +63,7 @@ def test_every_plot_of_a_result_has_labels_within_the_picture(talbot_record, nam
     check_figure(figure_of(talbot_record, name))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", OF_MAPS)
 def test_every_plot_of_a_map_has_labels_within_the_picture(pair_map, name):
     figure = figure_of(pair_map, name)

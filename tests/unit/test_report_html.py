@@ -167,6 +167,7 @@ def test_warnings_sources_and_inputs_are_complete(talbot, page):
     assert "<td>139.23 mm</td>" in text
 
 
+@pytest.mark.slow
 def test_text_of_the_user_stays_text():
     title = "<script>alert(1)</script> $x_1^ & </title> {{ 7 * 7 }}"
     case = ep.load_case("talbot-2012-pair").updated(
@@ -178,6 +179,7 @@ def test_text_of_the_user_stays_text():
     assert Page(page).open == []
 
 
+@pytest.mark.slow
 def test_figures_to_explore_have_the_data_of_the_still_ones(talbot_record, pair_map, page):
     plots = dict(
         re.findall(r'<figure id="figure-([^"]+)">.*?class="plot">(.*?)</script>', page, re.S)
@@ -233,6 +235,7 @@ def test_defaults_without_effect_are_left_out(page):
     assert not {"constant friction", "fitted form", "asperity film", "bath share"} & shown
 
 
+@pytest.mark.slow
 def test_given_keys_are_shown_even_without_effect():
     case = ep.load_case("talbot-2012-pair").updated(
         {"losses.mesh_pocketing.include": False, "models.friction": "schlenk"}

@@ -209,6 +209,7 @@ def test_what_is_not_known_is_told_at_once():
         ep.warm_up(ep.load_case("train-8hp70", {"lubricant": None}), "1 h")
 
 
+@pytest.mark.slow
 def test_a_runaway_is_told_with_its_time():
     small = {"area": "0.01 m^2", "mass": "1 kg"}
     hot = HOUSING | {"thermal.oil_flow": None, "thermal.housing": small}

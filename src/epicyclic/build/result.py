@@ -125,7 +125,7 @@ def case_notes(
 def fluid_notes(case: SetCase) -> tuple[str, ...]:
     """What was made for another oil than that of the case, and what the case changes in it."""
     oil, models = case.lubricant.oil, case.chosen
-    bearing = "mixed-ehl" in models.get("bearing", "")
+    bearing = any(name in models.get("bearing", "") for name in ("mixed-ehl", "full-complement"))
     fluids = {
         "friction": (models["friction"], case.friction.made_for),
         "rolling": (models["rolling"], case.rolling.made_for),

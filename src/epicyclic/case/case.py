@@ -41,6 +41,7 @@ from epicyclic.case.tables.elements import (
     ElementTables,
     PlainPins,
     PlanetBearing,
+    SealTable,
     ThrustBearing,
     between,
 )
@@ -65,6 +66,7 @@ from epicyclic.case.tables.operation import (
     ThermalTable,
     needs_level,
 )
+from epicyclic.case.tables.strength import STRENGTH, StrengthTable
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, stated_values
 from epicyclic.case.train_tables import (
     ComputedSet,
@@ -157,6 +159,13 @@ class CaseTable(Table):
         return (*self._found, *self._replaced)
 
     @property
+    def elements(self) -> Iterator[tuple[str, str, ElementTable]]:
+        """Kind, name and table of every bearing, seal and other drag."""
+        for kind in ElementTables.model_fields:
+            for name, table in getattr(self, kind, {}).items():
+                yield kind, name, table
+
+    @property
     def source(self) -> str:
         """The file or built-in case it was read from."""
         return self._source
@@ -233,6 +242,9 @@ class CaseTable(Table):
                 )
             ),
         ]
+        if validation.case is not None and getattr(validation.case, "seals", None):
+            validation.case._source = source
+            found += _part_problems(validation.case, {name: name for name in _SHAFTS}, {})
         made = cls._made(validation.case, tables, source, found)
         made._found, made._sound = told, valid.sections
         if gearing is not None:
@@ -505,6 +517,7 @@ class _TrainTables(CaseTable):
     contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 MOST_SETS = 64
@@ -537,13 +550,6 @@ class TrainCase(_TrainHead):
         """The state in which it runs: what is braked and joined."""
         name = self.operation.state
         return StateTable() if name is None else self.states[name]
-
-    @property
-    def elements(self) -> Iterator[tuple[str, str, ElementTable]]:
-        """Kind, name and table of every bearing, seal and other drag."""
-        for kind in ElementTables.model_fields:
-            for name, table in getattr(self, kind).items():
-                yield kind, name, table
 
     @property
     def computed(self) -> bool:
@@ -869,10 +875,16 @@ def _complete(
 # --- bearings, seals, drags -----------------------------------------------------------------------
 
 
-def _element_problems(train: TrainCase) -> list[Problem]:
+_SHAFTS = ("sun", "ring", "carrier")
+"""What may turn in a seal of a planetary set by itself."""
+
+
+def _part_problems(
+    case: CaseTable, shafts: Mapping[str, str], taken: Mapping[str, str]
+) -> list[Problem]:
+    """What is wrong with the names and tables of parts; `taken` has names and their tables."""
     problems = []
-    taken = dict.fromkeys(train.sets, "sets")
-    for kind, name, table in train.elements:
+    for kind, name, table in case.elements:
         key = f"{kind}.{name}"
         if not PART_NAME.fullmatch(name):
             allowed = f"is not a valid name for a part: {PART_NAME_RULE}."
@@ -880,15 +892,20 @@ def _element_problems(train: TrainCase) -> list[Problem]:
         if name in taken:
             allowed = f"has the same name as another part, {taken[name]}.{name}."
             problems.append(Problem(key, "", allowed, "Choose another name."))
-        taken[name] = kind
+        taken = {**taken, name: kind}
         found = list(table.problems())
-        if not found and train.lubricant is not None:
+        if not found and getattr(case, "lubricant", None) is not None:
             try:
-                between(table, train.shape.names)
-                table.points(train.folder)
+                between(table, shafts)
+                table.points(case.folder)
             except InputError as error:
                 found = list(error.problems)
         problems += [_below(key, problem) for problem in found]
+    return problems
+
+
+def _element_problems(train: TrainCase) -> list[Problem]:
+    problems = _part_problems(train, train.shape.names, dict.fromkeys(train.sets, "sets"))
     if not train.computed:
         return problems
     if train.lubricant is None:
@@ -948,6 +965,7 @@ class PlanetaryCase(_SetTables, PlainPins):
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
+    seals: dict[str, SealTable] = Field(default={})
     lubricant: Lubricant
     lubrication: LubricationTable | None = LUBRICATION
     surroundings: Surroundings = Surroundings()
@@ -958,6 +976,7 @@ class PlanetaryCase(_SetTables, PlainPins):
     numerics: Numerics = Numerics()
     losses: PlanetaryLosses = PlanetaryLosses()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 class GearPairCase(_SetTables):
@@ -980,6 +999,7 @@ class GearPairCase(_SetTables):
     numerics: Numerics = Numerics()
     losses: GearPairLosses = GearPairLosses()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 Case = PlanetaryCase | GearPairCase | TrainCase

@@ -255,11 +255,24 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     if bearing.type == "spherical" and models.planet_tilt == "coupled":
         allowed = "does not apply to spherical roller bearings, which align themselves."
         return [Problem("models.planet_tilt", '"coupled"', allowed, 'Write "left-out".')]
+    if bearing.cage == "caged" and models.bearing == "full-complement":
+        allowed = "applies to rollers without a cage."
+        return [Problem("models.bearing", '"full-complement"', allowed, 'Write "mixed-ehl".')]
+    if models.bearing == "full-complement":
+        full = bearing.rollers_per_row
+        while not any(check_rollers(bearing.model_copy(update={"rollers_per_row": full + 1}))):
+            full += 1
+        if full == bearing.rollers_per_row:
+            return []
+        allowed, remedy = f"is not full; {full} fit.", f"Write rollers_per_row = {full}."
+        given = f"{bearing.rollers_per_row}"
+        return [Problem("planet_bearing.rollers_per_row", given, allowed, remedy)]
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
     allowed = "applies to caged bearings; rollers of a full-complement bearing rub on each other, "
     allowed += "and this friction is not included."
-    return [Problem("models.bearing", '"mixed-ehl"', allowed, 'Write bearing = "palmgren".')]
+    remedy = 'Write bearing = "full-complement" or "palmgren".'
+    return [Problem("models.bearing", '"mixed-ehl"', allowed, remedy)]
 
 
 def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> Iterator[Problem]:

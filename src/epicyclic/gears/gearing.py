@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 from epicyclic.gears.gear import CARRIER, BasicRack, Gear
-from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle
+from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle, tip_shortening
 from epicyclic.gears.stated import StatedGear, StatedMesh, StatedShared, allowance_shift, half_angle
 
 DEFAULT_RIM_THICKNESS = 3.0
@@ -148,8 +148,38 @@ class Gearing:
         """
         assert self.shared is not None
         table, shared = self.tables[name], self.shared
-        heights = (shared.addendum_coefficient, shared.dedendum_coefficient)
-        return _gear(name, table, self.racks[name], *heights)
+        addendum = shared.addendum_coefficient
+        if table.tip_diameter is None:
+            addendum -= self.tip_shortenings.get(name, 0.0) / self.racks[name].normal_module
+        return _gear(name, table, self.racks[name], addendum, shared.dedendum_coefficient)
+
+    @cached_property
+    def tip_shortenings(self) -> dict[str, float]:
+        """By how much each gear is shortened if it has the default tip: as every mesh needs. [m]"""
+        found: dict[str, float] = {}
+        assert self.shared is not None
+        for mesh in self.meshes if self.shared.tip_alteration == "keep-clearance" else ():
+            names = (mesh.first, mesh.second)
+            rack, distance = self.racks[mesh.first], self.distances[mesh.key]
+            modules = (rack.normal_module, self.racks[mesh.second].normal_module)
+            if distance is None or not math.isclose(*modules):  # mates of one rack only
+                continue
+            try:
+                shift_sum = sum(map(self._nominal_shift, names))
+            except ValueError:  # a thickness that is still missing, or lies in the base circle
+                continue
+            teeth = int(mesh.teeth[0] + (-1 if mesh.internal else 1) * mesh.teeth[1])
+            shortening = tip_shortening(rack, teeth, distance, shift_sum)
+            found |= {name: max(shortening, found.get(name, 0.0)) for name in names}
+        return found
+
+    def _nominal_shift(self, name: str) -> float:
+        """x without allowances; raises `ValueError` if the teeth have no thickness. [1]"""
+        table, rack = self.tables[name], self.racks[name]
+        if not table.states_thickness:
+            raise ValueError(name)
+        shift = _gear(name, table, rack, 0.0, 0.0).profile_shift_coefficient
+        return shift - allowance_shift(table, rack)
 
     def rings(self) -> Iterator[tuple[str, StatedGear, Gear]]:
         """Name, table and geometry of every internal gear."""

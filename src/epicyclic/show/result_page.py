@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 import xarray as xr
 
+from epicyclic.case.case import read_case
 from epicyclic.errors import Status
+from epicyclic.registry import offered
 from epicyclic.result.result import Result, Train, in_words
 from epicyclic.show import result_tables as tables
 from epicyclic.show.explorer import EXPLORER_LEAD, explorer_items
@@ -263,6 +265,13 @@ def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:
     return Section("load", "Load on the teeth", items)
 
 
+def _details(record: ResultRecord) -> tuple[Item, ...]:
+    """What plug-ins show of the case, whose tables the record holds."""
+    if not offered("details").keys() & record.given.keys():
+        return ()
+    return tuple(tables.details(read_case(record.given), record.result))
+
+
 _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
     "losses": _losses_chapter,
     "uncertainty": lambda record, drawings: Section(
@@ -284,6 +293,7 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
         ),
     ),
     "load": _load_chapter,
+    "details": lambda record, drawings: Section("details", "Strength", _details(record)),
     "friction": lambda record, drawings: Section(
         "friction",
         "Friction in the meshes",
