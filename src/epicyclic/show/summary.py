@@ -12,7 +12,7 @@ from rich.constrain import Constrain
 from rich.text import Text
 
 from epicyclic.build.result import NOT_INCLUDED
-from epicyclic.losses.ranges import concern_text, range_text, what_it_may_be
+from epicyclic.losses.ranges import concern_text, range_text, weight_of
 from epicyclic.machine.element import note_watts
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result, in_words
@@ -156,7 +156,7 @@ def first_warnings(result: Result) -> Listing:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
         size = "" if math.isnan(watts) else f"; {concern_text(watts, group)} of the loss"
         text = f"{sentence(range_text(group)).rstrip('.')} ({', '.join(uses)}){size}."
-        found.append((what_it_may_be(watts, group), text))
+        found.append((weight_of(watts, group), text))
     heavy = [pair for pair in found if pair[0] >= CONCERNED * result.total and pair[0] > 0]
     heavy.sort(key=lambda pair: -pair[0])
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))
