@@ -42,6 +42,7 @@ METHODS = {
     "drained": {},
     "dip": {"oil_level": "-21 mm", "oil_volume": "1.9 l"},
     "submerged": {},
+    "grease": {},
 }
 DRAGS = ("sun_drag", "ring_drag", "carrier_drag")
 RPM = math.pi / 30

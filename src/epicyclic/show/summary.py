@@ -11,7 +11,7 @@ from rich.console import Group, RenderableType
 from rich.constrain import Constrain
 from rich.text import Text
 
-from epicyclic.build.result import NOT_INCLUDED
+from epicyclic.build.result import NOT_INCLUDED, UNCOVERED
 from epicyclic.losses.ranges import concern_text, range_text, weight_of
 from epicyclic.machine.element import note_watts
 from epicyclic.messages import sentence
@@ -53,6 +53,7 @@ def first_screen(result: Result, known: Known | None) -> RenderableType:
 def headline(result: Result, known: Known | None) -> Iterator[str]:
     """Ratio, efficiency and loss with their bands, power and hottest part, a line each."""
     ends = {} if known is None else known.ends
+    limit = " of what the models cover" if any(UNCOVERED in note for note in result.notes) else ""
     for it in key_figures(result):
         text = f"{it.cell.text} {it.unit}".rstrip()
         band = ""
@@ -65,7 +66,7 @@ def headline(result: Result, known: Known | None) -> Iterator[str]:
             band = known_text(*ends["total"], beside=result.total)
         elif it.cell.key in ("load_dependent", "load_independent"):
             continue  # the table has them
-        band = f"95 % band {band}" if band else ""
+        band = f"95 % band {band}{limit}" if band else ""
         yield f"{it.label:{_LABEL}}{text:{_VALUE}}{band}".rstrip()
     if result.heat is not None:
         found = result.heat.temperatures

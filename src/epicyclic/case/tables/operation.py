@@ -240,7 +240,7 @@ def check_ways_out(
     return [Problem("thermal", "", allowed, remedy)]
 
 
-Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged"]
+Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged", "grease"]
 SHARE_KEY = "surroundings.oil_air_ratio"
 OWN_SHARE_KEY = "lubrication.oil_share"
 FACTOR_KEY = "lubrication.oil_share_factor"
@@ -252,6 +252,7 @@ WETTING: Mapping[Method, tuple[str, ...]] = {
     "drained": ("spray",),
     "dip": ("dip", "spray-and-dip"),
     "submerged": ("submerged",),
+    "grease": ("spray",),
 }
 """What thermal.lubrication is with each method if it is not given, and what else it may be."""
 _Sump = Annotated[float, Quantity("a volume", "m^3", "l", low=0.0, high=1e6, open_low=True)]
@@ -271,7 +272,7 @@ class LubricationTable(Table):
 
     method: Method = Field(
         description="drained: mist only; flow: oil fed through shafts or carrier; dip: some of "
-        "the gears dip into the sump."
+        "the gears dip into the sump; grease: lubricant.oil is its base oil."
     )
     oil_flow: VolumeFlow | None = option("From jet, spray or flow to the gears of one set.")
     jet_speed: Speed = option(
@@ -335,6 +336,7 @@ _KEYS: Mapping[Method, Collection[str]] = {
     "drained": (),
     "dip": ("oil_level", "immersion", "oil_volume", "churning"),
     "submerged": (),
+    "grease": (),
 }
 """Keys that have an effect with each method."""
 
