@@ -12,8 +12,8 @@ from rich.console import Group, RenderableType
 from rich.constrain import Constrain
 from rich.text import Text
 
-from epicyclic.build.result import NOT_INCLUDED
-from epicyclic.losses.ranges import concern_text, range_text, what_it_may_be
+from epicyclic.build.result import NOT_INCLUDED, UNCOVERED
+from epicyclic.losses.ranges import concern_text, range_text, weight_of
 from epicyclic.machine.element import note_watts
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result, in_words
@@ -68,11 +68,12 @@ def head_figures(result: Result, known: Known | None) -> Iterator[KeyFigure]:
 
 def headline(result: Result, known: Known | None) -> Iterator[str]:
     """Ratio, efficiency and loss with their bands, power and hottest part, a line each."""
+    limit = " of what the models cover" if any(UNCOVERED in note for note in result.notes) else ""
     for it in head_figures(result, known):
         if it.cell.key in ("load_dependent", "load_independent"):
             continue  # the table has them
         text = f"{it.cell.text} {it.unit}".rstrip()
-        band = f"95 % band {it.band}" if it.band else ""
+        band = f"95 % band {it.band}{limit}" if it.band else ""
         yield f"{it.label:{_LABEL}}{text:{_VALUE}}{band}".rstrip()
     if result.heat is not None:
         found = result.heat.temperatures
@@ -155,7 +156,7 @@ def first_warnings(result: Result) -> Listing:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
         size = "" if math.isnan(watts) else f"; {concern_text(watts, group)} of the loss"
         text = f"{sentence(range_text(group)).rstrip('.')} ({', '.join(uses)}){size}."
-        found.append((what_it_may_be(watts, group), text))
+        found.append((weight_of(watts, group), text))
     heavy = [pair for pair in found if pair[0] >= CONCERNED * result.total and pair[0] > 0]
     heavy.sort(key=lambda pair: -pair[0])
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))

@@ -393,7 +393,9 @@ class ShaftBearingTable(ElementTable):
     minimum_load_factor: Number | None = option(
         "k_r of the product table. Default: 0.025 deep-groove, 0.15 cylindrical.", gt=0, le=10
     )
-    reference_speed: ReferenceSpeed | None = option("For the minimum load of cylindrical rollers.")
+    reference_speed: ReferenceSpeed | None = option(
+        "Of the catalogue; for the minimum load of cylindrical rollers, and a note above it."
+    )
     table: LossTableTable | None = option("Loss table for model = table.")
 
     _fill = model_validator(mode="before")(

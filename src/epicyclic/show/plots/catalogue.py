@@ -32,7 +32,7 @@ from epicyclic.result.result import in_words, set_of
 from epicyclic.show.page import Drawing
 from epicyclic.show.plots import loss_map, losses, mesh, sweep
 from epicyclic.show.plots.arrangement import arrangement_of, plot_from_the_end, plot_from_the_side
-from epicyclic.show.plots.drawing import plot_gear_set, plot_teeth
+from epicyclic.show.plots.drawing import plot_gear_set, plot_oil, plot_teeth
 from epicyclic.show.plots.heat_network import plot_heat_network
 from epicyclic.show.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.show.plots.power_flow import SLIDE, plot_power_flow
@@ -125,6 +125,12 @@ def _arrangement(stored: Stored) -> list[Panel]:
         return []
     side = partial(plot_from_the_side, found, inputs)
     return [Panel("", partial(plot_from_the_end, found)), Panel("", side)]
+
+
+def _oil(stored: Stored) -> list[Panel]:
+    """All gears in the oil of the housing, if some dip."""
+    gears = {name: gear for name, gear in _gears_of(stored).items() if "stands_x" in gear}
+    return [Panel("", partial(plot_oil, gears))] if gears else []
 
 
 def _teeth(stored: Stored) -> list[Panel]:
@@ -249,6 +255,7 @@ def _heat(stored: Stored) -> list[Panel]:
 PLOTS: dict[str, Plot] = {
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
     "arrangement": Plot("Where do the sets and shafts of the train lie?", _arrangement),
+    "oil": Plot("How deep do the gears dip into the oil?", _oil),
     "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
     "losses": Plot("Where is the power lost?", _of_result(losses.plot_losses)),
     "loss-sum": Plot("How do the losses add up?", _of_result(losses.plot_loss_sum)),

@@ -39,6 +39,8 @@ SKIPPED_POINTS = 4
 """A whole gear is drawn with one point of so many: the others are too near to be seen."""
 HEIGHT_SHARE = 0.5  # Height of a drawing of teeth over its width, at least. [1]
 MARGIN = 1.04
+OIL_COLOUR, OIL_EDGE = (0.85, 0.65, 0.13, 0.35), "#8A6A10"
+SAME_LEVEL = 3  # Digits of a millimetre to which levels are the same.
 
 
 def plot_gear_set(
@@ -116,6 +118,50 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     legend_below(ax, ncols=3)
     ax.set_title("Teeth in contact")
     return ax
+
+
+def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
+    """Tip circles of all gears in the housing, to scale, in the oil at rest."""
+    fills = _fills(gears)
+    low, high = np.full(2, math.inf), np.full(2, -math.inf)
+    levels: dict[str, float] = {}
+    for name, gear in sorted(gears.items(), key=_is_behind):
+        radius = _scalar(gear, "outside_diameter") / 2
+        for number, stand in enumerate(_stands(gear)):
+            shape = _path(_circle(radius) + stand)
+            if gear.attrs["internal"]:
+                inside = _circle(_scalar(gear, "tip_diameter") / 2)[::-1] + stand
+                shape = Path.make_compound_path(shape, _path(inside))
+            label = in_words(name) if number == 0 else None
+            ax.add_patch(PathPatch(shape, facecolor=fills[name], edgecolor="black", label=label))
+            low, high = np.minimum(low, stand - radius), np.maximum(high, stand + radius)
+            if "oil_depth" in gear and _scalar(gear, "oil_depth") > 0:
+                levels[name] = float(stand[1]) - radius + _scalar(gear, "oil_depth")
+    is_one = len({round(level, SAME_LEVEL) for level in levels.values()}) == 1
+    for number, (name, level) in enumerate(levels.items()):
+        label = "oil at rest" if number == 0 else None
+        if not is_one:  # depths that were stated gear by gear: each has its own
+            radius, stand = _scalar(gears[name], "outside_diameter") / 2, _stands(gears[name])[0]
+            left, right = stand[0] - radius, stand[0] + radius
+        elif number == 0:
+            left, right = low[0], high[0]
+        else:
+            break
+        base = low[1] if is_one else stand[1] - radius
+        box = Rectangle((left, base), right - left, level - base, label=label, color=OIL_COLOUR)
+        ax.add_patch(box)
+        ax.plot([left, right], [level, level], color=OIL_EDGE, lw=1.2)
+    _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
+    ax.set_adjustable("box")
+    ax.set_anchor("N")
+    legend_below(ax, ncols=3)
+    ax.set_title("Gears in the oil")
+    return ax
+
+
+def _stands(gear: xr.Dataset) -> Floats:
+    """Places in the housing, in rows. [mm]"""
+    return np.column_stack([gear["stands_x"], gear["stands_y"]])
 
 
 def layer_of(name: str, number: int) -> str:
