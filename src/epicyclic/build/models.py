@@ -185,7 +185,6 @@ class SetCase:
                     running_in=models.running_in_factor if models.running_in == "run-in" else 1.0,
                     cutoff=models.profile_cutoff,
                     hurst_exponent=models.hurst_exponent,
-                    hardness=models.flank_hardness,
                 ),
             )
             return friction_model(name, settings)

@@ -258,8 +258,8 @@ RUNNING_IN = 0.65
 """Roughness after running-in over that as made: 0.6 to 0.7 of it is left (estimate). [1]"""
 PROFILE_CUTOFF = 0.8e-3  # l_c of profiles of Ra 0.1 to 2 um, ISO 21920-3, [m]
 MIDDLE_OF_CLASS = 0.45e-6  # and the middle of that class, as a geometric mean. [m]
-HURST_EXPONENT = 0.7  # H of ground steel, 0.5 to 0.8 (estimate). [1]
-FLANK_HARDNESS = 7e9  # Of case-hardened flanks, some 710 HV. [Pa]
+HURST_EXPONENT = 0.5
+"""H of machined surfaces: variance of heights grows with length (Sayles, Thomas 1978). [1]"""
 RA_OVER_RQ = math.sqrt(2 / math.pi)  # Ra/Rq of a Gaussian profile. [1]
 
 RZ_OVER_RA = 6.0  # Rz/Ra, DIN 3991 approximation, as the FVA-Workbench uses it. [1]
