@@ -117,6 +117,13 @@ def format_number(value: float, digits: int = 6) -> str:
     return f"{float(text):.0f}" if "e+" in text and abs(value) < PLAIN_NUMBERS else text
 
 
+def efficiency_text(*values: float, ends: tuple[float, float]) -> str:
+    """Efficiencies in percent with the decimals that the band between `ends` leaves."""
+    width = 100 * abs(ends[1] - ends[0])
+    decimals = min(6, max(1, 1 - math.floor(math.log10(width)))) if width > 0 else 3
+    return f"{' to '.join(f'{100 * value:.{decimals}f}' for value in values)} %"
+
+
 def percent(share: float, decimals: int = 1, *, signed: bool = False) -> str:
     """A share of one as tables and sentences have it, ``"7.3 %"``."""
     return f"{100 * share:{'+' if signed else ''}z.{decimals}f} %"

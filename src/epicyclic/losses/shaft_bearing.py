@@ -444,7 +444,7 @@ def thermal_speed_rating(bearing: CatalogueBearing) -> float:
 
     def excess(speed: float) -> float:
         own = bearing_viscous_loss(viscous, THERMAL_VISCOSITY, speed, diameter)
-        return own + mechanical * load * diameter * speed - heat
+        return float(own + mechanical * load * diameter * speed - heat)
 
     return float(brentq(excess, 0.0, FASTEST))
 

@@ -179,8 +179,9 @@ def mesh_flows(
     _begin(tuple(family for family, *_ in wanted.values() if family.model in NETWORK_MODELS))
     direct: dict[str, FlowRequest] = {}
     for duty in duties:
-        if (request := wanted.get(duty.gears.key)) is None:
+        if duty.gears.key not in wanted:
             continue
+        request = wanted[duty.gears.key]
         figures, tables = None, duty.gears.models.pockets.tables
         if not request[0].scales(*request[1:]):
             if request[0] in tables:
@@ -226,7 +227,7 @@ def _begin(families: tuple[FlowFamily, ...]) -> None:
 @lru_cache(maxsize=256)
 def _solve_all(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
     """All flows at once: their kernels release the interpreter."""
-    if all(family.scales(*flow) for family, *flow in requests):  # threads would cost more
+    if all(request[0].scales(*request[1:]) for request in requests):  # threads would cost more
         return tuple(map(_solve, requests))
     with ThreadPoolExecutor(len(requests)) as pool:
         return tuple(pool.map(_solve, requests))

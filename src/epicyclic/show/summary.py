@@ -20,10 +20,15 @@ from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import KeyFigure, Listing, Table
 from epicyclic.show.result_tables import key_figures, locking_text, losses_table, sums_table
 from epicyclic.show.terminal import Sentence, as_on_page, spaced
-from epicyclic.show.uncertainty_tables import MOST, efficiency_text
-from epicyclic.study.bands.advice import Known, called, in_few_words, is_on_first_screen
+from epicyclic.study.bands.advice import (
+    MOST_DRIVERS,
+    Known,
+    called,
+    in_few_words,
+    is_on_first_screen,
+)
 from epicyclic.study.operating import operating_line
-from epicyclic.units import CELSIUS, known_text, percent, unit_text
+from epicyclic.units import CELSIUS, efficiency_text, known_text, percent, unit_text
 
 MOST_WARNINGS = 3  # On the first screen.
 CONCERNED = 0.01  # Part of the total loss from which a warning stands on the first screen. [1]
@@ -106,7 +111,7 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
         return
     drivers = ", ".join(
         f"{in_few_words(called(known, driver))} {percent(share, 0)}"
-        for driver, share in known.drivers[:MOST]
+        for driver, share in known.drivers[:MOST_DRIVERS]
     )
     yield f"The band is due to: {drivers}."
     yield from filter(is_on_first_screen, known.remarks)

@@ -127,9 +127,10 @@ def check(case: Case, changes: Changes = ()) -> None:
 
 def run(case: Case, changes: Changes = (), details: bool = False) -> dict[str, Any]:
     """Losses, efficiency and 95 % band of a case; with details all figures, warnings, sources."""
+    from epicyclic.show.details import result_tables
     from epicyclic.show.result_tables import remarks
     from epicyclic.show.summary import first_screen
-    from epicyclic.show.terminal import result_tables, terminal
+    from epicyclic.show.terminal import terminal
     from epicyclic.show.uncertainty_tables import band_texts, result_json
     from epicyclic.study.bands.study import quick_known
     from epicyclic.study.solve import solve

@@ -28,7 +28,6 @@ from epicyclic.losses.friction import contact_progress
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.files import is_rexs
 from epicyclic.result.result import Result, in_words, set_of
-from epicyclic.show.html import report_html, report_pdf
 from epicyclic.show.page import Drawing, KeyFigure, Section, Table
 from epicyclic.show.plots.catalogue import PLOTS, Panel, Stored, draw, drawing, figure_of, svg_text
 from epicyclic.show.plots.drawing import POSITION, Turning, turning_mesh, turning_set
@@ -455,6 +454,8 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
         if isinstance(found, ResultRecord):
             save(found.result, path)
         elif path.suffix in PAGES:
+            from epicyclic.show.html import report_html, report_pdf  # only what is saved needs it
+
             page = report_html(found)
             path.write_bytes(report_pdf(page) if path.suffix == ".pdf" else page.encode())
         else:

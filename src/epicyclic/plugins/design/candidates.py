@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -436,12 +436,12 @@ def _assembly(name: str, z: Gears, planets: FloatArray) -> FloatArray:
         fits = (z["sun"] + z["ring"]) % planets == 0
         if name == "two-stage":
             fits &= (z["sun2"] + z["ring2"]) % planets == 0
-        return fits.astype(float)
+        return np.asarray(fits, dtype=float)
     rings = ("ring",) if name == "stepped" else ("fixed_ring", "output_ring")
     fits = z["sun"] % planets == 0
     for ring in rings:
         fits &= z[ring] % planets == 0
-    return fits.astype(float)
+    return np.asarray(fits, dtype=float)
 
 
 def _material(table: StrengthTable, gear: str) -> Material:
@@ -559,7 +559,7 @@ def _gears(
             one, two = int(row[mesh.first]), int(row[mesh.second])
             reference = two * transverse / 2
             bases = transverse * math.cos(rack.transverse_pressure_angle) / 2
-            shift = float(tables[mesh.second]["profile_shift_coefficient"])
+            shift = cast(float, tables[mesh.second]["profile_shift_coefficient"])
             action = math.sqrt(max(0.0, distance**2 - ((two - one) * bases) ** 2))
             usual = reference - module * (1 + shift)
             tip = float(ring_tip(usual, two * bases, action, module))

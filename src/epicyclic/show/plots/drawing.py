@@ -122,7 +122,7 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
 
 def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     """Tip circles of all gears in the housing, to scale, in the oil at rest."""
-    fills = _fills(gears)
+    fills = fills_of(gears)
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
     levels: dict[str, float] = {}
     for name, gear in sorted(gears.items(), key=_is_behind):

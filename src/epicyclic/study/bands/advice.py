@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # How well a result is known: what sentences about it need, however it was found.
 
+MOST_DRIVERS = 3  # Inputs and models that are named after a band.
+
 
 @dataclass(frozen=True, slots=True)
 class Known:
