@@ -30,16 +30,18 @@ def set_problems(gearing: Gearing) -> list[Problem]:
     """Problems of the gears of a set with computed losses, its meshes and its assembly."""
     problems = list(rack_problems(gearing))
     sound: dict[str, Gear] = {}
-    distances = problems
+    placed = False
     if not problems:
         sound, problems = sound_gears(gearing)
         problems += _hand_problems(gearing, sound)
         distances = list(_distance_problems(gearing))
         problems += distances
-        if not distances:
+        thick = all(table.states_thickness for table in gearing.tables.values())
+        complete = thick and None not in gearing.distances.values()
+        if complete and not distances:  # else what is wrong with sizes shows in every mesh
             problems += _mesh_problems(gearing, sound)
+            placed = True
     if gearing.planets and gearing.count is not None:
-        placed = not distances and None not in gearing.distances.values()
         problems += _assembly_problems(gearing, sound, placed=placed)
     return list(dict.fromkeys(problems))  # a planet that cannot be cut is found in both meshes
 
@@ -183,8 +185,6 @@ def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
     """Mates of different racks, and meshes that cannot work. Only of gears that can be cut."""
     for drawn in gearing.meshes:
         if drawn.first not in sound or drawn.second not in sound:
-            continue
-        if gearing.distances[drawn.key] is None:  # reported where it was to be computed
             continue
         mesh = gearing.geometry(drawn)
         racks = one, two = mesh.gear1.rack, mesh.gear2.rack

@@ -421,19 +421,19 @@ def _fitting(gearing: Gearing, meshes: list[Mesh], gear: Gear, backlash: float =
 
 
 def _distance(gearing: Gearing, mesh: Mesh, key: str) -> str:
-    """What centre distance the teeth fit, rounded to the loose side.
-
-    None is proposed where another mesh shares it: what loosens the one tightens the other.
-    """
-    if sum(gearing.distance_key(other) == key for other in gearing.meshes) > 1:
-        return ""
+    """What centre distance the teeth fit, rounded to the loose side; none that others do not."""
     total = mesh.gear1.profile_shift_coefficient + mesh.gear2.profile_shift_coefficient
     try:
         distance = closed_center_distance(mesh.gear1.rack, _teeth(mesh), total)
     except ValueError:
         return ""
     loose = math.floor if mesh.internal else math.ceil
-    return f', or {key} = "{loose(distance * 1e6) / 1e3:.3f} mm"'
+    near = loose(distance * 1e6) / 1e6
+    shared = (it for it in gearing.meshes if gearing.distance_key(it) == key)
+    fits = (Mesh("", gearing.gear(it.first), gearing.gear(it.second), near) for it in shared)
+    if not all(it.backlash >= -ROUNDING for it in fits):
+        return ""
+    return f', or {key} = "{1e3 * near:.3f} mm"'
 
 
 def _other_sign(gearing: Gearing, mesh: Mesh) -> str:
