@@ -176,7 +176,7 @@ def _over_loads(relief: Relief, values: FloatArray) -> FloatArray:
     """The mean of losses and the largest of the others over the loads."""
     if not len(values):
         return np.full(len(relief.objectives), np.nan)
-    found = values.max(axis=0)
+    found: FloatArray = values.max(axis=0)
     for place, name in enumerate(relief.objectives):
         if name == "loss":
             found[place] = values[:, place].mean()
