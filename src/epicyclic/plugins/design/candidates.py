@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from epicyclic.case.tables.strength import GearStrength, StrengthTable
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.gear import BasicRack
-from epicyclic.gears.mesh import profile_shift_sum
+from epicyclic.gears.mesh import closing_number, profile_shift_sum
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design.strength import Material, material_of
 from epicyclic.plugins.design.task import Task
@@ -422,26 +422,35 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             limit = getattr(task.limits, key)
             if limit is not None:
                 least(key, limit / found)
-        least("assembly", _assembly(name, z, planets))
+        least("assembly", _assembly(layout, z, planets))
     return Sizes(
         ratio, diameter, width, mass, {k: np.nan_to_num(v) for k, v in margins.items()}, loss
     )
 
 
-def _assembly(name: str, z: Gears, planets: FloatArray) -> FloatArray:
-    """1 where equally spaced planets fit, else 0. Lynwander (1983), chapter 8."""
-    if name == "pair":
-        return np.ones(len(planets))
-    if name in ("planetary", "two-stage"):
-        fits = (z["sun"] + z["ring"]) % planets == 0
-        if name == "two-stage":
-            fits &= (z["sun2"] + z["ring2"]) % planets == 0
-        return np.asarray(fits, dtype=float)
-    rings = ("ring",) if name == "stepped" else ("fixed_ring", "output_ring")
-    fits = z["sun"] % planets == 0
-    for ring in rings:
-        fits &= z[ring] % planets == 0
-    return np.asarray(fits, dtype=float)
+def _assembly(layout: Layout, z: Gears, planets: FloatArray) -> FloatArray:
+    """1 where alike planets fit at equal angles, else 0. Theory (A6)."""
+    teeth = np.column_stack([z[gear] for gear in layout.gears]).astype(int)
+    kinds, places = np.unique(teeth, axis=0, return_inverse=True)
+    fits = np.ones(len(planets), dtype=bool)
+    for stage in {mesh.set for mesh in layout.meshes}:
+        numbers = np.array([_closing(layout, stage, kind) for kind in kinds])[places.ravel()]
+        fits &= numbers % planets == 0
+    return np.where(fits, 1.0, 0.0)
+
+
+def _closing(layout: Layout, stage: str, kind: Any) -> int:
+    """N of the planets of a stage, 0 of gears on fixed axes."""
+    own = dict(zip(layout.gears, map(int, kind), strict=True))
+    meshes = []
+    for mesh in layout.meshes:
+        if mesh.set == stage and "sun" in layout.gears:
+            planet, central = (
+                (mesh.first, mesh.second) if mesh.internal else (mesh.second, mesh.first)
+            )
+            sign = -1 if mesh.internal else 1
+            meshes.append(({"planet": own[planet]}, sign * own[central]))
+    return closing_number(meshes) if meshes else 0
 
 
 def _material(table: StrengthTable, gear: str) -> Material:
@@ -545,7 +554,7 @@ def _gears(
 ) -> dict[str, dict[str, Any]]:
     """The tables of the gears of a stage, rings with tips that leave the planets' involutes."""
     module, transverse = rack.normal_module, rack.transverse_module
-    tables = {
+    tables: dict[str, dict[str, Any]] = {
         gear: {
             "teeth": int(row[gear]),
             "face_width": _mm(width),

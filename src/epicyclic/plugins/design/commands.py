@@ -110,7 +110,10 @@ def design(
     from epicyclic.plugins.design.search import odds, screen, search
     from epicyclic.plugins.design.task import read_task
     from epicyclic.schema.read import read_file
+    from epicyclic.study.bands.plan import check_samples
 
+    if draws:
+        check_samples(draws)
     read = read_task(task)
     raw, _ = read_file(task)
     if output is not None:
