@@ -60,6 +60,20 @@ def power(*bases_exponents: Any) -> Any:
 _LEAST = 1e-300
 
 
+def asperity_share(film_ratio: Real) -> Real:
+    """Share of the load on asperities, exp(-1.8 Lambda^1.2). Theory (Y5), (J25). [1]
+
+    S. Aihara, J. Tribol. 109 (1987) 471, for roller ends on a rib.
+
+    Examples
+    --------
+    >>> asperity_share(np.array([0.0, 0.5, 1.0, 3.0])).round(3)
+    array([1.   , 0.457, 0.165, 0.001])
+    """
+    share: Real = np.exp(-1.8 * power(film_ratio, 1.2))
+    return share
+
+
 def pan_hamrock_minimum_film(u: Real, g: Real | float, w: Real) -> Real:
     """h_min/R_eq = 1.714 U^0.694 G^0.568 W^-0.128. Theory (C10).
 

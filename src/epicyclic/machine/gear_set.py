@@ -338,7 +338,11 @@ class GearSet:
         duties = []
         for mesh in self.meshes:
             torque, speed = share * torques[mesh.key], state.speeds[mesh.bodies[0]] - carrier
-            duties.append(MeshDuty(mesh, torque, speed, torque * speed >= 0))
+            drives1 = torque * speed >= 0
+            if not drives1:
+                mirrored = replace(mesh.deviations, mirrored=True)
+                mesh = replace(mesh, deviations=mirrored)
+            duties.append(MeshDuty(mesh, torque, speed, drives1))
         return tuple(duties)
 
     def shares(self, state: State, torques: Mapping[str, float]) -> tuple[float, ...]:
@@ -447,7 +451,9 @@ class GearSet:
                     oil,
                     speed,
                     last_rollers.get((planet.key, share)),
+                    planet.pin_radius * carrier**2,
                 )
+                notes += bearing.notes
                 rollers[planet.key, share] = bearing.loads
                 bearings.append(bearing)
         meshes = [

@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TextIO, cast
 
@@ -175,6 +175,7 @@ def result_tables(
     remarks: Sequence[str] = (),  # On its temperatures.
     # How well the total loss and the efficiency are known.
     known: Sequence[str | page.Listing] = (),
+    more: Iterable[page.Table | page.Listing] = (),  # Tables and lists of plug-ins.
 ) -> RenderableType:
     """Everything that is known of a result: losses, figures, warnings, sources."""
     parts: list[RenderableType] = [_headline(result)]
@@ -185,6 +186,7 @@ def result_tables(
         parts += map(as_on_page, tables.heat_items(result.heat))
     parts += remarks
     parts += map(as_on_page, (*tables.oil_table(result), *tables.planets_table(result)))
+    parts += map(as_on_page, more)
     parts += [_methods(result), _list("Warnings", result.warnings)]
     return titled(result.title or result.kind, *parts, _list("Sources", result.sources))
 
