@@ -34,6 +34,7 @@ if sys.platform == "linux":
 
 _can_be_copied = sys.platform == "linux"  # elsewhere a copy is not safe, or there is none
 _is_copy = False
+_telling = threading.Lock()
 
 
 def done_apart(compile_kernel: Callable[[], bool]) -> bool:
@@ -69,8 +70,9 @@ def _follow(child: int, reader: int) -> bool:
     """Tell of the kernels of a copy until it ends; whether it has done its work."""
     try:
         while os.read(reader, 1):
-            for tell in listeners:
-                tell()
+            with _telling:
+                for tell in listeners:
+                    tell()
     except BaseException:
         os.kill(child, signal.SIGKILL)
         raise
