@@ -21,9 +21,10 @@ from epicyclic.gears.gearing import outside_radius
 from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
 from epicyclic.oil.oil import mixture_state, oil_state
 from epicyclic.show.plots.drawing import plot_oil
+from epicyclic.show.summary import headline
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.plan import look_nearby
-from epicyclic.study.bands.study import quick_band
+from epicyclic.study.bands.study import quick_band, quick_known
 from epicyclic.study.shapes import gear_shapes
 from problems import only, problems_of
 from trains import small_axle
@@ -736,6 +737,16 @@ def test_check_says_how_the_gears_are_lubricated():
     assert "Lubrication of pair: jet: share of oil 0.05 (95 %: 0.013 to 0.19;" in shown.output
     assert "Lubrication of planets: drained: share of oil 0.01 (95 %" in shown.output
     assert "Lubrication" not in CliRunner().invoke(cli, ["check", "train-eaxle"]).output
+
+
+def test_grease_lubricates_with_its_base_oil_and_says_what_no_model_covers():
+    greased = ep.solve(pair({"method": "grease"}))
+    assert greased.losses == ep.solve(pair({"method": "drained"})).losses
+    assert any("No friction model covers starved films of grease" in it for it in greased.notes)
+    known = quick_known(pair({"method": "grease"}), greased)
+    lines = [it for it in headline(greased, known) if "95 % band" in it]
+    assert lines
+    assert all(it.endswith("of what the models cover") for it in lines)
 
 
 def test_without_the_table_a_result_has_none_of_it():
