@@ -108,7 +108,7 @@ def telling_contacts(case: Case) -> Iterator[None]:
 def check(case: str, changes: tuple[str, ...]) -> None:
     """Check a case and show what follows from it, as a data sheet, without computing losses.
 
-    Of a train also the ratio of every state.
+    For a train it also shows the ratio of every state.
     """
     from epicyclic.show.data_sheet import data_sheet, reservations, state_tables
     from epicyclic.show.terminal import Sentence, terminal
@@ -146,6 +146,9 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     with telling_contacts(loaded):
         rows = compare_friction(loaded)
     terminal().print(friction_table(rows))
+    given = [name for name, gearing in loaded.gearings.items() if not gearing.computed]
+    if given:
+        echo(f"Not compared, because their efficiency is given: {', '.join(given)}.")
     if plot is not None:
         from epicyclic.show.plots.mesh import friction_figure
 
@@ -305,7 +308,7 @@ def warm_up(
 ) -> None:
     """Compute the warm-up of a gearbox: temperatures and losses over time.
 
-    Temperatures follow from the heat network, which needs thermal.oil_volume and, of a housing,
+    Temperatures follow from the heat network, which needs thermal.oil_volume and, with a housing,
     thermal.housing.mass.
     """
     from epicyclic.cli.common import progress_bar

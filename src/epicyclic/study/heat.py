@@ -78,8 +78,14 @@ def with_network(case: Case) -> Case:
 
 def _check_oil(case: Case) -> None:
     if case.lubricant is None:
-        allowed = "needs a case with computed losses; all losses of this case are given."
-        raise one_problem("models.temperatures", "network", allowed, "", case.source)
+        raise one_problem(
+            "sets",
+            "",
+            "have given efficiencies only, so where their heat arises and leaves is unknown.",
+            "Give the gears of a set (module, face widths, roughness) instead of its efficiency, "
+            "or [bearings.NAME] with an oil.",
+            case.source,
+        )
 
 
 def hottest(heat: HeatBalance) -> str:
