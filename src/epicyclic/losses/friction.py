@@ -632,8 +632,8 @@ FRICTION_MODELS = {
             source="M. Masjedi and M. M. Khonsari, J. Tribol. 134 (2012) 011503; P. K. Gupta et "
             "al., J. Tribol. 114 (1992) 55; C. R. Evans and K. L. Johnson, Proc. IMechE C 200 "
             "(1986) 303",
-            reliability="not fitted to gears; for its error on measured gears see 'epicyclic validate "
-            "--measured'",
+            reliability="not fitted to gears; for its error on measured gears see 'epicyclic "
+            "validate --measured'",
             function=lambda contact, settings: mixed_friction(
                 contact, settings.surfaces, settings.boundary
             ),

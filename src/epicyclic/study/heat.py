@@ -82,8 +82,7 @@ def _check_oil(case: Case) -> None:
             "sets",
             "",
             "have given efficiencies only, so where their heat arises and leaves is unknown.",
-            "Give the gears of a set (module, face widths, roughness) instead of its efficiency, "
-            "or [bearings.NAME] with an oil.",
+            "Give the gears of a set (module, face widths, roughness) instead of its efficiency.",
             case.source,
         )
 
