@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from epicyclic.errors import InputError as InputError
     from epicyclic.errors import Problem as Problem
     from epicyclic.plugins.contact_solver.fit import characterise_oil as characterise_oil
+    from epicyclic.plugins.design.search import design as design
+    from epicyclic.plugins.design.strength import strength as strength
     from epicyclic.plugins.rexs.exporting import write_rexs as write_rexs
     from epicyclic.plugins.rexs.importing import RexsImport as RexsImport
     from epicyclic.plugins.rexs.importing import read_rexs as read_rexs
@@ -105,8 +107,10 @@ _HOME = {
 _OF_PLUG_INS = {  # as they declare in their `PLUG_IN`; missing with the plug-in
     "RexsImport": "epicyclic.plugins.rexs.importing",
     "characterise_oil": "epicyclic.plugins.contact_solver.fit",
+    "design": "epicyclic.plugins.design.search",
     "pocketing_study": "epicyclic.validation.pocketing",
     "read_rexs": "epicyclic.plugins.rexs.importing",
+    "strength": "epicyclic.plugins.design.strength",
     "write_rexs": "epicyclic.plugins.rexs.exporting",
 }
 

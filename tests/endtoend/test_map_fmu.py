@@ -164,6 +164,7 @@ def test_the_how_to_runs(tmp_path, monkeypatch):
 
 
 STORES = {
+    "thermal.oil_flow": None,
     "thermal.oil_volume": "1 l",
     "thermal.lubrication": "dip",
     "thermal.housing": {"area": "0.3 m^2", "mass": "8 kg"},

@@ -236,6 +236,28 @@ def test_of_programs_that_start_together_one_compiles_a_kernel(tmp_path):
     assert sum(told) == 3, told
 
 
+COMING = """\
+from threading import enumerate, main_thread
+from epicyclic.kernels import ahead
+ahead.append(lambda: less_three(11.0))
+assert and_one(7.0) == 4.5
+for thread in enumerate():  # one follows the copy that does the work to come
+    if thread is not main_thread():
+        thread.join()
+before = len(copies)
+assert less_three(11.0) == 8.0
+assert not ahead and len(copies) == before == 2
+
+assert ("""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
+def test_kernels_of_work_to_come_are_compiled_meanwhile(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(TWO.replace("assert (", COMING, 1))
+    assert printed(program) == ["3", "2", "[0, 1, 1]"]
+
+
 def settings_beside(program):
     """The environment with a cache folder beside a program."""
     settings = os.environ | {"XDG_CACHE_HOME": str(program.parent / "cache")}

@@ -184,10 +184,19 @@ def test_figures_to_explore_have_the_data_of_the_still_ones(talbot_record, pair_
     plots = dict(
         re.findall(r'<figure id="figure-([^"]+)">.*?class="plot">(.*?)</script>', page, re.S)
     )
-    losses = json.loads(plots["losses-1"])["data"][0]
-    result = talbot_record.result
-    included = [name for name in result.losses if name not in result.not_included]
-    assert losses["x"] == pytest.approx([result.losses[name] for name in included], rel=1e-6)
+    losses = json.loads(plots["losses-1"])["data"]
+    shown = {
+        label.replace(" ", "_"): watts
+        for trace in losses
+        for label, watts in zip(trace["customdata"], trace["x"], strict=True)
+    }
+    lost = {name: watts for name, watts in talbot_record.result.losses.items() if watts}
+    assert shown == pytest.approx(lost, rel=1e-6)
+    (load,) = (data for name, data in plots.items() if name == "line-load-1")
+    trace = json.loads(load)["data"][0]
+    highest = float(talbot_record.group("meshes")["sun_mesh"]["line_load"].max())
+    assert trace["zmax"] == pytest.approx(highest)
+    assert "line load, N/mm: %{z" in trace["hovertemplate"]
     (drawing,) = draw(pair_map, "loss-map")[:1]
     field = drawing.plot["data"][0]
     point = map_at(pair_map, temperature=40.0)

@@ -17,6 +17,7 @@ import epicyclic as ep
 import listed_trains
 from epicyclic.errors import InputError
 from epicyclic.show.data_sheet import state_tables
+from epicyclic.show.details import friction_table, result_tables
 from epicyclic.show.inputs import input_tables
 from epicyclic.show.page import Row, Table
 from epicyclic.show.plots.catalogue import available, figure_of
@@ -24,7 +25,6 @@ from epicyclic.show.plots.power_flow import SLIDE
 from epicyclic.show.record import growing_record
 from epicyclic.show.result_page import result_section
 from epicyclic.show.template import case_template
-from epicyclic.show.terminal import friction_table, result_tables
 from trains import one_set, plus, published, simple, small_axle, turned_round
 
 GEARS = "235R"

@@ -6,6 +6,7 @@ bodies; those in `Gearing.planets` turn on pins of the carrier.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -350,6 +351,35 @@ class Gearing:
                         pins[two] = Pin(radii[two], pins[known].angle + angle)
                         found.append(two)
         return pins
+
+    @cached_property
+    def centers(self) -> dict[str, tuple[complex, ...]]:
+        """Where each body stands in the plane across the axes, planets several times. [m]
+
+        Of fixed axes from the first body; of planets, the first arm upwards, from the axis of the
+        set. Bodies whose places the case does not tell are left out.
+        """
+        found: dict[str, tuple[complex, ...]]
+        if self.planets:
+            arms = self.arrangement.angles
+            found = dict.fromkeys(self.members, (0j,))
+            for body, pin in self.pins.items():
+                turns = (math.pi / 2 + arm + pin.angle for arm in arms)
+                found[body] = tuple(cmath.rect(pin.radius, turn) for turn in turns)
+            return found
+        directions = self.directions
+        found = {self.bodies[self.meshes[0].first]: (0j,)}
+        before = 0
+        while len(found) > before:
+            before = len(found)
+            for mesh, geometry in zip(self.meshes, self.geometries, strict=True):
+                one, two = self.bodies[mesh.first], self.bodies[mesh.second]
+                step = cmath.rect(geometry.center_distance, directions[mesh.key])
+                if one in found:
+                    found.setdefault(two, (found[one][0] + step,))
+                elif two in found:
+                    found[one] = (found[two][0] - step,)
+        return found
 
     @cached_property
     def arrangement(self) -> Arrangement:
