@@ -110,7 +110,8 @@ def telling_contacts(case: Case) -> Iterator[None]:
 def check(case: str, changes: tuple[str, ...]) -> None:
     """Check a case and show what follows from it, as a data sheet, without computing losses.
 
-    Of a train also the ratio of every state; with [strength] safeties, which are computed.
+    For a train it also shows the ratio of every state; with [strength], the safeties, which are
+    computed.
     """
     from epicyclic.show.data_sheet import data_sheet, reservations, state_tables
     from epicyclic.show.result_tables import details
@@ -151,6 +152,9 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     with telling_contacts(loaded):
         rows = compare_friction(loaded)
     terminal().print(friction_table(rows))
+    given = [name for name, gearing in loaded.gearings.items() if not gearing.computed]
+    if given:
+        echo(f"Not compared, because their efficiency is given: {', '.join(given)}.")
     if plot is not None:
         from epicyclic.show.plots.mesh import friction_figure
 
@@ -310,7 +314,7 @@ def warm_up(
 ) -> None:
     """Compute the warm-up of a gearbox: temperatures and losses over time.
 
-    Temperatures follow from the heat network, which needs thermal.oil_volume and, of a housing,
+    Temperatures follow from the heat network, which needs thermal.oil_volume and, with a housing,
     thermal.housing.mass.
     """
     from epicyclic.cli.common import progress_bar

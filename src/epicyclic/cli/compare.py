@@ -93,8 +93,8 @@ if TYPE_CHECKING:
 @click.option(
     "--relative",
     metavar="PERCENT",
-    help="Standard uncertainty of all losses over them, 5%, if no column states it; default: "
-    "estimated from the scatter about the fit.",
+    help="Standard uncertainty of each loss relative to it, as in 5%, if no column states it; "
+    "default: estimated from the scatter about the fit.",
 )
 @click.option(
     "--seed", type=click.IntRange(0), default=0, help="Seed of the random share; default: 0."

@@ -208,8 +208,8 @@ def loss_map(
 ) -> None:
     """Compute a loss map: torque loss, losses and efficiency over speed and torque.
 
-    VALUES are a,b,c or start:stop:count with a unit. Near zero torque losses rise steeply: to
-    start:stop:count from or through zero torques are added that crowd there. The torque loss is
+    VALUES are a,b,c or start:stop:count with a unit. Because losses rise steeply near zero torque,
+    a range start:stop:count that reaches zero gets additional torques there. The torque loss is
     that at the input member; the file states the signs. A train has a map of each of its states.
     An interrupted map continues where it stopped, as a sweep does.
 

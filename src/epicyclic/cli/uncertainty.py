@@ -72,10 +72,10 @@ def uncertainty(
 ) -> None:
     """Show the uncertainty of losses and efficiency, and the inputs and models that cause it.
 
-    Of a CASE, over a loss MAP in a .nc file or, with --speed and --torque, over one that is
-    computed, or of the energy that a duty CYCLE loses. Distributions of inputs are those of
-    [uncertainty] of the case, or estimates; over a map or cycle an input has the same error
-    everywhere. With -o, an interrupted computation continues where it stopped.
+    It is that of a CASE, of a loss MAP in a .nc file, of a map that is computed first (with --speed
+    and --torque), or of the energy that a duty CYCLE loses. The distributions of inputs are those
+    of [uncertainty] in the case, or estimates; an input has the same error at all points of a map
+    or cycle. With -o, an interrupted computation continues where it stopped.
     """
     from epicyclic.files import check_place
     from epicyclic.show.terminal import terminal

@@ -631,8 +631,8 @@ FRICTION_MODELS = {
             title="film and asperities sharing the load",
             source="S. Aihara, J. Tribol. 109 (1987) 471; P. K. Gupta et al., J. Tribol. 114 "
             "(1992) 55; C. R. Evans and K. L. Johnson, Proc. IMechE C 200 (1986) 303",
-            reliability="nothing fitted to gears; its error on measured ones: 'epicyclic validate "
-            "--measured'",
+            reliability="not fitted to gears; for its error on measured gears see 'epicyclic "
+            "validate --measured'",
             function=lambda contact, settings: mixed_friction(
                 contact, settings.surfaces, settings.boundary
             ),

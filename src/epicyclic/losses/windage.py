@@ -49,7 +49,7 @@ DRAG_METHODS: Mapping[DragModel, DragMethod] = {
         "Y. Diab, F. Ville, P. Velex, C. Changenet, J. Mech. Des. 126 (2004) 903, second hand; "
         + _SMOOTH,
         "teeth: tests in air, within 20 % for spur and 50 % for helical gears of such models after "
-        "Dynamics 5 (2025) 33, abstract; with more oil than a mist no law is known, and the loss "
+        "Dynamics 5 (2025) 33, abstract; no law is known for more oil than a mist, and the loss "
         "lies between those of a mist and of all the oil",
     ),
     "anderson-loewenthal": DragMethod(

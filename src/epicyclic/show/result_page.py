@@ -115,19 +115,32 @@ def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
     return tuple(items)
 
 
+def _first(result: Result) -> Iterator[Item]:
+    """What is missing or outside every model, and what weighs most, as on the first screen."""
+    from epicyclic.show.summary import first_remarks, first_warnings  # builds on the terminal
+
+    remarks, warnings = tuple(first_remarks(result, None)), first_warnings(result)
+    if remarks:
+        yield Listing(remarks)
+    if warnings.items:
+        yield warnings
+
+
 def _losses(result: Result, drawings: Drawings) -> tuple[Item, ...]:
     return (
         Row((tables.losses_table(result), *gallery(drawings, "losses"))),
+        *_first(result),
         Row((tables.members_table(result), *gallery(drawings, "loss-sum"))),
         *gallery(drawings, "power-flow", wide=True),
     )
 
 
 def _train_losses(result: Result, train: Train, drawings: Drawings) -> tuple[Item, ...]:
-    """Power flow, sums, shafts, rolling powers, every single loss."""
+    """Sums, what is missing, power flow, shafts, rolling powers, every single loss."""
     return (
-        *gallery(drawings, "power-flow", wide=True),
         tables.sums_table(result, train),
+        *_first(result),
+        *gallery(drawings, "power-flow", wide=True),
         Row((*gallery(drawings, "losses"), *gallery(drawings, "loss-sum"))),
         tables.shafts_table(result),
         Row((tables.rolling_table(result, train), *tables.clutches_table(train))),

@@ -75,15 +75,14 @@ def _measurements(known: Known) -> Iterator[str]:
     found = [it for it in measurements_of(known) if it.width < WORTH * known.width]
     best = [next((it for it in found if it.is_input is own), None) for own in (False, True)]
     parts = [
-        f"{it.name} to {known_text(it.width, unit=known.unit, beside=known.width)}"
+        f"{'the input ' if it.is_input else ''}{it.name}, to "
+        f"{known_text(it.width, unit=known.unit, beside=known.width)}"
         for it in best
         if it is not None
     ]
     if parts:
         before = known_text(known.width, unit=known.unit)
-        lead = "" if best[0] is not None else "of the inputs "
-        text = "; of the inputs ".join(parts)
-        yield f"A measurement of these would narrow the band of {before} most: {lead}{text}."
+        yield f"The band of {before} would narrow most by measuring {', or '.join(parts)}."
 
 
 def result_json(result: Result, known: Known | None) -> str:
