@@ -40,6 +40,7 @@ LEAST_LINE = 90  # Lines of lower efficiencies run into one another where the to
 LABELS = 4  # Most labels that a line of equal value gets: more collide where lines are close.
 EDGE = 0.04
 """Share of the width and height of the Axes, along its edges, in which no such label begins."""
+APART = (0.09, 0.05)  # Of the width and height of the Axes, between labels. [1]
 ROOM = 1.03  # Height of an axis over the greatest value that it has to show. [1]
 MOST_PARTS, OTHERS = 6, "others"  # Of a stack of components; smaller ones are put together.
 MOST_LINES = 5
@@ -181,12 +182,15 @@ def draw_lines(
     lines = ax.contour(*field, levels=drawn, colors="white", linewidths=0.7)
     edge: list[AbstractPathEffect] = [withStroke(linewidth=2.0, foreground="0.25")]
     labelled = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
-    to_axes = ax.transData - ax.transAxes
+    to_axes, kept = ax.transData - ax.transAxes, np.empty((0, 2))
     for text in ax.clabel(lines, labelled, fontsize="small", fmt="%g", inline=False):
         text.set_path_effects(edge)
         place = to_axes.transform(text.get_position())
-        if np.abs(place - 0.5).max() > 0.5 - EDGE:  # a part of it would be cut off
+        is_cut = np.abs(place - 0.5).max() > 0.5 - EDGE
+        if is_cut or (np.abs(kept - place) < APART).all(axis=1).any():
             text.remove()
+        else:
+            kept = np.vstack([kept, place])
 
 
 def _efficiency_norm(low: float, high: float) -> FuncNorm:

@@ -92,7 +92,8 @@ def _draw(ax: Axes, parts: Mapping[str, Mapping[str, float]], starts: FloatArray
     for group, colour in GROUP_COLOURS.items():
         watts = np.array([own.get(group, 0.0) for own in parts.values()])
         (rows,) = watts.nonzero()
-        ax.barh(rows, watts[rows], left=starts[rows], color=colour, label=group, **EDGE)
+        if rows.size:
+            ax.barh(rows, watts[rows], left=starts[rows], color=colour, label=group, **EDGE)
         starts = starts + watts
 
 
