@@ -54,7 +54,7 @@ def _text(sound: bytes, rng: random.Random) -> bytes:
     lines = text.splitlines()
     numbers = [match.span() for match in re.finditer(r"-?\d+\.?\d*(e-?\d+)?", text)]
     start, end = rng.choice(numbers)
-    word = rng.choice(re.findall(r"[A-Za-z_]{3,}", text))
+    word = rng.choice(re.findall(r"[A-Za-z_]{3,}", text) or ["0"])
     ways: tuple[Callable[[], str], ...] = (
         lambda: text[:start] + rng.choice(NUMBERS) + text[end:],
         lambda: text.replace(word, rng.choice(NAMES)),

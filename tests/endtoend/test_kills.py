@@ -19,7 +19,8 @@ pytestmark = [
 ]
 
 KILLS = 15
-"""Of each of the seven commands."""
+"""Of each of the eight commands."""
+COMMANDS = COMMANDS | {"bands.nc": ("uncertainty", "train-eaxle", "--samples", "32")}
 
 
 def started(output, folder, jobs):

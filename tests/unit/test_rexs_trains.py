@@ -157,6 +157,21 @@ def test_what_is_lacking_is_needed(read):
     assert "Set operation.output. The shafts of a single set are motor, wheels." in told
 
 
+def test_what_follows_from_the_rest_is_not_needed(read):
+    """A file without a centre distance runs: it follows from the profile shifts."""
+    parts = eaxle()
+    for component in parts.components.values():
+        component["attributes"].pop("center_distance", None)
+    found = read(parts)
+    assert needed(found)
+    assert found.case().computed
+    assert not any(lack.needed for lack in found.lacking())
+    assert "NEEDED. The file" not in found.text()
+    missing = {"operation.torque": None}
+    assert any(lack.needed for lack in found.lacking(missing))
+    assert "NEEDED. The file" in found.text(missing)
+
+
 def test_gears_without_shafts_need_shafts(read):
     parts = eaxle()
     parts.relations = [item for item in parts.relations if item[1].get("part") != FIRST + 2]

@@ -363,6 +363,7 @@ class _Known(NamedTuple):
     # The last answer, which may be a predicted one, and the loads that it belongs to.
     result: ElementResult
     loads: Mapping[str, float]
+    drives: Mapping[str, bool]  # Which gears drove then: pockets are others on the other flank.
 
 
 def _answered(
@@ -374,18 +375,21 @@ def _answered(
     """The answer of an element to a state: the last one, one predicted from it, or a new one."""
     if known is None:
         loads, result = element.loads(state), element.evaluate(state)
-        return _Known(Answer(loads, result), result, loads)
+        return _Known(Answer(loads, result), result, loads, state.drives)
     loads = element.loads(state, known.result)
+    if known.drives != state.drives:
+        result = element.evaluate(state, known.result)
+        return _Known(Answer(loads, result), result, loads, state.drives)
     if _agrees(known.loads, loads):
         return known
     passed = distance(known.loads, loads)
     predicted = known.answer.predicted(loads, max(allowed, PREDICTED * passed))
     if predicted is not None:
-        return _Known(known.answer, predicted, loads)
+        return _Known(known.answer, predicted, loads, state.drives)
     result = element.evaluate(state, known.result)
     last = known.answer
     before = replace(last, before=None) if last.alike(loads, result) else None
-    return _Known(Answer(loads, result, before), result, loads)
+    return _Known(Answer(loads, result, before), result, loads, state.drives)
 
 
 @dataclass(frozen=True, slots=True)

@@ -436,6 +436,8 @@ def _head(sample: Sequence[tuple[int, list[str]]], form: TableForm) -> tuple[int
         (line, [cells[0].lstrip("# "), *cells[1:]]) for line, cells in heads if cells[0][:1] == "#"
     ]
     rows = [(line, cells) for line, cells in heads if cells[0][:1] != "#"]
+    if any(len(cells) > _MOST_COLUMNS for _, cells in rows):
+        refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep the columns that are used.")
     place = max(range(len(rows)), key=lambda i: _known(rows[i][1], form), default=-1)
     if place < 0 or not _known(rows[place][1], form):
         named = [row for row in comments if _known(row[1], form)]
@@ -449,8 +451,6 @@ def _head(sample: Sequence[tuple[int, list[str]]], form: TableForm) -> tuple[int
         else:
             place = texts[0]
     line, names = rows[place]
-    if len(names) > _MOST_COLUMNS:
-        refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep the columns that are used.")
     below = rows[place + 1][1] if place + 1 < len(rows) else []
     units = [""] * len(names)
     is_named = any(re.search(r"[^\W\d]|%", cell) for cell in below)
