@@ -65,7 +65,7 @@ class Rig:
             return table
         if set(table.component) != {"total"}:
             reason = "is not what a rig measures, which is the total loss."
-            given = first_of(dict.fromkeys(table.component))
+            given = first_of(list(dict.fromkeys(table.component)))
             raise one_problem("component", given, reason, 'Give "total" in all rows.', _PLACE)
         if self.baseline:
             two = rows_where(table, self.baseline, "baseline")
@@ -133,7 +133,7 @@ def _less(
     loss, known = table.loss.copy(), table.uncertainty
     squares = None if known is None else known**2
     lacking = []
-    for row in np.flatnonzero(rows):
+    for row in map(int, np.flatnonzero(rows)):
         own = others & _agree(table, row, equal)
         if alike:
             own &= np.array(
