@@ -447,7 +447,7 @@ def rubbing(
     pull: float,  # With which the carrier pulls each roller outward. [N]
     outward: float,  # Azimuth of that pull from the load. [rad]
 ) -> Rubbing:
-    """Sliding of rollers without a cage. Theory (B21) to (B23).
+    """Sliding of rollers without a cage. Theory (B21), (B23).
 
     Neighbours meet with opposite speeds, which draw no oil between them: boundary friction.
     """

@@ -65,7 +65,7 @@ class Rig:
             return table
         if set(table.component) != {"total"}:
             reason = "is not what a rig measures, which is the total loss."
-            given = first_of(tuple(dict.fromkeys(table.component)))
+            given = first_of(list(dict.fromkeys(table.component)))
             raise one_problem("component", given, reason, 'Give "total" in all rows.', _PLACE)
         if self.baseline:
             two = rows_where(table, self.baseline, "baseline")
