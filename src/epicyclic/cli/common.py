@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 EVERY = 15.0  # Between two lines, and before the first one. [s]
 COMPILING_EVERY = 5.0  # The same while kernels are compiled. [s]
-COMPILED = 75  # Kernels that a result needs, about.
+COMPILED = 70  # Kernels that a result needs, about.
 Update = Callable[..., None]
 LONG_SECONDS = 2.0  # After which a command that tells nothing of itself says that it works.
 
