@@ -20,7 +20,7 @@ def show(found, against="mass", scale=1.0, unit="kg"):
     for fate, count in found.fates.items():
         print(f"{count:7,} {fate}")
     table = found.table[found.table.loss.notna()]
-    figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
+    _, axes = plt.subplots(figsize=(7, 4), layout="constrained")
     for name, rows in table.groupby("arrangement"):
         axes.scatter(rows.loss, scale * rows[against], label=name, alpha=0.6)
     front = table.loc[found.fronts].sort_values("loss")
