@@ -36,7 +36,7 @@ README, FLOW = DOCS.parent / "README.md", DOCS / "_static" / "power-flow.svg"
 LIMITING_TRACTION = "limiting traction"
 RANGES: dict[str, tuple[float, float]] = {
     "models.boundary_friction": (0.065, 0.08),  # Arana et al. (2019), with and without additives.
-    "models.hurst_exponent": (0.5, 0.8),  # Estimate: ground steel.
+    "models.hurst_exponent": (0.3, 0.8),  # Estimate: machined steel.
     "models.running_in_factor": (0.5, 0.8),  # Estimate.
     LIMITING_TRACTION: (0.9, 1.1),  # Times that of the oil; estimate.
 }

@@ -11,6 +11,7 @@ import pytest
 import epicyclic as ep
 from contacts import STEEL
 from epicyclic.contact.line_contact import Flanks
+from epicyclic.kernels.line_contact import asperity_share
 from epicyclic.kernels.mixed_lubrication import eyring_stress, film_stress
 from epicyclic.losses import mixed_lubrication as model
 from epicyclic.losses.mixed_lubrication import RUN_IN, Surfaces, mixed_friction
@@ -40,6 +41,12 @@ def stress_at(temperature, pressure, rate, oil):
     return eyring_stress(temperature, pressure, log_rate, 0.047, oil)[0]
 
 
+def share(contact):
+    """Of the load on asperities."""
+    film = model.central_film(contact)
+    return asperity_share(film / model.acting_roughness(contact, RUN_IN))
+
+
 def rough(contact, one, two):
     return replace(contact, flanks=replace(contact.flanks, roughness1=one, roughness2=two))
 
@@ -63,14 +70,14 @@ def test_creeping_flanks_have_boundary_friction(contact):
         rolling_speed=1e-9 * contact.rolling_speed,
         sliding_speed=1e-9 * contact.sliding_speed,
     )
-    assert model.asperity_share(slow, RUN_IN, model.films(slow)) == pytest.approx(1.0)
+    assert share(slow) == pytest.approx(1.0)
     assert mixed_friction(slow, RUN_IN) == pytest.approx(contact.oil.boundary_friction)
     assert mixed_friction(slow, RUN_IN, 0.11) == pytest.approx(0.11)
 
 
 def test_smooth_flanks_have_the_friction_of_the_film(contact):
     smooth = rough(contact, 1e-9, 2e-9)
-    assert (model.asperity_share(smooth, RUN_IN, model.films(smooth)) < 1e-6).all()
+    assert (share(smooth) < 1e-6).all()
     friction = mixed_friction(smooth, RUN_IN)
     assert (friction < contact.oil.limiting_traction).all()
     assert (friction > 0).all()
@@ -122,22 +129,17 @@ def test_roughness_that_acts():
         hertz_half_width = np.array([0.1e-3, 0.8e-3])
         roughness = flanks.roughness1, flanks.roughness2
 
-    surfaces = Surfaces(running_in=0.7, cutoff=0.8e-3, hurst_exponent=0.5, hardness=6e9)
+    surfaces = Surfaces(running_in=0.7, cutoff=0.8e-3, hurst_exponent=0.5)
     found = model.acting_roughness(Contact(), surfaces)
     assert found == pytest.approx([0.7 * 0.5e-6 / 2, 0.7 * 0.5e-6])
 
 
-def test_share_of_the_asperities_as_printed(contact):
-    """Masjedi and Khonsari (2012), term by term, without heat at the inlet."""
-    cold = replace(contact, oil=replace(contact.oil, thermoviscosity=0.0))
-    w, u, g = cold.load_number, cold.speed_number, cold.material_number
-    s = model.acting_roughness(cold, RUN_IN) / cold.radius
-    v = RUN_IN.hardness / cold.flanks.equivalent_modulus
-    inner = 1 + 4470 * s**6.015 * v**1.168 * w**0.485 * u**-3.741 * g**-2.898
-    percent = 0.005 * w**-0.408 * u**-0.088 * g**0.103 * np.log(inner)
-    assert model.asperity_share(cold, RUN_IN, model.films(cold)) == pytest.approx(
-        np.minimum(percent / 100, 1)
-    )
+def test_share_of_the_asperities_as_printed():
+    """Aihara (1987): exp(-1.8 Lambda^1.2), of flanks and of roller ends alike."""
+    ratios = np.array([0.0, 0.2, 0.7, 1.6])
+    printed = [math.exp(-1.8 * it**1.2) for it in ratios]
+    assert asperity_share(ratios) == pytest.approx(printed)
+    assert asperity_share(0.7) == pytest.approx(printed[2])
 
 
 def test_kind_and_additives_decide(pair):

@@ -54,10 +54,10 @@ def run(
     case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None, details: bool
 ) -> None:
     """Compute the losses of a case and print them by component."""
+    from epicyclic.show.details import result_tables
     from epicyclic.show.result_tables import details as more
     from epicyclic.show.result_tables import remarks
     from epicyclic.show.summary import first_screen
-    from epicyclic.show.terminal import result_tables
     from epicyclic.show.uncertainty_tables import band_texts, result_json
     from epicyclic.study.bands.study import quick_known
     from epicyclic.study.solve import solve
@@ -143,7 +143,8 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 @plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
 def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Compare all friction models on a case, with their ranges and a recommendation."""
-    from epicyclic.show.terminal import friction_table, terminal
+    from epicyclic.show.details import friction_table
+    from epicyclic.show.terminal import terminal
     from epicyclic.study.friction import compare_friction
 
     loaded = load_with(case, changes)

@@ -629,9 +629,8 @@ FRICTION_MODELS = {
         FrictionFormula(
             name="mixed-lubrication",
             title="film and asperities sharing the load",
-            source="M. Masjedi and M. M. Khonsari, J. Tribol. 134 (2012) 011503; P. K. Gupta et "
-            "al., J. Tribol. 114 (1992) 55; C. R. Evans and K. L. Johnson, Proc. IMechE C 200 "
-            "(1986) 303",
+            source="S. Aihara, J. Tribol. 109 (1987) 471; P. K. Gupta et al., J. Tribol. 114 "
+            "(1992) 55; C. R. Evans and K. L. Johnson, Proc. IMechE C 200 (1986) 303",
             reliability="nothing fitted to gears; its error on measured ones: 'epicyclic validate "
             "--measured'",
             function=lambda contact, settings: mixed_friction(

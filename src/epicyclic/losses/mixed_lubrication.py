@@ -4,7 +4,7 @@ At each contact, in the order of docs/theory/mixed-lubrication.md:
 
 1. the film of Pan and Hamrock, thinned by the heat at the inlet (Gupta et al.);
 2. the roughness that acts: what is shorter than the contact is wide, after running-in;
-3. the share of the load on asperities (Masjedi and Khonsari);
+3. the share of the load on asperities by the film ratio (Aihara);
 4. the shear stress of the film: Eyring with a limit, as hot as friction makes it;
 5. mu = xi mu_b + (1 - xi) tau/p.
 """
@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.contact.temperatures import flash_temperature
 from epicyclic.gears.flanks import (
-    FLANK_HARDNESS,
     HURST_EXPONENT,
     MIDDLE_OF_CLASS,
     PROFILE_CUTOFF,
@@ -30,6 +29,7 @@ from epicyclic.gears.flanks import (
 )
 from epicyclic.kernels.line_contact import (
     MARTIN_FILM,
+    asperity_share,
     inlet_film_factor,
     pan_hamrock_central_film,
     power,
@@ -39,21 +39,20 @@ from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState
 
 FloatArray = NDArray[np.float64]
 
-FILM_EXPONENT = 0.705  # Of the speed number in the film of Masjedi and Khonsari. [1]
 MEAN_FLASH = 2 / 3
 """Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
 MEAN_PRESSURE = math.pi / 4  # Mean over largest pressure of Hertz. [1]
-LEAST_NUMBER = 1e-40  # Speed and load number below which flanks stand and carry nothing. [1]
+LEAST_FILM = 1e-40  # Of flanks that stand. [m]
+LEAST_LOAD = 1e-40  # Of flanks that carry nothing [N/m]; pressures likewise [Pa].
 
 
 @dataclass(frozen=True, slots=True)
 class Surfaces:
-    """What of the roughness acts, and how hard it is."""
+    """What of the roughness acts."""
 
     running_in: float = RUNNING_IN
     cutoff: float | None = None  # Of the measured profiles; None: `usual_cutoff`. [m]
     hurst_exponent: float = HURST_EXPONENT
-    hardness: float = FLANK_HARDNESS
 
 
 RUN_IN = Surfaces()
@@ -92,17 +91,8 @@ def usual_cutoff(
     return PROFILE_CUTOFF * math.sqrt(RA_OVER_RQ * roughness / MIDDLE_OF_CLASS)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Films:
-    """Films at the contacts, shape (n,)."""
-
-    heating: FloatArray  # phi_T, film over that without heat at its inlet. [1]
-    elastic: FloatArray  # [m]
-    central: FloatArray  # The elastic one, or that of rigid flanks where it is thicker. [m]
-
-
-def films(contact: LineContacts) -> Films:
-    """Films of smooth flanks, thinned by heat at the inlet. Theory (Y2), (Y9).
+def central_film(contact: LineContacts) -> FloatArray:
+    """Film of smooth flanks, thinned by heat at the inlet. Theory (Y2), (Y9). [m]
 
     Under light load flanks stay rigid: H. M. Martin, Engineering 102 (1916) 119, 4.895 mu u_r R/W'.
     """
@@ -120,35 +110,9 @@ def films(contact: LineContacts) -> Films:
         )
     )
     squeezed = contact.dynamic_viscosity * contact.rolling_speed * contact.radius
-    rigid = MARTIN_FILM * squeezed / np.maximum(contact.line_load, LEAST_NUMBER)
-    elastic = np.maximum(elastic, LEAST_NUMBER)
-    return Films(heating, elastic, np.maximum(elastic, rigid))
-
-
-def asperity_share(contact: LineContacts, surfaces: Surfaces, film: Films) -> FloatArray:
-    """Share xi of the load that asperities carry, 0 to 1. Theory (Y5). [1]
-
-    Masjedi and Khonsari, J. Tribol. 134 (2012) 011503, second hand: a fit to solutions of the
-    Reynolds equation with elasto-plastic asperities of statistically described height,
-    0.005 W^-0.408 U^-0.088 G^0.103 ln(1 + 4470 s^6.015 V^1.168 W^0.485 U^-3.741 G^-2.898) in per
-    cent, with s = sigma/R and V = hardness/E. Heat at the inlet acts as a lower speed; a film that
-    is thicker than the elastic one, as a roughness that is smaller by as much.
-    """
-    # logarithms of U, W and G
-    speed = np.log(np.maximum(contact.speed_number, LEAST_NUMBER))
-    speed += np.log(film.heating) / FILM_EXPONENT
-    load = np.log(np.maximum(contact.load_number, LEAST_NUMBER))
-    material = np.log(contact.material_number)
-    rough = acting_roughness(contact, surfaces) / contact.radius * film.elastic / film.central
-    hard = surfaces.hardness / contact.flanks.equivalent_modulus
-    touching = (math.log(4470) + 6.015 * np.log(rough) + 1.168 * math.log(hard) + 0.485 * load) - (
-        3.741 * speed + 2.898 * material
-    )
-    # ln(1 + exp(touching)) that neither overflows nor cancels
-    grown = np.maximum(touching, 0.0) + np.log1p(np.exp(-np.abs(touching)))
-    share = 5e-5 * np.exp(0.103 * material - 0.408 * load - 0.088 * speed) * grown
-    held: FloatArray = np.minimum(share, 1.0)
-    return held
+    rigid = MARTIN_FILM * squeezed / np.maximum(contact.line_load, LEAST_LOAD)
+    film: FloatArray = np.maximum(elastic, rigid)
+    return np.maximum(film, LEAST_FILM)
 
 
 def mixed_friction(
@@ -160,9 +124,9 @@ def mixed_friction(
     oil = contact.oil
     assert isinstance(oil, OilState)
     boundary = oil.boundary_friction if boundary is None else boundary
-    film = films(contact)
-    share = asperity_share(contact, surfaces, film)
-    pressure = np.maximum(MEAN_PRESSURE * contact.hertz_pressure, LEAST_NUMBER)
+    film = central_film(contact)
+    share = asperity_share(film / acting_roughness(contact, surfaces))
+    pressure = np.maximum(MEAN_PRESSURE * contact.hertz_pressure, LEAST_LOAD)
     slip = np.abs(contact.sliding_speed)
     # flank temperature for a coefficient of friction of 1
     flash = MEAN_FLASH * flash_temperature(
@@ -174,10 +138,10 @@ def mixed_friction(
         *contact.flanks.effusivities,
     )
     # rises for each pascal of the film: of both flanks, and the mean across it, evenly heated
-    heating = flash * (1 - share) / pressure + slip * film.central / (12 * oil.thermal_conductivity)
+    heating = flash * (1 - share) / pressure + slip * film / (12 * oil.thermal_conductivity)
     stress = film_stress(
         pressure,
-        slip / film.central,
+        slip / film,
         flash * share * boundary,
         heating,
         oil.limiting_traction,

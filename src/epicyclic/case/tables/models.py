@@ -9,7 +9,7 @@ from pydantic import Field, Tag, model_validator
 
 from epicyclic.case.tables.base import Stress
 from epicyclic.errors import Problem
-from epicyclic.gears.flanks import FLANK_HARDNESS, HURST_EXPONENT, RUNNING_IN
+from epicyclic.gears.flanks import HURST_EXPONENT, RUNNING_IN
 from epicyclic.messages import value_at
 from epicyclic.oil.oil import Conductivity, HeatCapacity
 from epicyclic.oil.rheology import (
@@ -308,14 +308,11 @@ class GearPairModels(Table):
         "roughness, some 0.8 mm for Ra 0.45 um."
     )
     hurst_exponent: Number = option(
-        "Of the profile: how its roughness grows with the length seen (estimate; ground steel 0.5 "
-        "to 0.8).",
+        "Of the profile: how its roughness grows with the length seen (estimate; machined "
+        "steel 0.3 to 0.8).",
         HURST_EXPONENT,
         ge=0,
         le=1,
-    )
-    flank_hardness: Stress = option(
-        "Of the softer flank; 1 HV is 9.81 MPa.", f"{FLANK_HARDNESS * 1e-9:g} GPa"
     )
     fluid_friction: Number = option(
         "Of separated contact, for matsumoto and doleschel (estimate, as above).", 0.02, ge=0, le=1
@@ -418,9 +415,12 @@ def has_rough_flanks(models: GearPairModels) -> bool:
 class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
-    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = option(
+    bearing: Literal[
+        "auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren", "full-complement"
+    ] = option(
         "auto: for caged rollers mixed-ehl with the fluid it was made for and "
-        "fitted-or-palmgren with an oil that has fitted models, else palmgren.",
+        "fitted-or-palmgren with an oil that has fitted models, else palmgren. full-complement: "
+        "mixed-ehl, and the sliding of rollers without a cage.",
         "auto",
     )
     bearing_viscous: Literal["harris"] = "harris"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -568,7 +568,7 @@ def _gears(
             one, two = int(row[mesh.first]), int(row[mesh.second])
             reference = two * transverse / 2
             bases = transverse * math.cos(rack.transverse_pressure_angle) / 2
-            shift = float(tables[mesh.second]["profile_shift_coefficient"])
+            shift = cast(float, tables[mesh.second]["profile_shift_coefficient"])
             action = math.sqrt(max(0.0, distance**2 - ((two - one) * bases) ** 2))
             usual = reference - module * (1 + shift)
             tip = float(ring_tip(usual, two * bases, action, module))
