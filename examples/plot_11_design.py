@@ -65,7 +65,7 @@ axle = ep.design(
             "width_ratio": [0.6, 0.9],
         },
         "limits": {"diameter": "250 mm", "pitting": 1.1, "bending": 1.5},
-        "search": {"solved": 24, "batch": 12},
+        "search": {"solved": 12, "batch": 6, "polished": 0},
         "case": {
             "lubricant": {"oil": "atf-dexron-vi"},
             "strength": {"life": "3000 h"},
@@ -98,7 +98,12 @@ joint = ep.design(
             "backlash": "20 um",
         },
         "limits": {"ratio_error": 0.02, "diameter": "90 mm", "pitting": 0.9, "bending": 1.2},
-        "search": {"objectives": ["loss", "diameter", "width"], "solved": 36, "batch": 12},
+        "search": {
+            "objectives": ["loss", "diameter", "width"],
+            "solved": 18,
+            "batch": 6,
+            "polished": 0,
+        },
         "case": {
             "lubricant": {"oil": "iso-vg-68-pao"},
             "strength": {"life": "2000 h"},
@@ -131,7 +136,7 @@ wind = ep.design(
             "roughness": "Ra 0.5 um",
         },
         "limits": {"pitting": 1.2, "bending": 1.5, "micropitting": 1.0},
-        "search": {"solved": 24, "batch": 12},
+        "search": {"solved": 12, "batch": 6, "polished": 0},
         "case": {
             "lubricant": {"oil": {"iso_vg": 320, "kind": "pao"}},
             "strength": {"life": "175000 h", "application_factor": 1.25},

@@ -138,8 +138,12 @@ def test_non_dominated_rows():
 
 @pytest.mark.slow
 def test_ten_thousand_candidates_are_screened_in_two_minutes():
-    raw = task_of("planetary", "pair", "two-stage", module=["1.5 mm", "1.75 mm", "2 mm"])
-    raw["choices"]["pinion_teeth"] = [17, 33]
+    raw = task_of("planetary", "pair", module=["1.5 mm", "1.75 mm", "2 mm"])
+    raw["choices"] |= {
+        "pinion_teeth": [17, 33],
+        "profile_shift": [0.0, 0.1, 0.2, 0.3, 0.4],
+        "width_ratio": [0.5, 0.7, 0.9, 1.1, 1.3],
+    }
     start = time.perf_counter()
     found = screen(read_task(raw))
     assert len(found.table) > 10_000

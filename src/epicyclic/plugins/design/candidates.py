@@ -429,7 +429,7 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
 
 
 def _assembly(layout: Layout, z: Gears, planets: FloatArray) -> FloatArray:
-    """1 where alike planets fit at equal angles, else 0. Theory (A6)."""
+    """1 where alike planets fit at equal angles, else 0; see `closing_number`."""
     teeth = np.column_stack([z[gear] for gear in layout.gears]).astype(int)
     kinds, places = np.unique(teeth, axis=0, return_inverse=True)
     fits = np.ones(len(planets), dtype=bool)

@@ -134,9 +134,9 @@ class Found:
         """How many candidates ended how; they sum to all."""
         return {str(k): int(v) for k, v in self.table["fate"].value_counts().items()}
 
-    def case(self, number: int) -> Case:
-        """The case of a candidate."""
-        return read_case(case_tables(self.task, self.table.loc[number].to_dict()))
+    def case(self, number: int, point: int = -1) -> Case:
+        """The case of a candidate at the operating point, or at a point of the cycle."""
+        return read_case(case_tables(self.task, self.table.loc[number].to_dict(), point))
 
     def dataset(self) -> xr.Dataset:
         """All candidates over ``design``, with units."""
@@ -438,22 +438,33 @@ def _choose(found: Found) -> list[int]:
 
 
 def odds(found: Found, samples: int, jobs: int | None = None) -> list[str]:
-    """Sentences on how probably the first chosen design loses less than the others, in pairs."""
+    """Sentences on how probably the first chosen design loses less than the others, or they less.
+
+    At the point of the cycle through which most energy goes, by paired draws.
+    """
     from epicyclic.study.bands.compare_cases import compare_cases
 
+    points = found.task.points
+    work = [abs(point.share * point.torque * point.speed) for point in points]
+    most = work.index(max(work))
+    where = f"{points[most].torque:.4g} N m and {points[most].speed * 30 / math.pi:.4g} rpm"
     first, *others = found.chosen
     lines = []
     for other in others:
         data = compare_cases(
-            found.case(other), found.case(first),
+            found.case(other, most), found.case(first, most),
             samples=samples, seed=found.task.search.seed, jobs=jobs,
         )  # fmt: skip
         total = data.sel(result="total")
+        share, mean = float(total.probability), float(total.difference)
+        low, high = float(total.low), float(total.high)
+        better, worse = first, other
+        if share < 0.5:
+            better, worse = other, first
+            share, mean, low, high = 1 - share, -mean, -high, -low
         lines.append(
-            f"Design {first} loses less than design {other} in "
-            f"{100 * float(total.probability):.0f} % of {samples} paired draws: "
-            f"{float(total.difference):.3g} W on average, {float(total.low):.3g} to "
-            f"{float(total.high):.3g} W."
+            f"Design {better} loses less than design {worse} in {100 * share:.0f} % of {samples} "
+            f"paired draws at {where}: {-mean:.3g} W on average, {-high:.3g} to {-low:.3g} W."
         )
     return lines
 
