@@ -1,5 +1,8 @@
 """Time what users wait for. Run: python benchmarks/benchmark.py
 
+With the folder of the sources of another version behind it, the same work is timed with both, in
+turns, and only what has a goal.
+
 Seconds depend on the machine; the ratio to a reference measured in the same run does not, or much
 less. Whole commands run in processes of their own, the first one with an empty folder
 for compiled code.
@@ -220,13 +223,17 @@ def clear_caches() -> None:
     from epicyclic.gears import gearing
     from epicyclic.gears import stated as flanks
     from epicyclic.losses import contact as load_distribution
-    from epicyclic.losses import planet_bearing
+    from epicyclic.losses import planet_bearing, pocket_tables
     from epicyclic.losses import pocket_flow as fluid
     from epicyclic.losses import pocket_flow as network
     from epicyclic.losses import pocket_geometry as cells
     from epicyclic.losses import pocket_geometry as geometry
+    from epicyclic.machine import pocket_flow as machine_flow
 
     for function in (
+        machine_flow._begin,
+        machine_flow._solve_all,
+        pocket_tables.kept_figures,
         fluid.pocket_flow,
         network._free_flow,
         network.study_flow,
@@ -555,7 +562,77 @@ def show_app(point: float) -> None:
     show("first page, its form to follow", f"{page_seconds():.2f} s", "3 s")
 
 
+POINTS = """
+import itertools, statistics, time
+import epicyclic as ep
+case = ep.load_case("talbot-2012").updated(CHANGES)
+cases = [case.updated({KEY: value}) for value in VALUES]
+times = []
+for each in (case, *cases):
+    start = time.perf_counter()
+    ep.solve(each)
+    times.append(time.perf_counter() - start)
+print(statistics.median(times[1:]))
+"""
+"""Prints the seconds of a solution, the first left out."""
+
+
+def points_of(key: str, values: list[str], changes: Mapping[str, str]) -> str:
+    names = f"CHANGES, KEY, VALUES = {dict(changes)!r}, {key!r}, {values!r}"
+    return names + POINTS
+
+
+SHARED_ROWS: dict[str, tuple[str, Callable[[], float]]] = {
+    "map of 8,200 points": ("12 s", map_seconds),
+    "map of nine states, 1,800 points": ("12 s", gearbox_map_seconds),
+    "uncertainty, 20 inputs, 5,632 solutions": ("12 s", uncertainty_seconds),
+}
+"""What the benchmark of this version times in processes of either."""
+SPEEDS = [f"{3000 + i} rpm" for i in range(50)]
+WIDTHS = [f"{25 + i / 8} mm" for i in range(12)]
+SNIPPETS = {
+    "warm point": ("1.5 ms", points_of("operation.speed", SPEEDS, {})),
+    "warm point with temperatures": ("", points_of("operation.speed", SPEEDS, SETTLED)),
+    "new geometry": ("60 ms", points_of("planet.face_width", WIDTHS, {})),
+}
+
+
+def compare(other: Path) -> None:
+    """Both versions in turns: seconds of each, and their ratio."""
+    sources = {"this": Path(ep.__file__).parents[1], "other": other}
+
+    def row(what: str, goal: str, seconds: Callable[[], float], repeats: int = REPEATS) -> None:
+        times: dict[str, list[float]] = {name: [] for name in sources}
+        for _ in range(repeats):
+            for name, source in sources.items():
+                os.environ["PYTHONPATH"] = str(source)
+                times[name].append(seconds())
+        this, before = (statistics.median(own) for own in times.values())
+        show(what, f"{before:.4g} s", f"{this:.4g} s", f"{this / before:.2f}", goal)
+
+    def first() -> float:
+        with tempfile.TemporaryDirectory() as empty:
+            return process_seconds("-m", "epicyclic", "run", "talbot-2012", NUMBA_CACHE_DIR=empty)
+
+    def printed(snippet: str) -> float:
+        command = [sys.executable, "-c", snippet]
+        return float(subprocess.run(command, check=True, capture_output=True).stdout)
+
+    heading("Both versions in turns", "other", "this", "ratio", "goal")
+    row("first run ever", "30 s", first, 1)
+    row("run, warm", "1.2 s", lambda: process_seconds("-m", "epicyclic", "run", "talbot-2012"))
+    for what, (goal, snippet) in SNIPPETS.items():
+        row(what, goal, partial(printed, snippet))
+    for what, (goal, seconds) in SHARED_ROWS.items():
+        row(what, goal, seconds, 1)
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    show("largest memory of a process", "", f"{peak:.0f} MB", "", "400 MB")
+
+
 def main() -> None:
+    if len(sys.argv) > 1:
+        compare(Path(sys.argv[1]).resolve())
+        return
     heading("Epicyclic benchmark", "measured", "aim", "ratio", "to")
     point = show_commands()
     show_pockets()

@@ -121,5 +121,5 @@ axes.set(xlabel="loss [W]", title=f"{start.total:.0f} W before, {result.total:.0
 axes.legend()
 
 # %%
-# Strength is no part of this program, and a unit load is no proof of it. Put the rating that
-# you trust into the objective before you believe an optimum.
+# A unit load is no proof of strength. ``ep.strength`` rates a case after ISO 6336, and
+# ``ep.design`` searches with these safeties as limits.

@@ -32,7 +32,7 @@ PAGE, PAGE_OF_TRAINS = "how-to/case-file.md", "how-to/trains.md"
 ROW = re.compile(r"^\| `(?P<key>[\w.<>]+)` \| (?P<default>[^|]*) \|", re.MULTILINE)
 GEARS = ("sun", "planet", "ring", "pinion", "gear")
 WITH_PAGES_OF_THEIR_OWN = ("material", "oil")
-DESCRIBED_ELSEWHERE = ("micro_geometry_ring_side", "planet_pin")
+DESCRIBED_ELSEWHERE = ("micro_geometry_ring_side", "planet_pin", "strength")
 """Tables with the keys of another table, and those that the page has from their schema."""
 
 logger = logging.getLogger(__name__)

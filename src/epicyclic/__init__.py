@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from epicyclic.errors import InputError as InputError
     from epicyclic.errors import Problem as Problem
     from epicyclic.plugins.contact_solver.fit import characterise_oil as characterise_oil
+    from epicyclic.plugins.design.search import design as design
+    from epicyclic.plugins.design.strength import strength as strength
     from epicyclic.plugins.rexs.exporting import write_rexs as write_rexs
     from epicyclic.plugins.rexs.importing import RexsImport as RexsImport
     from epicyclic.plugins.rexs.importing import read_rexs as read_rexs
@@ -46,6 +48,13 @@ if TYPE_CHECKING:
     from epicyclic.study.measured.compare import compare_measured as compare_measured
     from epicyclic.study.measured.comparison import MeasuredComparison as MeasuredComparison
     from epicyclic.study.meshes import mesh_details as mesh_details
+    from epicyclic.study.physics import bearing_loss as bearing_loss
+    from epicyclic.study.physics import friction as friction
+    from epicyclic.study.physics import line_contact as line_contact
+    from epicyclic.study.physics import oil_properties as oil_properties
+    from epicyclic.study.physics import plain_pin as plain_pin
+    from epicyclic.study.physics import rolling_loss as rolling_loss
+    from epicyclic.study.physics import windage as windage
     from epicyclic.study.pocketing_table import pocketing_table as pocketing_table
     from epicyclic.study.pockets import pocket_details as pocket_details
     from epicyclic.study.solve import loaded_meshes as loaded_meshes
@@ -63,27 +72,34 @@ _HOME = {
     "Problem": "epicyclic.errors",
     "Result": "epicyclic.show.views",
     "ResultRecord": "epicyclic.show.record",
+    "bearing_loss": "epicyclic.study.physics",
     "case_schema": "epicyclic.case.case",
     "compare_cases": "epicyclic.study.bands.compare_cases",
     "compare_measured": "epicyclic.study.measured.compare",
     "duty_cycle": "epicyclic.study.maps.duty",
+    "friction": "epicyclic.study.physics",
     "heat_balance": "epicyclic.study.heat",
+    "line_contact": "epicyclic.study.physics",
     "load_case": "epicyclic.study.load",
     "loaded_meshes": "epicyclic.study.solve",
     "loss_map": "epicyclic.study.maps.compute",
     "mesh_contacts": "epicyclic.study.solve",
     "mesh_details": "epicyclic.study.meshes",
+    "oil_properties": "epicyclic.study.physics",
     "open_result": "epicyclic.show.record",
+    "plain_pin": "epicyclic.study.physics",
     "pocket_details": "epicyclic.study.pockets",
     "pocketing_table": "epicyclic.study.pocketing_table",
     "record": "epicyclic.show.record",
     "report_html": "epicyclic.show.html",
+    "rolling_loss": "epicyclic.study.physics",
     "save_result": "epicyclic.show.record",
     "solve": "epicyclic.show.views",
     "solve_for": "epicyclic.show.views",
     "sweep": "epicyclic.study.sweeps.run",
     "uncertainty": "epicyclic.study.bands.points",
     "warm_up": "epicyclic.study.maps.warm_up",
+    "windage": "epicyclic.study.physics",
     "with_temperature_state": "epicyclic.study.maps.compute",
     "write_map": "epicyclic.study.maps.formats",
 }
@@ -91,8 +107,10 @@ _HOME = {
 _OF_PLUG_INS = {  # as they declare in their `PLUG_IN`; missing with the plug-in
     "RexsImport": "epicyclic.plugins.rexs.importing",
     "characterise_oil": "epicyclic.plugins.contact_solver.fit",
+    "design": "epicyclic.plugins.design.search",
     "pocketing_study": "epicyclic.validation.pocketing",
     "read_rexs": "epicyclic.plugins.rexs.importing",
+    "strength": "epicyclic.plugins.design.strength",
     "write_rexs": "epicyclic.plugins.rexs.exporting",
 }
 

@@ -16,7 +16,14 @@ from importlib.util import find_spec
 from typing import Any, Literal
 
 Kind = Literal[
-    "commands", "case_readers", "map_formats", "friction_models", "plans", "plan_writers", "names"
+    "commands",
+    "case_readers",
+    "map_formats",
+    "friction_models",
+    "details",
+    "plans",
+    "plan_writers",
+    "names",
 ]
 
 
@@ -32,6 +39,9 @@ class PlugIn:
     # By its name in ``models.friction``, a function of a case that returns a
     # `epicyclic.losses.friction.FrictionModel`.
     friction_models: Mapping[str, str] = field(default_factory=dict)
+    # By the key of a table of a case, a function of a case that has it, and of its result or None,
+    # that returns items of a page for ``check``, ``run --details`` and reports.
+    details: Mapping[str, str] = field(default_factory=dict)
     # By `Plan.kind`, classes of plans whose shards ``merge`` puts together, and for each a function
     # of a plan and a path that returns an `epicyclic.cli.many.Write`.
     plans: Mapping[str, str] = field(default_factory=dict)

@@ -73,6 +73,22 @@ _UNIT = re.compile(rf"(?:1?\s*/\s*)?{_FACTOR}(?:(?:\s*[*/]\s*|\s+){_FACTOR})*")
 _MISSING_CARET = re.compile(r"(?<=[^\W\d])(?=[+-]?[0-9])")
 
 
+# Size of common units in SI; pint, which takes a sixth of a command to import, has all others.
+_SIZES = {
+    **dict.fromkeys((("mm", "m"), ("mPa*s", "Pa*s")), 1e-3),
+    **dict.fromkeys((("um", "m"), ("mm^2", "m^2"), ("mm^2/s", "m^2/s")), 1e-6),
+    **dict.fromkeys((("nm", "m"), ("mm^3", "m^3"), ("1/GPa", "1/Pa")), 1e-9),
+    **dict.fromkeys((("kN", "N"), ("N/mm", "N/m"), ("W/mm", "W/m"), ("kJ", "J"), ("kW", "W")), 1e3),
+    **dict.fromkeys((("MPa", "Pa"), ("N/um", "N/m")), 1e6),
+    **dict.fromkeys((("GPa", "Pa"), ("N/(mm*um)", "N/m^2")), 1e9),
+    ("bar", "Pa"): 1e5,
+    ("deg", "rad"): math.pi / 180,
+    ("rpm", "rad/s"): math.tau / 60,
+    ("l/min", "m^3/s"): 1.666666666666667e-05,
+}
+_ICE = 273.15  # [K]
+
+
 @cache
 def registry() -> UnitRegistry[float]:
     """The unit registry, built at first use (building it is most of the cost of pint)."""
@@ -99,6 +115,13 @@ def format_number(value: float, digits: int = 6) -> str:
     """
     text = f"{value:.{digits}g}"
     return f"{float(text):.0f}" if "e+" in text and abs(value) < PLAIN_NUMBERS else text
+
+
+def efficiency_text(*values: float, ends: tuple[float, float]) -> str:
+    """Efficiencies in percent with the decimals that the band between `ends` leaves."""
+    width = 100 * abs(ends[1] - ends[0])
+    decimals = min(6, max(1, 1 - math.floor(math.log10(width)))) if width > 0 else 3
+    return f"{' to '.join(f'{100 * value:.{decimals}f}' for value in values)} %"
 
 
 def percent(share: float, decimals: int = 1, *, signed: bool = False) -> str:
@@ -237,6 +260,11 @@ def _parse_unit(text: str) -> Unit:
 @lru_cache(maxsize=4096)
 def _convert(number: float, unit: str, si: str) -> float:
     """`number` in `unit` as SI; raises what pint raises, or `_UnitError`."""
+    if (unit, si) == ("degC", "K"):
+        return number + _ICE
+    size = 1.0 if unit == si else _SIZES.get((unit, si))
+    if size is not None:
+        return number * size
     ureg = registry()
     parsed, wanted = _parse_unit(unit), ureg.parse_units(si)
     if parsed.dimensionality != wanted.dimensionality:
@@ -443,6 +471,11 @@ def _as_float(number: float) -> float:
 @cache
 def _scale(si: str, display: str) -> tuple[float, float]:
     """What a number in one unit is multiplied by for another, and where the zero of it lies."""
+    if (si, display) == ("K", "degC"):
+        return 1.0, -_ICE
+    size = 1.0 if si == display else _SIZES.get((display, si))
+    if size is not None:
+        return 1 / size, 0.0
     zero, one = (float(registry().Quantity(it, si).to(display).magnitude) for it in (0.0, 1.0))
     return one - zero, zero
 

@@ -76,8 +76,13 @@ def _busy() -> float:
     return max(1.0, os.getloadavg()[0] / os.cpu_count())
 
 
+GROUPS = {"Gears": "Parts", "Planet bearing": "Parts", "Map": "Studies", "Compare": "Studies"}
+
+
 def _tab(page, name: str) -> None:
-    page.get_by_role("tab", name=name, exact=True).click()
+    """Open a chapter: its group, then its tab."""
+    page.get_by_role("tab", name=GROUPS.get(name, "Trust"), exact=True).click(timeout=SOLVED)
+    page.get_by_role("tab", name=name, exact=True).click(timeout=SOLVED)
 
 
 def _watts(page) -> float:
@@ -218,17 +223,19 @@ def _moving(page, key: str):
     page.mouse.up()
 
 
-@pytest.mark.parametrize("chapter", ["Planet bearing", "Uncertainty of this result"])
-def test_every_picture_follows_a_slider_that_never_stands_still(open_app, chapter):
+@pytest.mark.parametrize(
+    ("chapter", "panels"), [("Planet bearing", 2), ("Uncertainty of this result", 3)]
+)
+def test_every_picture_follows_a_slider_that_never_stands_still(open_app, chapter, panels):
     page = open_app("talbot-2012")
     _solved(page)
-    page.get_by_role("tab", name=chapter).wait_for(timeout=SOLVED)
     _tab(page, chapter)
     pictures = page.locator(".chapter figure .still")
     page.wait_for_function(
-        "document.querySelectorAll('.chapter figure .still > svg').length == 2", timeout=SOLVED
+        f"document.querySelectorAll('.chapter figure .still:has(svg)').length == {panels}",
+        timeout=SOLVED,
     )
-    before = [pictures.nth(number).inner_html() for number in range(2)]
+    before = [pictures.nth(number).inner_html() for number in range(panels)]
     seen = [{text} for text in before]
     was_behind = False
     end = time.monotonic() + SOLVED / 1000
@@ -324,7 +331,7 @@ def test_a_map_is_computed_cancelled_and_saved(open_app):
     with page.expect_download(timeout=SOLVED) as loaded:
         page.locator(".chapter .formats").first.get_by_text("pdf").click()
     assert loaded.value.path().read_bytes().startswith(b"%PDF")
-    temperature = page.get_by_label("oil_inlet_temperature", exact=True)
+    temperature = page.get_by_label("oil inlet temperature", exact=True)
     temperature.fill("60")
     temperature.press("Enter")  # the map follows the case
     page.locator(".chapter code", has_text="oil_inlet_temperature").wait_for(timeout=SOLVED)
@@ -363,9 +370,36 @@ def test_two_cases_stand_side_by_side(open_app):
     row = page.locator("tr", has_text="operation.speed")
     row.wait_for(timeout=SOLVED)
     assert row.inner_text().split("\t") == ["operation.speed", "4000 rpm", "5000 rpm"]
-    page.wait_for_function(
-        "document.querySelectorAll('.chapter figure svg').length == 4", timeout=SOLVED
-    )
+    page.locator(".chapter figure .chart svg").first.wait_for(timeout=SOLVED)
+    assert page.locator(".chapter figure .chart").count() == 1
+    assert not page.wrong
+
+
+def test_on_a_phone_results_come_first_and_the_form_takes_their_place(open_app):
+    page = open_app("talbot-2012-pair")
+    page.set_viewport_size({"width": 390, "height": 844})
+    _solved(page)
+    page.locator(".chapter table").first.wait_for(timeout=SOLVED)
+    page.locator(".chapter figure .chart svg").first.wait_for(timeout=SOLVED)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert not page.locator("aside").is_visible()
+    page.get_by_role("button", name="Inputs").click()
+    page.get_by_label("torque", exact=True).wait_for()
+    assert not page.locator("main").is_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert not page.wrong
+
+
+def test_values_are_told_where_the_pointer_is_and_bands_stand_on_the_cards(open_app):
+    page = open_app("talbot-2012-pair")
+    _solved(page)
+    page.locator(".key-figure .band", has_text="95 %").first.wait_for(timeout=SOLVED)
+    bar = page.locator(".chapter figure .chart .bars path").first
+    bar.wait_for(timeout=SOLVED)
+    bar.hover(force=True)
+    told = page.locator(".hoverlayer .hovertext").first
+    told.wait_for()
+    assert re.search(r"mesh sliding: [\d.]+ W", told.text_content())
     assert not page.wrong
 
 

@@ -128,6 +128,7 @@ def test_the_description_has_units_and_nothing_to_complain_of(path):
     assert "gears &lt;of&gt;" in page
 
 
+@pytest.mark.slow
 def test_the_same_map_makes_the_same_identity(data, path, tmp_path):
     ep.write_map(data, tmp_path / "again.fmu")
     ep.write_map(data.isel(speed=slice(1, None)), tmp_path / "other.fmu")
@@ -163,6 +164,7 @@ def test_the_how_to_runs(tmp_path, monkeypatch):
 
 
 STORES = {
+    "thermal.oil_flow": None,
     "thermal.oil_volume": "1 l",
     "thermal.lubrication": "dip",
     "thermal.housing": {"area": "0.3 m^2", "mass": "8 kg"},

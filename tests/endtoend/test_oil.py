@@ -230,6 +230,7 @@ def test_a_model_that_lacks_what_is_asked_is_refused(finished, changes, told):
         case.updated(changes)
 
 
+@pytest.mark.slow
 def test_show_and_fit_print_the_errors(finished, epicyclic):
     shown = epicyclic("oil", "show", str(finished / "model.json"))
     fitted = epicyclic("oil", "fit", str(finished))
@@ -240,6 +241,7 @@ def test_show_and_fit_print_the_errors(finished, epicyclic):
     assert epicyclic("oil", "show", str(finished / "simulations.csv")).returncode == 2
 
 
+@pytest.mark.slow
 def test_campaigns_are_fitted_together(finished, epicyclic, tmp_path):
     def folder(name, **given):
         place = CampaignFolder(tmp_path / name, make_campaign("atf-talbot-2012", **given))

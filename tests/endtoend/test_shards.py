@@ -322,6 +322,7 @@ def test_shards_follow_each_other_in_the_order_of_all():
         assert max(map(len, shares)) - min(map(len, shares)) <= 1
 
 
+@pytest.mark.slow
 def test_tables_of_flows_do_not_depend_on_which_points_read_them(coarse_talbot):
     vary = {
         "operation.speed": [f"{speed} rpm" for speed in range(1000, 4000, 300)],
@@ -462,6 +463,7 @@ def test_shards_of_a_duty_cycle_are_that_of_one_run(call, tmp_path, monkeypatch,
     assert [line for line in printed.splitlines() if not line.startswith("Wrote")] == tables
 
 
+@pytest.mark.slow
 def test_shards_find_their_cycle_and_no_other(call, tmp_path, monkeypatch):
     computed, elsewhere = tmp_path / "computed", tmp_path / "elsewhere"
     for folder in (computed, elsewhere):

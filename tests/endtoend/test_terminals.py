@@ -124,6 +124,7 @@ COMMANDS = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS)
 def test_impossible_names_are_told(tmp_path, monkeypatch, capsys, command):
     from epicyclic.cli.main import main

@@ -404,6 +404,7 @@ def test_states_are_swept_as_names(tmp_path, epicyclic):
         assert float(worse[0]) > float(worse[1])
 
 
+@pytest.mark.slow
 def test_measurements_have_states_and_losses_of_sets(gearbox, tmp_path, epicyclic):
     rows = []
     for state, component in (

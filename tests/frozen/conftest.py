@@ -8,6 +8,7 @@ import pytest
 
 from epicyclic.build import models
 from epicyclic.case.tables import uncertainty
+from epicyclic.gears.gearing import Gearing
 from epicyclic.losses.windage import LAMINAR_RIMS
 from epicyclic.study.bands import inputs
 
@@ -19,6 +20,12 @@ def former_models(monkeypatch):
     """Cases as with the preset talbot-2012, without a key for it."""
     monkeypatch.setattr(models, "GENERAL", {"drag": LAMINAR_RIMS})
     monkeypatch.setattr(uncertainty, "has_rough_flanks", lambda models: False)
+
+
+@pytest.fixture(autouse=True)
+def former_tips(monkeypatch):
+    """As with gears.tip_alteration = "none", without a key for it."""
+    monkeypatch.setattr(Gearing, "tip_shortenings", {})
 
 
 @pytest.fixture(autouse=True)

@@ -154,6 +154,7 @@ def mutated(name, changes):
     return tables
 
 
+@pytest.mark.slow
 @property_test
 @given(mutations())
 def test_a_mutated_case_is_a_case_or_a_list_of_problems(mutation):
@@ -215,6 +216,7 @@ def geometries(draw):
     return tables
 
 
+@pytest.mark.slow
 @property_test
 @given(geometries())
 def test_any_geometry_is_a_case_or_a_list_of_problems(tables):

@@ -26,6 +26,7 @@ WAYS = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tables", [planetary, gear_pair])
 @settings(
     max_examples=40,

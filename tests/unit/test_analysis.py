@@ -12,7 +12,7 @@ from rich.console import Console
 import epicyclic as ep
 from epicyclic.build.machine import build
 from epicyclic.build.models import set_cases
-from epicyclic.show.terminal import result_tables
+from epicyclic.show.details import result_tables
 from epicyclic.study.friction import compare_friction
 
 

@@ -23,7 +23,9 @@ from epicyclic.plugins.app.page import LARGEST_BODY, Guard, names_of
 from epicyclic.plugins.app.views import _values
 from epicyclic.plugins.app.worker import Ended, Latest, Worker, WorkError
 from epicyclic.schema.fields import all_keys
+from epicyclic.show.page import Drawing
 from epicyclic.study.operating import OPERATING
+from epicyclic.study.solve import solve
 from listed_trains import ravigneaux
 
 TOKEN, HOST = "the-token", "127.0.0.1:4711"
@@ -445,7 +447,9 @@ class _Here:
     """In place of the worker: does the work here, but for pictures."""
 
     async def do(self, task, *arguments, progress):
-        return b"<svg></svg>" if task is tasks.picture else task(*arguments, progress)
+        if task is tasks.picture:
+            return [Drawing(arguments[1], f"picture of {arguments[1]}", "<svg></svg>")]
+        return task(*arguments, progress)
 
     def end(self):
         pass
@@ -502,10 +506,10 @@ def test_the_page_shows_form_and_losses_and_the_message_beside_a_wrong_field(sim
 @pytest.mark.parametrize(
     ("chapter", "tab", "shown"),
     [
-        ("", "Losses", "Where is the power lost?"),
-        ("map", "Losses", "Compute"),
+        ("", "Summary", "picture of losses"),
+        ("map", "Summary", "Compute"),
         ("gears", "Gears", "mesh periods"),
-        ("bearing", "Losses", "Where is the power lost?"),  # of a planet; a pair has none
+        ("bearing", "Summary", "picture of losses"),  # of a planet; a pair has none
     ],
 )
 def test_a_chapter_is_shown_before_the_others_are_known(simulate, chapter, tab, shown):
@@ -513,9 +517,9 @@ def test_a_chapter_is_shown_before_the_others_are_known(simulate, chapter, tab, 
     desk.change("losses.mesh_pocketing.include", False)
 
     async def script(user):
-        await user.should_see("Compare", retries=200)
-        (tabs,) = user.find(ui.tabs).elements
-        assert [one.props["label"] for one in tabs] == [tab, "Map", "Compare"]
+        await user.should_see("Studies", retries=200)
+        found = [[one.props["label"] for one in tabs] for tabs in user.find(ui.tabs).elements]
+        assert [tab, "Map", "Compare"] in found
         await user.should_see(shown, retries=200)
 
     simulate(desk, script, chapter=chapter, slow=_Held)
@@ -533,6 +537,8 @@ def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(s
         (box,) = user.find(marker="group-gears").elements
         box.set_value(True)
         await user.should_see(marker="gears.normal_module", retries=50)
+        user.find("Studies").click()
+        await user.should_see("Compare", retries=50)
         user.find("Compare").click()
         await user.should_see("Keep the case, change it", retries=50)
         user.find("Command").click()
@@ -572,6 +578,22 @@ def test_the_name_of_a_state_is_no_number_that_moves(simulate):
     desk = opened("train-8hp70")
     assert desk.current["operation"]["state"] == "1"
     simulate(desk, script)
+
+
+def test_the_losses_of_two_cases_stand_in_one_picture_in_one_unit():
+    case = opened("talbot-2012-pair").case.updated({"losses.mesh_pocketing.include": False})
+    cases = case.updated({"operation.speed": "310 rpm"}), case
+
+    def tell(done, total):
+        pass
+
+    (drawn,) = tasks.beside(*cases, ("kept", "now"), tasks.IN_PAGE, tell)
+    labels = list(drawn.plot["layout"]["yaxis"]["ticktext"])
+    totals = [trace["x"][labels.index("total")] for trace in drawn.plot["data"]]
+    watts = [solve(one).total for one in cases]
+    assert drawn.plot["layout"]["xaxis"]["title"]["text"] == "power loss, kW"
+    assert totals == pytest.approx([1e-3 * one for one in watts], rel=1e-6)
+    assert watts[0] < 1000 < watts[1]
 
 
 def test_a_map_without_speeds_is_no_result():
@@ -784,7 +806,9 @@ def test_another_host_is_told_what_it_means(monkeypatch):
 @pytest.mark.parametrize(
     ("axis", "given", "values"),
     [
-        ("torque", "137", "0:274:7 N*m"),
+        ("torque", "137", "-137:137:13 N*m"),
+        ("torque", "-41", "-41:41:13 N*m"),
+        ("speed", "2300", "0:2300:9 rpm"),
         ("torque", "0", "0 N*m"),
         ("temperature", "83", "83 degC"),
         ("temperature", "", ""),
@@ -793,5 +817,5 @@ def test_another_host_is_told_what_it_means(monkeypatch):
         ("temperature", "-inf", ""),
     ],
 )
-def test_values_of_a_map_lie_around_those_of_the_case(axis, given, values):
+def test_a_map_reaches_the_speed_of_the_case_and_its_torque_in_both_directions(axis, given, values):
     assert _values(axis, OPERATING[axis], given) == values

@@ -23,6 +23,7 @@ LONGEST = 100_000
 DOTS = ".".join(["a"] * 1000)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -154,6 +155,7 @@ DAMAGE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", DAMAGE)
 def test_bad_tables_of_simulations_are_refused(simulated, monkeypatch, capsys, damage):
     simulated.table.write_text(DAMAGE[damage](simulated.table.read_text()))

@@ -24,8 +24,8 @@ from epicyclic.losses.reliability import RELIABILITY, reliability
 from epicyclic.losses.rolling import CONTAINED, REACH, ROLLING_MODELS, weight_of_fit
 from epicyclic.plugins.contact_solver.fit import fit_quantity
 from epicyclic.schema.read import plain
+from epicyclic.show.details import result_tables
 from epicyclic.show.result_tables import standing_items
-from epicyclic.show.terminal import result_tables
 from epicyclic.study.friction import compare_friction, recommended
 
 

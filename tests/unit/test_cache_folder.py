@@ -151,6 +151,7 @@ def test_a_full_disk_costs_time_only(tmp_path):
     assert str(tmp_path / "cache") in note
 
 
+@pytest.mark.slow
 def test_a_folder_of_the_user_must_be_private_too(tmp_path):
     given = tmp_path / "given"
     given.mkdir()
@@ -192,6 +193,7 @@ print(3.5, len(told), len(copies), hits, sep="\\n")
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
 def test_kernels_are_compiled_in_a_copy_of_the_process(tmp_path):
     """The copy keeps the memory of the compiler; this process reads what it has put on the disk."""
@@ -201,6 +203,7 @@ def test_kernels_are_compiled_in_a_copy_of_the_process(tmp_path):
     assert printed(program) == ["0", "0", "[0, 1, 1]"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
 def test_a_copy_that_can_keep_nothing_is_made_once(tmp_path):
     program = tmp_path / "program.py"
@@ -211,6 +214,7 @@ def test_a_copy_that_can_keep_nothing_is_made_once(tmp_path):
     assert hits == "[0, 0, 0]"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
 def test_of_programs_that_start_together_one_compiles_a_kernel(tmp_path):
     program = tmp_path / "program.py"
@@ -230,6 +234,28 @@ def test_of_programs_that_start_together_one_compiles_a_kernel(tmp_path):
         process.stdin.flush()
     told = [int(process.communicate()[0].splitlines()[1]) for process in running]
     assert sum(told) == 3, told
+
+
+COMING = """\
+from threading import enumerate, main_thread
+from epicyclic.kernels import ahead
+ahead.append(lambda: less_three(11.0))
+assert and_one(7.0) == 4.5
+for thread in enumerate():  # one follows the copy that does the work to come
+    if thread is not main_thread():
+        thread.join()
+before = len(copies)
+assert less_three(11.0) == 8.0
+assert not ahead and len(copies) == before == 2
+
+assert ("""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
+def test_kernels_of_work_to_come_are_compiled_meanwhile(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text(TWO.replace("assert (", COMING, 1))
+    assert printed(program) == ["3", "2", "[0, 1, 1]"]
 
 
 def settings_beside(program):

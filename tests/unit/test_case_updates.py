@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from epicyclic import library
 from epicyclic.case.case import PlanetaryCase, read_case
 from epicyclic.errors import InputError
+from epicyclic.messages import written
 from epicyclic.units import registry
 from limits import is_soon
 from problems import problems_of
@@ -279,3 +280,40 @@ def test_updating_and_loading_are_quick(case):
     updating = median_time(lambda: case.updated({"operation.torque": f"{next(numbers)} N*m"}))
     assert is_soon(updating, 2e-3)
     assert is_soon(median_time(lambda: read_case("talbot-2012")), 20e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "gone"),
+    [
+        ("talbot-2012", {"thermal.oil_outlet_temperature": "97 degC"}, ["thermal.oil_flow"]),
+        ("talbot-2012-pair", {"gears.normal_module": "1.93 mm"}, ["gears.transverse_module"]),
+        (
+            "talbot-2012-pair",
+            {"pinion.profile_shift_coefficient": 0.013},
+            ["pinion.tooth_thickness", "pinion.thickness_diameter"],
+        ),
+        (
+            "talbot-2012",
+            {"operation.second_input": "carrier", "operation.second_speed": "170 rpm"},
+            ["operation.fixed"],
+        ),
+        (
+            "talbot-2012",
+            {"lubrication": {"method": "dip", "oil_level": "3 mm", "oil_volume": "2.1 l"}},
+            ["thermal.oil_volume"],
+        ),
+    ],
+)
+def test_a_key_replaces_what_it_determines_and_says_so(name, changes, gone):
+    changed = read_case(name).updated(changes)
+    told = [str(one) for one in changed.found if "replaces" in str(one)]
+    former = read_case(name).given()
+    for key in gone:
+        table, _, inner = key.partition(".")
+        assert inner not in changed.given()[table]
+        assert any(f"replaces {key} = {written(former[table][inner])}." in one for one in told)
+    assert len(told) == len(gone)
+    assert read_case(name, changes).found == changed.found
+    assert changed.updated({"title": "another"}).found == changed.found
+    stays = {key: former[key.partition(".")[0]][key.partition(".")[2]] for key in gone}
+    assert problems_of(read_case(name).updated, changes | stays)

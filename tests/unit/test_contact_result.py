@@ -203,6 +203,7 @@ def test_a_preset_fills_in_what_is_not_given():
     assert given.asperities.friction == 0.07
 
 
+@pytest.mark.slow
 def test_creeping_contacts_are_no_result():
     creeping = solved(
         contact={"rolling_speed": "0.005 m/s", "slide_to_roll_ratio": 0.3},

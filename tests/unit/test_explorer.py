@@ -127,6 +127,7 @@ def test_there_is_nothing_to_explore_without_a_varied_axis_or_a_solved_point(dat
     assert explorer_items(data.assign(total=data["total"] * np.nan)) == ()
 
 
+@pytest.mark.slow
 def test_labels_are_shown_as_they_are_and_are_no_code_or_formula(data):
     hostile = "</script><script>alert(1)</script> \u2028 <img src=x> $\\frac$ a $^$"
     named = data.copy()

@@ -29,6 +29,7 @@ RUNNING = {
     "operation.speed": "2000 rpm",
     "losses.mesh_pocketing.include": False,
     "models.preset": "talbot-2012",
+    "thermal.oil_flow": None,
 }
 FLOW = {"thermal.oil_flow": "2.3 l/min"}
 HOUSING = {"thermal.housing.area": "0.31 m^2"}
@@ -136,9 +137,18 @@ def test_what_cannot_be_found_is_an_input_error(quantity, temperature, words):
         ep.solve_for(pair(FLOW), quantity, temperature)
 
 
-def test_a_train_of_given_losses_has_no_temperatures():
-    with pytest.raises(InputError, match="needs a case with computed losses"):
-        ep.heat_balance(ep.load_case("train-8hp70"))
+def test_given_losses_warm_an_oil_that_is_stated():
+    case = ep.load_case("train-8hp70")
+    heat = ep.heat_balance(case)
+    assert heat.oil - heat.given["oil_inlet"] == pytest.approx(
+        solve(case).total / (heat.way("oil-outflow").conductance), rel=1e-9
+    )
+    with pytest.raises(InputError, match="lubricant: is missing; the heat needs it"):
+        ep.heat_balance(case.updated({"lubricant": None}))
+    with pytest.raises(InputError, match=r"needs \[lubricant\] and operation.oil_inlet_t"):
+        ep.heat_balance(case.updated({"operation.oil_inlet_temperature": None}))
+    with pytest.raises(InputError, match="all sets have given efficiencies"):
+        case.updated({"models.temperatures": "flank"})
 
 
 def test_tables_list_parts_from_the_hottest(everything):

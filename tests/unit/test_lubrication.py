@@ -4,22 +4,28 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import chain
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 import asymmetric
 import epicyclic as ep
 import listed_trains
 from epicyclic import library
+from epicyclic.build.machine import build
 from epicyclic.cli.main import cli
 from epicyclic.gears.gearing import outside_radius
 from epicyclic.losses.drag import Dipped, SumpOil, changenet_velex, disc_drag, iso_14179_1
 from epicyclic.oil.oil import mixture_state, oil_state
+from epicyclic.show.plots.drawing import plot_oil
+from epicyclic.show.summary import headline
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.plan import look_nearby
-from epicyclic.study.bands.study import quick_band
+from epicyclic.study.bands.study import quick_band, quick_known
+from epicyclic.study.shapes import gear_shapes
 from problems import only, problems_of
 from trains import small_axle
 
@@ -37,6 +43,7 @@ METHODS = {
     "drained": {},
     "dip": {"oil_level": "-21 mm", "oil_volume": "1.9 l"},
     "submerged": {},
+    "grease": {},
 }
 DRAGS = ("sun_drag", "ring_drag", "carrier_drag")
 RPM = math.pi / 30
@@ -505,6 +512,91 @@ def test_heat_of_each_set_leaves_as_its_method_says():
     )
 
 
+# --- one level for a housing ---------------------------------------------------------------------
+
+
+SUMP = {"lubrication": {"method": "dip", "oil_volume": "1.9 l"}, "sets.pair.direction": "-37 deg"}
+
+
+def depths(case):
+    """By set and part. [m]"""
+    found = {key: own.discs.values() for key, own in build(case).sets.items()}
+    return {
+        (key, disc.where): disc.sump.part.depth
+        for key, discs in found.items()
+        for disc in chain.from_iterable(discs)
+        if disc.sump is not None
+    }
+
+
+def test_one_oil_level_is_the_immersions_that_follow_from_it():
+    level = small_axle(**SUMP | {"housing.oil_level": "-23 mm"})
+    (mesh,) = level.gearings["pair"].geometries
+    drop = mesh.center_distance * math.sin(math.radians(37))
+    found = depths(level)
+    assert found["pair", "pinion"] == pytest.approx(max(mesh.gear1.tip_radius - 0.023, 0))
+    assert found["pair", "gear"] == pytest.approx(mesh.gear2.tip_radius - 0.023 + drop)
+    sun = level.gearings["planets"].gear("sun")
+    assert found["planets", "sun"] == pytest.approx(max(sun.tip_radius - 0.023 + drop, 0))
+    stated = small_axle(
+        **SUMP,
+        **{
+            f"sets.{name}.lubrication": {
+                "method": "dip",
+                "oil_volume": "1.9 l",
+                "immersion": {
+                    part: f"{1e3 * deep!r} mm" for (key, part), deep in found.items() if key == name
+                },
+            }
+            for name in ("pair", "planets")
+        },
+    )
+    assert depths(stated) == pytest.approx(found, rel=1e-12)
+    assert build(stated).sets["pair"].discs == build(level).sets["pair"].discs
+
+
+def test_a_level_counts_from_any_shaft_or_the_bottom_in_any_position():
+    drop = small_axle().gearings["pair"].geometries[0].center_distance * math.sin(0.3)
+    down = SUMP | {"sets.pair.direction": "-0.3 rad"}
+    wanted = depths(small_axle(**down | {"housing.oil_level": "-23 mm"}))
+    for own in (
+        {"oil_level": f"{1e3 * drop - 23!r} mm", "shaft": "planets.sun"},
+        {"oil_depth": "31 mm", "bottom": "54 mm"},
+    ):
+        assert depths(small_axle(**down | {"housing": own})) == pytest.approx(wanted, rel=1e-12)
+    turned = {"sets.pair.direction": "0.9 rad", "housing.oil_level": "-23 mm"}
+    turned["housing.tilt"] = "-1.2 rad"
+    assert depths(small_axle(**SUMP | turned)) == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "said"),
+    [
+        ({}, "lubrication.oil_level", "[housing]"),
+        ({"housing.oil_depth": "9 mm"}, "housing.bottom", "belongs to oil_depth"),
+        ({"housing": {"oil_level": "9 mm", "shaft": "moter"}}, "housing.shaft", "'motor'"),
+        ({"housing.oil_level": "9 mm", "lubrication.oil_level": "8 mm"}, "housing", "no effect"),
+    ],
+)
+def test_a_level_that_cannot_be_has_one_clear_problem(changes, key, said):
+    problem = only(problems_of(lambda: small_axle(**SUMP | changes)))
+    assert problem.key == key
+    assert said in f"{problem.allowed} {problem.remedy}"
+
+
+@pytest.mark.slow
+def test_gears_are_drawn_in_the_oil():
+    shapes = gear_shapes(small_axle(**SUMP | {"housing.oil_level": "-23 mm"}))
+    gear, planet = shapes["pair.gear"], shapes["planets.planet"]
+    assert float(gear["oil_depth"]) == pytest.approx(
+        float(gear["tip_diameter"]) / 2 - 23 - float(gear["stands_y"][0])
+    )
+    assert "oil_depth" not in planet
+    assert planet.sizes["place"] > 1
+    ax = plot_oil(shapes, Figure().subplots())
+    assert "oil at rest" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
 # --- what is refused ------------------------------------------------------------------------------
 
 
@@ -585,6 +677,7 @@ def test_contradictions_have_one_clear_problem(table, changes, key):
             {
                 "lubrication.method": "drained",
                 "sets.pair.lubrication": {"method": "dip", "oil_level": "-7 mm"},
+                "thermal.oil_volume": None,
             },
             "sets.pair.lubrication.oil_volume",
         ),
@@ -644,6 +737,16 @@ def test_check_says_how_the_gears_are_lubricated():
     assert "Lubrication of pair: jet: share of oil 0.05 (95 %: 0.013 to 0.19;" in shown.output
     assert "Lubrication of planets: drained: share of oil 0.01 (95 %" in shown.output
     assert "Lubrication" not in CliRunner().invoke(cli, ["check", "train-eaxle"]).output
+
+
+def test_grease_lubricates_with_its_base_oil_and_says_what_no_model_covers():
+    greased = ep.solve(pair({"method": "grease"}))
+    assert greased.losses == ep.solve(pair({"method": "drained"})).losses
+    assert any("No friction model covers starved films of grease" in it for it in greased.notes)
+    known = quick_known(pair({"method": "grease"}), greased)
+    lines = [it for it in headline(greased, known) if "95 % band" in it]
+    assert lines
+    assert all(it.endswith("of what the models cover") for it in lines)
 
 
 def test_without_the_table_a_result_has_none_of_it():

@@ -82,6 +82,7 @@ def test_error_figures_are_those_of_the_table(case, tests):
     assert figures.chi_squared == pytest.approx((error**2).sum() * 1e24, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_fit_without_noise_finds_the_inputs(case, tests):
     fit = ep.compare_measured(case, tests, fit=KEYS).fit
     found = [item.value for item in fit.parameters]
@@ -224,6 +225,7 @@ def test_a_fit_of_physical_inputs_of_a_planetary_set(talbot):
     assert fit.parameters[2].unit == "um"
 
 
+@pytest.mark.slow
 def test_calibrated_and_held_out_points_are_kept_apart(case, tests):
     table = noisy(tests, 5)
     table.loc[table["temperature [degC]"] == 90, "loss [W]"] *= 1.5

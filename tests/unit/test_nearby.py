@@ -107,6 +107,7 @@ def test_of_a_large_campaign_some_take_part():
     assert len(taken.excess) == len(set(taken.excess)) == MOST_SIMULATIONS
 
 
+@pytest.mark.slow
 def test_fits_are_corrected_where_that_helps(monkeypatch):
     contacts = states(150)
     form = FORMS["friction"]["structured"]

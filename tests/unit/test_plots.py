@@ -14,9 +14,9 @@ from epicyclic.show.plots.loss_map import map_at
 
 OF_MAPS = [name for name in PLOTS if "map" in name or name.startswith("loss-over")] + ["loss-parts"]
 OF_BANDS = ["loss-band", "loss-band-lines"]
-OF_HEAT = "heat-network"
+OF_HEAT, OF_TRAINS = "heat-network", "arrangement"
 OF_SWEEPS = ["lines", "contours", "parallel"]
-OTHERS = (*OF_MAPS, *OF_BANDS, *OF_SWEEPS, OF_HEAT)
+OTHERS = (*OF_MAPS, *OF_BANDS, *OF_SWEEPS, OF_HEAT, OF_TRAINS)
 OF_RESULTS = [name for name in PLOTS if name not in OTHERS]
 
 
@@ -63,6 +63,7 @@ def test_every_plot_of_a_result_has_labels_within_the_picture(talbot_record, nam
     check_figure(figure_of(talbot_record, name))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", OF_MAPS)
 def test_every_plot_of_a_map_has_labels_within_the_picture(pair_map, name):
     figure = figure_of(pair_map, name)
@@ -87,12 +88,25 @@ def test_a_map_without_its_uncertainty_has_no_plots_of_it(pair_map):
 def test_bars_are_the_losses_and_their_sum_is_the_total(talbot_record):
     result = talbot_record.result
     bars = figure_of(talbot_record, "losses").axes[0].patches
-    included = [name for name in result.losses if name not in result.not_included]
-    assert [bar.get_width() for bar in bars] == [result.losses[name] for name in included]
+    assert [bar.get_width() for bar in bars] == [watts for watts in result.losses.values() if watts]
     *steps, total = figure_of(talbot_record, "loss-sum").axes[0].patches
+    steps = sorted(steps, key=lambda bar: bar.get_x())
     ends = [bar.get_x() + bar.get_width() for bar in steps]
     assert [bar.get_x() for bar in steps[1:]] == pytest.approx(ends[:-1])
     assert total.get_width() == pytest.approx(ends[-1]) == pytest.approx(result.total)
+
+
+def test_small_losses_are_put_together_and_each_part_has_one_bar(talbot_record, monkeypatch):
+    monkeypatch.setattr("epicyclic.show.plots.losses.MOST_ROWS", 4)
+    axes = [figure_of(talbot_record, name).axes[0] for name in ("losses", "loss-sum")]
+    for ax in axes:
+        names = [text.get_text() for text in ax.get_yticklabels()]
+        assert len(names) == len(set(names))
+        assert "others" in names
+        ends = [bar.get_x() + bar.get_width() for bar in ax.patches]
+        assert max(ends) <= talbot_record.result.total * (1 + 1e-12)
+    widths = [bar.get_width() for bar in axes[0].patches]
+    assert sum(widths) == pytest.approx(talbot_record.result.total, rel=1e-12)
 
 
 def test_roller_bars_carry_the_radial_force(talbot_record):

@@ -167,6 +167,7 @@ def test_warnings_sources_and_inputs_are_complete(talbot, page):
     assert "<td>139.23 mm</td>" in text
 
 
+@pytest.mark.slow
 def test_text_of_the_user_stays_text():
     title = "<script>alert(1)</script> $x_1^ & </title> {{ 7 * 7 }}"
     case = ep.load_case("talbot-2012-pair").updated(
@@ -178,14 +179,24 @@ def test_text_of_the_user_stays_text():
     assert Page(page).open == []
 
 
+@pytest.mark.slow
 def test_figures_to_explore_have_the_data_of_the_still_ones(talbot_record, pair_map, page):
     plots = dict(
         re.findall(r'<figure id="figure-([^"]+)">.*?class="plot">(.*?)</script>', page, re.S)
     )
-    losses = json.loads(plots["losses-1"])["data"][0]
-    result = talbot_record.result
-    included = [name for name in result.losses if name not in result.not_included]
-    assert losses["x"] == pytest.approx([result.losses[name] for name in included], rel=1e-6)
+    losses = json.loads(plots["losses-1"])["data"]
+    shown = {
+        label.replace(" ", "_"): watts
+        for trace in losses
+        for label, watts in zip(trace["customdata"], trace["x"], strict=True)
+    }
+    lost = {name: watts for name, watts in talbot_record.result.losses.items() if watts}
+    assert shown == pytest.approx(lost, rel=1e-6)
+    (load,) = (data for name, data in plots.items() if name == "line-load-1")
+    trace = json.loads(load)["data"][0]
+    highest = float(talbot_record.group("meshes")["sun_mesh"]["line_load"].max())
+    assert trace["zmax"] == pytest.approx(highest)
+    assert "line load, N/mm: %{z" in trace["hovertemplate"]
     (drawing,) = draw(pair_map, "loss-map")[:1]
     field = drawing.plot["data"][0]
     point = map_at(pair_map, temperature=40.0)
@@ -233,6 +244,7 @@ def test_defaults_without_effect_are_left_out(page):
     assert not {"constant friction", "fitted form", "asperity film", "bath share"} & shown
 
 
+@pytest.mark.slow
 def test_given_keys_are_shown_even_without_effect():
     case = ep.load_case("talbot-2012-pair").updated(
         {"losses.mesh_pocketing.include": False, "models.friction": "schlenk"}

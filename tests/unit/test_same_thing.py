@@ -371,6 +371,40 @@ def differential(left, right, output, speed):
     return {"kind": "train", "sets": {"D": own}, "shafts": shafts, "operation": operation}
 
 
+@pytest.mark.parametrize("flipped", [False, True])
+@pytest.mark.parametrize(
+    ("clutches", "torques"),
+    [
+        # 100 N m on sun and ring by their teeth, 21 and 71
+        ([["in", "mid"]], {"in+mid": 100 * 71 / 92}),
+        ([["mid", "in"]], {"mid+in": -100 * 71 / 92}),
+        ([["out", "in"]], {"out+in": -100.0}),
+        ([["in", "mid"], ["mid", "out"]], {"in+mid": None, "mid+out": None}),
+    ],
+)
+def test_a_set_that_clutches_lock_is_split_by_its_teeth_in_any_order(flipped, clutches, torques):
+    meshes = [["planet", "sun"], ["planet", "ring"]] if flipped else None
+    result = ep.solve(ep.load_case(locked(clutches, meshes)))
+    found = result.train.clutches
+    other = ep.solve(ep.load_case(locked(clutches[::-1]))).train.clutches
+    assert found == pytest.approx(other, rel=SAME)
+    assert all(found[key] == pytest.approx(it, rel=SAME) for key, it in torques.items() if it)
+    loaded = "out+in" not in torques
+    assert any("torques are those without friction" in note for note in result.notes) is loaded
+    assert any("indeterminate" in note for note in result.notes) is (len(clutches) > 1)
+
+
+def locked(clutches, meshes=None):
+    """A set of given efficiency whose three shafts clutches join."""
+    tables = trains.simple(21, 71, "ring", ("sun", "carrier"), efficiency=0.93)
+    if meshes is not None:
+        tables["sets"]["S"]["meshes"] = meshes
+    tables["shafts"] = {"in": ["S.sun"], "mid": ["S.ring"], "out": ["S.carrier"]}
+    tables["states"] = {"1": {"joined": clutches}}
+    tables["operation"] |= {"state": "1", "torque": "100 N*m"}
+    return tables
+
+
 @pytest.mark.parametrize("wheels", [("a", "b"), ("b", "a")])
 @pytest.mark.parametrize("output", ["a", "b"])
 def test_straight_ahead_both_wheels_have_the_same_torque_in_any_order(wheels, output):

@@ -47,6 +47,7 @@ from epicyclic.losses.shaft_bearing import (
     skf_supply,
     static_load,
     tapered_moments,
+    thermal_speed_rating,
 )
 from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import ShaftBearing
@@ -552,6 +553,30 @@ def test_load_below_the_minimum_is_named(state):
     rollers = replace(bearing, bearing=ROLLER)
     assert "0 N is below" in only(rollers.evaluate(state(3000, BearingLoad(0.0, 1e4))).notes)
     assert bearing.evaluate(state(0, BearingLoad(0.0, 0.0))).notes == ()
+
+
+def test_speed_beyond_the_thermal_rating_is_named(state):
+    """(J33) by hand for 6208: seat 6,786 mm2 takes 108.6 W; N mm, mm2/s, 1/min."""
+    own = replace(BALL, bore=0.04, outside_diameter=0.08, width=0.018, static_load_rating=19e3)
+    rating = thermal_speed_rating(own) / RPM
+    moment = 2 * 1e-7 * (12 * rating) ** (2 / 3) * 60**3 + 0.0002 * 950 * 60
+    assert 1e-3 * moment * rating * RPM == pytest.approx(0.016 * math.pi * 120 * 18, rel=1e-6)
+    large = replace(own, bore=0.4, outside_diameter=0.6, width=0.09, static_load_rating=9e5)
+    rating_large = thermal_speed_rating(large) / RPM
+    moment = 2 * 1e-7 * (12 * rating_large) ** (2 / 3) * 500**3 + 0.0002 * 45000 * 500
+    seat = math.pi * 1000 * 90
+    heat = 0.016 * (seat / 5e4) ** -0.34 * seat
+    assert 1e-3 * moment * rating_large * RPM == pytest.approx(heat, rel=1e-6)
+    bearing = ShaftBearing("input.front", ("input", HOUSING), own, MODELS["palmgren"])
+    load = BearingLoad(2000.0, 0.0)
+    (note,) = bearing.evaluate(state(1.01 * rating, load)).notes
+    assert "an estimate after ISO 15312" in note
+    assert bearing.evaluate(state(0.99 * rating, load)).notes == ()
+    stated = replace(bearing, reference_speed=1.5 * rating * RPM)
+    assert stated.evaluate(state(1.4 * rating, load)).notes == ()
+    (note,) = stated.evaluate(state(1.6 * rating, load)).notes
+    assert "estimate" not in note
+    assert math.isnan(thermal_speed_rating(replace(own, width=math.nan)))
 
 
 def test_estimated_drag_is_named(state):

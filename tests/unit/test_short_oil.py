@@ -79,6 +79,7 @@ def test_oils_that_a_short_table_does_not_tell(oil, key, words):
     assert words in problem.allowed
 
 
+@pytest.mark.slow
 def test_the_schema_knows_the_short_form():
     tables = with_oil({"iso_vg": 46, "kind": "mineral"})
     tables["ring"] = tables["ring"] | {"teeth": -85}

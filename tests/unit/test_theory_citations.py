@@ -96,6 +96,7 @@ def test_tags_have_the_agreed_form_and_one_letter_a_page() -> None:
     assert len(letters) == len(set(letters.values())) > 0
 
 
+@pytest.mark.slow
 def test_every_citation_is_in_the_manual() -> None:
     assert {tag for tag, _ in citing()} - set(all_tags()) == set()
 

@@ -17,6 +17,7 @@ import epicyclic as ep
 import listed_trains
 from epicyclic.errors import InputError
 from epicyclic.show.data_sheet import state_tables
+from epicyclic.show.details import friction_table, result_tables
 from epicyclic.show.inputs import input_tables
 from epicyclic.show.page import Row, Table
 from epicyclic.show.plots.catalogue import available, figure_of
@@ -24,7 +25,6 @@ from epicyclic.show.plots.power_flow import SLIDE
 from epicyclic.show.record import growing_record
 from epicyclic.show.result_page import result_section
 from epicyclic.show.template import case_template
-from epicyclic.show.terminal import friction_table, result_tables
 from trains import one_set, plus, published, simple, small_axle, turned_round
 
 GEARS = "235R"
@@ -125,6 +125,7 @@ def test_the_states_of_a_gearbox_are_a_table_of_ratios_and_steps():
     assert "housing, at rest" in printed(state_tables(small_axle()))
 
 
+@pytest.mark.slow
 def test_friction_of_all_sets_is_compared():
     from epicyclic.study.friction import compare_friction
 
@@ -254,6 +255,7 @@ def records_of_all_gears():
         yield gear, ep.record(ep.load_case("train-8hp70").updated({"operation.state": gear}))
 
 
+@pytest.mark.slow
 def test_the_power_flow_is_a_slide_without_overlapping_words(axle, wolfrom):
     records = dict(records_of_all_gears()) | {"axle": axle, "wolfrom": wolfrom}
     for name, record in records.items():
@@ -269,6 +271,7 @@ def test_the_power_flow_is_a_slide_without_overlapping_words(axle, wolfrom):
             assert not small, (name, one, two)
 
 
+@pytest.mark.slow
 def test_words_on_cards_stand_beside_the_bars(axle, wolfrom, gearbox):
     many = ep.record(ep.load_case(listed_trains.ravigneaux()), groups=())
     for record in (axle, wolfrom, gearbox, many):
@@ -280,6 +283,7 @@ def test_words_on_cards_stand_beside_the_bars(axle, wolfrom, gearbox):
             assert not text.get_window_extent().overlaps(bar.get_window_extent()), text.get_text()
 
 
+@pytest.mark.slow
 def test_titles_end_before_the_labels_of_scales():
     record = ep.record(ep.load_case("train-eaxle"), groups=["pockets"])
     figure = figure_of(record, "pocket-pressure")

@@ -58,6 +58,7 @@ def test_a_later_phase_is_drawn_as_a_page_would_turn_it(drawn):
         assert start == pytest.approx(-0.25 * rate), name
 
 
+@pytest.mark.slow
 def test_teeth_touch_where_the_load_is(drawn):
     """The turned outlines of both gears pass through the points that carry, on the line of action.
 

@@ -276,3 +276,13 @@ def test_limits_beside_a_quantity_are_refused_as_they_would_be_lost():
 
     with pytest.raises(TypeError, match=r"'gt'.* beside a torque: use its low and high"):
         Table.model_rebuild(force=True)
+
+
+@pytest.mark.parametrize(("unit", "si"), units._SIZES)
+def test_common_units_have_the_size_that_pint_gives_them(unit, si):
+    ureg = units.registry()
+    for number in (139.23, -0.07, 4e6):
+        pint_s = ureg.Quantity(number, ureg.parse_units(unit)).to(si).magnitude
+        assert units._convert(number, unit, si) == pint_s
+        back = ureg.Quantity(number, si).to(unit).magnitude
+        assert number * units._scale(si, unit)[0] == pytest.approx(back, rel=1e-15)

@@ -19,6 +19,7 @@ from epicyclic.losses.ranges import (
     check_ranges,
     describe_flags,
     held_in_range,
+    weight_of,
 )
 from epicyclic.units import CELSIUS, GIGAPASCAL, MILLIMETRE
 
@@ -292,3 +293,18 @@ def test_a_case_of_the_dissertation_warns_of_what_matters_only(talbot):
     watts = [float(re.search(r"([\d.e+]+) W( in all|:)", text)[1]) for text in ranges]
     assert watts == sorted(watts, reverse=True)
     assert len(ranges) <= 4
+
+
+def test_a_warning_weighs_by_how_far_its_limit_is_exceeded():
+    def left(low, high, found_low, found_high, could_be=0.0):
+        use = ModelUse("drag", "a-model", "pair")
+        ends = found_low, found_high, low, high
+        return ValidityFlag(use, "speed", *ends, "m/s", 1.0, "somewhere", could_be=could_be)
+
+    near, far, below = left(None, 2, 1, 2.2), left(None, 2, 1, 7.0), left(0.5, None, 0.1, 0.4)
+    assert weight_of(10.0, [near]) == pytest.approx(11.0)
+    assert weight_of(10.0, [near, far]) == pytest.approx(35.0)
+    assert weight_of(10.0, [below]) == pytest.approx(50.0)
+    assert weight_of(10.0, [left(None, 2, 1, 90.0)]) == pytest.approx(100.0)
+    assert weight_of(10.0, [left(None, 2, 1, 2.2, could_be=83.0)]) == pytest.approx(83.0)
+    assert weight_of(math.nan, [near]) == math.inf

@@ -268,6 +268,7 @@ def test_solids_of_a_contact_take_up_heat_by_conductivity_capacity_and_density()
     assert twice < rise(densities=(7840.0, 14240.0)) < once
 
 
+@pytest.mark.slow
 def test_gears_take_up_heat_by_conductivity_capacity_and_density():
     """The same in the contacts of a mesh, smooth ones to be quick."""
     case = ep.load_case(asymmetric.gear_pair()).updated(

@@ -287,6 +287,7 @@ def test_a_point_that_fails_is_told(monkeypatch):
         list(reproduce(["3.4"], HERE))
 
 
+@pytest.mark.slow
 def test_command_writes_figures_data_and_a_page(tmp_path):
     folder = tmp_path / "bearings"
     arguments = ["reproduce", "3", "--figure", "3.4", "--figure", "3.3", "--jobs", "1"]

@@ -42,10 +42,6 @@ def exchanged(tables):
         # what enters at the pinion leaves at the gear: its torque is against its speed there
         "speed": f"{-float(speed) / ratio!r} {speed_unit}",
     }
-    # contact begins at the other end of the face, from which these are counted
-    other["mesh"]["misalignment"] = f"-{tables['mesh']['misalignment']}"
-    relief = other["pinion"]["micro_geometry"]
-    relief["lead_slope"] = relief["lead_slope"].removeprefix("-")
     return other
 
 

@@ -202,6 +202,7 @@ def test_frozen_roughness_is_the_steady_rough_contact():
     assert np.trapezoid(pressure, run.x) == pytest.approx(run.load, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_long_time_steps_change_a_waviness_by_less_than_half_a_percent(monkeypatch):
     # 14 steps a wave at the longest; second order would allow (2 pi/14)^2/12 = 1.7 % for the motion
     contact = contact_of(0.8e9, 10.0, 0.0)

@@ -359,6 +359,7 @@ def test_result_does_not_depend_on_what_was_solved_before(talbot):
     assert ep.solve(ep.load_case(talbot.inputs())).losses == pytest.approx(first, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_resolution_of_the_default_is_enough(talbot):
     coarse = ep.solve(talbot).losses
     fine = ep.solve(

@@ -184,6 +184,7 @@ def test_power_is_the_mean_of_the_instants(pair):
     assert flow.instant_power.mean() == pytest.approx(flow.power, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["isentropic", "mean-density", "central-differences"])
 @pytest.mark.parametrize("beta", [0.0, 20.0])
 def test_slow_flow_is_incompressible(pair, model, beta):

@@ -26,6 +26,8 @@ from epicyclic.plugins.contact_solver.surfaces import (
     sinusoidal_profile,
 )
 
+pytestmark = pytest.mark.slow
+
 RADIUS, MODULUS = 0.01, 2.2e11
 NODES = 256  # where nothing is compared with another solution
 
@@ -61,7 +63,6 @@ def amplitude_ratio(contact, wavelength, nodes=512):
     return np.ptp(films) / 2 * contact.film_scale / amplitude
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("m", "el", "wavelength"),
     [(20, 8, 0.5), (20, 8, 1.0), (50, 10, 0.25), (50, 10, 0.5), (100, 10, 0.5), (100, 10, 1.0)],
@@ -370,7 +371,6 @@ def test_the_roughest_contacts_of_the_published_table_are_solved(
     assert np.isfinite(records).all()
 
 
-@pytest.mark.slow
 def test_nearly_all_rough_contacts_of_the_box_are_solved():
     unsolved = np.array([unsolved_share(number) for number in range(40)])
     # the manual tells of the other four, which end as failed

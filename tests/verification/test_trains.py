@@ -274,3 +274,23 @@ def test_fixed_axes_are_a_listed_set_without_planets():
     result = solved(train)
     assert result.train.ratio == pytest.approx(2.5, rel=1e-12)
     assert result.efficiency == pytest.approx(0.99**2, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_an_axle_loses_power_without_a_kink_up_to_25000_rpm():
+    """Terms of drag grow with exponents from those of laminar discs to those of form drag."""
+    speeds = np.geomspace(5000, 25000, 9)
+    results = [solved("train-eaxle", **{"operation.speed": f"{rpm} rpm"}) for rpm in speeds]
+    assert all(balances(result) for result in results)
+    drags = [name for name, watts in results[0].losses.items() if "drag" in name and watts]
+    assert {"pair.drag", "planets.planets_drag", "planets.carrier_drag"} <= set(drags)
+    for name in drags:
+        watts = [result.losses[name] for result in results]
+        exponents = np.diff(np.log(watts)) / np.diff(np.log(speeds))
+        assert np.all((exponents > 2.5) & (exponents < 3.0)), name
+        assert np.all(np.abs(np.diff(exponents)) < 0.03), name
+    for name, watts in results[0].losses.items():
+        if watts and not name.endswith("_pocketing"):  # these choke at the speed of sound
+            own = [result.losses[name] for result in results]
+            exponents = np.diff(np.log(own)) / np.diff(np.log(speeds))
+            assert np.all(np.abs(np.diff(exponents)) < 0.1), name

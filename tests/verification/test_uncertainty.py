@@ -259,6 +259,7 @@ def test_correlated_inputs_share_their_part_of_the_variance(case):
     assert np.corrcoef(drawn.values)[0, 1] == pytest.approx(0.9, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_paired_difference_is_known_better_than_an_unpaired_one(case):
     data = ep.compare_cases(case, case.updated({"gear.roughness": "0.31 um"}), samples=64, jobs=1)
     total = data.sel(result="total")
@@ -294,6 +295,7 @@ def test_values_that_cannot_be_are_cut_off_and_told(case):
     assert standard_uncertainty(uniform("x", 1.0, 4.0)) == pytest.approx(3 / math.sqrt(12))
 
 
+@pytest.mark.slow
 def test_samples_without_a_result_are_counted(case):
     """Centre distances of which some make the gears jam."""
     jams = {"gears.center_distance": {"tolerance": ["-0.45 mm", "0.7 mm"]}}

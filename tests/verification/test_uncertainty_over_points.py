@@ -18,6 +18,8 @@ from epicyclic.show.uncertainty_tables import LIMITS, uncertainty_items
 from epicyclic.study.bands.samples import fit_curves, index_values, make_samples
 from epicyclic.study.sweeps.run import write_dataset
 
+pytestmark = pytest.mark.slow
+
 ISOLATED = {
     "losses.mesh_pocketing.include": False,
     "numerics.mesh_positions": 8,
@@ -63,7 +65,6 @@ def at(case, speed, torque, celsius="55"):
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "torque", "celsius"), [(2700, 190, 0), (2700, -70, 55)])
 def test_a_point_of_a_map_is_as_uncertain_as_the_case_there(case, over_map, speed, torque, celsius):
     alone = ep.uncertainty(at(case, speed, torque, celsius), samples=32, jobs=1)
@@ -91,7 +92,6 @@ def test_the_torque_loss_has_a_band_at_rest_where_no_power_is_lost(over_map):
     )
 
 
-@pytest.mark.slow
 def test_drivers_over_a_map_are_those_of_the_indices_at_a_point(case, over_map):
     alone = ep.uncertainty(at(case, 2700, 190), samples=512, jobs=1)
     point = over_map.sel(speed=2700, torque=190, temperature=55)
@@ -102,7 +102,6 @@ def test_drivers_over_a_map_are_those_of_the_indices_at_a_point(case, over_map):
     assert float(exact.max()) > 0.3
 
 
-@pytest.mark.slow
 def test_what_limits_the_trust_in_a_map_is_told_where_it_is_largest(over_map):
     (advice,) = (it for it in uncertainty_items(over_map) if it.title == LIMITS)
     mean = (over_map["first_order"] * over_map["total"]).sum(over_map["total"].dims)
@@ -118,7 +117,6 @@ def test_what_limits_the_trust_in_a_map_is_told_where_it_is_largest(over_map):
     assert 1 <= len(advice.items) <= 3
 
 
-@pytest.mark.slow
 def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path):
     write_dataset(over_map, tmp_path / "band.nc")
     read = ep.open_result(tmp_path / "band.nc")
@@ -136,7 +134,6 @@ def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path)
     assert "95 % band of the total loss" not in report_html(plain_map)
 
 
-@pytest.mark.slow
 def test_energies_are_sums_of_the_same_samples_at_all_points(case):
     cycle = {name: [*column[:2], column[3]] for name, column in CYCLE.items()}
     over_cycle = ep.uncertainty(case, cycle, samples=16, jobs=1)
@@ -161,7 +158,6 @@ def test_energies_are_sums_of_the_same_samples_at_all_points(case):
     assert str(total["unit"].values) == "kJ"
 
 
-@pytest.mark.slow
 def test_some_points_stand_for_a_long_cycle(case):
     number = np.arange(40)
     cycle = {
@@ -183,7 +179,6 @@ def test_some_points_stand_for_a_long_cycle(case):
     assert float(some["curves_explain"]) > 0.98
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("cycle", [None, CYCLE], ids=["map", "cycle"])
 def test_workers_give_the_same_file(case, plain_map, cycle, tmp_path):
     source = plain_map.isel(temperature=[1]) if cycle is None else case
@@ -194,7 +189,6 @@ def test_workers_give_the_same_file(case, plain_map, cycle, tmp_path):
     assert one.identical(two)
 
 
-@pytest.mark.slow
 def test_groups_are_those_of_a_test_rig_where_the_case_says_so(case):
     """What torque adds is less, and known better, than the sum of what depends on the load."""
     tested = at(case, 2100, 120).updated({"models.load_dependent": "as-tested"})
@@ -274,7 +268,6 @@ def test_a_key_without_a_distribution_at_some_points_is_told(case):
     assert (found["high"] > found["low"]).sel(result="total").all()
 
 
-@pytest.mark.slow
 def test_what_cannot_be_sampled_is_told(case, plain_map):
     for source, options, message in (
         (case, {"cycle": CYCLE, "temperature": ["40 degC", "50 degC"]}, "must be a single value"),
@@ -287,7 +280,6 @@ def test_what_cannot_be_sampled_is_told(case, plain_map):
             ep.uncertainty(source, **options)
 
 
-@pytest.mark.slow
 def test_the_command_on_a_map(plain_map, over_map, tmp_path):
     ep.write_map(plain_map, tmp_path / "map.nc")
     output, picture = tmp_path / "band.nc", tmp_path / "band.png"

@@ -11,7 +11,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from epicyclic.case.tables.elements import DragTable, SealTable, ShaftBearingTable, between
+from epicyclic.case.tables.elements import (
+    ClutchTable,
+    DragTable,
+    SealTable,
+    ShaftBearingTable,
+    between,
+)
 from epicyclic.losses.designations import DesignatedBearing, designated, with_elements
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
@@ -38,6 +44,7 @@ from epicyclic.losses.shaft_bearing import (
     skf_constants,
     skf_supply,
 )
+from epicyclic.machine.clutch import Clutch
 from epicyclic.machine.element import Element
 from epicyclic.machine.shaft_parts import Seal, ShaftBearing, TableLoss
 from epicyclic.oil.oil import Oil, oil_state
@@ -181,6 +188,21 @@ def _seal(name: str, table: SealTable, bodies: tuple[str, str], oil: Oil, folder
     return Seal(name, bodies, table.diameter, points, viscosity)
 
 
+def _clutch(
+    name: str, table: ClutchTable, bodies: tuple[str, str], oil: Oil, folder: Path
+) -> Clutch:
+    return Clutch(
+        key=name,
+        between=bodies,
+        gaps=table.gaps,
+        inner=table.inner_diameter / 2,
+        outer=table.outer_diameter / 2,
+        gap=table.gap,
+        slope=1.0 if table.cone_angle is None else math.sin(table.cone_angle),
+        flow=table.oil_flow,
+    )
+
+
 def _drag(
     name: str, table: DragTable, bodies: tuple[str, str], oil: Oil, folder: Path
 ) -> TableLoss:
@@ -190,6 +212,7 @@ def _drag(
 _BUILDERS: Mapping[str, Callable[..., Element]] = {
     "bearings": _bearing,
     "seals": _seal,
+    "clutches": _clutch,
     "drags": _drag,
 }
 

@@ -62,20 +62,20 @@ def gear_disc(case: SetCase, body: str, gear: Gear, table: StatedGear) -> Disc:
         space = 2 * (math.pi / gear.teeth - gear.half_angle_at(radius))
         teeth = Teeth(gear.teeth, gear.reference_radius, radius, gear.face_width, space)
     turning = Turning(radius, gear.face_width, teeth, table.shroud_gap, table.flange_gap)
-    share, sump = oil_share(case).share, _sump(case, gear.name, part)
+    place = case.gearing.bodies[gear.name]
+    share, sump = oil_share(case).share, _sump(case, gear.name, place, part)
     model = cast(DragModel, case.chosen["drag"])
     return Disc(gear.name, body, turning, share, model, sump, jets)
 
 
-def _sump(case: SetCase, name: str, part: Dipped) -> Sump | None:
+def _sump(case: SetCase, name: str, body: str, part: Dipped) -> Sump | None:
     """What a part dips into, with the depth of its lowest point below the oil at rest."""
     table = case.lubrication
     if table is None or table.method != "dip":
         return None
-    if table.oil_level is None:
-        depth = table.immersion.get(name, 0.0)
-    else:
-        depth = max(part.tip_radius + table.oil_level, 0.0)
+    level = case.oil_heights.get(body) if table.oil_level is None else table.oil_level
+    stated = table.immersion.get(name, 0.0)
+    depth = stated if level is None else max(part.tip_radius + level, 0.0)
     volume = case.thermal.oil_volume if table.oil_volume is None else table.oil_volume
     assert volume is not None
     smooth = case.chosen["drag"] != LAMINAR_RIMS
@@ -383,7 +383,7 @@ def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tupl
         part = Dipped(radius, radius, width, 0.0, mate.rack.normal_module)
         gaps = table.shroud_gap, table.flange_gap
         turning = Turning(radius, max(width - table.open_width, 0.0), None, *gaps, across)
-        share, sump = oil_share(case).share, _sump(case, "carrier", part)
+        share, sump = oil_share(case).share, _sump(case, CARRIER, CARRIER, part)
         model = cast(DragModel, case.chosen["drag"])
         yield "carrier_drag", (Disc("carrier", bodies[CARRIER], turning, share, model, sump),)
     if carried:

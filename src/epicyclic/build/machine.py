@@ -460,7 +460,7 @@ def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
     """A train in the state and at the operating point of the case."""
     shape = case.shape
     cases = set_cases(case)
-    elements = [*_sets(case, cases, flow_tables), *_parts(case)]
+    elements = [*_sets(case, cases, flow_tables), *_parts(case, shape.names)]
     sets = {element.key: element for element in elements if isinstance(element, GearSet)}
     return Built(
         machine=replace(
@@ -478,7 +478,7 @@ def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
 
 def train_layout(case: TrainCase) -> Layout:
     """What the result of a train consists of."""
-    return _layout(case, [*_sets(case, set_cases(case), {}), *_parts(case)])
+    return _layout(case, [*_sets(case, set_cases(case), {}), *_parts(case, case.shape.names)])
 
 
 def _train_operation(case: TrainCase) -> Operation:
@@ -523,13 +523,13 @@ def _distances(case: TrainCase) -> dict[str, int]:
     return found
 
 
-def _parts(case: TrainCase) -> Iterator[Element]:
+def _parts(case: TrainCase | PlanetaryCase, shafts: Mapping[str, str]) -> Iterator[Element]:
     """Bearings, seals and other drags."""
-    assumed = _assumed_pairs(case)
+    assumed = _assumed_pairs(case) if isinstance(case, TrainCase) else set()
     for kind, name, table in case.elements:
         assert case.lubricant is not None
         element = build_element(
-            kind, name, table, shafts=case.shape.names, oil=case.lubricant.oil, folder=case.folder
+            kind, name, table, shafts=shafts, oil=case.lubricant.oil, folder=case.folder
         )
         if name in assumed and isinstance(element, ShaftBearing):
             element = replace(element, arrangement_assumed=True)
@@ -597,20 +597,30 @@ def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
     others = [member for member in members if member not in (operation.input, operation.output)]
     bodies = {body: body for body in (*members, *gearing.planets)}
     element = gear_set("", own, bodies, (operation.input, operation.output, *others), tables)
+    parts: list[Element] = []
+    if isinstance(case, PlanetaryCase) and case.seals:
+        parts = list(_parts(case, {member: member for member in members}))
     rows = tuple(mesh_rows("", gearing, bodies))
     own_bearing = element.planets[0].bearing if element.planets else None
     return Built(
-        machine=Machine(tuple(bodies), rows, (element,)),
+        machine=Machine(tuple(bodies), rows, (element, *parts)),
         operation=operation,
         known_fluids=fluids_of(case),
         sets={"": element},
         set_cases=cases,
         layout=Layout(
-            tuple(element.choices),
+            (*element.choices, *(f"{part.key}.{term}" for part in parts for term in part.terms)),
             members,
             tuple(mesh.key for mesh in gearing.meshes),
             tuple(f"{planet}_bearing" for planet in gearing.planets),
-            parts=tuple(pin_figures(element)) if isinstance(own_bearing, PlanetPin) else (),
+            parts=(
+                *(pin_figures(element) if isinstance(own_bearing, PlanetPin) else ()),
+                *(
+                    (f"{part.key}.{item}", kind)
+                    for part in parts
+                    for item, kind in part.figure_types
+                ),
+            ),
             shares=bool(gearing.planets),
         ),
     )

@@ -100,6 +100,8 @@ class SetCase:
     contact_solver: ContactSolver
     folder: Path  # Where the files lie that it names.
     found: tuple[str, ...]  # Notes on what its tables leave out.
+    # The oil of the housing above the axes of bodies, where the set dips into it. [m]
+    oil_heights: Mapping[str, float]
 
     @cached_property
     def oil_model(self) -> OilModel | None:
@@ -248,6 +250,7 @@ def set_cases(case: Case) -> dict[str, SetCase]:
             case.contact_solver,
             case.folder,
             () if name else tuple(map(str, case.found)),
+            case.oil_heights.get(name, {}),
         )
     return sets
 

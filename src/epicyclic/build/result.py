@@ -73,6 +73,7 @@ def oil_supplies(
 
 
 NOT_INCLUDED = "Not included"  # Begins the note that names loss terms which are missing.
+UNCOVERED = "No friction model covers"  # Begins the note on what no model is made for.
 GEAR_PRESSURE = 2.4e9
 """1.6 times the endurance limit of 1.5 GPa of case-hardened steel: life factor for static load of
 ISO 6336-2, limit of ISO 6336-5, grade MQ (general knowledge). [Pa]"""
@@ -125,7 +126,7 @@ def case_notes(
 def fluid_notes(case: SetCase) -> tuple[str, ...]:
     """What was made for another oil than that of the case, and what the case changes in it."""
     oil, models = case.lubricant.oil, case.chosen
-    bearing = "mixed-ehl" in models.get("bearing", "")
+    bearing = any(name in models.get("bearing", "") for name in ("mixed-ehl", "full-complement"))
     fluids = {
         "friction": (models["friction"], case.friction.made_for),
         "rolling": (models["rolling"], case.rolling.made_for),
@@ -179,6 +180,12 @@ def lubrication_notes(case: SetCase) -> Iterator[str]:
         yield (
             "lubrication.oil_flow is not given: the oil that jets bring between the teeth, and the "
             "power that accelerates it, are left out."
+        )
+    if table.method == "grease":
+        yield (
+            f"{UNCOVERED} starved films of grease: films and friction are those of enough base "
+            "oil, lubricant.oil, and the churning of the grease is left out; the band does not "
+            "contain that difference."
         )
     if table.method == "dip":
         left_out = ["of planets"] if case.gearing.planets else []
@@ -237,7 +244,7 @@ def load_notes(case: SetCase) -> Iterator[str]:
     ]
     if soft:
         yield (
-            f"No friction model covers plastic gears ({', '.join(soft)}): all hold for metal in "
+            f"{UNCOVERED} plastic gears ({', '.join(soft)}): all hold for metal in "
             "oil, and the band does not contain that difference."
         )
     for name, table, ring in gearing.rings():

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, cast
 
 from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
@@ -40,6 +41,7 @@ from epicyclic.case.tables.elements import (
     ElementTables,
     PlainPins,
     PlanetBearing,
+    SealTable,
     ThrustBearing,
     between,
 )
@@ -56,12 +58,15 @@ from epicyclic.case.tables.models import (
 from epicyclic.case.tables.operation import (
     LUBRICATION,
     GearPairOperation,
+    HousingLevel,
     Lubricant,
     LubricationTable,
     PlanetaryOperation,
     Surroundings,
     ThermalTable,
+    needs_level,
 )
+from epicyclic.case.tables.strength import STRENGTH, StrengthTable
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, stated_values
 from epicyclic.case.train_tables import (
     ComputedSet,
@@ -79,7 +84,7 @@ from epicyclic.case.train_tables import (
     TrainOperation,
 )
 from epicyclic.errors import InputError, Problem, one_problem
-from epicyclic.gears.assembly import rack_problems, set_problems
+from epicyclic.gears.assembly import place_problems, rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.sizing import Found, complete
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
@@ -87,6 +92,7 @@ from epicyclic.messages import (
     PART_NAME,
     PART_NAME_RULE,
     did_you_mean,
+    dotted,
     key_parts,
     misspelt,
     one_line,
@@ -142,14 +148,22 @@ class CaseTable(Table):
     _tables: dict[str, Any] = PrivateAttr(default_factory=dict)
     _source: str = PrivateAttr(default="")
     _found: tuple[Found, ...] = PrivateAttr(default=())
+    _replaced: tuple[Found, ...] = PrivateAttr(default=())
     _gearings: dict[str, Gearing] = PrivateAttr(default_factory=dict)
     _sound: Mapping[str, Table] = PrivateAttr(default_factory=dict)
     """What became of each of `_tables` by itself: those that stay need not be read again."""
 
     @property
     def found(self) -> tuple[Found, ...]:
-        """What the tables leave out and the other ones tell, such as a profile shift."""
-        return self._found
+        """What the tables leave out and the other ones tell, and what changes replaced in them."""
+        return (*self._found, *self._replaced)
+
+    @property
+    def elements(self) -> Iterator[tuple[str, str, ElementTable]]:
+        """Kind, name and table of every bearing, seal and other drag."""
+        for kind in ElementTables.model_fields:
+            for name, table in getattr(self, kind, {}).items():
+                yield kind, name, table
 
     @property
     def source(self) -> str:
@@ -165,7 +179,8 @@ class CaseTable(Table):
         self,
         # Dotted keys, ``"operation.torque"``, to values as a case file has them: text with a unit
         # or a pint quantity for dimensional ones, or a number with the unit behind the key,
-        # ``"operation.torque [N*m]"``. None removes a key.
+        # ``"operation.torque [N*m]"``. None removes a key. A key also removes those of which the
+        # case may have only one, such as thermal.oil_flow for thermal.oil_outlet_temperature.
         changes: Mapping[str, Any],
     ) -> Self:
         """A copy of the case with some keys changed, validated afresh.
@@ -180,8 +195,11 @@ class CaseTable(Table):
         InputError
             With every problem of the changed case.
         """
-        tables, problems = with_changes(type(self), self._tables or self.given(), changes)
-        return type(self).from_tables(tables, self._source, problems, self)
+        changed = with_changes(type(self), self._tables or self.given(), changes)
+        made = type(self).from_tables(changed.tables, self._source, changed.problems, self)
+        stands = (one for one in self._replaced if value_at(changed.tables, path_of(one.key)))
+        made._replaced = (*stands, *changed.replaced)
+        return made
 
     def _unchanged(self, tables: Mapping[str, Any]) -> dict[str, Table]:
         """Those of its own tables that `tables`, made from them by changes, still have."""
@@ -224,7 +242,11 @@ class CaseTable(Table):
                 )
             ),
         ]
-        made = cls._made(validation.case, tables, source, found)
+        if validation.case is not None and getattr(validation.case, "seals", None):
+            validation.case._source = source
+            found += _part_problems(validation.case, {name: name for name in _SHAFTS}, {})
+        sound = None if validation.problems else validation.case
+        made = cls._made(sound, tables, source, list(dict.fromkeys(found)))
         made._found, made._sound = told, valid.sections
         if gearing is not None:
             made._gearings = {"": gearing}
@@ -320,7 +342,7 @@ def with_sizes(
     """A validation with what its gears leave out; without [gears] if that cannot be found.
 
     Also what was found and how signs and roughness were understood, and the gears of a planetary
-    set or a pair if nothing is wrong with their tables.
+    set or a pair if nothing is wrong with their tables, whether they are complete or not.
     """
     told: tuple[Found, ...] = ()
     if validation.case is not None and known is None:
@@ -340,7 +362,8 @@ def with_sizes(
     whole, found, problems = complete(gearing, raw) if known is None else (*known, [])
     if problems:
         del sections["gears"]
-        return Validation(None, sections, [*validation.problems, *problems]), told, None
+        found_wrong = [*validation.problems, *problems]
+        return Validation(validation.case, sections, found_wrong), told, gearing
     assert whole.shared is not None
     now: dict[str, Any] = {"gears": whole.shared, **whole.tables}
     changed = {key: table for key, table in now.items() if table is not sections[key]}
@@ -399,18 +422,59 @@ def _position(kind: type[Table], problem: Problem) -> int:
     return tables.index(table) if table in tables else len(tables)
 
 
-def with_changes(
-    kind: type[Table], tables: dict[str, Any], changes: Mapping[str, Any]
-) -> tuple[dict[str, Any], list[Problem]]:
-    """`tables` with some dotted keys changed, and the problems of those that cannot be."""
+class _Changes(NamedTuple):
+    """Tables with some keys changed."""
+
+    tables: dict[str, Any]
+    problems: list[Problem]  # Of keys that cannot be changed.
+    replaced: tuple[Found, ...]  # Keys that were removed, because a changed one excludes them.
+
+
+def with_changes(kind: type[Table], tables: dict[str, Any], changes: Mapping[str, Any]) -> _Changes:
+    """`tables` with some dotted keys changed, and without those that these exclude."""
     problems: list[Problem] = []
+    stated = []
     for key, value in changes.items():
         own, unit = split_key(str(key))
         try:
-            tables = _changed(kind, tables, own, plain(with_unit_of_key(value, unit)))
+            new = plain(with_unit_of_key(value, unit))
+            tables = _changed(kind, tables, own, new)
         except InputError as error:
             problems += [replace(problem, key=str(key)) for problem in error.problems]
-    return tables, problems
+        else:
+            leaves = flattened(new, f"{own}.") if isinstance(new, dict) else [(own, new)]
+            stated += [tuple(key_parts(leaf)) for leaf, _ in leaves]
+    replaced = []
+    for path in stated:
+        for other in [] if value_at(tables, path) is None else _excluded(kind, tables, path):
+            if not any(one[: len(other)] == other for one in stated):
+                former = f"replaces {dotted(other)} = {written(value_at(tables, other))}."
+                shown = written(value_at(tables, path))
+                replaced.append(Found(dotted(path), shown, former))
+                tables = without(tables, other)
+    return _Changes(tables, problems, tuple(replaced))
+
+
+_SUMP = ("thermal", "oil_volume")
+"""The same volume as lubrication.oil_volume."""
+
+
+def _excluded(
+    kind: type[Table], tables: dict[str, Any], path: Sequence[str]
+) -> Iterator[tuple[str, ...]]:
+    """Keys of `tables` that cannot stand beside the one at `path`, which is complete by itself."""
+    for depth, name in enumerate(path):
+        owner = locate(kind, path[: depth + 1]).owner
+        if owner is None or not issubclass(owner, Table):
+            continue
+        given = value_at(tables, path[:depth]) or {}
+        for group in (*owner.EXACTLY_ONE, *owner.AT_MOST_ONE, *owner.REPLACING):
+            choices = [keys.split("+") for keys in group]
+            if any(name in keys and given.keys() >= set(keys) for keys in choices):
+                others = {key for keys in choices if name not in keys for key in keys}
+                yield from ((*path[:depth], key) for key in others if key in given)
+    if tuple(path[-2:]) == ("lubrication", "oil_volume") and value_at(tables, _SUMP) is not None:
+        yield _SUMP
 
 
 def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
@@ -447,6 +511,7 @@ class _TrainTables(CaseTable):
     positions: dict[str, Position] = Field(default={})
     lubricant: Lubricant | None = None
     lubrication: LubricationTable | None = LUBRICATION
+    housing: HousingLevel | None = None
     surroundings: Surroundings = Surroundings()
     thermal: ThermalTable = ThermalTable()
     friction_table: FrictionTable | None = None
@@ -454,6 +519,7 @@ class _TrainTables(CaseTable):
     contact_solver: ContactSolver = ContactSolver()
     numerics: Numerics = Numerics()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 MOST_SETS = 64
@@ -488,13 +554,6 @@ class TrainCase(_TrainHead):
         return StateTable() if name is None else self.states[name]
 
     @property
-    def elements(self) -> Iterator[tuple[str, str, ElementTable]]:
-        """Kind, name and table of every bearing, seal and other drag."""
-        for kind in ElementTables.model_fields:
-            for name, table in getattr(self, kind).items():
-                yield kind, name, table
-
-    @property
     def computed(self) -> bool:
         """False if every loss is given."""
         sets = any(gearing.computed for gearing in self.shape.sets.values())
@@ -506,6 +565,35 @@ class TrainCase(_TrainHead):
         for name, table in self.sets.items():
             if isinstance(table, ComputedSet):
                 yield name, table
+
+    @property
+    def centers(self) -> dict[str, dict[str, tuple[complex, ...]]]:
+        """Where the bodies of each set stand from the shaft of [housing], y upwards. [m]
+
+        Theory (N11). Sets that no shafts of known places join to it are left out.
+        """
+        own = self.housing or HousingLevel.model_construct(shaft=None, tilt=0.0)
+        turn = cmath.exp(1j * own.tilt)
+        places = self.shape.places(self.shape.shaft_of(own.shaft or self.operation.input) or "")
+        return {
+            name: {
+                body: tuple(turn * (place + at) for at in centers)
+                for body, centers in self.shape.sets[name].centers.items()
+            }
+            for name, place in places.items()
+        }
+
+    @property
+    def oil_heights(self) -> dict[str, dict[str, float]]:
+        """The oil of [housing] above the axis of each body, by the sets that dip into it. [m]"""
+        if self.housing is None:
+            return {}
+        level, centers = self.housing.height, self.centers
+        return {
+            name: {body: level - at[0].imag for body, at in centers[name].items()}
+            for name, table in self.computed_sets
+            if table.lubrication and needs_level(table.lubrication) and name in centers
+        }
 
     def position_of(self, gear: str) -> float | None:
         """Position of a gear along its shaft, by its name or that of its body. [m]"""
@@ -580,6 +668,7 @@ class TrainCase(_TrainHead):
                 shapes[name], wrong = expand(dict(read.table), joined.get(name, ()))
                 if isinstance(read.table, GivenListedSet):
                     wrong = [*wrong, *name_problems(shapes[name])]
+                    wrong += [] if wrong else place_problems(shapes[name])
                 complete = complete and not wrong
                 found += [_below(f"sets.{name}", problem) for problem in wrong]
                 if isinstance(read.table, ListedSet) and not wrong:
@@ -589,6 +678,8 @@ class TrainCase(_TrainHead):
                     found += [as_given(_below(f"sets.{name}", lack), tables) for lack in lacks]
         case = whole.case
         if case is None or len(sets) < len(named) or not named:
+            # what depends on shafts and their members is not known
+            found += [] if case is None else _element_problems(case, named, None)
             return cls._made(None, tables, source, found)
         values = {key: getattr(case, key) for key in type(case).model_fields}
         train = cls.model_construct(**values | {"sets": sets})
@@ -597,7 +688,7 @@ class TrainCase(_TrainHead):
         train._shape, wrong = shape_of_train(shapes, train.shafts)
         complete = complete and not wrong
         found += wrong
-        found += _element_problems(train)
+        found += _element_problems(train, named, train)
         found += operation_problems(train, complete)
         found += bearing_force_problems(train, complete)
         return cls._made(cast(Self, train), tables, source, found)
@@ -635,9 +726,9 @@ def _texts(value: Any) -> Iterator[str]:
 
 
 class _ReadSet(NamedTuple):
-    """A set, or its problems."""
+    """A set and its problems."""
 
-    table: SetTable | None
+    table: SetTable | None  # None if a table of it is not valid by itself.
     problems: list[Problem]
     found: tuple[Found, ...] = ()
 
@@ -698,7 +789,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         allowed = "conflicts with mesh_efficiency."
         remedy = "Give one of them: that of the set from sun to ring, or that of each mesh."
         problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
-    return _ReadSet(None if problems else read.case, problems, told)
+    return _ReadSet(read.case, list(dict.fromkeys(problems)), told)
 
 
 def form_of_set(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
@@ -779,20 +870,28 @@ def _complete(
             own[name] = former.model_copy(update={"center_distance": mesh.own_distance})
     changed = {"members": dict(whole.tables), "gears": whole.shared, "mesh": own}
     table = table.model_copy(update=changed)
-    if not problems:
-        problems = [*listed_problems(table, whole), *set_problems(whole)]
-        if not any(rack_problems(whole)):
-            problems += check_listed_bearings(table, whole)
+    problems += [*listed_problems(table, whole), *set_problems(whole)]
+    if not any(rack_problems(whole)):
+        problems += check_listed_bearings(table, whole)
     return (table, whole), told, list(dict.fromkeys(problems))
 
 
 # --- bearings, seals, drags -----------------------------------------------------------------------
 
 
-def _element_problems(train: TrainCase) -> list[Problem]:
+_SHAFTS = ("sun", "ring", "carrier")
+"""What may turn in a seal of a planetary set by itself."""
+
+
+def _part_problems(
+    case: CaseTable, shafts: Mapping[str, str] | None, taken: Mapping[str, str]
+) -> list[Problem]:
+    """What is wrong with the names and tables of parts; `taken` has names and their tables.
+
+    Without shafts only what needs none of them.
+    """
     problems = []
-    taken = dict.fromkeys(train.sets, "sets")
-    for kind, name, table in train.elements:
+    for kind, name, table in case.elements:
         key = f"{kind}.{name}"
         if not PART_NAME.fullmatch(name):
             allowed = f"is not a valid name for a part: {PART_NAME_RULE}."
@@ -800,16 +899,25 @@ def _element_problems(train: TrainCase) -> list[Problem]:
         if name in taken:
             allowed = f"has the same name as another part, {taken[name]}.{name}."
             problems.append(Problem(key, "", allowed, "Choose another name."))
-        taken[name] = kind
+        taken = {**taken, name: kind}
         found = list(table.problems())
-        if not found and train.lubricant is not None:
+        if not found and shafts is not None and getattr(case, "lubricant", None) is not None:
             try:
-                between(table, train.shape.names)
-                table.points(train.folder)
+                between(table, shafts)
+                table.points(case.folder)
             except InputError as error:
                 found = list(error.problems)
         problems += [_below(key, problem) for problem in found]
-    if not train.computed:
+    return problems
+
+
+def _element_problems(
+    head: _TrainHead, sets: Sequence[str], train: TrainCase | None
+) -> list[Problem]:
+    """Problems of bearings, seals and drags; without a train only what needs no shafts."""
+    shafts = None if train is None else train.shape.names
+    problems = _part_problems(head if train is None else train, shafts, dict.fromkeys(sets, "sets"))
+    if train is None or not train.computed:
         return problems
     if train.lubricant is None:
         remedy = "Add it; 'epicyclic oils' lists the built-in ones."
@@ -827,6 +935,14 @@ def _element_problems(train: TrainCase) -> list[Problem]:
 
 class _SetTables(CaseTable):
     """What a set or pair has in common with a train, and with a set of a train."""
+
+    oil_heights: ClassVar[Mapping[str, Mapping[str, float]]] = {}
+    """Of a train those of the oil in its housing; a set states its own."""
+
+    @property
+    def centers(self) -> Mapping[str, Mapping[str, tuple[complex, ...]]]:
+        """Where its bodies stand. [m]"""
+        return {"": self._gearings[""].centers}
 
     @property
     def states(self) -> dict[str, StateTable]:
@@ -860,6 +976,7 @@ class PlanetaryCase(_SetTables, PlainPins):
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None
+    seals: dict[str, SealTable] = Field(default={})
     lubricant: Lubricant
     lubrication: LubricationTable | None = LUBRICATION
     surroundings: Surroundings = Surroundings()
@@ -870,6 +987,7 @@ class PlanetaryCase(_SetTables, PlainPins):
     numerics: Numerics = Numerics()
     losses: PlanetaryLosses = PlanetaryLosses()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 class GearPairCase(_SetTables):
@@ -892,6 +1010,7 @@ class GearPairCase(_SetTables):
     numerics: Numerics = Numerics()
     losses: GearPairLosses = GearPairLosses()
     uncertainty: dict[str, DistributionTable] = UNCERTAINTY
+    strength: StrengthTable | None = STRENGTH
 
 
 Case = PlanetaryCase | GearPairCase | TrainCase
@@ -926,9 +1045,16 @@ def read_case(
         tables, problems = read_file(path)
     kind = tables.get("kind")
     if changes and isinstance(kind, str) and kind in KINDS:
-        tables, more = with_changes(KINDS[kind], tables, changes)
-        problems = [*problems, *more]
+        changed = with_changes(KINDS[kind], tables, changes)
+        return _changed_case(changed, name, problems)
     return _build_any(tables, name, problems)
+
+
+def _changed_case(changed: _Changes, source: str, problems: Sequence[Problem] = ()) -> Case:
+    """The case of changed tables, which tells what the changes replaced."""
+    made = _build_any(changed.tables, source, [*problems, *changed.problems])
+    made._replaced = changed.replaced
+    return made
 
 
 def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Case:
@@ -936,13 +1062,12 @@ def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: st
 
     Raises `InputError` with every problem of the changed tables, as problems of `source`.
     """
-    changed, problems = with_changes(KINDS[tables["kind"]], plain(tables), changes)
-    return _build_any(changed, source, problems)
+    return _changed_case(with_changes(KINDS[tables["kind"]], plain(tables), changes), source)
 
 
 def changed_tables(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """`tables` of a known kind with the `changes`; those that cannot be are left out."""
-    return with_changes(KINDS[tables["kind"]], plain(tables), changes)[0]
+    return with_changes(KINDS[tables["kind"]], plain(tables), changes).tables
 
 
 def case_schema() -> dict[str, Any]:
@@ -985,10 +1110,18 @@ def _no_such_case(name: object) -> Problem:
     return Problem("CASE", written(name), allowed, remedy)
 
 
+_OTHER_GEARS = ("bevel", "hypoid", "worm", "face", "crossed", "spiroid")
+"""Words for gears whose axes are not parallel."""
+
+
 def _build_any(tables: dict[str, Any], source: str, problems: Sequence[Problem] = ()) -> Case:
     """The case of `tables`; if they name no kind, every problem under the likeliest one."""
     given = tables.get("kind")
     name = given if isinstance(given, str) and given in KINDS else ""
+    if not name and any(word in str(given).lower() for word in _OTHER_GEARS):
+        allowed = "is not modelled: bevel, hypoid, worm and face gears have no parallel axes."
+        remedy = "Enter their measured loss in a train: [drags.NAME], or efficiency of a set."
+        raise InputError([Problem("kind", written(given), allowed, remedy)], source)
     if not name:
         name = misspelt(str(given), KINDS) or max(
             KINDS, key=lambda kind: len(tables.keys() & tables_of(KINDS[kind]).keys())

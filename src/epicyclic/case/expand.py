@@ -15,6 +15,9 @@ from epicyclic.gears.gear import CARRIER
 from epicyclic.gears.gearing import Gearing, GearPairing
 from epicyclic.messages import did_you_mean, written
 
+MOST_SHIFTED = 4
+"""Teeth by which profile shifts let sun and two planets differ from the ring; an estimate. [1]"""
+
 Parts = Mapping[str, Any]  # The tables of a set by their keys, as ``dict(table)`` gives them.
 
 
@@ -124,9 +127,22 @@ def _given_planetary_problems(parts: Parts) -> Iterator[Problem]:
     if ring <= sun:
         allowed = f"must exceed the {sun} teeth of the sun, which it surrounds."
         yield Problem("ring.teeth", str(ring), allowed, "Check both tooth numbers.")
-    elif planet is not None and planet >= ring:
+        return
+    if planet is not None and planet >= ring:
         allowed = f"must be less than the {ring} teeth of the ring, in which the planet turns."
         yield Problem("planet.teeth", str(planet), allowed, "Check it, or leave it out.")
+        return
+    if planet is not None and abs(ring - sun - 2 * planet) > MOST_SHIFTED:
+        allowed = f"does not fit between a sun of {sun} and a ring of {ring} teeth, which leave "
+        allowed += f"room for {(ring - sun) / 2:g}."
+        yield Problem("planet.teeth", str(planet), allowed, "Correct it, or leave it out.")
+        return
+    teeth, count = planet or (ring - sun) / 2, parts["planet"].count
+    most = math.floor(math.pi / math.asin((teeth + 2) / (sun + teeth))) if sun > 2 else 1
+    if "count" in parts["planet"].model_fields_set and count > most:
+        allowed = f"is too many: planets of {teeth:g} teeth and standard addendum touch each other."
+        remedy = f"Use at most {most}, or leave it out: it does not change the losses."
+        yield Problem("planet.count", str(count), allowed, remedy)
 
 
 def _given_pair_problems(parts: Parts) -> Iterator[Problem]:

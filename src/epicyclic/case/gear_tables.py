@@ -30,6 +30,7 @@ from epicyclic.units import (
 )
 
 PressureAngle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
+TipAlteration = Literal["keep-clearance", "none"]
 RackName = Literal["iso-53-a", "iso-53-b", "iso-53-c", "iso-53-d"]
 
 
@@ -49,6 +50,11 @@ class SharedGears(Table):
     )
     dedendum_coefficient: Number = option(
         "h_fP/m_n, for gears without root_diameter. ISO 53, profile A.", 1.25, gt=0, le=4
+    )
+    tip_alteration: TipAlteration = option(
+        "Gears without tip_diameter: keep-clearance shortens them where profile shifts would take "
+        "tip clearance (DIN 3960); none does not.",
+        "keep-clearance",
     )
     basic_rack: RackName | None = option(
         "A profile of ISO 53 instead of both coefficients and of the tool tip radius."
@@ -150,7 +156,7 @@ class GearTable(Table):
     teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
     face_width: Length
     tip_diameter: Length | None = option(
-        "Inner diameter of a ring. Default: from addendum_coefficient."
+        "Inner diameter of a ring. Default: from addendum_coefficient and tip_alteration."
     )
     root_diameter: Length | None = option("Default: from dedendum_coefficient.")
     tip_chamfer: ShortLength = option(

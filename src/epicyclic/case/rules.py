@@ -20,6 +20,7 @@ from epicyclic.case.tables.models import (
     law_problems,
 )
 from epicyclic.case.tables.operation import (
+    LEVEL_REMEDY,
     GearPairOperation,
     Lubricant,
     LubricationTable,
@@ -27,12 +28,14 @@ from epicyclic.case.tables.operation import (
     Surroundings,
     ThermalTable,
     check_immersion,
+    check_level,
     check_lubrication,
     check_outlet,
     check_sump,
     check_thermal,
     check_ways_out,
     check_wetting,
+    needs_level,
 )
 from epicyclic.case.train_tables import ListedSet
 from epicyclic.errors import InputError, Problem, rising_problems
@@ -252,11 +255,24 @@ def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]
     if bearing.type == "spherical" and models.planet_tilt == "coupled":
         allowed = "does not apply to spherical roller bearings, which align themselves."
         return [Problem("models.planet_tilt", '"coupled"', allowed, 'Write "left-out".')]
+    if bearing.cage == "caged" and models.bearing == "full-complement":
+        allowed = "applies to rollers without a cage."
+        return [Problem("models.bearing", '"full-complement"', allowed, 'Write "mixed-ehl".')]
+    if models.bearing == "full-complement":
+        full = bearing.rollers_per_row
+        while not any(check_rollers(bearing.model_copy(update={"rollers_per_row": full + 1}))):
+            full += 1
+        if full == bearing.rollers_per_row:
+            return []
+        allowed, remedy = f"is not full; {full} fit.", f"Write rollers_per_row = {full}."
+        given = f"{bearing.rollers_per_row}"
+        return [Problem("planet_bearing.rollers_per_row", given, allowed, remedy)]
     if bearing.cage == "caged" or models.bearing != "mixed-ehl":
         return []
     allowed = "applies to caged bearings; rollers of a full-complement bearing rub on each other, "
     allowed += "and this friction is not included."
-    return [Problem("models.bearing", '"mixed-ehl"', allowed, 'Write bearing = "palmgren".')]
+    remedy = 'Write bearing = "full-complement" or "palmgren".'
+    return [Problem("models.bearing", '"mixed-ehl"', allowed, remedy)]
 
 
 def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> Iterator[Problem]:
@@ -407,6 +423,7 @@ _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = 
     (check_thermal, ("thermal",)),
     (lambda it, run: check_outlet(it, run.oil_inlet_temperature), ("thermal", "operation")),
     (check_lubrication, ("lubrication",)),
+    (lambda it, _: check_level(it, LEVEL_REMEDY), ("lubrication", "operation")),
     (check_sump, ("lubrication", "thermal")),
     (check_wetting, ("lubrication", "thermal")),
     (lambda it, _: check_immersion(it, ("sun", "ring", "carrier")), ("lubrication", "sun")),
@@ -425,6 +442,7 @@ def lubrication_problems(train: TrainCase) -> Iterator[Problem]:
         allowed = "must be given for each set, because it names gears of the set."
         remedy = "Write [sets.NAME.lubrication], or give oil_level."
         yield Problem("lubrication.immersion", "", allowed, remedy)
+    yield from _level_problems(train)
     for name, table in train.computed_sets:
         own = table.lubrication
         if own is None or own == train.lubrication:
@@ -432,12 +450,46 @@ def lubrication_problems(train: TrainCase) -> Iterator[Problem]:
         if train.lubrication is None:
             # the oil around everything that is in no set follows from the train's own table
             allowed = "needs [lubrication] of the train, which it then replaces for this set."
-            yield Problem(f"sets.{name}.lubrication", "", allowed, "Add it for all other parts.")
+            remedy = "Add it for all other parts."
+            if own.method == "dip":
+                remedy = "Add it for all other parts; they need no level if each set has its own."
+            yield Problem(f"sets.{name}.lubrication", "", allowed, remedy)
         found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
         if train.shape.sets[name].listed:
             found += check_immersion(own, train.shape.sets[name].members)
         for problem in found:
             yield replace(problem, key=_key(name, problem.key))
+
+
+def _level_problems(train: TrainCase) -> Iterator[Problem]:
+    """What is wrong with the oil level of the housing, or missing from that of a set."""
+    tables = {name: table.lubrication for name, table in train.computed_sets}
+    dips = [name for name, table in tables.items() if table and needs_level(table)]
+    own = train.housing
+    if own is None and dips:
+        keys = [f"sets.{name}.lubrication.oil_level" for name in dips]
+        keys = ["lubrication.oil_level"] if len(set(tables.values())) == 1 else keys
+        allowed = 'is missing, but method = "dip" needs it, or immersion.'
+        remedy = 'Give one level for all sets: [housing] with oil_level = "-30 mm" above the axis '
+        remedy += f"of {train.operation.input}; or the level or immersion of each set."
+        yield Problem(", ".join(keys), "", allowed, remedy)
+    if own is None:
+        return
+    if not dips:
+        allowed = "has no effect: no set dips without stating its own level or immersion."
+        remedy = 'Remove it, or give [lubrication] with method = "dip" and oil_volume alone.'
+        yield Problem("housing", "", allowed, remedy)
+    origin = own.shaft or train.operation.input
+    if train.shape.shaft_of(origin) is None or origin == HOUSING:
+        remedy = did_you_mean(origin, train.shape.names) or "Name a shaft."
+        yield Problem("housing.shaft", written(origin), "is not a shaft that turns.", remedy)
+        return
+    places = train.oil_heights
+    for name in dips:
+        if name not in places:
+            allowed = f"is missing: no gears of known places join {name} to {origin}."
+            remedy = "Give it, or lubrication.immersion, for this set."
+            yield Problem(f"sets.{name}.lubrication.oil_level", "", allowed, remedy)
 
 
 def _key(name: str, keys: str) -> str:
@@ -561,10 +613,15 @@ def _temperature_problems(train: TrainCase) -> list[Problem]:
         for name, table in train.computed_sets
         if table.models.temperatures not in ("inlet", train.models.temperatures)
     ]
-    if train.models.temperatures != "inlet" and not train.computed:
-        shown = written(train.models.temperatures)
+    kind, shown = train.models.temperatures, written(train.models.temperatures)
+    oil = train.lubricant, train.operation.oil_inlet_temperature
+    if kind == "flank" and not train.computed:
         allowed = "needs computed losses, but all sets have given efficiencies."
-        remedy = 'Use "inlet", or give gears instead of efficiencies for the sets.'
+        remedy = 'Use "inlet" or "network", or give gears instead of efficiencies for the sets.'
+        found.append(Problem("models.temperatures", shown, allowed, remedy))
+    elif kind == "network" and not train.computed and None in oil:
+        allowed = "needs [lubricant] and operation.oil_inlet_temperature."
+        remedy = 'Give both, or use "inlet".'
         found.append(Problem("models.temperatures", shown, allowed, remedy))
     return found
 

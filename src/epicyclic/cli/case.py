@@ -54,9 +54,10 @@ def run(
     case: str, changes: tuple[str, ...], json_file: str | None, save: Path | None, details: bool
 ) -> None:
     """Compute the losses of a case and print them by component."""
+    from epicyclic.show.details import result_tables
+    from epicyclic.show.result_tables import details as more
     from epicyclic.show.result_tables import remarks
     from epicyclic.show.summary import first_screen
-    from epicyclic.show.terminal import result_tables
     from epicyclic.show.uncertainty_tables import band_texts, result_json
     from epicyclic.study.bands.study import quick_known
     from epicyclic.study.solve import solve
@@ -76,7 +77,8 @@ def run(
 
     def tables() -> RenderableType:
         if details:
-            return result_tables(result, tuple(remarks(loaded, result)), band_texts(known))
+            notes = tuple(remarks(loaded, result))
+            return result_tables(result, notes, band_texts(known), more(loaded, result))
         return first_screen(result, known)
 
     show(tables, lambda: result_json(result, known), json_file)
@@ -108,10 +110,11 @@ def telling_contacts(case: Case) -> Iterator[None]:
 def check(case: str, changes: tuple[str, ...]) -> None:
     """Check a case and show what follows from it, as a data sheet, without computing losses.
 
-    Of a train also the ratio of every state.
+    Of a train also the ratio of every state; with [strength] safeties, which are computed.
     """
     from epicyclic.show.data_sheet import data_sheet, reservations, state_tables
-    from epicyclic.show.terminal import Sentence, terminal
+    from epicyclic.show.result_tables import details
+    from epicyclic.show.terminal import Sentence, as_on_page, spaced, terminal
 
     loaded = load_with(case, changes)
     found = list(reservations(loaded))
@@ -131,6 +134,7 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     terminal().print(data_sheet(loaded))
     if loaded.kind == "train":
         terminal().print(state_tables(loaded))
+    terminal().print(spaced(*map(as_on_page, details(loaded))), end="")
 
 
 @click.command()
@@ -139,7 +143,8 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 @plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
 def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Compare all friction models on a case, with their ranges and a recommendation."""
-    from epicyclic.show.terminal import friction_table, terminal
+    from epicyclic.show.details import friction_table
+    from epicyclic.show.terminal import terminal
     from epicyclic.study.friction import compare_friction
 
     loaded = load_with(case, changes)

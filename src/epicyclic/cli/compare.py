@@ -57,6 +57,25 @@ if TYPE_CHECKING:
     "less the loss without torque, each at its own temperatures.",
 )
 @click.option(
+    "--baseline",
+    metavar="COLUMN=VALUE",
+    default="",
+    help="Rows of a back-to-back rig with two equal sets; half of their loss, that of the reaction "
+    "set, is taken off the other rows.",
+)
+@click.option(
+    "--unloaded",
+    is_flag=True,
+    help="Take the measured loss without torque, at the same speed and temperature, off each loss "
+    "under load.",
+)
+@click.option(
+    "--torque-uncertainty",
+    metavar="TORQUE|PERCENT",
+    default="",
+    help="Standard uncertainty of each measured torque, 0.11 N*m or 0.05 % of it.",
+)
+@click.option(
     "--group",
     metavar="COLUMN",
     help="Column by whose values errors are grouped; default: temperature.",
@@ -93,6 +112,9 @@ def compare(
     changes: tuple[str, ...],
     component: str,
     load_dependent: LoadDependent,
+    baseline: str,
+    unloaded: bool,
+    torque_uncertainty: str,
     group: str | None,
     fit: str | None,
     hold_out: str | None,
@@ -108,15 +130,18 @@ def compare(
     """Compare measured losses with computed ones; with --fit, calibrate inputs to them.
 
     MEASURED is a text, Excel or Parquet table with columns such as "speed [rpm]", "torque [N*m]",
-    "temperature [degC]", and "loss [W]", "efficiency [%]" or "output_torque [N*m]"; optionally
-    "uncertainty [W]" or [%], component, the state of a train, and any key of the case.
+    "temperature [degC]", and "loss [W]", "torque_loss [N*m]", "efficiency [%]" or
+    "output_torque [N*m]"; optionally "uncertainty [W]" or [%], component, the state of a train, and
+    any key of the case.
 
     A shard keeps its points beside the file of --json, which 'epicyclic merge' writes.
     """
     from epicyclic.cli.common import progress_bar, tell
     from epicyclic.show.studies import measured_tables
     from epicyclic.study.measured.compare import compare_measured
+    from epicyclic.study.measured.rig import Rig
 
+    rig = Rig(baseline, unloaded, torque_uncertainty)
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
     _check_output(output, keys)
     if runner.shard is not None:
@@ -127,7 +152,7 @@ def compare(
         from epicyclic.study.measured.compare import ComparisonPlan, ask
         from epicyclic.study.measured.table import read_grid
 
-        question = ask(loaded, read_grid(measured, form), component, load_dependent, group)
+        question = ask(loaded, read_grid(measured, form), component, load_dependent, group, rig)
         plan, file = ComparisonPlan.of(question), Path(str(json_file))
         write = comparison_writer(plan, file)
         compute(plan, file, runner, write, plot=None if plot is None else str(plot))
@@ -143,6 +168,7 @@ def compare(
             hold_out=hold_out,
             seed=seed,
             relative=None if relative is None else _share(relative),
+            rig=rig,
             form=form,
             jobs=runner.jobs,
             dask=runner.dask,

@@ -250,7 +250,7 @@ def loss_map(
     for state, reason in ({} if chosen else states_left_out(loaded)).items():
         echo(f"State {state} is left out: it {reason}", err=True)
     if heated:
-        check_axis(len(coordinates(plan)["temperature"]))
+        check_axis(len(coordinates(plan).get("temperature", ())))
     write = map_writer(plan, output, name, own)
     compute(plan, output, runner, write, format=name, lumped=own)
 

@@ -571,7 +571,9 @@ def load_mesh_next_to(
     """The mesh of `last` under nearly the same load, which saves most of the work."""
     compliance = mesh_compliance(last.mesh, body1, body2, positions, segments)
     separation = _separation(last.mesh, deviations, positions, segments)
-    return _loaded(last.mesh, compliance, force, separation, last.line_load * last.lines.length)
+    start = last.line_load * last.lines.length
+    start.flags.writeable = False  # as lengths are: the kernel is compiled once for both
+    return _loaded(last.mesh, compliance, force, separation, start)
 
 
 @lru_cache(maxsize=64)
@@ -590,19 +592,18 @@ def _loaded(
     """The mesh under the transverse `force`, from the normal forces `start` of the segments."""
     lines = compliance.lines
     normal = force / math.cos(mesh.gear1.rack.base_helix_angle)
-    with one_thread():
-        forces, approach, stiffness, iterations = solve_all_positions(
-            normal,
-            compliance.influence,
-            compliance.coupling,
-            separation,
-            lines.length,
-            compliance.local_a,
-            compliance.local_b,
-            start,
-            TOLERANCE,
-            STEPS_PER_SEGMENT * lines.length[0].size,
-        )
+    forces, approach, stiffness, iterations = solve_all_positions(
+        normal,
+        compliance.influence,
+        compliance.coupling,
+        separation,
+        lines.length,
+        compliance.local_a,
+        compliance.local_b,
+        start,
+        TOLERANCE,
+        STEPS_PER_SEGMENT * lines.length[0].size,
+    )
     if iterations.min() < 0:
         raise ConvergenceError(
             f"the load distribution of the {mesh.name} was not found at {normal:.4g} N; use "

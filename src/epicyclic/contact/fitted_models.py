@@ -772,13 +772,15 @@ def read_oil_model(path: str | Path) -> OilModel:
     file = Path(path)
     try:
         stat = file.stat()
-        return _read(file.absolute(), stat.st_mtime_ns, stat.st_size)
+        # clocks jump: the time alone does not tell a file from one written later
+        state = (stat.st_ino, stat.st_ctime_ns, stat.st_mtime_ns, stat.st_size)
+        return _read(file.absolute(), state)
     except OSError as error:
         raise _file_error(file, f"cannot be read: {error.strerror}.") from None
 
 
 @lru_cache(maxsize=64)
-def _read(path: Path, _changed: int, _size: int) -> OilModel:
+def _read(path: Path, _state: tuple[int, ...]) -> OilModel:
     """The file as it was when it was last changed."""
     try:
         content = unsealed(read_text(path, "oil model", LARGEST_FILE))

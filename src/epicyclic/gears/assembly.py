@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import combinations, combinations_with_replacement, product
 
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.gearing import RACK_KEYS, Gearing, GearPairing, Pin
-from epicyclic.gears.mesh import nearest_admissible_angle, nearest_places, profile_shift_sum
+from epicyclic.gears.mesh import nearest_admissible_angle, profile_shift_sum
 from epicyclic.gears.rules import check_mesh, sound_gears
 from epicyclic.messages import millimetres
 
@@ -27,16 +28,21 @@ ANGLE_TOLERANCE = math.radians(0.01)
 
 def set_problems(gearing: Gearing) -> list[Problem]:
     """Problems of the gears of a set with computed losses, its meshes and its assembly."""
-    if racks := list(dict.fromkeys(rack_problems(gearing))):
-        return racks
-    sound, problems = sound_gears(gearing)
-    problems += _hand_problems(gearing, sound)
-    distances = list(_distance_problems(gearing))
-    problems += distances
-    if not distances:
-        problems += _mesh_problems(gearing, sound)
+    problems = list(rack_problems(gearing))
+    sound: dict[str, Gear] = {}
+    placed = False
+    if not problems:
+        sound, problems = sound_gears(gearing)
+        problems += _hand_problems(gearing, sound)
+        distances = list(_distance_problems(gearing))
+        problems += distances
+        thick = all(table.states_thickness for table in gearing.tables.values())
+        complete = thick and None not in gearing.distances.values()
+        if complete and not distances:  # else what is wrong with sizes shows in every mesh
+            problems += _mesh_problems(gearing, sound)
+            placed = True
     if gearing.planets and gearing.count is not None:
-        problems += _assembly_problems(gearing, sound, placed=not distances)
+        problems += _assembly_problems(gearing, sound, placed=placed)
     return list(dict.fromkeys(problems))  # a planet that cannot be cut is found in both meshes
 
 
@@ -95,7 +101,8 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
     """Centre distances that are missing, or that put one pin at two places."""
     distances = gearing.distances
     for mesh in gearing.meshes:
-        if distances[mesh.key] is None:
+        # that of gears of one module is computed, or reported where it cannot be
+        if distances[mesh.key] is None and not _alike(gearing, mesh):
             one, two = mesh.pair
             own = f"mesh.{one}-{two}.center_distance"
             remedy = f"Give gears.center_distance, or {own}."
@@ -119,6 +126,10 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
         yield Problem(", ".join(keys), "", allowed, remedy)
     if None not in distances.values():
         yield from _triangle_problems(gearing)
+
+
+def _alike(gearing: Gearing, mesh: GearPairing) -> bool:
+    return math.isclose(*(gearing.racks[it].normal_module for it in (mesh.first, mesh.second)))
 
 
 def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:
@@ -211,7 +222,7 @@ def _assembly_problems(
 
     They are `placed` if all centre distances are known.
     """
-    found = list(_place_problems(gearing))
+    found = list(place_problems(gearing))
     yield from found
     on_planets = [gear for body in gearing.planets for gear in gearing.gears_of(body)]
     if placed and all(gear in sound for gear in on_planets):
@@ -231,9 +242,11 @@ def _assembly_problems(
         yield from _overlaps(gearing, sound)
 
 
-def _place_problems(gearing: Gearing) -> Iterator[Problem]:
+def place_problems(gearing: Gearing) -> Iterator[Problem]:
     """Planets must fit where the case says; if it does not, each needs a place of its own."""
     angles, count = gearing.stated_angles, gearing.count
+    if count is None:
+        return
     if angles is None:
         arrangement = gearing.arrangement
         places = {round(angle / (2 * math.pi), 9) % 1 for angle in arrangement.angles}
@@ -317,9 +330,9 @@ def _fewer(
 ) -> str:
     """How many planets would not touch."""
     for count in range(MOST_PLANETS, 0, -1):
-        places = nearest_places(count, 0)
+        places = replace(gearing, count=count, stated_angles=None).planet_angles
         if all(_gap(gearing, sound, places, one, two) > 0 for one, two in close):
-            return f"Use fewer planets (at most {count} fit equally spaced){other}."
+            return f"Use fewer planets (at most {count} fit){other}."
     return "Shorten their teeth, or change the centre distances."
 
 

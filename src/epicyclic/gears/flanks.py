@@ -42,7 +42,8 @@ class ContactLines:
     # Transverse radii of curvature of the two members at the middle of each segment. [m]
     curvature1: FloatArray
     curvature2: FloatArray
-    # y at the middle of each segment, from the end of the face where contact begins. [m]
+    # y at the middle of each segment, from the end of the face where contact begins if gear 1
+    # drives. [m]
     face_position: FloatArray
     length: FloatArray  # Length of each segment along the contact line. [m]
 
@@ -218,6 +219,9 @@ class FlankDeviations:
     # F_beta_x: how much further apart the flanks are at the end of the common face where contact
     # ends than where it begins, in the transverse plane of action. ISO 6336-1. [m]
     misalignment: float = 0.0
+    # True if gear 2 drives: contact begins at the end of the path, and of the face, where it ends
+    # if gear 1 drives.
+    mirrored: bool = False
 
     def separation(self, mesh: Mesh, lines: ContactLines) -> FloatArray:
         """Gap of the unloaded flanks along the common normal on all segments of `lines`.
@@ -227,15 +231,14 @@ class FlankDeviations:
         # lines that are not in contact lie beyond the path of contact: any place on it serves
         rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
         rho2 = mesh.line_of_action - mesh.side * rho1
-        gap = self.misalignment * lines.face_position / mesh.face_width
+        y = mesh.face_width - lines.face_position if self.mirrored else lines.face_position
+        gap = self.misalignment * y / mesh.face_width
         for member, flank, gear, rho in (
             (1, self.member1, mesh.gear1, rho1),
             (2, self.member2, mesh.gear2, rho2),
         ):
             overhang = (gear.face_width - mesh.face_width) / 2
-            gap = gap + flank.deviation(
-                gear, active_profile(mesh, member), rho, lines.face_position + overhang
-            )
+            gap = gap + flank.deviation(gear, active_profile(mesh, member), rho, y + overhang)
         return gap * math.cos(mesh.gear1.rack.base_helix_angle)
 
 

@@ -6,13 +6,14 @@ bodies; those in `Gearing.planets` turn on pins of the carrier.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 from epicyclic.gears.gear import CARRIER, BasicRack, Gear
-from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle
+from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle, tip_shortening
 from epicyclic.gears.stated import StatedGear, StatedMesh, StatedShared, allowance_shift, half_angle
 
 DEFAULT_RIM_THICKNESS = 3.0
@@ -147,8 +148,38 @@ class Gearing:
         """
         assert self.shared is not None
         table, shared = self.tables[name], self.shared
-        heights = (shared.addendum_coefficient, shared.dedendum_coefficient)
-        return _gear(name, table, self.racks[name], *heights)
+        addendum = shared.addendum_coefficient
+        if table.tip_diameter is None:
+            addendum -= self.tip_shortenings.get(name, 0.0) / self.racks[name].normal_module
+        return _gear(name, table, self.racks[name], addendum, shared.dedendum_coefficient)
+
+    @cached_property
+    def tip_shortenings(self) -> dict[str, float]:
+        """By how much each gear is shortened if it has the default tip: as every mesh needs. [m]"""
+        found: dict[str, float] = {}
+        assert self.shared is not None
+        for mesh in self.meshes if self.shared.tip_alteration == "keep-clearance" else ():
+            names = (mesh.first, mesh.second)
+            rack, distance = self.racks[mesh.first], self.distances[mesh.key]
+            modules = (rack.normal_module, self.racks[mesh.second].normal_module)
+            if distance is None or not math.isclose(*modules):  # mates of one rack only
+                continue
+            try:
+                shift_sum = sum(map(self._nominal_shift, names))
+            except ValueError:  # a thickness that is still missing, or lies in the base circle
+                continue
+            teeth = int(mesh.teeth[0] + (-1 if mesh.internal else 1) * mesh.teeth[1])
+            shortening = tip_shortening(rack, teeth, distance, shift_sum)
+            found |= {name: max(shortening, found.get(name, 0.0)) for name in names}
+        return found
+
+    def _nominal_shift(self, name: str) -> float:
+        """x without allowances; raises `ValueError` if the teeth have no thickness. [1]"""
+        table, rack = self.tables[name], self.racks[name]
+        if not table.states_thickness:
+            raise ValueError(name)
+        shift = _gear(name, table, rack, 0.0, 0.0).profile_shift_coefficient
+        return shift - allowance_shift(table, rack)
 
     def rings(self) -> Iterator[tuple[str, StatedGear, Gear]]:
         """Name, table and geometry of every internal gear."""
@@ -320,6 +351,35 @@ class Gearing:
                         pins[two] = Pin(radii[two], pins[known].angle + angle)
                         found.append(two)
         return pins
+
+    @cached_property
+    def centers(self) -> dict[str, tuple[complex, ...]]:
+        """Where each body stands in the plane across the axes, planets several times. [m]
+
+        Of fixed axes from the first body; of planets, the first arm upwards, from the axis of the
+        set. Bodies whose places the case does not tell are left out.
+        """
+        found: dict[str, tuple[complex, ...]]
+        if self.planets:
+            arms = self.arrangement.angles
+            found = dict.fromkeys(self.members, (0j,))
+            for body, pin in self.pins.items():
+                turns = (math.pi / 2 + arm + pin.angle for arm in arms)
+                found[body] = tuple(cmath.rect(pin.radius, turn) for turn in turns)
+            return found
+        directions = self.directions
+        found = {self.bodies[self.meshes[0].first]: (0j,)}
+        before = 0
+        while len(found) > before:
+            before = len(found)
+            for mesh, geometry in zip(self.meshes, self.geometries, strict=True):
+                one, two = self.bodies[mesh.first], self.bodies[mesh.second]
+                step = cmath.rect(geometry.center_distance, directions[mesh.key])
+                if one in found:
+                    found.setdefault(two, (found[one][0] + step,))
+                elif two in found:
+                    found[one] = (found[two][0] - step,)
+        return found
 
     @cached_property
     def arrangement(self) -> Arrangement:

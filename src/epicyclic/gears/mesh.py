@@ -228,6 +228,27 @@ def closed_center_distance(
     )
 
 
+def tip_shortening(
+    rack: BasicRack,
+    teeth: int,  # z1 + z2, those of an internal gear negative.
+    center_distance: float,  # [m]
+    shift_sum: float,  # x1 + x2, without allowances. [1]
+) -> float:
+    """-k m_n, by which both tips keep the tip clearance of the rack. DIN 3960. Theory (G55). [m]
+
+    Teeth that are too thick for their centre distance count as such that just fit. Zero in internal
+    meshes: there the clearance is larger than that of the rack (k > 0), and no tip is lengthened.
+    """
+    if teeth <= 0:
+        return 0.0
+    try:
+        distance = max(center_distance, closed_center_distance(rack, teeth, shift_sum))
+    except ValueError:  # too thin to be too long
+        return 0.0
+    reference = teeth * rack.transverse_module / 2
+    return max(0.0, reference + shift_sum * rack.normal_module - distance)
+
+
 def recommended_backlash(rack: BasicRack, center_distance: float) -> float:
     """Least normal backlash recommended for industrial gears of steel. Theory (G46). [m]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 
 from epicyclic.errors import Problem, rising_problems
@@ -222,27 +223,45 @@ def _reference_distance(mesh: Mesh) -> str:
 def _negative_clearance(gearing: Gearing, mesh: Mesh, tip: Gear, root: Gear) -> Problem:
     """The tip of one gear reaches into the root of the other."""
     clearance = mesh.tip_clearances[0] if tip is mesh.gear1 else mesh.tip_clearances[1]
-    limit = tip.tip_radius + (-clearance if tip.internal else clearance)
-    try:
-        end = longest_involute(root, gearing.tables[root.name].tool_tip_radius)
-    except ValueError:
-        pass
-    else:
-        stricter = max if tip.internal else min
-        limit = stricter(limit, _tip_radius_for(mesh, tip, end))
     key, shown = _tips(gearing, tip)
     allowed = f"the tip of the {tip.name} reaches {millimetres(-clearance)} into the root of the "
     allowed += f"{root.name} (negative tip clearance)."
-    remedy = f"{_tip_limit(gearing, tip, limit)}or cut the {root.name} deeper."
+    remedy = f"{_tip_limit(gearing, tip)}or cut the {root.name} deeper."
     return Problem(key, shown, allowed, remedy)
 
 
-def _tip_limit(gearing: Gearing, gear: Gear, limit: float) -> str:
-    """Beginning of a remedy: how long the teeth may be."""
+def _tip_limit(gearing: Gearing, gear: Gear) -> str:
+    """Beginning of a remedy: how long the teeth may be in all meshes of the gear."""
+    limits = list(_tip_limits(gearing, gear))
+    limit = max(limits) if gear.internal else min(limits)
     if limit <= 0:
         return "Shorten the teeth, "
     step, bound = (math.ceil, "at least") if gear.internal else (math.floor, "at most")
     return f"Make {gearing.key(gear.name)}.tip_diameter {bound} {step(2e6 * limit) / 1e3:.3f} mm, "
+
+
+def _tip_limits(gearing: Gearing, tip: Gear) -> Iterator[float]:
+    """Tip radii up to which a gear leaves the root and the fillet of each mate alone. [m]"""
+    for mesh in _meshes_of(gearing, tip):
+        first = tip.name == mesh.gear1.name
+        root, clearance = (mesh.gear2 if first else mesh.gear1), mesh.tip_clearances[not first]
+        yield tip.tip_radius + (-clearance if tip.internal else clearance)
+        try:
+            end = longest_involute(root, gearing.tables[root.name].tool_tip_radius)
+        except ValueError:  # no tool cuts it
+            end = root.base_radius
+        yield _tip_radius_for(mesh, tip, end)
+
+
+def _meshes_of(gearing: Gearing, gear: Gear) -> Iterator[Mesh]:
+    """The meshes of a gear whose mates and centre distances are known."""
+    for drawn in gearing.meshes:
+        pair = (drawn.first, drawn.second)
+        if gear.name not in pair or gearing.distances[drawn.key] is None:
+            continue
+        if all(gearing.tables[it].states_thickness for it in pair):
+            with suppress(ValueError):  # a mate without an involute
+                yield gearing.geometry(drawn)
 
 
 def _check_contact_ratio(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Problem]:
@@ -283,7 +302,6 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
         curvature, radius = mesh.curvature2(mesh.path_end), mesh.inner_radii[1]
     change = "change tooth numbers or profile shifts"
     if curvature < 0:
-        end = gear.base_radius
         fault = (
             f"reaches inside the base circle of the {gear.name}, where no involute exists (tip "
             "interference)"
@@ -301,7 +319,7 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
             change = f"reduce {gearing.key(gear.name)}.tool_tip_radius"
     key, shown = _tips(gearing, mate)
     allowed = f"the tip of the {mate.name} {fault}."
-    remedy = f"{_tip_limit(gearing, mate, _tip_radius_for(mesh, mate, end))}or {change}."
+    remedy = f"{_tip_limit(gearing, mate)}or {change}."
     return [Problem(key, shown, allowed, remedy)]
 
 
@@ -356,12 +374,12 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
         return []
     gears = (mesh.gear1, mesh.gear2)
     keys = [thickness_key(gearing.key(gear.name), gearing.tables[gear.name]) for gear in gears]
-    fits = " or ".join(_fitting(gearing, mesh, gear) for gear in gears)
+    fits = " or ".join(_fitting(gearing, [*_meshes_of(gearing, it)], it) for it in gears)
     usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)
     less = thinning(mesh.gear1.rack, usual)
     allowed = f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
     allowed += f"centre distance of {millimetres(mesh.center_distance)} (negative backlash)."
-    remedy = f"Without backlash {fits} fits{_distance(mesh, distance_key)}; "
+    remedy = f"Without backlash {fits} fits{_distance(gearing, mesh, distance_key)}; "
     remedy += f"{less:.4f} less of one x gives {micrometres(usual)}, recommended in ISO/TR "
     remedy += f"10064-2.{_other_sign(gearing, mesh)}"
     return [Problem(", ".join(keys), "", allowed, remedy)]
@@ -375,7 +393,7 @@ def backlash_notes(gearing: Gearing) -> Iterator[str]:
         if backlash <= GROSS * usual:
             continue
         gears = (mesh.gear1, mesh.gear2)
-        fits = " or ".join(_fitting(gearing, mesh, gear, usual) for gear in gears)
+        fits = " or ".join(_fitting(gearing, [mesh], gear, usual) for gear in gears)
         yield (
             f"The {mesh.name} has a normal backlash of {millimetres(backlash)}, "
             f"{backlash / usual:.2g} times the {micrometres(usual)} that ISO/TR 10064-2 "
@@ -396,21 +414,26 @@ def _over(mesh: Mesh, backlash: float = 0.0) -> float:
     return sum(gear.profile_shift_coefficient for gear in gears) - wanted
 
 
-def _fitting(gearing: Gearing, mesh: Mesh, gear: Gear, backlash: float = 0.0) -> str:
-    """The thickness of a gear that leaves this backlash, as the case states it."""
+def _fitting(gearing: Gearing, meshes: list[Mesh], gear: Gear, backlash: float = 0.0) -> str:
+    """The thickness of a gear that leaves this backlash in all meshes, as the case states it."""
     table, key = gearing.tables[gear.name], gearing.key(gear.name)
-    return fitting(gear, key, table, _over(mesh, backlash))
+    return fitting(gear, key, table, max(_over(mesh, backlash) for mesh in meshes))
 
 
-def _distance(mesh: Mesh, key: str) -> str:
-    """What centre distance the teeth fit, rounded to the loose side."""
+def _distance(gearing: Gearing, mesh: Mesh, key: str) -> str:
+    """What centre distance the teeth fit, rounded to the loose side; none that others do not."""
     total = mesh.gear1.profile_shift_coefficient + mesh.gear2.profile_shift_coefficient
     try:
         distance = closed_center_distance(mesh.gear1.rack, _teeth(mesh), total)
     except ValueError:
         return ""
     loose = math.floor if mesh.internal else math.ceil
-    return f', or {key} = "{loose(distance * 1e6) / 1e3:.3f} mm"'
+    near = loose(distance * 1e6) / 1e6
+    shared = (it for it in gearing.meshes if gearing.distance_key(it) == key)
+    fits = (Mesh("", gearing.gear(it.first), gearing.gear(it.second), near) for it in shared)
+    if not all(it.backlash >= -ROUNDING for it in fits):
+        return ""
+    return f', or {key} = "{1e3 * near:.3f} mm"'
 
 
 def _other_sign(gearing: Gearing, mesh: Mesh) -> str:

@@ -226,8 +226,14 @@ class _Solver:
             remedy = "Add one of them, or tooth_thickness with thickness_diameter: the others "
             remedy += "follow from the centre distance."
             raise one_problem(", ".join(map(self._shift_key, free)), "", allowed, remedy)
+        problems: list[Problem] = []
         for mesh in doubly:
-            self._adjust(mesh)
+            try:
+                self._adjust(mesh)
+            except InputError as error:
+                problems += error.problems
+        if problems:
+            raise InputError(problems)
 
     # --- centre distances ---
 

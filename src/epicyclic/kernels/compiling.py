@@ -7,6 +7,7 @@ import os
 import pickle
 import signal
 import sys
+import threading
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
@@ -17,80 +18,83 @@ import numba
 from numba.core import caching, event
 
 from epicyclic.cache_folder import is_private, private_folder
-from epicyclic.kernels import listeners
+from epicyclic.kernels import ahead, listeners
 
 # Kernels compiled in a process of their own, which takes the memory of the compiler with it.
 #
 # The compiler keeps what it made on the way to the machine code of a kernel and of all kernels that
 # it calls: half a gigabyte for those of one planetary set. A copy of this process keeps that
-# instead, puts the machine code on the disk, and ends; this process reads it from there. Of
-# processes that start together one compiles a kernel, and the others wait for what it puts on the
-# disk.
+# instead, puts the machine code on the disk, and ends; this process reads it from there. Meanwhile
+# another copy does the work that is to come, for its kernels. Of processes that start together one
+# compiles a kernel, and the others wait for what it puts on the disk.
 
 
 if sys.platform == "linux":
     import fcntl
 
 _can_be_copied = sys.platform == "linux"  # elsewhere a copy is not safe, or there is none
+_is_copy = False
+_telling = threading.Lock()
 
 
-def done_apart(compile_kernel: Callable[[], bool], folder: Path) -> bool:
+def done_apart(compile_kernel: Callable[[], bool]) -> bool:
     """Compile in a copy of this process, where `compile_kernel` says whether the disk has it then.
-
-    Other processes that use the same folder for machine code wait meanwhile.
 
     Listeners are told of each kernel here. After a failure nothing is compiled apart any more,
     because it would fail again: this process meets the error itself then, and can tell of it.
     """
+    global _can_be_copied
     if not _can_be_copied:
         return False
-    handle = None  # of the lock of the folder, which ends with this process if not before
-    try:
-        with suppress(OSError):  # where nothing can be locked, each process compiles for itself
-            handle = os.open(folder, os.O_RDONLY)
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        # a kernel that was waited for is read from the disk by the copy
-        return _done_in_copy(compile_kernel)
-    finally:
-        if handle is not None:
-            os.close(handle)
+    while ahead:
+        copy = _start_copy(ahead.pop())
+        threading.Thread(target=_follow, args=copy, daemon=True).start()
+    _can_be_copied = _follow(*_start_copy(compile_kernel))
+    return _can_be_copied
 
 
-def _done_in_copy(compile_kernel: Callable[[], bool]) -> bool:
-    global _can_be_copied
+def _start_copy(work: Callable[[], object]) -> tuple[int, int]:
+    """Number of a copy that does the work, and the end of the pipe in which it tells of kernels."""
     reader, writer = os.pipe()
     with warnings.catch_warnings():
         # the copy has no other threads, and needs nothing that they may have held
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if child == 0:
-        _compile_and_end(compile_kernel, reader, writer)
+        _work_and_end(work, reader, writer)
     os.close(writer)
+    return child, reader
+
+
+def _follow(child: int, reader: int) -> bool:
+    """Tell of the kernels of a copy until it ends; whether it has done its work."""
     try:
         while os.read(reader, 1):
-            for tell in listeners:
-                tell()
+            with _telling:
+                for tell in listeners:
+                    tell()
     except BaseException:
         os.kill(child, signal.SIGKILL)
         raise
     finally:
         os.close(reader)
         _, status = os.waitpid(child, 0)
-    _can_be_copied = status == 0
-    return _can_be_copied
+    return status == 0
 
 
-def _compile_and_end(compile_kernel: Callable[[], bool], reader: int, writer: int) -> NoReturn:
+def _work_and_end(work: Callable[[], object], reader: int, writer: int) -> NoReturn:
     """What the copy does. It never returns into what the original was doing."""
-    global _can_be_copied
+    global _can_be_copied, _is_copy
     code = 1
     try:
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         os.close(reader)
-        _can_be_copied = False
+        _can_be_copied, _is_copy = False, True
         listeners[:] = [lambda: _tell(writer)]
-        code = 0 if compile_kernel() else 1
+        ahead.clear()
+        warnings.simplefilter("ignore")  # the original meets the same
+        code = 0 if work() else 1
     finally:
         os._exit(code)
 
@@ -178,6 +182,7 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
     def __init__(self, compiled: Any) -> None:
         super().__init__(compiled.py_func)
         self._compiled = compiled
+        self._locked: int | None = None
         self._cache_file = _CheckedFile(
             cache_path=self._cache_path,
             filename_base=self._impl.filename_base,
@@ -192,14 +197,36 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
             return load(sig, target_context) is not None
 
         found = load(sig, target_context)
-        is_new = found is None and done_apart(is_kept, Path(self._cache_path))
+        if found is None and _is_copy:
+            self._lock()
+            found = load(sig, target_context)
+            if found is not None:
+                self._unlock()
+        is_new = found is None and done_apart(is_kept)
         return load(sig, target_context) if is_new else found
+
+    def _lock(self) -> None:
+        """Wait for who else compiles this kernel, then let others wait until it is kept.
+
+        Who compiles a kernel waits for kernels that it calls only, so that nobody waits for ever.
+        """
+        with suppress(OSError):  # where nothing can be locked, each process compiles for itself
+            path = Path(self._cache_path) / f"{self._impl.filename_base}.lock"
+            self._locked = os.open(path, os.O_CREAT | os.O_RDWR, 0o600)
+            fcntl.flock(self._locked, fcntl.LOCK_EX)
+
+    def _unlock(self) -> None:
+        if self._locked is not None:
+            os.close(self._locked)
+            self._locked = None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         try:
             super().save_overload(sig, data)
         except OSError as error:
             _note_lost(error)
+        finally:
+            self._unlock()
 
 
 def _note_lost(error: Exception) -> None:

@@ -56,6 +56,54 @@ def local_law(q: float, a: float, b: float, floor: float) -> tuple[float, float]
     return q * (a - 0.5 * b * np.log(q)), a - 0.5 * b * np.log(q) - 0.5 * b
 
 
+# Sums and products are written as loops: those of numpy take several times as long to compile.
+
+
+@kernel
+def line_totals(values: FloatArray) -> FloatArray:
+    """Sum of the values of each line."""
+    totals = np.zeros(values.shape[0])
+    for line in range(values.shape[0]):
+        for k in range(values.shape[1]):
+            totals[line] += values[line, k]
+    return totals
+
+
+@kernel
+def shared(force: float, weight: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """A force in proportion to weights, and where they are not zero."""
+    whole = 0.0
+    for part in line_totals(weight):
+        whole += part
+    forces = np.zeros(weight.shape)
+    loaded = np.zeros(weight.shape, np.bool_)
+    for line in range(weight.shape[0]):
+        for k in range(weight.shape[1]):
+            forces[line, k] = force * weight[line, k] / whole
+            loaded[line, k] = weight[line, k] > 0.0
+    return forces, loaded
+
+
+@kernel
+def product(values: FloatArray, others: FloatArray) -> float:
+    """Sum of the products of all values."""
+    found = 0.0
+    for line in range(values.shape[0]):
+        for k in range(values.shape[1]):
+            found += values[line, k] * others[line, k]
+    return found
+
+
+@kernel
+def after_step(start: FloatArray, share: float, step: FloatArray) -> FloatArray:
+    """Values after a share of a step."""
+    moved = np.empty(start.shape)
+    for line in range(start.shape[0]):
+        for k in range(start.shape[1]):
+            moved[line, k] = start[line, k] + share * step[line, k]
+    return moved
+
+
 @kernel
 def deflections(
     forces: FloatArray,
@@ -67,19 +115,34 @@ def deflections(
     local_b: float,
     floor: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """s + C F + G F + delta_c of every segment [m], and the slope of delta_c over F [m/N]."""
+    """s + C F + G F + delta_c of every segment [m], and the slope of delta_c over F [m/N].
+
+    Influence coefficients are symmetric, so that C F is a sum of rows, which become vector
+    instructions.
+    """
     lines, segments = length.shape
     closed = np.zeros((lines, segments))
     slope = np.zeros((lines, segments))
-    rim = coupling @ forces.sum(axis=1)
+    totals = line_totals(forces)
     for line in range(lines):
         if length[line, 0] <= 0.0:
             continue
-        closed[line] = separation[line] + compliance[line] @ forces[line] + rim[line]
+        rim = 0.0
+        for other in range(lines):
+            rim += coupling[line, other] * totals[other]
+        bent = closed[line]
+        for k in range(segments):
+            bent[k] = separation[line, k] + rim
+        for loaded in range(segments):
+            force = forces[line, loaded]
+            if force != 0.0:
+                influence = compliance[line, loaded]
+                for k in range(segments):
+                    bent[k] += force * influence[k]
         for k in range(segments):
             w = length[line, k]
             law, law_slope = local_law(forces[line, k] / w, local_a[line, k], local_b, floor)
-            closed[line, k] += law
+            bent[k] += law
             slope[line, k] = law_slope / w
     return closed, slope
 
@@ -88,24 +151,24 @@ def deflections(
 def eliminate(system: FloatArray) -> None:
     """Solve a positive definite system whose right sides are its further columns, in place.
 
-    Gauss elimination without pivoting. The rows of the inner loop are views, counted from zero:
-    only so does it become vector instructions.
+    Gauss elimination without pivoting of the upper half; the lower one is not read. The rows of the
+    inner loop are views, counted from zero: only so does it become vector instructions.
     """
     n, columns = system.shape
     for k in range(n):
         inverse = 1.0 / system[k, k]
-        upper = system[k, k + 1 :]
         for r in range(k + 1, n):
-            factor = system[r, k] * inverse
-            lower = system[r, k + 1 :]
-            for c in range(columns - k - 1):
+            factor = system[k, r] * inverse
+            upper = system[k, r:]
+            lower = system[r, r:]
+            for c in range(columns - r):
                 lower[c] -= factor * upper[c]
     for side in range(n, columns):
         for k in range(n - 1, -1, -1):
-            total = system[k, side]
+            found = system[k, side]
             for c in range(k + 1, n):
-                total -= system[k, c] * system[c, side]
-            system[k, side] = total / system[k, k]
+                found -= system[k, c] * system[c, side]
+            system[k, side] = found / system[k, k]
 
 
 @kernel
@@ -134,39 +197,52 @@ def newton_step(
     lines, segments = loaded.shape
     unit = np.zeros((lines, segments))
     back = np.zeros((lines, segments))
+    index = np.empty(segments, np.int64)
     for line in range(lines):
-        index = np.nonzero(loaded[line])[0]
-        n = index.size
-        if n == 0:
-            continue
-        jacobian = np.ones((n, n + 2))
+        n = 0
+        for k in range(segments):
+            if loaded[line, k]:
+                index[n] = k
+                n += 1
+        jacobian = np.empty((n, n + 2))
         for i in range(n):
             k = index[i]
-            for j in range(n):
+            for j in range(i, n):
                 jacobian[i, j] = compliance[line, k, index[j]]
             jacobian[i, i] += slope[line, k]
+            jacobian[i, n] = 1.0
             jacobian[i, n + 1] = closed[line, k]
         eliminate(jacobian)
         for i in range(n):
             unit[line, index[i]] = jacobian[i, n]
             back[line, index[i]] = jacobian[i, n + 1]
-    # change P of the total of a line: P = u (D - G P) - h, so that (1 + U G) P = u D - h
-    u, h = unit.sum(axis=1), back.sum(axis=1)
+    # change P of the total of a line: P = u (D - G P) - h, so that (1/u + G) P = D - h/u where
+    # segments are loaded
+    u, h = line_totals(unit), line_totals(back)
     system = np.zeros((lines, lines + 2))
     for i in range(lines):
         system[i, i] = 1.0
-        for j in range(lines):
-            system[i, j] += u[i] * coupling[i, j]
-        system[i, lines] = u[i]
-        system[i, lines + 1] = h[i]
+        if u[i] != 0.0:
+            system[i, i] = 1.0 / u[i] + coupling[i, i]
+            for j in range(i + 1, lines):
+                system[i, j] = coupling[i, j] if u[j] != 0.0 else 0.0
+            system[i, lines] = 1.0
+            system[i, lines + 1] = h[i] / u[i]
     eliminate(system)
-    totals = system[:, lines:]
-    stiffness = totals[:, 0].sum()
-    approach = (force - forces.sum() + totals[:, 1].sum()) / stiffness
-    rim = coupling @ (totals[:, 0] * approach - totals[:, 1])
+    stiffness, missing = 0.0, force
+    totals = line_totals(forces)
+    for i in range(lines):
+        stiffness += system[i, lines]
+        missing += system[i, lines + 1] - totals[i]
+    approach = missing / stiffness
     step = np.empty((lines, segments))
     for line in range(lines):
-        step[line] = unit[line] * (approach - rim[line]) - back[line]
+        rim = 0.0
+        for other in range(lines):
+            change = system[other, lines] * approach - system[other, lines + 1]
+            rim += coupling[line, other] * change
+        for k in range(segments):
+            step[line, k] = unit[line, k] * (approach - rim) - back[line, k]
     return step, approach, stiffness
 
 
@@ -184,7 +260,7 @@ def is_solution(
     Comparisons with NaN are false, so that NaN is no solution.
     """
     lines, segments = length.shape
-    limit = tolerance * abs(approach)
+    limit, lacking = tolerance * abs(approach), force
     for line in range(lines):
         for k in range(segments):
             gap = closed[line, k] - approach
@@ -192,7 +268,9 @@ def is_solution(
             free = forces[line, k] == 0.0
             if length[line, k] > 0.0 and not ((touching or free) and gap >= -limit):
                 return False
-    balanced: bool = abs(forces.sum() - force) <= tolerance * force
+    for carried in line_totals(forces):
+        lacking -= carried
+    balanced: bool = abs(lacking) <= tolerance * force
     return balanced
 
 
@@ -290,8 +368,7 @@ def careful_solution(
     the loaded ones. No set of loaded segments comes back, so that the method ends. Parameters and
     returns as for `solve_contact_loads`.
     """
-    forces = force * length / length.sum()
-    loaded = length > 0.0
+    forces, loaded = shared(force, length)
     closed, slope = deflections(
         forces, compliance, coupling, separation, length, local_a, local_b, floor
     )
@@ -301,16 +378,16 @@ def careful_solution(
         )
         share = share_until_release(forces, step, loaded)
         blocked = share < 1.0
-        descent = -(step * closed).sum()
+        descent = -product(step, closed)
         # as near to the least energy as this, its slope is lost in rounding and the step is right
         enough = max(ENOUGH_DESCENT * descent, tolerance * force * abs(approach))
         start = forces
         for _ in range(MOST_HALVINGS):
-            forces = start + share * step
+            forces = after_step(start, share, step)
             closed, slope = deflections(
                 forces, compliance, coupling, separation, length, local_a, local_b, floor
             )
-            if (step * closed).sum() <= enough:
+            if product(step, closed) <= enough:
                 break
             share *= 0.5
             blocked = False
@@ -358,24 +435,25 @@ def solve_contact_loads(
         Newton steps, or -1 without a solution.
     """
     approach = stiffness = np.nan
-    given = (
-        compliance.sum() + coupling.sum() + separation.sum() + local_a.sum() + start.sum() + force
-    )
-    if not np.isfinite(given):
-        return np.zeros(length.shape), approach, stiffness, -1
-    loaded = start > 0.0
     nearest = np.inf
     for line in range(length.shape[0]):
         for k in range(length.shape[1]):
             if length[line, k] > 0.0:
                 nearest = min(nearest, separation[line, k])
-    gap = separation - nearest
-    floor = LINEAR_SHARE * force / length.sum()
-    forces = force * start / start.sum()
+    gap = np.empty(length.shape)
+    whole = 0.0
+    for line in range(length.shape[0]):
+        for k in range(length.shape[1]):
+            gap[line, k] = separation[line, k] - nearest
+            whole += length[line, k]
+    floor = LINEAR_SHARE * force / whole
+    forces, loaded = shared(force, start)
     for iteration in range(QUICK_STEPS):
         closed, slope = deflections(
             forces, compliance, coupling, gap, length, local_a, local_b, floor
         )
+        if iteration == 0 and not product(closed, length) < np.inf:
+            return np.zeros(length.shape), approach, stiffness, -1
         if is_solution(force, forces, approach, closed, length, tolerance):
             return forces, approach + nearest, stiffness, iteration
         load_touching(loaded, closed, length, approach, tolerance)

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.kernels.compiling import kernel
+from epicyclic.kernels.contact_load import eliminate
 
 FloatArray = NDArray[np.float64]
 
@@ -167,6 +168,16 @@ def loaded_lengths(
 
 
 @kernel
+def largest(values: FloatArray) -> float:
+    """Largest absolute value, NaN if one is; numpy's takes several times as long to compile."""
+    found = 0.0
+    for value in values:
+        if abs(value) > found or np.isnan(value):
+            found = abs(value)
+    return found
+
+
+@kernel
 def hold_tilt(gradient: FloatArray, hessian: FloatArray) -> None:
     """Take the tilts out of a Newton step."""
     for i in range(2, 4):
@@ -198,7 +209,8 @@ def minimise(
     hessian = np.empty((4, 4))
     trial_gradient = np.empty(4)
     trial_hessian = np.empty((4, 4))
-    scale = np.abs(load).max()
+    system, step, trial = np.empty((4, 5)), np.empty(4), np.empty(4)
+    scale = largest(load)
     reference = slice_stiffness(width * y_over_l.size) * width * clearance_scale(clearance)
     energy = potential(
         d, load, psi, y_over_l, crown, width, clearance, stiffness, gradient, hessian
@@ -208,25 +220,31 @@ def minimise(
         if held:
             hold_tilt(gradient, hessian)
         stiffest = max(hessian[0, 0], hessian[1, 1], hessian[2, 2], hessian[3, 3])
-        rounding = ROUNDING * stiffest * np.abs(d).max()
-        if np.abs(gradient).max() <= max(tolerance * scale, rounding):
+        rounding = ROUNDING * stiffest * largest(d)
+        if largest(gradient) <= max(tolerance * scale, rounding):
             return iteration
         shift = relative_shift * reference
         for i in range(4):
             shift = max(shift, relative_shift * hessian[i, i])
         for i in range(4):
             hessian[i, i] += shift
-        step = np.linalg.solve(hessian, -gradient)
+        for i in range(4):
+            system[i, :4], system[i, 4] = hessian[i], -gradient[i]
+        eliminate(system)
         # without contact the Newton step is as long as the shift makes it: start small
-        length = np.abs(step).max()
-        largest = LARGEST_GROWTH * max(np.abs(d).max(), clearance_length(clearance))
-        if length > largest:
-            step *= largest / length
-        slope = np.dot(gradient, step)
+        length, slope = 0.0, 0.0
+        for i in range(4):
+            length = max(length, abs(system[i, 4]))
+        longest = LARGEST_GROWTH * max(largest(d), clearance_length(clearance))
+        shorter = longest / length if length > longest else 1.0
+        for i in range(4):
+            step[i] = shorter * system[i, 4]
+            slope += gradient[i] * step[i]
         factor = 1.0
         accepted = False
         for _ in range(LARGEST_STEP_HALVINGS):
-            trial = d + factor * step
+            for i in range(4):
+                trial[i] = d[i] + factor * step[i]
             trial_energy = potential(
                 trial, load, psi, y_over_l, crown, width, clearance, stiffness,
                 trial_gradient, trial_hessian,
@@ -235,7 +253,7 @@ def minimise(
                 hold_tilt(trial_gradient, trial_hessian)
             decrease = SUFFICIENT_DECREASE * factor * slope
             # near the minimum the energy is rounding noise: then the gradient decides
-            flatter = np.abs(trial_gradient).max() < FLATTER * np.abs(gradient).max()
+            flatter = largest(trial_gradient) < FLATTER * largest(gradient)
             if trial_energy <= energy + decrease or flatter:
                 accepted = True
                 break
@@ -255,7 +273,7 @@ def minimise(
         energy = trial_energy
         gradient[:] = trial_gradient
         hessian[:] = trial_hessian
-    stalled = np.abs(gradient).max() <= STALLED * max(scale, SMALL_FORCE)
+    stalled = largest(gradient) <= STALLED * max(scale, SMALL_FORCE)
     return max_iterations if stalled else -1
 
 
@@ -300,7 +318,7 @@ def solve_roller_loads(
     rows, slices = y_over_l.shape
     q = np.zeros((rows, psi.size, slices))
     d = start.copy()
-    if np.abs(load).max() == 0.0:
+    if largest(load) == 0.0:
         return q, d, 0
     lengths = np.full((rows, psi.size), width * slices)
     if near:

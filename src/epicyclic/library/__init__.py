@@ -21,6 +21,7 @@ __all__ = [
     "names",
     "oil_model_file",
     "oil_table",
+    "strength_table",
     "uncertainty_table",
 ]
 
@@ -111,3 +112,9 @@ def builtin_case(name: str) -> dict[str, Any]:
 def uncertainty_table() -> dict[str, Any]:
     """What is assumed of values and models whose uncertainty a case does not state."""
     return _read(_ROOT.joinpath("uncertainty.toml"))
+
+
+@cache
+def strength_table() -> dict[str, Any]:
+    """Strength of gear materials, and load stages of oils, by the names of their tables."""
+    return _read(_ROOT.joinpath("strength.toml"))

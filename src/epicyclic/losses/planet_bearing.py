@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.contact.line_contact import Flanks
+from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
@@ -26,6 +26,7 @@ from epicyclic.losses.friction import (
     beyond_data,
     without_oil,
 )
+from epicyclic.losses.mixed_lubrication import RUN_IN, mixed_friction
 from epicyclic.losses.ranges import (
     Flags,
     ModelUse,
@@ -50,6 +51,8 @@ from epicyclic.units import (
 
 FloatArray = NDArray[np.float64]
 
+FULL_COMPLEMENT = "full-complement"
+"""Name of the rolling loss with what rollers without a cage rub on each other and on races."""
 FITTED_OR_PALMGREN = "fitted-or-palmgren"
 """Name of the fitted loss with that of Palmgren beyond the simulations."""
 TOLERANCE = 1e-9  # Residual force over the largest load at which the balance counts as met. [1]
@@ -62,6 +65,8 @@ FIRST_APPROACH = 1e-5  # Displacement beyond the clearance at which the iteratio
 BEARING_RELIABILITY = {
     "mixed-ehl": "calibrated on three printed losses of one bearing; a fourth, with smoother "
     "rollers, is reproduced within 10 %",
+    FULL_COMPLEMENT: "rolling as mixed-ehl, which was made for caged rollers; sliding between "
+    "rollers and by skew from statics and a traction model, not compared with measured bearings",
     "palmgren": "its source gives a range of a factor of 2 for caged rollers",
     "reynolds": "solutions of a rigid aligned bearing, within 1 % of published ones; not compared "
     "with measured planets, and in mixed friction as uncertain as its boundary friction",
@@ -420,6 +425,79 @@ def _contacts(
         races=radii,
         speed=rolling,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class Rubbing:
+    """What the rollers of a bearing without a cage lose beside rolling."""
+
+    play: float  # Way that all rollers of a row have together around the pitch circle. [m]
+    touching: int  # Pairs of rollers that press each other, of all rows.
+    force: float  # Largest force between two rollers. [N]
+    skew: float  # To which the play lets a roller turn. [rad]
+    between: float  # Sliding of rollers on each other. [W]
+    skewed: float  # Sliding of loaded rollers along the axis. [W]
+
+
+def rubbing(
+    bearing: RollerBearing,
+    loads: RollerLoads,
+    speed: float,
+    oil: OilState,
+    pull: float,  # With which the carrier pulls each roller outward. [N]
+    outward: float,  # Azimuth of that pull from the load. [rad]
+) -> Rubbing:
+    """Sliding of rollers without a cage. Theory (B21) to (B23).
+
+    Neighbours meet with opposite speeds, which draw no oil between them: boundary friction.
+    """
+    count, surface = bearing.rollers_per_row, bearing.rolling_speed(speed)
+    step = 2 * math.asin(bearing.roller_diameter / bearing.pitch_diameter)
+    play = max(0.0, 2 * math.pi - count * step) * bearing.pitch_diameter / 2  # (B21)
+    along = pull * np.sin(outward - loads.azimuth)
+    loaded = loads.intensity.sum(axis=2) > 0
+    pressed = np.concatenate([_pressed(row, along, outward - loads.azimuth) for row in loaded])
+    skew = 2 * play / (count * bearing.roller_length)  # (B23)
+    skewed = 0.0
+    carrying = loads.intensity[loads.intensity > 0]
+    for radius in (bearing.inner_radius, bearing.outer_radius) if carrying.size and speed else ():
+        contacts = LineContacts(
+            line_load=carrying,
+            radius=np.full_like(carrying, radius),
+            rolling_speed=np.full_like(carrying, surface),
+            sliding_speed=np.full_like(carrying, skew * surface),
+            flanks=Flanks(
+                bearing.equivalent_modulus, bearing.race_roughness, bearing.roller_roughness
+            ),
+            oil=oil,
+        )
+        friction = mixed_friction(contacts, RUN_IN)
+        skewed += float(friction @ carrying) * bearing.slice_width * skew * surface
+    return Rubbing(
+        play,
+        int(np.count_nonzero(pressed > LEAST_FORCE)),
+        float(pressed.max(initial=0.0)),
+        skew,
+        oil.boundary_friction * float(pressed.sum()) * 2 * surface,
+        skewed,
+    )
+
+
+def _pressed(loaded: NDArray[np.bool_], along: FloatArray, angle: FloatArray) -> FloatArray:
+    """Forces between the rollers of a row. Theory (B22). [N]
+
+    Loaded rollers are held by their races. Between them the others lean on each other, and part
+    where nothing presses them together. Without any load the chain parts farthest from the pull.
+    """
+    first = int(np.argmax(loaded)) if loaded.any() else int(np.argmin(np.cos(angle)))
+    held, own = np.roll(loaded, -first), np.roll(along, -first)
+    ends = np.flatnonzero(held)
+    starts = ends if ends.size else np.array([-1])
+    found = []
+    for start, end in zip(starts, [*starts[1:], loaded.size], strict=True):
+        summed = np.concatenate([[0.0], np.cumsum(own[start + 1 : end])])
+        found.append(summed - summed.min())
+    return np.concatenate(found)
 
 
 def palmgren_loss(coefficient: float, force: float, pitch_diameter: float, speed: float) -> float:

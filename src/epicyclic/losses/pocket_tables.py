@@ -120,8 +120,9 @@ class FlowFamily:
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
         """Figures of the flow itself. Parameters as for `pocket_flow`."""
-        if self.number(speed, mixture, pressure) == LEAST_NUMBER:
-            scaled = self.scaled(LEAST_NUMBER)
+        least = self.number(speed, mixture, pressure) == LEAST_NUMBER
+        if least or self.scales(speed, mixture, pressure):
+            scaled = kept_figures(self, LEAST_NUMBER)
             if np.isfinite(scaled).all():
                 return from_scaled(scaled, speed, mixture.density)
         return flow_figures(self.flow(speed, mixture, pressure))
@@ -273,7 +274,7 @@ def make_tables(
                 return {family: table.finished() for family, table in growing.items()}
             for family in {family for family, _ in wanted}:
                 _ = family.geometry  # once, before threads ask for it at the same time
-            solved = list(pool.map(_scaled, *zip(*wanted, strict=True)))
+            solved = list(pool.map(kept_figures, *zip(*wanted, strict=True)))
             for family, table in growing.items():
                 table.take(
                     {
@@ -285,7 +286,8 @@ def make_tables(
 
 
 @lru_cache(maxsize=KEPT_MOST)
-def _scaled(family: FlowFamily, number: float) -> Floats:
+def kept_figures(family: FlowFamily, number: float) -> Floats:
+    """As `FlowFamily.scaled`, solved once."""
     return family.scaled(number)
 
 
@@ -507,17 +509,17 @@ def read_stored(path: Path) -> StoredTables:
     return _read(*_state(path))
 
 
-def _state(path: Path) -> tuple[Path, int, int]:
-    """The file, and when it was last changed."""
+def _state(path: Path) -> tuple[Path, tuple[int, ...]]:
+    """The file, and what tells its contents from others: clocks jump, so not the time alone."""
     try:
         stat = path.stat()
     except (OSError, ValueError) as error:
         raise _error(path, f"cannot be read: {getattr(error, 'strerror', error)}.") from None
-    return path.absolute(), stat.st_mtime_ns, stat.st_size
+    return path.absolute(), (stat.st_ino, stat.st_ctime_ns, stat.st_mtime_ns, stat.st_size)
 
 
 @lru_cache(maxsize=16)
-def _read(path: Path, _changed: int, _size: int) -> StoredTables:
+def _read(path: Path, _state: tuple[int, ...]) -> StoredTables:
     """The file as it was when it was last changed."""
     try:
         stored = StoredTables.model_validate(unsealed(read_attribute(path, ATTRIBUTE)))
@@ -542,11 +544,11 @@ def stored_table(path: Path, family: FlowFamily) -> FlowTable:
 
 
 @lru_cache(maxsize=64)
-def _table(path: Path, changed: int, size: int, family: FlowFamily) -> FlowTable:
+def _table(path: Path, state: tuple[int, ...], family: FlowFamily) -> FlowTable:
     wanted = _plain(family)
     alike = [
         stored
-        for stored in _read(path, changed, size).tables
+        for stored in _read(path, state).tables
         if stored.family.get("mesh.name") == family.mesh.name
         and stored.family.get("drives1") == family.drives1
     ]

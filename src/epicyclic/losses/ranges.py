@@ -262,6 +262,25 @@ def what_it_may_be(watts: float, group: Iterable[ValidityFlag]) -> float:
     return math.inf if math.isnan(watts) else max(watts, sum(flag.could_be for flag in group))
 
 
+MOST_LEFT = 10.0  # How many times a limit may be exceeded to weigh a warning by it. [1]
+
+
+def weight_of(watts: float, group: Iterable[ValidityFlag]) -> float:
+    """What a range left may mean, to order warnings: nobody knows the law beyond it. [W]
+
+    Where no law is known, a loss is taken to be wrong by as much as the limit is exceeded.
+    """
+    group = list(group)
+    return max(what_it_may_be(watts, group), watts * min(MOST_LEFT, max(map(_left_by, group))))
+
+
+def _left_by(flag: ValidityFlag) -> float:
+    """How many times a flag exceeds its limit, 1 or more."""
+    above = flag.found_high / flag.high if flag.high else 1.0
+    below = flag.low / flag.found_low if flag.low and flag.found_low > 0 else 1.0
+    return max(above, below, 1.0)
+
+
 def concern_text(watts: float, group: Iterable[ValidityFlag]) -> str:
     """The loss that a range left concerns, ``"26.5 W, which could be 683 W"``."""
     most = what_it_may_be(watts, group)

@@ -404,6 +404,51 @@ def minimum_load(
     return size * (6 + (4 * abs(speed) / reference_speed if reference_speed else 0.0))
 
 
+THERMAL_FACTORS: Mapping[tuple[BearingType, Cage], tuple[float, float]] = {
+    ("deep-groove", "caged"): (2.0, 0.0002),
+    ("cylindrical", "caged"): (2.5, 0.0003),
+    ("cylindrical", "full-complement"): (5.0, 0.00055),
+    ("tapered", "caged"): (3.0, 0.0004),
+    ("needle", "caged"): (5.0, 0.0005),
+    ("needle", "full-complement"): (5.0, 0.0005),
+    ("angular-contact", "caged"): (2.0, 0.00025),
+}
+"""f0r and f1r of ISO 15312, of light and medium series; second hand, general knowledge. [1]"""
+THERMAL_VISCOSITY = 12e-6  # Reference viscosity at 70 degC. [m^2/s]
+THERMAL_LOAD = 0.05  # Reference load over the static load rating. [1]
+THERMAL_DENSITY, THERMAL_AREA, THERMAL_EXPONENT = 0.016e6, 0.05, -0.34
+"""Heat that a seat takes up for its area [W/m^2], and how that falls beyond an area [m^2]."""
+FASTEST = 1e5  # Of all speeds, in which the rating is sought. [rad/s]
+
+
+def thermal_speed_rating(bearing: CatalogueBearing) -> float:
+    """Speed at which a bearing in an oil bath heats itself from 20 to 70 degC. [rad/s]
+
+    Theory (J33). NaN without width or static load rating.
+
+    Examples
+    --------
+    >>> ball = CatalogueBearing("deep-groove", 0.04, 0.08, 0.018, static_load_rating=19e3)
+    >>> round(thermal_speed_rating(ball) / RPM)
+    9297
+    """
+    from scipy.optimize import brentq
+
+    diameter = bearing.pitch_diameter
+    area = math.pi * 2 * diameter * bearing.width
+    load = THERMAL_LOAD * bearing.static_load_rating
+    if math.isnan(area * load):
+        return math.nan
+    heat = THERMAL_DENSITY * area * max(1.0, area / THERMAL_AREA) ** THERMAL_EXPONENT
+    viscous, mechanical = THERMAL_FACTORS[bearing.type, bearing.cage]
+
+    def excess(speed: float) -> float:
+        own = bearing_viscous_loss(viscous, THERMAL_VISCOSITY, speed, diameter)
+        return float(own + mechanical * load * diameter * speed - heat)
+
+    return float(brentq(excess, 0.0, FASTEST))
+
+
 def load_flags(
     use: ModelUse,
     axial: Range,

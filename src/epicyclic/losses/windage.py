@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from numpy.linalg import norm
-from scipy.special import lambertw
 
 from epicyclic.losses.ranges import Range
 from epicyclic.oil.oil import MixtureState
@@ -106,8 +105,12 @@ def rim_coefficient(
     0.0064
     """
     laminar, transition = 4 / reynolds, RIM_TRANSITION
-    root = SLOPE * lambertw(reynolds * math.exp(-OFFSET / SLOPE) / SLOPE).real
-    turbulent = 1 / float(root) ** 2
+    # w + ln w = z by Newton's method from below: the import of Lambert's function takes long
+    z = math.log(reynolds / SLOPE) - OFFSET / SLOPE
+    w = math.exp(min(z, 1.0) - 1)
+    for _ in range(8):
+        w *= (1 + z - math.log(w)) / (1 + w)
+    turbulent = (SLOPE * w) ** -2
     if gap is not None:
         laminar /= 1 - (1 + gap) ** -2
         transition = max(transition, TAYLOR_NUMBER * gap**-1.5)

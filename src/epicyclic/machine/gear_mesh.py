@@ -121,8 +121,9 @@ class MeshDuty:
         return abs(self.torque1) / self.gears.mesh.gear1.base_radius
 
     def misaligned(self, by: float) -> MeshDuty:
-        """The same with a further misalignment in metres."""
+        """The same with a further misalignment, along y of the contact lines, in metres."""
         deviations = self.gears.deviations
+        by = -by if deviations.mirrored else by
         tilted = replace(deviations, misalignment=deviations.misalignment + by)
         return replace(self, gears=replace(self.gears, deviations=tilted))
 

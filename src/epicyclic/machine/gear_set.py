@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from epicyclic.gears.gear import HOUSING
+from epicyclic.kernels import ahead
 from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.pocket_tables import KnownFlows
 from epicyclic.losses.ranges import Flags, ModelUse, ValidityFlag
@@ -226,7 +227,10 @@ class GearSet:
             flows, meshes, rollers = dict(last.flows), dict(last.meshes), dict(last.rollers)
             known = last.known_flows
         if driving not in flows:
+            none = {duty.gears.key: MeshFlow() for duty in duties}
+            ahead[:] = [partial(self._branch, state, torques, shares[0], 1, none, {}, {})]
             flows[driving], known = mesh_flows(duties, state.fluids, known)
+            ahead.clear()
         branches = []
         for share in sorted(set(shares), reverse=True):
             branch = self._branch(
@@ -334,7 +338,11 @@ class GearSet:
         duties = []
         for mesh in self.meshes:
             torque, speed = share * torques[mesh.key], state.speeds[mesh.bodies[0]] - carrier
-            duties.append(MeshDuty(mesh, torque, speed, torque * speed >= 0))
+            drives1 = torque * speed >= 0
+            if not drives1:
+                mirrored = replace(mesh.deviations, mirrored=True)
+                mesh = replace(mesh, deviations=mirrored)
+            duties.append(MeshDuty(mesh, torque, speed, drives1))
         return tuple(duties)
 
     def shares(self, state: State, torques: Mapping[str, float]) -> tuple[float, ...]:
@@ -443,7 +451,9 @@ class GearSet:
                     oil,
                     speed,
                     last_rollers.get((planet.key, share)),
+                    planet.pin_radius * carrier**2,
                 )
+                notes += bearing.notes
                 rollers[planet.key, share] = bearing.loads
                 bearings.append(bearing)
         meshes = [

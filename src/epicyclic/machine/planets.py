@@ -32,9 +32,11 @@ from epicyclic.losses.journal_bearing import (
     solve_journal,
 )
 from epicyclic.losses.planet_bearing import (
+    FULL_COMPLEMENT,
     BearingLoss,
     RollerBearing,
     RollerLoads,
+    Rubbing,
     fitted_rolling_loss,
     mixed_ehl_rolling_loss,
     palmgren_flags,
@@ -42,6 +44,7 @@ from epicyclic.losses.planet_bearing import (
     radial_stiffness,
     roller_loads,
     roller_loads_next_to,
+    rubbing,
     tilting_moments,
 )
 from epicyclic.losses.ranges import Flags
@@ -64,6 +67,7 @@ from epicyclic.units import (
     DEGREE,
     GIGAPASCAL,
     MICROMETRE,
+    MILLIMETRE,
     NEWTON,
     NEWTON_METRE,
     NUMBER,
@@ -196,6 +200,7 @@ class PlanetLoad:
     force: float  # Radial. [N]
     moment_x: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
     moment_y: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
+    outward: float = 0.0  # Azimuth of the way outward from the axis of the set. [rad]
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,7 +271,8 @@ def planet_load(
         moment += couple * complex(*contact.outward)
     force = _radial_force(contacts, centrifugal)
     turned = moment * cmath.rect(1.0, -cmath.phase(force))
-    return PlanetLoad(abs(force), turned.real, turned.imag)
+    outward = math.pi / 2 - cmath.phase(force)
+    return PlanetLoad(abs(force), turned.real, turned.imag, outward)
 
 
 def _radial_force(contacts: Contacts, centrifugal: float) -> complex:
@@ -500,6 +506,8 @@ class PlanetBearing:
             return title, source
         if self.model == "mixed-ehl":
             return BEARING_METHOD, BEARING_SOURCE
+        if self.model == FULL_COMPLEMENT:
+            return f"{BEARING_METHOD}, and sliding of rollers without a cage", BEARING_SOURCE
         return PALMGREN_METHOD, PALMGREN_SOURCE
 
 
@@ -549,11 +557,12 @@ def solve_bearing(
     oil: OilState,
     speed: float,  # Speed of the planet against the carrier. [rad/s]
     last: RollerLoads | None = None,  # The rollers under nearly this load, which saves work.
+    acceleration: float = 0.0,  # Of the planet around the axis of the set. [m/s^2]
 ) -> BearingResult:
     """Losses of `count` planet bearings under the same load."""
     bearing = own.bearing
     if own.aligns_itself:
-        load = PlanetLoad(load.force, 0.0, 0.0)
+        load = PlanetLoad(load.force, 0.0, 0.0, load.outward)
     if last is None:
         loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     else:
@@ -561,10 +570,17 @@ def solve_bearing(
     if isinstance(own.model, FittedRolling):
         beyond = _palmgren(own, loads, load, speed) if own.palmgren_beyond else None
         loss = fitted_rolling_loss(bearing, loads, speed, oil, own.model, beyond)
-    elif own.model == "mixed-ehl":
+    elif own.model in ("mixed-ehl", FULL_COMPLEMENT):
         loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil, oil_held=own.oil_held)
     else:
         loss = _palmgren(own, loads, load, speed)
+    notes: tuple[str, ...] = ()
+    if own.model == FULL_COMPLEMENT:
+        volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
+        pull = own.roller_density * volume * acceleration
+        rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
+        loss = replace(loss, loss=loss.loss + rubbed.between + rubbed.skewed)
+        notes = (_rubbing_note(key.replace("_", " "), rubbed),)
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
@@ -578,7 +594,18 @@ def solve_bearing(
         },
         Figures({key: figures}),
         loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
+        notes,
         loads=loads,
+    )
+
+
+def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
+    touch = f"{rubbed.touching} pairs of them touch with up to {NEWTON.text(rubbed.force, 3)}"
+    return Note(
+        f"{where}: rollers without a cage have {MILLIMETRE.text(rubbed.play, 3)} of play in a row; "
+        f"{touch if rubbed.touching else 'none touch'} and lose {WATT.text(rubbed.between, 3)}; "
+        f"skewed by up to {DEGREE.text(rubbed.skew, 2)}, the most that the play allows, they lose "
+        f"{WATT.text(rubbed.skewed, 3)}. Both are of one planet and contained in its loss."
     )
 
 

@@ -18,10 +18,12 @@ from epicyclic.losses.pocket_flow import (
     sound_speed,
 )
 from epicyclic.losses.pocket_tables import (
+    LEAST_NUMBER,
     FlowFamily,
     FlowFigures,
     FlowTables,
     KnownFlows,
+    kept_figures,
     stored_table,
 )
 from epicyclic.losses.ranges import Range
@@ -166,21 +168,28 @@ def mesh_flows(
     other pockets.
     """
     flows: dict[str, MeshFlow] = {duty.gears.key: MeshFlow() for duty in duties}
+    wanted: dict[str, FlowRequest] = {}
+    for duty in duties:
+        if duty.gears.models.pockets.include and duty.speed1 != 0:
+            request = flow_request(duty, fluids)
+            figures = _stored_figures(duty.gears.models.pockets, request)
+            if figures is None:
+                wanted[duty.gears.key] = request
+            flows[duty.gears.key] = MeshFlow(figures)
+    _begin(tuple(family for family, *_ in wanted.values() if family.model in NETWORK_MODELS))
     direct: dict[str, FlowRequest] = {}
     for duty in duties:
-        settings = duty.gears.models.pockets
-        if not settings.include or duty.speed1 == 0:
+        if duty.gears.key not in wanted:
             continue
-        request = flow_request(duty, fluids)
-        figures = _stored_figures(settings, request)
-        if figures is None and not request[0].scales(*request[1:]):
-            if request[0] in settings.tables:
-                figures = settings.tables[request[0]].figures(*request[1:])
+        request = wanted[duty.gears.key]
+        figures, tables = None, duty.gears.models.pockets.tables
+        if not request[0].scales(*request[1:]):
+            if request[0] in tables:
+                figures = tables[request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
         if figures is None:
             direct[duty.gears.key] = request
-        else:
-            flows[duty.gears.key] = MeshFlow(figures)
+        flows[duty.gears.key] = MeshFlow(figures)
     solved = dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
     for key, flow in solved.items():
         if flow.figures is not None:
@@ -206,10 +215,19 @@ def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigur
     return stored_table(settings.file, request[0]).figures(*request[1:])
 
 
+@lru_cache(maxsize=64)
+def _begin(families: tuple[FlowFamily, ...]) -> None:
+    """The flows from which others scale, all at once: their kernels release the interpreter."""
+    if len(families) > 1:
+        with ThreadPoolExecutor(len(families)) as pool:
+            for family in families:  # what is wrong with one is told where its flow is asked for
+                pool.submit(kept_figures, family, LEAST_NUMBER)
+
+
 @lru_cache(maxsize=256)
 def _solve_all(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
     """All flows at once: their kernels release the interpreter."""
-    if len(requests) < 2:
+    if all(request[0].scales(*request[1:]) for request in requests):  # threads would cost more
         return tuple(map(_solve, requests))
     with ThreadPoolExecutor(len(requests)) as pool:
         return tuple(pool.map(_solve, requests))

@@ -20,6 +20,7 @@ from epicyclic.losses.shaft_bearing import (
     TaperedModel,
     friction_load,
     minimum_load,
+    thermal_speed_rating,
 )
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
@@ -356,6 +357,15 @@ class ShaftBearing:
                 f"{self.key}: the load of {format_number(carried, 3)} N is below the minimum load "
                 f"of {format_number(least, 3)} N (SKF, second hand). The rolling elements may "
                 "slip; the loss is that of the actual load without slip."
+            )
+            notes.append(Note(text, watts))
+        rating = self.reference_speed or thermal_speed_rating(self.bearing)
+        if abs(speed) > rating:
+            whose = "" if self.reference_speed else ", an estimate after ISO 15312"
+            text = (
+                f"{self.key}: {RPM.text(abs(speed), 4)} exceed the thermal reference speed of "
+                f"{RPM.text(rating, 2)}{whose}. Above it a bearing in an oil bath overheats by "
+                "itself; give reference_speed of the catalogue, and check its limiting speed."
             )
             notes.append(Note(text, watts))
         if self.arrangement_assumed and load.axial > 0:

@@ -280,11 +280,11 @@ def start_of(machine: Machine, operation: Operation) -> Start:
     lossless = _lossless(machine, operation, speeds)
     efficiencies: dict[str, float] = {}
     standing: set[str] = set()
-    # of several shafts that are driven, as of a differential: brakes and clutches hold the others
-    driven = [speed for speed in operation.speeds.values() if speed]
+    moves = any(operation.speeds.values())
     for row in machine.rows:
-        # teeth that do not roll lose nothing: friction may then act either way, or not at all
-        stands = len(driven) > 1 and row.efficiency < 1 and speeds[row.first] == speeds[row.carrier]
+        # teeth that do not roll lose nothing, as of a set that clutches lock or of a differential
+        # straight ahead: friction may then act either way, or not at all
+        stands = moves and row.efficiency < 1 and speeds[row.first] == speeds[row.carrier]
         efficiencies[row.key] = 1.0 if stands else row.efficiency
         if stands:
             standing.add(row.key)

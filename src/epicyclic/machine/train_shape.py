@@ -59,6 +59,28 @@ class TrainShape:
             found[member] = shaft
         return found
 
+    def places(self, origin: str) -> dict[str, complex]:
+        """Where the first body, or the axis, of each set lies from the shaft `origin`. [m]
+
+        Sets that no shaft joins to it, or of given efficiency, are left out.
+        """
+        shafts, found = {origin: 0j}, dict[str, complex]()
+        left = {name: gearing.centers for name, gearing in self.sets.items() if gearing.computed}
+        while joined := [name for name in left if self._seats(name).keys() & shafts.keys()]:
+            for name in joined:
+                centers, seats = left.pop(name), self._seats(name)
+                own = next(shaft for shaft in seats if shaft in shafts)
+                found[name] = shafts[own] - centers.get(seats[own], (0j,))[0]
+                for shaft, body in seats.items():
+                    shafts.setdefault(shaft, found[name] + centers.get(body, (0j,))[0])
+        return found
+
+    def _seats(self, name: str) -> dict[str, str]:
+        """The bodies of a set on each turning shaft."""
+        planets = self.sets[name].planets
+        bodies = self.bodies_of(name)
+        return {bodies[own]: own for own in bodies if own not in planets and bodies[own] != HOUSING}
+
     def machine(self, state: Joined) -> Machine:
         """The constraints of all meshes and closed clutches, without anything that loses power."""
         from epicyclic.machine.machine import Machine

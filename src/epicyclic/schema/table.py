@@ -20,7 +20,8 @@ class Table(BaseModel):
 
     ``EXACTLY_ONE`` lists groups of alternatives of which a file gives exactly one; an alternative
     of several keys, joined by ``+``, needs all of them. Of the groups in ``AT_MOST_ONE`` a file may
-    give none.
+    give none. A change of one key of a group replaces the others; so it does in the groups of
+    ``REPLACING``, of which checks across keys tell what a file states twice.
 
     ``STAND_INS`` are keys on which no check across tables depends. If such a key cannot be used,
     the checks go on with the value given here (None: with the default).
@@ -35,6 +36,7 @@ class Table(BaseModel):
     )
     EXACTLY_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    REPLACING: ClassVar[tuple[tuple[str, ...], ...]] = ()
     STAND_INS: ClassVar[dict[str, object]] = {}
 
     def __repr_args__(self) -> Iterable[tuple[str, Any]]:

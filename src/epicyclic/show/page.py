@@ -145,6 +145,7 @@ class KeyFigure:
     label: str
     cell: Cell
     unit: str = ""
+    band: str = ""  # Ends of its 95 % interval; empty if they are not known.
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 import xarray as xr
 
+from epicyclic.case.case import read_case
 from epicyclic.errors import Status
+from epicyclic.registry import offered
 from epicyclic.result.result import Result, Train, in_words
 from epicyclic.show import result_tables as tables
 from epicyclic.show.explorer import EXPLORER_LEAD, explorer_items
@@ -33,7 +35,9 @@ from epicyclic.show.page import (
 from epicyclic.show.plots.loss_map import at_temperatures, left_out_line, map_at
 from epicyclic.show.plots.sweep import LEFT_OUT, shown_results
 from epicyclic.show.record import ResultRecord, sets_of
+from epicyclic.show.summary import first_remarks, first_warnings, loss_summary
 from epicyclic.show.uncertainty_tables import grid_table, uncertainty_items
+from epicyclic.study.bands.advice import Known
 from epicyclic.study.friction import methods_of
 from epicyclic.study.maps.tables import map_case, map_inputs, statements
 from epicyclic.study.operating import AXES
@@ -51,6 +55,14 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
 def result_section(record: ResultRecord, drawings: Drawings, name: str) -> Section:
     """One chapter, without content if the record has none for it."""
     return _CHAPTERS[name](record, drawings)
+
+
+def summary_section(result: Result, known: Known | None, drawings: Drawings) -> Section:
+    """What is read first, as on the first screen of the command."""
+    remarks = Listing(tuple(first_remarks(result, known)))
+    lists = [it for it in (remarks, first_warnings(result)) if it.items]
+    row = Row((loss_summary(result), *gallery(drawings, "losses")))
+    return Section("summary", "Summary", (row, *lists))
 
 
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
@@ -263,6 +275,13 @@ def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:
     return Section("load", "Load on the teeth", items)
 
 
+def _details(record: ResultRecord) -> tuple[Item, ...]:
+    """What plug-ins show of the case, whose tables the record holds."""
+    if not offered("details").keys() & record.given.keys():
+        return ()
+    return tuple(tables.details(read_case(record.given), record.result))
+
+
 _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
     "losses": _losses_chapter,
     "uncertainty": lambda record, drawings: Section(
@@ -278,12 +297,14 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
         "gears",
         "Gears",
         (
+            *gallery(drawings, "arrangement"),
             *_gears(record, drawings),
             *gallery(drawings, "teeth"),
             *tables.planets_table(record.result),
         ),
     ),
     "load": _load_chapter,
+    "details": lambda record, drawings: Section("details", "Strength", _details(record)),
     "friction": lambda record, drawings: Section(
         "friction",
         "Friction in the meshes",

@@ -13,6 +13,7 @@ from epicyclic.errors import ConvergenceError
 from epicyclic.machine.element import Figure, figures
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.messages import sentence
+from epicyclic.registry import load, offered
 from epicyclic.result.result import HeatBalance, MemberState, Result, Train, in_words, set_of
 from epicyclic.schema.read import flattened
 from epicyclic.show.page import (
@@ -709,3 +710,10 @@ def _difference(name: str, first: float | None, second: float | None) -> tuple[C
         number(second - first, "", text=f"{second - first:+z.1f}"),
         aligned(share),
     )
+
+
+def details(case: Case, result: Result | None = None) -> Iterator[Table | Listing]:
+    """What plug-ins show of a case that has their tables."""
+    for name in offered("details"):
+        if getattr(case, name, None) is not None:
+            yield from load("details", name)(case, result)

@@ -5,24 +5,30 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import islice
 
 from rich.console import Group, RenderableType
 from rich.constrain import Constrain
 from rich.text import Text
 
-from epicyclic.build.result import NOT_INCLUDED
-from epicyclic.losses.ranges import concern_text, range_text, what_it_may_be
+from epicyclic.build.result import NOT_INCLUDED, UNCOVERED
+from epicyclic.losses.ranges import concern_text, range_text, weight_of
 from epicyclic.machine.element import note_watts
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result, in_words
-from epicyclic.show.page import Listing, Table
+from epicyclic.show.page import KeyFigure, Listing, Table
 from epicyclic.show.result_tables import key_figures, locking_text, losses_table, sums_table
 from epicyclic.show.terminal import Sentence, as_on_page, spaced
-from epicyclic.show.uncertainty_tables import MOST, efficiency_text
-from epicyclic.study.bands.advice import Known, called, is_on_first_screen
+from epicyclic.study.bands.advice import (
+    MOST_DRIVERS,
+    Known,
+    called,
+    in_few_words,
+    is_on_first_screen,
+)
 from epicyclic.study.operating import operating_line
-from epicyclic.units import CELSIUS, known_text, percent, unit_text
+from epicyclic.units import CELSIUS, efficiency_text, known_text, percent, unit_text
 
 MOST_WARNINGS = 3  # On the first screen.
 CONCERNED = 0.01  # Part of the total loss from which a warning stands on the first screen. [1]
@@ -32,7 +38,6 @@ _BROAD = 0.5  # Part of the loss outside the ranges of its models from which tha
 WIDTH = 80  # Characters of its lines at most.
 _NEXT = "More: run --details (all figures and warnings), friction, uncertainty, report."
 _LABEL, _VALUE = 14, 12  # Characters.
-_KEY = re.compile(r"[\w.-]+\.[\w.-]+")
 _END_OF_SENTENCE = re.compile(r"(?<=\w[\w)])\. (?=[A-Z])")
 
 
@@ -50,12 +55,11 @@ def first_screen(result: Result, known: Known | None) -> RenderableType:
     return Constrain(Group(spaced(*parts), _NEXT), WIDTH)
 
 
-def headline(result: Result, known: Known | None) -> Iterator[str]:
-    """Ratio, efficiency and loss with their bands, power and hottest part, a line each."""
+def head_figures(result: Result, known: Known | None) -> Iterator[KeyFigure]:
+    """The numbers at the head of a result, with their bands and as many digits as these leave."""
     ends = {} if known is None else known.ends
     for it in key_figures(result):
-        text = f"{it.cell.text} {it.unit}".rstrip()
-        band = ""
+        text, band = f"{it.cell.text} {it.unit}".rstrip(), ""
         if it.cell.key == "efficiency" and ends.get("efficiency", (0.0, 0.0))[1] > 0:
             own = ends["efficiency"]
             text = efficiency_text(result.efficiency or 0.0, ends=own)
@@ -63,9 +67,18 @@ def headline(result: Result, known: Known | None) -> Iterator[str]:
         elif it.cell.key == "total" and "total" in ends:
             text = known_text(result.total, beside=ends["total"][1])
             band = known_text(*ends["total"], beside=result.total)
-        elif it.cell.key in ("load_dependent", "load_independent"):
+        number, _, unit = text.partition(" ")
+        yield replace(it, cell=replace(it.cell, text=number), unit=unit, band=band)
+
+
+def headline(result: Result, known: Known | None) -> Iterator[str]:
+    """Ratio, efficiency and loss with their bands, power and hottest part, a line each."""
+    limit = " of what the models cover" if any(UNCOVERED in note for note in result.notes) else ""
+    for it in head_figures(result, known):
+        if it.cell.key in ("load_dependent", "load_independent"):
             continue  # the table has them
-        band = f"95 % band {band}" if band else ""
+        text = f"{it.cell.text} {it.unit}".rstrip()
+        band = f"95 % band {it.band}{limit}" if it.band else ""
         yield f"{it.label:{_LABEL}}{text:{_VALUE}}{band}".rstrip()
     if result.heat is not None:
         found = result.heat.temperatures
@@ -97,19 +110,11 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
     if known is None or not known.width:
         return
     drivers = ", ".join(
-        f"{_in_few_words(called(known, driver))} {percent(share, 0)}"
-        for driver, share in known.drivers[:MOST]
+        f"{in_few_words(called(known, driver))} {percent(share, 0)}"
+        for driver, share in known.drivers[:MOST_DRIVERS]
     )
     yield f"The band is due to: {drivers}."
     yield from filter(is_on_first_screen, known.remarks)
-
-
-def _in_few_words(name: str) -> str:
-    """The name of an input, ``"roughness of S sun"`` where that is its key."""
-    if not _KEY.fullmatch(name):
-        return name
-    *owners, last = name.replace("_", " ").split(".")
-    return f"{last} of {' '.join(one for one in owners if one not in ('sets', 'gears'))}"
 
 
 def _left_out(result: Result) -> dict[tuple[str, tuple[str, ...]], list[str]]:
@@ -156,7 +161,7 @@ def first_warnings(result: Result) -> Listing:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
         size = "" if math.isnan(watts) else f"; {concern_text(watts, group)} of the loss"
         text = f"{sentence(range_text(group)).rstrip('.')} ({', '.join(uses)}){size}."
-        found.append((what_it_may_be(watts, group), text))
+        found.append((weight_of(watts, group), text))
     heavy = [pair for pair in found if pair[0] >= CONCERNED * result.total and pair[0] > 0]
     heavy.sort(key=lambda pair: -pair[0])
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))

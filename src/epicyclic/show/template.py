@@ -47,6 +47,9 @@ _TRAIN_STATES = """
 # method = "jet"                       # instead of surroundings.oil_air_ratio
 # oil_flow = "2 l/min"
 
+# [housing]                            # with method = "dip": one level of oil for all sets
+# oil_level = "-60 mm"                 # above the axis of the input shaft
+
 # [models]                             # of all sets; a set may have its own, [sets.pair.models]
 # friction = "schlenk"                 # 'epicyclic friction CASE' compares them
 """
@@ -243,6 +246,7 @@ _LISTS = {
 }
 _DEFAULTS = (
     "lubrication",
+    "housing",
     "surroundings",
     "thermal",
     "friction_table",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import re
 import sys
@@ -13,7 +12,6 @@ from typing import TextIO, cast
 
 from rich import box
 from rich.cells import cell_len
-from rich.columns import Columns
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.padding import Padding
 from rich.segment import Segment
@@ -21,13 +19,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from epicyclic.errors import printable_lines
-from epicyclic.losses.ranges import share_text
-from epicyclic.messages import sentence
-from epicyclic.result.result import Result
 from epicyclic.show import page
-from epicyclic.show import result_tables as tables
-from epicyclic.study.friction import FrictionComparison, recommended
-from epicyclic.study.operating import operating_line
 
 # Tables of a terminal that keep their numbers whole, however narrow it is.
 
@@ -170,56 +162,6 @@ def terminal() -> Console:
     return _PlainConsole(highlight=False, markup=False, emoji=False, width=width, file=file)
 
 
-def result_tables(
-    result: Result,
-    remarks: Sequence[str] = (),  # On its temperatures.
-    # How well the total loss and the efficiency are known.
-    known: Sequence[str | page.Listing] = (),
-) -> RenderableType:
-    """Everything that is known of a result: losses, figures, warnings, sources."""
-    parts: list[RenderableType] = [_headline(result)]
-    parts += [it if isinstance(it, str) else as_on_page(it) for it in known]
-    parts += map(as_on_page, tables.standing_items(result))
-    parts += map(as_on_page, _tables(result))
-    if result.heat is not None:
-        parts += map(as_on_page, tables.heat_items(result.heat))
-    parts += remarks
-    parts += map(as_on_page, (*tables.oil_table(result), *tables.planets_table(result)))
-    parts += [_methods(result), _list("Warnings", result.warnings)]
-    return titled(result.title or result.kind, *parts, _list("Sources", result.sources))
-
-
-def _headline(result: Result) -> Group:
-    """Operating point and key figures."""
-    found = [
-        f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in tables.key_figures(result)
-    ]
-    lines: list[RenderableType] = [
-        Text(operating_line(result.inputs["operation"])),
-        Columns(found, padding=(0, 3)),
-    ]
-    if result.train and (locking := tables.locking_text(result.train)):
-        lines.append(Text(locking, style="bold"))
-    return Group(*lines)
-
-
-def _tables(result: Result) -> Iterator[page.Table]:
-    """Losses and figures of a set or train."""
-    if (train := result.train) is not None:
-        yield from (
-            tables.sums_table(result, train),
-            tables.shafts_table(result),
-            tables.rolling_table(result, train),
-        )
-        yield from tables.clutches_table(train)
-        yield from tables.terms_table(result, train)
-    else:
-        yield from (tables.losses_table(result), tables.members_table(result))
-    yield from tables.mesh_tables(result)
-    yield from tables.bearing_tables(result)
-    yield from tables.part_tables(result)
-
-
 def titled(title: str, *parts: RenderableType) -> RenderableType:
     """Parts with space between them, under a title."""
     return spaced(Text(title, style="bold"), *parts)
@@ -234,7 +176,7 @@ def spaced(*parts: RenderableType) -> RenderableType:
 def as_on_page(item: page.Table | page.Listing) -> RenderableType:
     """A table or list of a report, for a terminal."""
     if isinstance(item, page.Listing):
-        return _list(item.title, item.items)
+        return listed(item.title, item.items)
     columns = (
         Column(head, justify="right" if item.is_numeric(place) else "left")
         for place, head in enumerate(item.head)
@@ -251,15 +193,8 @@ def as_on_page(item: page.Table | page.Listing) -> RenderableType:
     return Group(*title, table, *([Text(item.note)] if item.note else []))
 
 
-def _methods(result: Result) -> Group:
-    """Which method computed which terms, each method once."""
-    users: dict[str, list[str]] = {}
-    for name, method in result.methods.items():
-        users.setdefault(method, []).append(name)
-    return _list("Methods", [f"{tables.users_text(names)}: {how}" for how, names in users.items()])
-
-
-def _list(title: str, items: Sequence[str]) -> Group:
+def listed(title: str, items: Sequence[str]) -> Group:
+    """Sentences below a title."""
     if not items:
         return Group(Text(f"{title}: none"))
     return Group(Text(title, style="bold"), *map(Sentence, items))
@@ -308,51 +243,3 @@ def number_table(
     """A table for names, in its first column, and numbers; `no_wrap` of which of both."""
     numbers = (Column(head, justify="right", no_wrap=no_wrap[1]) for head in others)
     return plain_table(title, Column(first, no_wrap=no_wrap[0]), *numbers)
-
-
-def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
-    """Friction models side by side, with the spread, what they leave, and which one suits."""
-    meshes = list(rows[0].mean_friction)
-    if all(math.isnan(row.mean_friction[mesh]) for row in rows for mesh in meshes):
-        return Text("Without load or motion nothing slides, so there is no friction to compare.")
-    columns = [f"μ {mesh.replace('_', ' ').replace('.', ': ')}" for mesh in meshes]
-    table = number_table("Friction models", "", *columns, "sliding W", "quick W", "over chosen", "")
-    table.columns[-1].justify = "left"
-    chosen = next((row.sliding for row in rows if row.chosen), 0.0)
-    for row in rows:
-        outside = f"out of range {share_text(row.outside)}"
-        known = (("chosen", row.chosen), (outside, row.flagged), ("other oil", row.other_oil))
-        table.add_row(
-            row.name,
-            *(f"{row.mean_friction[mesh]:z.4f}" for mesh in meshes),
-            f"{row.sliding:z.1f}",
-            f"{row.quick:z.1f}",
-            f"{row.sliding / chosen:.2f}" if chosen else "",
-            ", ".join(mark for mark, holds in known if holds),
-            style="bold" if row.chosen else "",
-        )
-    low, high = min(row.sliding for row in rows), max(row.sliding for row in rows)
-    quick = Text(
-        "sliding: local, along the contact lines; quick: mean friction times loss factor; out of "
-        "range: share of the sliding loss"
-    )
-    spread = Text(
-        f"Spread: {low:.1f} to {high:.1f} W" + (f", a factor of {high / low:.2f}." if low else ".")
-    )
-    best, why = recommended(rows)
-    advice = Text.assemble(
-        ("Recommended: ", "bold"), f"{best.name}: {why}. {sentence(best.standing)}"
-    )
-    lists = [
-        _list("Out of range, and for another oil", [it for row in rows for it in _left(row)]),
-        _list("Reliability of the models", [f"{row.name}: {row.standing}" for row in rows]),
-        _list("Sources", [f"{row.name}: {row.title}, {row.source}" for row in rows]),
-    ]
-    spaced = (part for item in lists for part in (Text(), item))
-    return Group(table, quick, spread, Text(), advice, *spaced)
-
-
-def _left(row: FrictionComparison) -> list[str]:
-    """Why a model does not suit, and by how much."""
-    other = [f"{row.name}: made for {row.other_oil}"] if row.other_oil else []
-    return [*other, *(f"{row.name}, {reason}" for reason in row.reasons)]

@@ -25,8 +25,8 @@ from epicyclic.show.page import (
     tenths,
 )
 from epicyclic.show.terminal import as_on_page, titled
-from epicyclic.study.bands.advice import Known, known_of, limits_of, measurements_of
-from epicyclic.units import format_number, known_text, percent, unit_text
+from epicyclic.study.bands.advice import MOST_DRIVERS, Known, known_of, limits_of, measurements_of
+from epicyclic.units import efficiency_text, format_number, known_text, percent, unit_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 # What limits the trust in a result, in sentences.
 
 
-MOST = 3  # Inputs and models that are named after a band.
 LIMITS = "Limits of confidence"
 FEW = 2  # Limits that a short list names.
 WORTH = 0.98  # Part of the band above which a measurement is not worth while. [1]
@@ -50,20 +49,13 @@ def band_texts(known: Known | None) -> list[str | Listing]:
     if ends[1] > 0:  # neither unknown nor without any efficiency
         text += f", efficiency {efficiency_text(*ends, ends=ends)}"
     drivers = ", ".join(
-        f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST]
+        f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST_DRIVERS]
     )
     return [
         f"{text}, mainly from {drivers}. Inputs without an entry in [uncertainty] are estimated: "
         "'epicyclic uncertainty' shows all.",
         Listing(tuple(advice_texts(known, brief=True)), LIMITS),
     ]
-
-
-def efficiency_text(*values: float, ends: tuple[float, float]) -> str:
-    """Efficiencies in percent with the decimals that the band between `ends` leaves."""
-    width = 100 * abs(ends[1] - ends[0])
-    decimals = min(6, max(1, 1 - math.floor(math.log10(width)))) if width > 0 else 3
-    return f"{' to '.join(f'{100 * value:.{decimals}f}' for value in values)} %"
 
 
 def advice_texts(known: Known, *, brief: bool = False) -> Iterator[str]:
@@ -177,7 +169,7 @@ def _limits(data: xr.Dataset) -> Iterator[str]:
     """What to do about the drivers that matter over the whole map, in the order of `_drivers`."""
     total, mean = data.sel(result="total"), _mean_shares(data)
     width = total["high"] - total["low"]
-    for driver in mean["driver"].values[:MOST]:
+    for driver in mean["driver"].values[:MOST_DRIVERS]:
         if mean.sel(driver=driver) <= LEAST:
             return
         keys = str(driver).split(" + ")

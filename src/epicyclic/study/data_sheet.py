@@ -21,6 +21,7 @@ class GearSheet:
 
     gear: Gear
     nominal_shift: float  # x before allowances. [1]
+    tip_alteration: float  # k m_n of the default tip; 0 where the case states the tip. [m]
     normal_thickness: float  # s_n at the reference circle. [m]
     roughness: float  # Rq. [m]
     # k and W_k [m]; None for a helical ring, and where a span does not touch the flanks.
@@ -65,17 +66,19 @@ def data_sheets(case: Case) -> dict[str, DataSheet]:
 
 def _sheet(gearing: Gearing) -> DataSheet:
     return DataSheet(
-        tuple(_gear_sheet(gearing.gear(name), table) for name, table in gearing.tables.items()),
+        tuple(_gear_sheet(gearing, name, table) for name, table in gearing.tables.items()),
         tuple(map(_mesh_sheet, gearing.geometries)),
     )
 
 
-def _gear_sheet(gear: Gear, table: StatedGear) -> GearSheet:
+def _gear_sheet(gearing: Gearing, name: str, table: StatedGear) -> GearSheet:
+    gear, default = gearing.gear(name), table.tip_diameter is None
     rack = gear.rack
     thickness = 2 * gear.reference_radius * gear.thickness_half_angle
     return GearSheet(
         gear,
         gear.profile_shift_coefficient - allowance_shift(table, rack),
+        -gearing.tip_shortenings.get(name, 0.0) if default else 0.0,
         thickness * math.cos(rack.helix_angle),
         table.roughness,
         _span(gear, table),

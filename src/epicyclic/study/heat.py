@@ -48,7 +48,7 @@ def heat_balance(case: Case) -> HeatBalance:
     Raises
     ------
     InputError
-        If all losses of the case are given, or its heat has no way out.
+        If the case has no oil, or its heat no way out.
     ConvergenceError
         If it runs away: losses and heat find no balance.
 
@@ -70,16 +70,17 @@ def heat_balance(case: Case) -> HeatBalance:
 def with_network(case: Case) -> Case:
     """The case with the network of its parts.
 
-    Raises `InputError` if all its losses are given, so that it has no oil.
+    Raises `InputError` if it has no oil.
     """
-    _check_oil(case)
+    check_oil(case)
     return case.updated(NETWORK)
 
 
-def _check_oil(case: Case) -> None:
+def check_oil(case: Case) -> None:
+    """Raise `InputError` for a train whose losses are all given, and none of its oil."""
     if case.lubricant is None:
-        allowed = "needs a case with computed losses; all losses of this case are given."
-        raise one_problem("models.temperatures", "network", allowed, "", case.source)
+        allowed = "is missing; the heat needs it, and operation.oil_inlet_temperature."
+        raise one_problem("lubricant", "", allowed, "Add both.", case.source)
 
 
 def hottest(heat: HeatBalance) -> str:
@@ -204,7 +205,7 @@ def solve_for(
         allowed = f"must be one of {', '.join(QUANTITIES)}."
         raise one_problem("quantity", written(quantity), allowed, "Give one of them.")
     target = _temperature(temperature)
-    _check_oil(case)
+    check_oil(case)
     search = QUANTITIES[quantity](case, target)
     tried: dict[float, Found | None] = {}
 

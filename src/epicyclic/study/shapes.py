@@ -18,6 +18,7 @@ from epicyclic.gears.mesh import Mesh
 from epicyclic.gears.stated import StatedGear
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import MeshDuty
+from epicyclic.machine.gear_set import GearSet
 from epicyclic.study.meshes import variable
 from epicyclic.units import DEGREE, MILLIMETRE
 
@@ -69,43 +70,14 @@ class SetPlaces:
 
 def places_of(gearing: Gearing) -> SetPlaces | None:
     """Gears and centres of a set; None if the case does not tell where all of them stand."""
-    bodies = _on_carrier(gearing) if gearing.planets else _on_fixed_axes(gearing)
+    bodies = gearing.centers
     if not set(gearing.bodies.values()) <= bodies.keys():
         return None
-    centers = {name: bodies[body] for name, body in gearing.bodies.items()}
-    return SetPlaces(gearing.tables, centers, gearing.bodies)
-
-
-def _on_carrier(gearing: Gearing) -> dict[str, tuple[Point, ...]]:
-    arms = gearing.arrangement.angles
-    found: dict[str, tuple[Point, ...]] = {
-        body: ((0.0, 0.0),) for body in gearing.bodies.values() if body not in gearing.planets
+    centers = {
+        name: tuple((at.real, at.imag) for at in bodies[body])
+        for name, body in gearing.bodies.items()
     }
-    for body, pin in gearing.pins.items():
-        found[body] = tuple(_polar(pin.radius, UP + arm + pin.angle) for arm in arms)
-    return found
-
-
-def _on_fixed_axes(gearing: Gearing) -> dict[str, tuple[Point, ...]]:
-    """Each body beside the one that it meshes with, from the first at the origin."""
-    directions = gearing.directions
-    found: dict[str, tuple[Point, ...]] = {gearing.bodies[gearing.meshes[0].first]: ((0.0, 0.0),)}
-    grows = True
-    while grows:
-        before = len(found)
-        for mesh, geometry in zip(gearing.meshes, gearing.geometries, strict=True):
-            one, two = gearing.bodies[mesh.first], gearing.bodies[mesh.second]
-            angle, distance = directions[mesh.key], geometry.center_distance
-            for known, other, way in ((one, two, angle), (two, one, angle + math.pi)):
-                if known in found and other not in found:
-                    (x, y), (dx, dy) = found[known][0], _polar(distance, way)
-                    found[other] = ((x + dx, y + dy),)
-        grows = len(found) > before
-    return found
-
-
-def _polar(radius: float, angle: float) -> Point:
-    return radius * math.cos(angle), radius * math.sin(angle)
+    return SetPlaces(gearing.tables, centers, gearing.bodies)
 
 
 # --- how gears are turned -------------------------------------------------------------------------
@@ -197,13 +169,32 @@ def gear_shapes(case: Case) -> dict[str, xr.Dataset]:
     over ``point``: one tooth from the middle of a space to the middle of the next; absent if the
     tooth has no outline. ``center_x``, ``center_y``, ``direction`` over ``place``. Diameters
     without dimension. Units in ``attrs["units"]``. The attribute ``relative_speed`` is that of the
-    gear over that of the first one of its set, seen from the carrier.
+    gear over that of the first one of its set, seen from the carrier. If it dips, ``oil_depth`` is
+    the depth of its lowest point below the oil at rest; where the case dips, ``stands_x``,
+    ``stands_y`` over ``place`` are its places in the housing, y upwards.
     """
     return {
-        joined_key(prefix, name): shape
-        for prefix, found, duties in _drawn_sets(case)
+        joined_key(prefix, name): _with_oil(case, prefix, own, shape)
+        for prefix, found, own, duties in _drawn_sets(case)
         for name, shape in _set_shapes(found, duties).items()
     }
+
+
+def _with_oil(case: Case, prefix: str, own: GearSet, shape: xr.Dataset) -> xr.Dataset:
+    """A gear with its place in the housing, and how deep it dips, where gears of its set do."""
+    sumps = {it.where: it.sump for of in own.discs.values() for it in of if it.sump is not None}
+    name = shape.attrs["name"]
+    stands = case.centers.get(prefix, {}).get(case.gearings[prefix].bodies[name])
+    if not sumps or stands is None:
+        return shape
+    if name in sumps:
+        shape = shape.assign(
+            oil_depth=variable((), sumps[name].part.depth, "depth in the oil", MILLIMETRE)
+        )
+    return shape.assign(
+        stands_x=variable("place", np.real(stands), "x in the housing", MILLIMETRE),
+        stands_y=variable("place", np.imag(stands), "y in the housing", MILLIMETRE),
+    )
 
 
 def mesh_views(case: Case) -> dict[str, xr.Dataset]:
@@ -218,19 +209,19 @@ def mesh_views(case: Case) -> dict[str, xr.Dataset]:
     """
     return {
         joined_key(prefix, duty.gears.key): _view(duty.gears.mesh)
-        for prefix, _, duties in _drawn_sets(case)
+        for prefix, _, _, duties in _drawn_sets(case)
         for duty in duties
     }
 
 
-def _drawn_sets(case: Case) -> Iterator[tuple[str, SetPlaces, tuple[MeshDuty, ...]]]:
+def _drawn_sets(case: Case) -> Iterator[tuple[str, SetPlaces, GearSet, tuple[MeshDuty, ...]]]:
     """Name, gears and meshes of every set of which it is known where its gears stand."""
     built = build_machine(case)
     state = built.state()
     for name, own in built.sets.items():
         found = places_of(case.gearings[name])
         if found is not None:
-            yield name, found, own.mean_duties(state)
+            yield name, found, own, own.mean_duties(state)
 
 
 def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.Dataset]:

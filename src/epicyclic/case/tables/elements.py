@@ -262,6 +262,35 @@ class DragTable(ElementTable, LossTableTable):
         return _loss_table(self, folder, "", _DRAG_AXES)
 
 
+class ClutchTable(ElementTable):
+    """An open wet clutch, brake or synchronizer: drag of the oil between its faces."""
+
+    between: tuple[str, str] = Field(
+        description='The two shafts that it joins when closed; one of them may be "housing".'
+    )
+    gaps: int = Field(ge=1, le=200, description="Gaps between faces: twice the lined plates.")
+    inner_diameter: Length = Field(description="Of the faces; of a cone at its thin end.")
+    outer_diameter: Length
+    gap: Gap = Field(description="Clearance of one gap when open, grooves spread over the face.")
+    cone_angle: ContactAngle | None = option(
+        "Half angle of the cone of a synchronizer. Default: flat plates."
+    )
+    oil_flow: VolumeFlow | None = option(
+        "Oil to all gaps together. Default: as much as fills them, which drags most."
+    )
+
+    @property
+    def bodies(self) -> dict[str, str]:
+        return {f"between[{number}]": body for number, body in enumerate(self.between)}
+
+    def problems(self) -> Iterator[Problem]:
+        yield from super().problems()
+        if self.inner_diameter >= self.outer_diameter:
+            reason = f"must be less than outer_diameter, {millimetres(self.outer_diameter)}."
+            shown = millimetres(self.inner_diameter)
+            yield Problem("inner_diameter", shown, reason, "Correct one of the two.")
+
+
 class BearingSealTable(Table):
     """Contact seals of a bearing after SKF, both together: K_S1 d_s^beta + K_S2."""
 
@@ -364,7 +393,9 @@ class ShaftBearingTable(ElementTable):
     minimum_load_factor: Number | None = option(
         "k_r of the product table. Default: 0.025 deep-groove, 0.15 cylindrical.", gt=0, le=10
     )
-    reference_speed: ReferenceSpeed | None = option("For the minimum load of cylindrical rollers.")
+    reference_speed: ReferenceSpeed | None = option(
+        "Of the catalogue; for the minimum load of cylindrical rollers, and a note above it."
+    )
     table: LossTableTable | None = option("Loss table for model = table.")
 
     _fill = model_validator(mode="before")(
@@ -551,6 +582,7 @@ class ElementTables(Table):
 
     bearings: dict[str, ShaftBearingTable] = Field(default={})
     seals: dict[str, SealTable] = Field(default={})
+    clutches: dict[str, ClutchTable] = Field(default={})
     drags: dict[str, DragTable] = Field(default={})
 
 

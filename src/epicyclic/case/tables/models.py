@@ -415,9 +415,12 @@ def has_rough_flanks(models: GearPairModels) -> bool:
 class PlanetaryModels(GearPairModels):
     """Which method computes what, with the planet bearing."""
 
-    bearing: Literal["auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren"] = option(
+    bearing: Literal[
+        "auto", "mixed-ehl", "palmgren", "fitted", "fitted-or-palmgren", "full-complement"
+    ] = option(
         "auto: for caged rollers mixed-ehl with the fluid it was made for and "
-        "fitted-or-palmgren with an oil that has fitted models, else palmgren.",
+        "fitted-or-palmgren with an oil that has fitted models, else palmgren. full-complement: "
+        "mixed-ehl, and the sliding of rollers without a cage.",
         "auto",
     )
     bearing_viscous: Literal["harris"] = "harris"

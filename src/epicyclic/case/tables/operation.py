@@ -14,6 +14,7 @@ from epicyclic.schema.table import Table, option
 from epicyclic.units import (
     CELSIUS,
     LITRE,
+    Angle,
     Area,
     BodyCapacity,
     Conductance,
@@ -140,6 +141,8 @@ class CapacityTable(Table):
 class ThermalTable(Table):
     """Generation and removal of heat, for models.temperatures other than inlet."""
 
+    REPLACING = (("oil_flow", "oil_outlet_temperature"),)
+
     lubrication: Literal["spray", "dip", "spray-and-dip", "submerged"] = option(
         "How the oil reaches the gears.", "spray"
     )
@@ -237,7 +240,7 @@ def check_ways_out(
     return [Problem("thermal", "", allowed, remedy)]
 
 
-Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged"]
+Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged", "grease"]
 SHARE_KEY = "surroundings.oil_air_ratio"
 OWN_SHARE_KEY = "lubrication.oil_share"
 FACTOR_KEY = "lubrication.oil_share_factor"
@@ -249,6 +252,7 @@ WETTING: Mapping[Method, tuple[str, ...]] = {
     "drained": ("spray",),
     "dip": ("dip", "spray-and-dip"),
     "submerged": ("submerged",),
+    "grease": ("spray",),
 }
 """What thermal.lubrication is with each method if it is not given, and what else it may be."""
 _Sump = Annotated[float, Quantity("a volume", "m^3", "l", low=0.0, high=1e6, open_low=True)]
@@ -258,6 +262,7 @@ _Level = Annotated[float, Quantity("a height", "m", "mm", low=-1e5, high=1e5)]
 class LubricationTable(Table):
     """Oil supply of the gears: gives the share of oil around them, and their churning."""
 
+    REPLACING = (("oil_level", "immersion"), ("oil_share", "oil_share_factor"))
     STAND_INS: ClassVar[dict[str, object]] = {
         "jet_speed": None,
         "nozzle_side": None,
@@ -267,7 +272,7 @@ class LubricationTable(Table):
 
     method: Method = Field(
         description="drained: mist only; flow: oil fed through shafts or carrier; dip: some of "
-        "the gears dip into the sump."
+        "the gears dip into the sump; grease: lubricant.oil is its base oil."
     )
     oil_flow: VolumeFlow | None = option("From jet, spray or flow to the gears of one set.")
     jet_speed: Speed = option(
@@ -297,6 +302,29 @@ class LubricationTable(Table):
         return hash((self.method, self.oil_flow, self.oil_level, self.oil_share_factor))
 
 
+class HousingLevel(Table):
+    """One level of oil at rest for all sets of a train that dip and state none of their own."""
+
+    EXACTLY_ONE = (("oil_level", "oil_depth+bottom"),)
+
+    oil_level: _Level | None = option("Above the axis of shaft; negative: below.")
+    oil_depth: Length | None = option("Instead: above the lowest point inside the housing.")
+    bottom: Length | None = option("With oil_depth: how far that point lies below the axis.")
+    shaft: str | None = option("The shaft from which they count. Default: operation.input.")
+    tilt: Angle = option(
+        "Turns the gearbox about its shafts, in the sense of direction, over a level oil.", "0 deg"
+    )
+
+    @property
+    def height(self) -> float:
+        """The level above the axis of the shaft. [m]"""
+        if self.oil_level is not None:
+            return self.oil_level
+        assert self.oil_depth is not None
+        assert self.bottom is not None
+        return self.oil_depth - self.bottom
+
+
 LUBRICATION: Any = option("If given, surroundings.oil_air_ratio has no effect.")
 """The field of a case."""
 
@@ -308,6 +336,7 @@ _KEYS: Mapping[Method, Collection[str]] = {
     "drained": (),
     "dip": ("oil_level", "immersion", "oil_volume", "churning"),
     "submerged": (),
+    "grease": (),
 }
 """Keys that have an effect with each method."""
 
@@ -328,12 +357,6 @@ _CONDITIONS = (
         lambda table: table.method == "flow" and table.oil_flow is None,
         'is missing, but method = "flow" needs it.',
         'Give it, as "2 l/min".',
-    ),
-    _Condition(
-        "lubrication.oil_level",
-        lambda table: table.method == "dip" and table.oil_level is None and not table.immersion,
-        'is missing, but method = "dip" needs it, or immersion.',
-        'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.',
     ),
     _Condition(
         "lubrication.oil_share, lubrication.oil_share_factor",
@@ -368,6 +391,20 @@ def check_lubrication(table: LubricationTable) -> list[Problem]:
     return problems + [
         Problem(it.key, "", it.allowed, it.remedy) for it in _CONDITIONS if it.broken(table)
     ]
+
+
+def needs_level(table: LubricationTable) -> bool:
+    """Whether its set dips, and nothing in the table says how deep."""
+    return table.method == "dip" and table.oil_level is None and not table.immersion
+
+
+def check_level(table: LubricationTable, remedy: str) -> list[Problem]:
+    """Dipping needs to know how deep."""
+    allowed = 'is missing, but method = "dip" needs it, or immersion.'
+    return [Problem("lubrication.oil_level", "", allowed, remedy)] if needs_level(table) else []
+
+
+LEVEL_REMEDY = 'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.'
 
 
 def _stated(table: LubricationTable) -> set[str]:

@@ -9,6 +9,7 @@ from nicegui import ui
 from nicegui.element import Element
 
 from epicyclic.plugins.app.case_form import Desk, Entry, Group, number_in, owner_of
+from epicyclic.result.result import in_words
 from epicyclic.show.template import toml_key
 
 # Asking for the name of what the user adds to a case, and for what it stands.
@@ -126,7 +127,8 @@ class Form:
 
     def _group(self, group: Group) -> None:
         is_open = group.key in self._open
-        box = ui.expansion(group.name, caption=group.about, value=is_open).classes("group")
+        name = group.name if group.is_own else in_words(group.name).capitalize()
+        box = ui.expansion(name, caption=group.about, value=is_open).classes("group")
         box.classes(add="" if group.is_given else "unset").mark(f"group-{group.key}")
         self._groups[group.key] = box
         if is_open:
@@ -208,9 +210,10 @@ class Form:
             event = "update:model-value" if entry.choices else "change"
             field.on(event, partial(self._take, entry))
             field.props("dense outlined stack-label hide-bottom-space no-error-icon")
+            field.props["hint"] = entry.key if entry.key != _label(entry) else None
             field.classes("field").mark(entry.key)
             with field:
-                ui.tooltip(f"{entry.key}: {entry.about}").props("delay=600 max-width=26rem")
+                ui.tooltip(entry.about).props("delay=600 max-width=26rem")
         self._fields[entry.key] = field
         if entry.is_own:
             with field.add_slot("append"):
@@ -257,17 +260,22 @@ class Form:
         await self._changed()
 
 
+def _label(entry: Entry) -> str:
+    """The key in words; a name of the user as it is."""
+    return entry.name if entry.is_own else in_words(entry.name.replace(".", " "))
+
+
 def _choice(entry: Entry) -> ui.select:
     unset = f"{entry.default} (default)" if entry.default else "not given"
     unset = entry.default if entry.is_required else unset
     options = {"": unset} | {one: one for one in entry.choices}
     value = entry.text if entry.text in options else ""
-    return ui.select(options, value=value, label=entry.name)
+    return ui.select(options, value=value, label=_label(entry))
 
 
 def _field_line(entry: Entry) -> ui.input:
     return ui.input(
-        entry.name,
+        _label(entry),
         value=entry.text,
         placeholder=entry.default,
         suffix=entry.unit,

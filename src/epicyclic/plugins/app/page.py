@@ -8,9 +8,8 @@ import secrets
 import signal
 import socket
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
-from functools import partial
 from http.cookies import CookieError, SimpleCookie
 from importlib import resources
 from pathlib import Path
@@ -23,6 +22,7 @@ from nicegui import app as nicegui_app
 from nicegui import events, ui
 
 from epicyclic import library
+from epicyclic.case.case import Case
 from epicyclic.errors import EpicyclicError, InputError, Problem
 from epicyclic.messages import one_line
 from epicyclic.plugins.app import worker as tasks
@@ -34,10 +34,13 @@ from epicyclic.plugins.app.views import (
     Do,
     MapView,
     View,
+    download,
     key_figures,
     mark_behind,
+    save_menu,
 )
 from epicyclic.plugins.app.worker import Doing, Ended, Latest, Study
+from epicyclic.show.page import KeyFigure
 
 # Who may talk to the app: browsers of this machine that know its token.
 
@@ -180,11 +183,14 @@ async def _answer(send: Any, status: int, text: str, headers: Mapping[str, str])
 # Opening and saving: files go through the browser, never by a path on the page.
 
 
+CASE_FILE = ".toml"
 RESULTS = {
-    ".nc": "Result with all fields",
-    ".json": "Result as JSON",
-    ".html": "Report",
-    ".rexs": "REXS file with the results",
+    CASE_FILE: "Case file, .toml",
+    ".nc": "Result with all fields, .nc",
+    ".json": "Result as JSON, .json",
+    ".html": "Report, .html",
+    ".pdf": "Report, .pdf",
+    ".rexs": "REXS file with the results, .rexs",
 }
 MOST_FILES = 20
 
@@ -234,30 +240,21 @@ def ask_for_case(
     dialog.open()
 
 
-def save_menu(desk: Callable[[], Desk], do: Do) -> None:
+def case_menu(desk: Callable[[], Desk], do: Do) -> None:
     """A menu of all that can be saved of a case."""
 
     async def save(ending: str) -> None:
         now = desk()
-        if now.case is None:
+        if ending == CASE_FILE:
+            ui.download(now.text().encode(), f"{_stem(now)}{ending}")
+        elif now.case is None:
             ui.notify("The case has problems. Correct them first.")
-            return
-        original = now.original if ending == ".rexs" else None
-        suffix = Path(original).suffix if original else ending
-        try:
-            content = await do(tasks.saved, now.case, suffix, original)
-        except (Ended, EpicyclicError) as error:
-            ui.notify(str(error), multi_line=True)
-            return
-        ui.download(content, f"{_stem(now)}{suffix}")
+        else:
+            original = now.original if ending == ".rexs" else None
+            suffix = Path(original).suffix if original else ending
+            await download(do, Study(now.case), suffix, original, _stem(now))
 
-    def save_case() -> None:
-        ui.download(desk().text().encode(), f"{_stem(desk())}.toml")
-
-    with ui.button("Save", icon="save").props("flat no-caps"), ui.menu():
-        ui.menu_item("Case file", save_case)
-        for ending, title in RESULTS.items():
-            ui.menu_item(f"{title}, {ending}", partial(save, ending))
+    save_menu("Save", RESULTS, save)
 
 
 def _stem(desk: Desk) -> str:
@@ -267,6 +264,8 @@ def _stem(desk: Desk) -> str:
 # The page: the form of a case on the left, what follows from it on the right.
 
 
+_TURN_OVER = "() => document.querySelector('.desk').classList.toggle('editing')"
+"""Where there is no room for both, the form is shown in the place of the results, or back."""
 _VERBS = {"run": (), "check": (), "report": ("-o", "report.html")}
 """Commands that do what the page does, and what they need more."""
 
@@ -288,6 +287,7 @@ class Page:
     def __init__(self, shelf: Shelf) -> None:
         self._shelf = shelf
         self._is_moving = False
+        self._banded: Case | None = None  # Whose bands are shown.
         self._quick = Latest(self._follow_figures)
         self._slow = Latest(self._follow_chapters)
 
@@ -303,8 +303,10 @@ class Page:
             ui.label("Epicyclic").classes("name")
             self._title = ui.label().classes("title")
             ui.space()
+            show = ui.button("Inputs", icon="edit").props("flat no-caps").classes("narrow")
+            show.on("click", js_handler=_TURN_OVER)
             ui.button("Open", icon="folder_open", on_click=self._ask).props("flat no-caps")
-            save_menu(lambda: self.desk, self._do)
+            case_menu(lambda: self.desk, self._do)
             ui.button("Command", icon="terminal", on_click=self._show_command).props("flat no-caps")
         with ui.element("div").classes("desk"):
             self._form_place = ui.element("aside")
@@ -319,7 +321,9 @@ class Page:
                         "map": MapView(lambda: self.desk, shelf.maps),
                         "compare": CompareView(lambda: self.desk, self._do, self._choose),
                     }
-                    self._chapters = Chapters(shelf, self._do, views, self._slow.want)
+                    self._chapters = Chapters(
+                        shelf, self._do, views, self._slow.want, self._show_figures
+                    )
         self._build_form()
         ui.timer(0, self._changed, once=True)
 
@@ -382,12 +386,19 @@ class Page:
             figures = await self._shelf.quick.do(tasks.moved, case, progress=self._doing.progress)
         except (Ended, EpicyclicError):
             return  # what follows the chapters says it
-        if self._figures.is_deleted or desk is not self.desk:
+        if desk is self.desk and self._banded != case:
+            self._show_figures(Study(case), figures)
+
+    def _show_figures(self, study: Study, figures: Sequence[KeyFigure]) -> None:
+        """Key figures of a study, with their bands if these are known."""
+        if self._figures.is_deleted:
             return
+        if any(figure.band for figure in figures):
+            self._banded = study.case
         self._figures.clear()
         with self._figures:
             key_figures(figures)
-        mark_behind(self._figures, case is not self.desk.case)
+        mark_behind(self._figures, study.case != self.desk.case)
 
     async def _follow_chapters(self) -> None:
         """All else of the case as it is."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -19,6 +18,7 @@ from epicyclic.plugins.app.case_form import Desk, Shelf, number_in
 from epicyclic.plugins.app.worker import IN_PAGE, MESH, Answer, Doing, Ended, Latest, Study, Worker
 from epicyclic.show.html import items_html
 from epicyclic.show.page import Drawing, Gallery, Item, KeyFigure, Listing, Row, Section, Table
+from epicyclic.study.maps.formats import formats
 from epicyclic.study.operating import OPERATING, OperatingValue
 
 # Chapters of a report on the page: tables at once, figures as they are drawn, each to save.
@@ -31,13 +31,39 @@ Part = str | Table | Listing  # What is shown at once: the lead of a chapter, an
 
 
 def key_figures(figures: Sequence[KeyFigure]) -> None:
-    """The numbers at the head of a result."""
+    """The numbers at the head of a result, and their bands."""
     for figure in figures:
         with ui.element("div").classes("key-figure"):
             ui.label(figure.label).classes("label")
             with ui.element("div").classes("value"):
                 ui.label(figure.cell.text)
                 ui.label(figure.unit).classes("unit")
+            ui.label(f"95 %: {figure.band}" if figure.band else "").classes("band")
+
+
+MAP_FILES = {
+    **{name: f"{one.about}, {one.suffix or name}" for name, one in formats().items()},
+    ".html": "Report, .html",
+    ".pdf": "Report, .pdf",
+}
+"""What can be saved of a map: the formats of the command, and its report."""
+
+
+def save_menu(label: str, files: Mapping[str, str], save: Callable[[str], Awaitable[None]]) -> None:
+    """A menu of files, by their endings or formats; calls `save` with one of these."""
+    with ui.button(label, icon="save").props("flat no-caps"), ui.menu():
+        for name, title in files.items():
+            ui.menu_item(title, partial(save, name))
+
+
+async def download(do: Do, study: Study, name: str, original: str | None, stem: str) -> None:
+    """Hand what `saved` makes to the browser, or say why there is nothing."""
+    try:
+        suffix, content = await do(tasks.saved, study, name, original)
+    except (Ended, EpicyclicError) as error:
+        ui.notify(str(error), multi_line=True)
+        return
+    ui.download(content, f"{stem}{suffix}")
 
 
 def save_buttons(name: str, draw: Callable[[str], Awaitable[bytes]]) -> None:
@@ -60,7 +86,7 @@ class Place:
     Parameters
     ----------
     title, name : str
-        Shown below the figure; of its files.
+        Shown until it is drawn; of its files.
     classes : str
         Classes of the frame.
     draw : callable
@@ -72,12 +98,15 @@ class Place:
     ) -> None:
         self.name = name
         self.drawn: Study | None = None
+        self.pictures: list[ui.plotly | ui.html] = []  # One for each panel.
+        self._titles: list[ui.label] = []
         with ui.element("figure").classes(classes) as self._frame:
-            self.picture = ui.html("", sanitize=False).classes("still")
-            with self.picture:
+            self._panels = ui.element("div").classes("panels")
+            with self._panels:
+                ui.label(title).classes("heading")
                 ui.spinner(size="2em")
             with ui.element("figcaption"):
-                ui.label(title)
+                self._point = ui.label().classes("point")
                 ui.label("computing ...").classes("computing")
                 save_buttons(name, draw)
 
@@ -86,14 +115,60 @@ class Place:
         """True if it is on the page no more."""
         return self._frame.is_deleted
 
-    def show(self, content: str, study: Study) -> None:
-        """Show the picture of a study."""
-        self.picture.set_content(content)
+    def show(self, drawings: Sequence[Drawing], study: Study) -> None:
+        """Show the pictures of a study: what can be explored as a chart, else still."""
+        kinds = [ui.html if drawing.plot is None else ui.plotly for drawing in drawings]
+        if [type(one) for one in self.pictures] != kinds:
+            self._panels.clear()
+            with self._panels:
+                self._make(drawings)
+        for title, picture, drawing in zip(self._titles, self.pictures, drawings, strict=True):
+            title.set_text(drawing.title)
+            if isinstance(picture, ui.html):
+                picture.set_content(drawing.svg)
+            else:
+                picture.update_figure(_chart(drawing))
+        self._point.set_text(drawings[0].point if drawings else "")
         self.drawn = study
+
+    def _make(self, drawings: Sequence[Drawing]) -> None:
+        self.pictures, self._titles = [], []
+        for drawing in drawings:
+            with ui.element("div").classes("panel"):
+                self._titles.append(ui.label().classes("heading"))
+                if drawing.plot is None:
+                    self.pictures.append(ui.html("", sanitize=False).classes("still"))
+                else:
+                    bars = drawing.plot["layout"].get("yaxis", {}).get("ticktext", ())
+                    height = max(_HEIGHT, _REST + _BAR * len(bars))
+                    chart = ui.plotly({}).classes("still chart").style(f"height: {height}rem")
+                    self.pictures.append(chart)
 
     def age(self, now: Study) -> None:
         """Say whether the picture is of another study than the one of now."""
         mark_behind(self._frame, self.drawn not in (None, now))
+
+
+_HEIGHT, _REST, _BAR = 20.0, 7.0, 1.5  # Of a chart at least; beside its bars; of a bar. [rem]
+_BUTTONS = ["select2d", "lasso2d", "zoomIn2d", "zoomOut2d", "autoScale2d", "toImage"]
+_LEGEND = {"orientation": "h", "yanchor": "top", "y": -0.2, "xanchor": "left", "x": 0}
+
+
+def _chart(drawing: Drawing) -> dict[str, Any]:
+    """A figure to explore as its element takes it; its title stands above it."""
+    assert drawing.plot is not None
+    own = {
+        "title": None,
+        "font": {"family": "inherit", "size": 12},
+        "margin": {"t": 8, "r": 12, "b": 48, "l": 56},
+        "legend": _LEGEND,
+        "uirevision": drawing.name,
+    }
+    return {
+        "data": drawing.plot["data"],
+        "layout": drawing.plot["layout"] | own,
+        "config": {"displaylogo": False, "modeBarButtonsToRemove": _BUTTONS},
+    }
 
 
 def mark_behind(element: Element, is_behind: bool) -> None:
@@ -116,7 +191,6 @@ class Sheet:
         self._do, self._wide = do, frozenset(wide)
         self.study = study
         self._places: list[Place] = []
-        self._others: dict[Place, Study] = {}
         self._texts: list[ui.html] = []
 
     def section(self, section: Section) -> None:
@@ -142,8 +216,8 @@ class Sheet:
     def _text(self, part: Part) -> None:
         self._texts.append(ui.html(_html(part), sanitize=False).classes("text"))
 
-    def figure(self, drawing: Drawing, other: Study | None = None) -> None:
-        """A place for a figure of the study, or always of another one."""
+    def figure(self, drawing: Drawing) -> None:
+        """A place for a figure of the study."""
         name = drawing.name
 
         async def draw(ending: str) -> bytes:
@@ -152,15 +226,13 @@ class Sheet:
 
         place = Place(drawing.title, name, "wide" * (name in self._wide), draw)
         self._places.append(place)
-        if other is not None:
-            self._others[place] = other
 
     def update(self, study: Study, sections: Iterable[Section], wide: Iterable[str]) -> bool:
         """Show the tables of another study; False, and nothing done, if its form is another."""
         parts = [part for section in sections for part in _parts(section)]
         texts = [part for part in parts if not isinstance(part, Drawing)]
         names = [part.name for part in parts if isinstance(part, Drawing)]
-        is_same = names == [place.name for place in self._places if place not in self._others]
+        is_same = names == [place.name for place in self._places]
         if not is_same or len(texts) != len(self._texts) or self._wide != frozenset(wide):
             return False
         self.study = study
@@ -173,25 +245,29 @@ class Sheet:
         for text in self._texts:
             mark_behind(text, self.study != now)
         for place in self._places:
-            place.age(self._others.get(place, now))
+            place.age(now)
 
     async def draw(self, is_wanted: Callable[[], bool] = lambda: True) -> None:
         """Draw the figures that are not of the study, one after the other while that is wanted."""
+        study = self.study
         for place in self._places:
-            study = self._others.get(place, self.study)
             if place.drawn == study:
                 continue
             try:
-                svg = await self._do(tasks.picture, study, place.name, IN_PAGE)
-                content = svg.decode()
+                drawings = await self._do(tasks.picture, study, place.name, IN_PAGE)
             except EpicyclicError as error:
-                content = items_html(Listing((str(error),)))
+                drawings = [_told(str(error))]
             if place.is_gone:
                 return
-            place.show(content, study)
+            place.show(drawings, study)
             place.age(study)
             if not is_wanted():
                 return
+
+
+def _told(text: str) -> Drawing:
+    """Words in the place of a figure."""
+    return Drawing("", "", items_html(Listing((text,))))
 
 
 def _parts(section: Section) -> Iterator[Part | Drawing]:
@@ -228,11 +304,12 @@ class TurningView:
     def __init__(self, do: Do) -> None:
         self._do = do
         self._places: dict[str, Place] = {}
+        self._titles: dict[str, str] = {}
         self._slider: ui.slider | None = None
 
     def build(self, titles: Mapping[str, str]) -> None:
         """Make the slider and places for pictures."""
-        self._places = {}
+        self._places, self._titles = {}, dict(titles)
         if not titles:
             return
         with ui.row().classes("turner"):
@@ -277,11 +354,13 @@ class TurningView:
             svg, data = await self._do(tasks.turning, study.case, what, IN_PAGE, 0.0)
             if place.is_gone:
                 return
-            place.show(svg.decode(), study)
+            drawing = Drawing(what, self._titles[what], svg.decode(), point=data.pop("point"))
+            place.show([drawing], study)
             place.age(study)
             data["phase"] = self._phase
-            key = json.dumps(place.picture.html_id)
-            with place.picture:
+            (picture,) = place.pictures
+            key = json.dumps(picture.html_id)
+            with picture:
                 ui.run_javascript(f"turning.add({key}, {json.dumps(data)})")
             if not is_wanted():
                 return
@@ -290,8 +369,7 @@ class TurningView:
 # Tabs beside the chapters of a result: its map, and another case beside it.
 
 
-MAP_STEPS = {"speed": 9, "torque": 7}
-SHOWN_TWICE = {"losses": "Where is the power lost?", "loss-sum": "How do the losses add up?"}
+MAP_STEPS = {"speed": 9, "torque": 13}
 _TOLD = "Keep the case, change it, and come back. Both are shown here side by side."
 
 
@@ -327,6 +405,7 @@ class MapView:
                 field = ui.input(part.label, value=text, on_change=partial(self._take, axis))
                 field.props("dense outlined stack-label").mark(f"map-{axis}")
             ui.button("Compute", on_click=self._compute).props("unelevated no-caps")
+            save_menu("Save map", MAP_FILES, self._save)
         ui.label("Values as a,b,c or start:stop:count, with their unit.").classes("soft")
         self._doing = Doing(self._worker.end)
         self._failed = ui.label().classes("problem")
@@ -344,6 +423,12 @@ class MapView:
     async def follow(self) -> None:
         """Show the map, computed again if it is of another case; the last change counts."""
         await self._latest.want()
+
+    async def _save(self, name: str) -> None:
+        if self._known is None:
+            ui.notify("There is no map yet. Compute one first.")
+            return
+        await download(self._do, self._known[0], name, None, "map")
 
     def _take(self, axis: str, event: events.ValueChangeEventArguments[str]) -> None:
         self._texts[axis] = event.value or ""
@@ -405,13 +490,15 @@ class MapView:
 
 
 def _values(axis: str, part: OperatingValue, text: str) -> str:
-    """Values around those of the case: from zero to twice them; its own zero or temperature."""
+    """From rest to the speed of the case, up to its torque in both directions; its temperature."""
     now = number_in(text)
     if now is None:
         return ""
     if axis not in MAP_STEPS or not now:
         return f"{now:g} {part.unit}"
-    return f"0:{2 * now:g}:{MAP_STEPS[axis]} {part.unit}"
+    start = -abs(now) if axis == "torque" else 0
+    end = abs(now) if axis == "torque" else now
+    return f"{start:g}:{end:g}:{MAP_STEPS[axis]} {part.unit}"
 
 
 class CompareView:
@@ -454,6 +541,7 @@ class CompareView:
         now = self._desk().case
         if self._sheet is not None and now is not None:
             self._sheet.age(Study(now))
+            self._place.age(Study(now))
 
     def _keep(self) -> None:
         self._set(self._desk().copy())
@@ -476,9 +564,10 @@ class CompareView:
             with self._body:
                 ui.label(told).classes("soft")
             return
-        study = Study(now.case)
+        study, names = Study(now.case), ("kept", "now")
         try:
-            tables = await self._do(tasks.compared, other.case, now.case, ("kept", "now"))
+            tables = await self._do(tasks.compared, other.case, now.case, names)
+            drawings = await self._do(tasks.beside, other.case, now.case, names, IN_PAGE)
         except (Ended, EpicyclicError) as error:
             if not self._body.is_deleted:
                 self._body.clear()
@@ -487,36 +576,31 @@ class CompareView:
             return
         if self._body.is_deleted or other is not self._other:
             return
-        drawings = tuple(Drawing(name, f"{title} Now.", "") for name, title in SHOWN_TWICE.items())
-        section = Section("", "", (*tables, Gallery(drawings)))
-        if self._sheet is None or not self._sheet.update(study, [section], ()):
-            self._build(study, tables, drawings, other)
+        if self._sheet is None or not self._sheet.update(study, [Section("", "", (*tables,))], ()):
+            self._build(study, tables, other)
         self._command.set_content(now.command())
         sheet = self._sheet
         assert sheet is not None
-        sheet.age(study)
-        with suppress(Ended):
-            await sheet.draw(lambda: sheet is self._sheet and self._desk().case is now.case)
+        self._place.show(drawings, study)
+        self.age()
 
-    def _build(
-        self, study: Study, tables: list[Table], drawings: Iterable[Drawing], other: Desk
-    ) -> None:
+    def _build(self, study: Study, tables: list[Table], other: Desk) -> None:
         """Places for both cases."""
-        assert other.case is not None
+
+        async def draw(ending: str) -> bytes:
+            shown, kept = self._place.drawn or study, other.case
+            names = ("kept", "now")
+            return cast(bytes, await self._do(tasks.beside, kept, shown.case, names, ending))
+
         self._sheet = sheet = Sheet(self._do, study)
         self._body.clear()
         with self._body:
-            ui.label(f"kept: {other.title}").classes("soft")
-            ui.code(other.command()).classes("wrapped")
-            ui.label(f"now: {self._desk().title}").classes("soft")
-            self._command = ui.code("").classes("wrapped")
+            for label, desk in (("kept", other), ("now", self._desk())):
+                ui.label(f"{label}: {desk.title}").classes("soft")
+                self._command = ui.code(desk.command()).classes("wrapped")
+            self._place = Place("Losses of both cases", "losses-beside", "wide", draw)
             for table in tables:
                 sheet.item(table)
-            for drawing in drawings:
-                with ui.element("div").classes("pair"):
-                    kept = replace(drawing, title=f"{SHOWN_TWICE[drawing.name]} Kept.")
-                    sheet.figure(kept, Study(other.case))
-                    sheet.figure(drawing)
 
 
 # The tabs of the page: chapters of the result, and views that stand beside them.
@@ -537,6 +621,20 @@ class View(Protocol):
         """After a change of the case, while it is shown."""
 
 
+GROUPS = {
+    "Result": (),
+    "Trust": ("uncertainty", "validity", "methods"),
+    "Parts": ("gears", "load", "friction", "bearing", "pockets", "temperatures", "oil"),
+    "Studies": ("map", "compare"),
+    "Case": ("inputs", "versions"),
+}
+"""Groups of tabs; what none of them names is in the first."""
+
+
+def _group_of(name: str) -> str:
+    return next((group for group, names in GROUPS.items() if name in names), next(iter(GROUPS)))
+
+
 class Chapters:
     """Tabs, one for each chapter and view.
 
@@ -549,23 +647,36 @@ class Chapters:
     views : dict of str to View
     want : callable
         Has the chapter that was opened follow the case.
+    tell : callable
+        Called with a study and its key figures once their bands are known.
     """
 
     def __init__(
-        self, shelf: Shelf, do: Do, views: dict[str, View], want: Callable[[], Awaitable[None]]
+        self,
+        shelf: Shelf,
+        do: Do,
+        views: dict[str, View],
+        want: Callable[[], Awaitable[None]],
+        tell: Callable[[Study, Sequence[KeyFigure]], None],
     ) -> None:
         self._shelf, self._do, self._views, self._want = shelf, do, views, want
+        self._tell = tell
         self._turning = TurningView(do)
         self._sections: dict[str, Section] = {}
         self._sheet: Sheet | None = None
+        self._groups = ui.tabs(on_change=self._turn).props("dense no-caps align=left")
         self._tabs = ui.tabs(on_change=self._open).props("dense no-caps align=left")
+        self._tabs.classes("chapters")
+        self._last: dict[str, str] = {}  # What was open in each group.
         self._body = ui.element("div").classes("chapter")
 
     def clear(self) -> None:
         """Show nothing: another case is opened."""
         self._sections, self._sheet = {}, None
-        self._tabs.clear()
-        self._tabs.set_value(None)
+        self._last = {}
+        for tabs in (self._groups, self._tabs):
+            tabs.clear()
+            tabs.set_value(None)
         self._body.clear()
 
     def age(self, now: Study) -> None:
@@ -598,10 +709,15 @@ class Chapters:
         if not self._sections:
             await self._begin(study, is_wanted)
             return  # what opens the tab wants the others too
-        for name in self._sections:  # each by itself, so that the next value need not wait for all
-            await self._do(tasks.answered, study, name)
-            if not is_wanted():
+        for name in dict.fromkeys((tasks.BANDS, *self._sections)):
+            # each by itself, so that the next value need not wait for all
+            answer = await self._do(tasks.answered, study, name)
+            if self._body.is_deleted or not is_wanted():
                 return
+            if name == tasks.BANDS:
+                self._tell(study, answer.key_figures)
+            elif name == tasks.FIRST and self._tabs.value == name:
+                self._update(answer.sections[0], study, answer)
         answer = await self._do(tasks.answered, study, "")
         if not self._body.is_deleted and is_wanted():
             self._offer(answer.sections)
@@ -617,25 +733,49 @@ class Chapters:
             self._offer(answer.sections)
 
     def _offer(self, found: Sequence[Section]) -> None:
-        """Have tabs for chapters, and beside the first one for the views."""
+        """Have tabs for chapters and views, in groups."""
         sections = {section.name: section for section in found}
+        titles = {name: section.title for name, section in sections.items()}
+        titles |= {name: view.title for name, view in self._views.items()}
         if list(sections) != list(self._sections):
-            first, *others = [(name, section.title) for name, section in sections.items()]
-            views = [(name, view.title) for name, view in self._views.items()]
+            groups = dict.fromkeys(_group_of(name) for name in titles)
             self._tabs.clear()
+            self._groups.clear()
             with self._tabs:
-                for name, title in (first, *views, *others):
+                for name, title in titles.items():
                     ui.tab(name, label=title)
+            with self._groups:
+                for group in sorted(groups, key=list(GROUPS).index):
+                    ui.tab(group)
         self._sections = sections
-        known = (*sections, *self._views)
-        if self._tabs.value not in known:
+        if self._tabs.value not in titles:
             chapter = self._shelf.chapter
-            self._tabs.set_value(chapter if chapter in known else next(iter(sections)))
+            self._tabs.set_value(chapter if chapter in titles else next(iter(sections)))
+        self._group()
+
+    def _group(self) -> None:
+        """Show the tabs of the group of the open one."""
+        name = str(self._tabs.value)
+        group = _group_of(name)
+        self._last[group] = name
+        self._groups.set_value(group)
+        for tab in self._tabs:
+            tab.set_visibility(_group_of(str(tab.props["name"])) == group)
+
+    def _turn(self) -> None:
+        """Open what was open last in a group, or its first chapter."""
+        group = self._groups.value
+        if group is None or group == _group_of(str(self._tabs.value)):
+            return
+        names = [str(tab.props["name"]) for tab in self._tabs]
+        first = next((name for name in names if _group_of(name) == group), None)
+        self._tabs.set_value(self._last.get(group, first))
 
     async def _open(self) -> None:
         name = str(self._tabs.value)
         if name in self._sections or name in self._views:
             self._shelf.chapter = name
+            self._group()
         self._body.clear()
         self._sheet = None
         with self._body:

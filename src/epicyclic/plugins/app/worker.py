@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import io
 import itertools
 import multiprocessing
 import os
 import signal
 import tempfile
+import zipfile
 from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -24,21 +27,26 @@ from epicyclic.kernels import listeners
 from epicyclic.losses.friction import contact_progress
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.files import is_rexs
-from epicyclic.result.result import in_words, set_of
+from epicyclic.result.result import Result, in_words, set_of
 from epicyclic.show.page import Drawing, KeyFigure, Section, Table
-from epicyclic.show.plots.catalogue import PLOTS, Stored, figure_of, svg_text
+from epicyclic.show.plots.catalogue import PLOTS, Panel, Stored, draw, drawing, figure_of, svg_text
 from epicyclic.show.plots.drawing import POSITION, Turning, turning_mesh, turning_set
-from epicyclic.show.plots.style import figure_bytes
+from epicyclic.show.plots.losses import WIDE, plot_losses_beside
+from epicyclic.show.plots.style import figure_bytes, styled_figure
 from epicyclic.show.record import ResultRecord, growing_record, sets_of
 from epicyclic.show.result_page import (
     map_key_figures,
     map_sections,
     result_section,
     result_sections,
+    summary_section,
 )
-from epicyclic.show.result_tables import key_figures, side_by_side
+from epicyclic.show.result_tables import side_by_side
+from epicyclic.show.summary import head_figures
 from epicyclic.show.views import save
+from epicyclic.study.bands.advice import Known, known_of
 from epicyclic.study.maps.compute import loss_map
+from epicyclic.study.maps.formats import formats, write_map
 from epicyclic.study.operating import AXES, operating_line
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.run import parse_vary
@@ -245,8 +253,9 @@ class Doing:
 
 STILL = ("gear-set", "teeth")  # Plots of what turns, where that is shown.
 MESH = "/"  # Before the key of a mesh among what turns.
-FIRST, TURNS = "losses", "gears"
-"""The chapter that every result has, and the one in which gears turn."""
+FIRST, BANDS, TURNS = "summary", "uncertainty", "gears"
+"""The chapter that every result has, that on how well it is known, and that in which gears turn."""
+PAGES = (".html", ".pdf")
 IN_PAGE = "svg-page"  # Format of a figure that becomes a part of the page.
 MOST_KEPT = 6
 
@@ -273,6 +282,7 @@ class Answer:
     turning: dict[str, str]
 
 
+_known: dict[Study, Known | None] = {}  # How well results are known, if that was computed.
 _kept: dict[Study, Stored] = {}
 """Results of the last studies: their figures are drawn without computing them again."""
 
@@ -281,7 +291,9 @@ def _stored(study: Study, progress: Progress) -> Stored:
     if study not in _kept:
         _kept[study] = _mapped(study, progress) if study.is_map else _recorded(study, progress)
         while len(_kept) > MOST_KEPT:
-            del _kept[next(iter(_kept))]
+            oldest = next(iter(_kept))
+            del _kept[oldest]
+            _known.pop(oldest, None)
     return _kept[study]
 
 
@@ -328,19 +340,31 @@ class _Drawings(Mapping[str, Sequence[Drawing]]):
 
 
 def answered(study: Study, only: str, progress: Progress) -> Answer:
-    """Key figures and chapters of a study; of a result the chapter `only`, if that is not empty."""
+    """Key figures and chapters of a study; of a result the chapter `only`, if that is not empty.
+
+    Bands of the key figures are those of the chapter on them, once that was asked for.
+    """
     found = _stored(study, progress)
     drawings = _Drawings(found)
     if not isinstance(found, ResultRecord):
         figures, sections = map_key_figures(found), map_sections(found, drawings)
         return Answer(figures, sections, frozenset(drawings.wide), {})
     with contact_progress(progress):
-        if only:
+        if only in ("", BANDS):
+            _known[study] = next(map(known_of, found.group("uncertainty").values()), None)
+        known = _known.get(study)
+        if only == FIRST:
+            sections = [summary_section(found.result, known, drawings)]
+        elif only:
             sections = [result_section(found, drawings, only)]
         else:
-            sections = result_sections(found, drawings)
+            sections = [
+                summary_section(found.result, known, drawings),
+                *result_sections(found, drawings),
+            ]
         turns = _turning_titles(found) if only in ("", TURNS) else {}
-    return Answer(key_figures(found.result), sections, frozenset(drawings.wide), turns)
+    figures = list(head_figures(found.result, known))
+    return Answer(figures, sections, frozenset(drawings.wide), turns)
 
 
 def _turning_titles(found: ResultRecord) -> dict[str, str]:
@@ -351,25 +375,39 @@ def _turning_titles(found: ResultRecord) -> dict[str, str]:
 
 def moved(case: Case, progress: Progress) -> list[KeyFigure]:
     """Key figures of a case, and nothing that takes longer; nothing is kept."""
-    return key_figures(solve(case))
+    return list(head_figures(solve(case), None))
 
 
 def compared(first: Case, second: Case, names: tuple[str, str], progress: Progress) -> list[Table]:
     """Two cases side by side."""
-    contents = []
-    for case in (first, second):
-        found = _stored(Study(case), progress)
-        assert isinstance(found, ResultRecord)
-        contents.append(found.result)
-    return list(side_by_side(contents[0], contents[1], names))
+    return list(side_by_side(_result(first, progress), _result(second, progress), names))
 
 
-def picture(study: Study, name: str, ending: str, progress: Progress) -> bytes:
-    """A figure of a study, as a file of this type holds it."""
-    figure = figure_of(_stored(study, progress), name)
+def beside(
+    first: Case, second: Case, names: tuple[str, str], ending: str, progress: Progress
+) -> list[Drawing] | bytes:
+    """The losses of two cases in one picture, for a page or as a file of this type holds it."""
+    results = dict(zip(names, (_result(case, progress) for case in (first, second)), strict=True))
     if ending == IN_PAGE:
-        return svg_text(figure, name).encode()
+        panel = Panel("", partial(plot_losses_beside, results))
+        return [drawing(panel, "losses-beside", WIDE, is_live=True)]
+    with styled_figure(1, 1, "", panel=WIDE) as (figure, axes):
+        plot_losses_beside(results, axes[0, 0])
     return figure_bytes(figure, ending)
+
+
+def _result(case: Case, progress: Progress) -> Result:
+    found = _stored(Study(case), progress)
+    assert isinstance(found, ResultRecord)
+    return found.result
+
+
+def picture(study: Study, name: str, ending: str, progress: Progress) -> list[Drawing] | bytes:
+    """A figure of a study, for a page or as a file of this type holds it."""
+    found = _stored(study, progress)
+    if ending == IN_PAGE:
+        return draw(found, name, is_live=True)
+    return figure_bytes(figure_of(found, name), ending)
 
 
 def turning(
@@ -378,32 +416,59 @@ def turning(
     """Gears that turn, as a file at one phase, or for a page with what its script needs."""
     found = _stored(Study(case), progress)
     assert isinstance(found, ResultRecord)
-    drawn = _turning(found, what, None if ending == IN_PAGE else phase)
+    point = operating_line(found.result.inputs["operation"])
     if ending != IN_PAGE:
+        drawn = _turning(found, what, (found.title, point), phase)
         return figure_bytes(drawn.figure, ending), {}
+    drawn = _turning(found, what, ("", ""), None)  # which stand beside it
+    drawn.ax.set_title("", loc="left")
     key = f"turning-{what.removeprefix(MESH)}"
     svg = svg_text(drawn.figure, key).encode()
     layers = [asdict(layer) | {"name": f"{key}-{layer.name}"} for layer in drawn.layers()]
-    return svg, {"layers": layers, "phases": drawn.phases, "position": f"{key}-{POSITION}"}
+    position = f"{key}-{POSITION}"
+    return svg, {"layers": layers, "phases": drawn.phases, "position": position, "point": point}
 
 
-def _turning(found: ResultRecord, what: str, phase: float | None) -> Turning:
-    caption = operating_line(found.result.inputs["operation"])
+def _turning(
+    found: ResultRecord, what: str, words: tuple[str, str], phase: float | None
+) -> Turning:
     sets = sets_of(found.group("gears"))
     if not what.startswith(MESH):
-        return turning_set(sets[what], found.title, caption, phase or 0.0)
+        return turning_set(sets[what], *words, phase or 0.0)
     key = what.removeprefix(MESH)
     view, mesh = found.group("views")[key], found.group("meshes")[key]
-    return turning_mesh(view, sets[set_of(key)], mesh, found.title, caption, phase)
+    return turning_mesh(view, sets[set_of(key)], mesh, *words, phase)
 
 
-def saved(case: Case, ending: str, original: str | None, progress: Progress) -> bytes:
-    """The result of a case as a file of this type; of a REXS file, in a copy of the original."""
-    with contact_progress(progress):
-        result = solve(case)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"result{ending}"
+def saved(study: Study, name: str, original: str | None, progress: Progress) -> tuple[str, bytes]:
+    """What a file of this name, or of a map's format, holds of a study, and the ending it has.
+
+    Of a REXS file a copy of the original with the results; of a format with a file for each state,
+    these in an archive.
+    """
+    found = _stored(study, progress)
+    with tempfile.TemporaryDirectory() as folder, contact_progress(progress):
+        path = Path(folder) / f"result{_suffix(name)}"
         if is_rexs(path):
-            return rexs_bytes(path, result, original, None)
-        save(result, path)
-        return path.read_bytes()
+            return path.suffix, rexs_bytes(path, _result(study.case, progress), original, None)
+        if isinstance(found, ResultRecord):
+            save(found.result, path)
+        elif path.suffix in PAGES:
+            from epicyclic.show.html import report_html, report_pdf  # only what is saved needs it
+
+            page = report_html(found)
+            path.write_bytes(report_pdf(page) if path.suffix == ".pdf" else page.encode())
+        else:
+            write_map(found, path, name)
+        files = list(Path(folder).iterdir())
+        if len(files) == 1:
+            return path.suffix, path.read_bytes()
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w") as archive:
+            for file in files:
+                archive.write(file, file.name)
+        return ".zip", packed.getvalue()
+
+
+def _suffix(name: str) -> str:
+    return name if name.startswith(".") else formats()[name].suffix

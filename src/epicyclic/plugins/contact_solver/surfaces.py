@@ -240,13 +240,15 @@ def read_profile(
     try:
         stat = path.stat()
     except (OSError, ValueError):
-        return _read(path, cutoff, short_cutoff, 0, 0)  # says why
-    return _read(path, cutoff, short_cutoff, stat.st_mtime_ns, stat.st_size)
+        return _read(path, cutoff, short_cutoff, ())  # says why
+    # clocks jump: the time alone does not tell a file from one written later
+    state = (stat.st_ino, stat.st_ctime_ns, stat.st_mtime_ns, stat.st_size)
+    return _read(path, cutoff, short_cutoff, state)
 
 
 @lru_cache(maxsize=16)
 def _read(
-    path: Path, cutoff: float | None, short_cutoff: float | None, _changed: int, _size: int
+    path: Path, cutoff: float | None, short_cutoff: float | None, _state: tuple[int, ...]
 ) -> Profile:
     """The file as it was when it was last changed."""
     try:

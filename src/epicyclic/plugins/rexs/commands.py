@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 def import_tables(
     found: RexsImport,
-    given: Collection[str],  # Keys that the user set.
+    given: Mapping[str, Any],  # Keys that the user set.
     problems: Sequence[Problem],  # Problems of the case as it is.
     notes: Sequence[str],  # What is to be known beside the notes of the import itself.
 ) -> RenderableType:

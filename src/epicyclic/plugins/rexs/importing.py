@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
@@ -79,11 +80,21 @@ class RexsImport:
             problems = [self._explained(problem) for problem in error.problems]
             raise InputError(problems, error.source) from None
 
-    def lacking(self, given: Collection[str] = ()) -> tuple[Lack, ...]:
-        """What is missing but for the keys, or whole tables, that are `given`."""
-        return tuple(
+    def lacking(self, given: Mapping[str, Any] = MappingProxyType({})) -> tuple[Lack, ...]:
+        """What is missing but for the keys, or whole tables, that are `given`.
+
+        Nothing of it is needed if there is a case without it: of a train whose losses are given.
+        """
+        left = tuple(
             lack for lack in self.missing if not any(_is_below(lack.key, key) for key in given)
         )
+        if not any(lack.needed for lack in left):
+            return left
+        try:
+            self.case(given)
+        except InputError:
+            return left
+        return tuple(replace(lack, needed=False) for lack in left)
 
     def text(
         self,
@@ -91,7 +102,7 @@ class RexsImport:
     ) -> str:
         """The commented case file: the origin of every value, for other keys what is known."""
         tables, about = dict(self.tables), dict(self.origins)
-        for lack in self.lacking(changes or ()):
+        for lack in self.lacking(changes or {}):
             about[lack.key] = f"{'NEEDED. ' if lack.needed else ''}{lack}"
         if changes:
             tables = changed_tables(tables, changes)

@@ -6,7 +6,7 @@ import io
 import itertools
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -14,24 +14,29 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import QuadMesh
-from matplotlib.colors import to_hex
+from matplotlib.collections import FillBetweenPolyCollection, QuadMesh, TriMesh
+from matplotlib.colors import to_hex, to_rgba
 from matplotlib.container import BarContainer
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import PathPatch
+from matplotlib.patches import Patch, StepPatch
 from matplotlib.projections.polar import PolarAxes
+from matplotlib.text import Annotation
+from scipy.interpolate import LinearNDInterpolator
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.result.result import in_words, set_of
 from epicyclic.show.page import Drawing
 from epicyclic.show.plots import loss_map, losses, mesh, sweep
-from epicyclic.show.plots.drawing import plot_gear_set, plot_teeth
+from epicyclic.show.plots.arrangement import arrangement_of, plot_from_the_end, plot_from_the_side
+from epicyclic.show.plots.drawing import plot_gear_set, plot_oil, plot_teeth
 from epicyclic.show.plots.heat_network import plot_heat_network
 from epicyclic.show.plots.pockets import plot_life_with_scale, plot_power, plot_volumes
 from epicyclic.show.plots.power_flow import SLIDE, plot_power_flow
-from epicyclic.show.plots.style import PANEL, STYLE, TITLE_CHARACTERS, room_of, styled_figure
+from epicyclic.show.plots.style import PANEL, STYLE, TITLE_CHARACTERS, WIDTH, room_of, styled_figure
 from epicyclic.show.record import ResultRecord, sets_of
 from epicyclic.study.maps.tables import map_case, map_inputs
 from epicyclic.study.operating import operating_line
@@ -43,9 +48,7 @@ from epicyclic.study.sweeps.run import is_sweep
 
 Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
-SLIDE_WIDTHS = (6.4, 9.6, 12.8)
-"""Widths of figures of one, two, three and more panels in a row: letters stay readable. [inch]"""
-FLATTEST = 0.75  # Height of a figure over that of a slide of its width, at least.
+ROW = 3.4  # Height of a row of panels. [inch]
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +113,24 @@ def _gear_set(stored: Stored) -> list[Panel]:
         Panel(in_words(name), partial(plot_gear_set, gears))
         for name, gears in sets_of(_gears_of(stored)).items()
     ]
+
+
+def _arrangement(stored: Stored) -> list[Panel]:
+    """A train from the end and from the side, if all dimensions are known."""
+    if not isinstance(stored, ResultRecord) or stored.result.train is None:
+        return []
+    inputs = stored.result.inputs
+    found = arrangement_of(inputs, stored.group("gears"))
+    if found is None:
+        return []
+    side = partial(plot_from_the_side, found, inputs)
+    return [Panel("", partial(plot_from_the_end, found)), Panel("", side)]
+
+
+def _oil(stored: Stored) -> list[Panel]:
+    """All gears in the oil of the housing, if some dip."""
+    gears = {name: gear for name, gear in _gears_of(stored).items() if "stands_x" in gear}
+    return [Panel("", partial(plot_oil, gears))] if gears else []
 
 
 def _teeth(stored: Stored) -> list[Panel]:
@@ -233,6 +254,8 @@ def _heat(stored: Stored) -> list[Panel]:
 
 PLOTS: dict[str, Plot] = {
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
+    "arrangement": Plot("Where do the sets and shafts of the train lie?", _arrangement),
+    "oil": Plot("How deep do the gears dip into the oil?", _oil),
     "teeth": Plot("How do the teeth touch, and where is the path of contact?", _teeth),
     "losses": Plot("Where is the power lost?", _of_result(losses.plot_losses)),
     "loss-sum": Plot("How do the losses add up?", _of_result(losses.plot_loss_sum)),
@@ -366,18 +389,16 @@ def figure_of(
     *,
     # Width and height; default: in the proportion of a slide. [mm]
     size: tuple[float, float] | None = None,
-    # Pixels an inch; default: such that the figure has the width of a slide in pixels.
+    # Pixels an inch; default: such that a figure of that width has the pixels of a slide.
     dpi: float | None = None,
 ) -> Figure:
     """A plot as a figure, its panels side by side, the operating point below."""
     panels = panels_of(stored, name)
-    columns = 3 if len(panels) == 3 else math.ceil(math.sqrt(len(panels)))
+    columns = min(2, len(panels))
     rows = math.ceil(len(panels) / columns)
     title, point = about(stored)
     plot = PLOTS[name]
-    width = SLIDE_WIDTHS[min(columns, len(SLIDE_WIDTHS)) - 1]
-    # all panels can be read on one slide
-    inches = (width, width * SLIDE[1] / SLIDE[0] * max(FLATTEST, rows / columns))
+    inches = WIDTH, WIDTH * SLIDE[1] / SLIDE[0] if len(panels) == 1 else ROW * rows
     if plot.is_wide:
         inches = (plot.size[0] * columns, plot.size[1] * rows)
     if size is not None:
@@ -415,46 +436,92 @@ def about(stored: Stored) -> tuple[str, str]:
     return title, cycle or operating_line(map_inputs(stored)["operation"])
 
 
-# Figures to explore: the lines, bars and fields of matplotlib Axes as data for plotly.js.
+# Figures to explore: lines, bars, areas and fields of matplotlib Axes as data for plotly.js.
 #
-# Every plot is thus written once. What has no counterpart (drawings, text) stays a still figure.
+# Every plot is thus written once. What has no counterpart (drawings) stays a still figure.
 
 
 DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 DIGITS = 7  # Significant digits of values in the page.
-COLOUR_STEPS = 16
+COLOUR_STEPS = 32
+GRID = 61  # Places along each side of a field whose values are known at scattered points.
+FONT = {"size": 12}
+AXIS = {
+    "ticks": "outside",
+    "tickcolor": "rgba(0,0,0,0)",
+    "automargin": True,
+    "exponentformat": "none",
+    "separatethousands": False,
+}
 
 
 def explorable(ax: Axes) -> dict[str, Any] | None:
     """Data and layout for plotly.js, or None if nothing on the Axes can be explored."""
-    if any(isinstance(patch, PathPatch) for patch in ax.patches):
-        return None  # a drawing
-    traces = [trace for line in ax.get_lines() if (trace := _line(ax, line))]
     bars = [bar for bar in ax.containers if isinstance(bar, BarContainer)]
-    traces += [_polar_bars(bar) if isinstance(ax, PolarAxes) else _bars(bar) for bar in bars]
-    traces += [_field(field) for field in ax.collections if isinstance(field, QuadMesh)]
+    known = {patch for bar in bars for patch in bar.patches}
+    others = [one for one in ax.patches if one not in known and not isinstance(one, StepPatch)]
+    if any(_shape(ax, one) is None for one in others):
+        return None  # a drawing
+    labels = _of_axis(ax.get_xlabel()), _of_axis(ax.get_ylabel())
+    traces: list[dict[str, Any]] = []
+    for it in ax.collections:
+        if isinstance(it, QuadMesh | TriMesh):
+            traces.append(_field(it, labels))
+        elif isinstance(it, ContourSet):
+            traces += _levels(it, traces[0])
+        elif isinstance(it, FillBetweenPolyCollection):
+            traces.append(_area(it, is_band=bool(ax.get_lines())))
+    traces += [trace for line in ax.get_lines() if (trace := _line(ax, line, labels))]
+    is_polar = isinstance(ax, PolarAxes)
+    traces += [_polar_bars(bar) if is_polar else _bars(ax, bar) for bar in bars]
+    traces += [_steps(patch, labels) for patch in ax.patches if isinstance(patch, StepPatch)]
     if not traces:
         return None
-    layout = _polar_layout() if isinstance(ax, PolarAxes) else _layout(ax)
-    names = {trace["name"] for trace in traces if trace.get("name")}
+    layout = _polar_layout() if is_polar else _layout(ax)
+    marks: list[Line2D | Patch] = [*ax.get_lines(), *others]
+    for trace in traces:
+        trace["showlegend"] = bool(trace.get("name"))
+    shapes = [shape for mark in marks if (shape := _shape(ax, mark))]
+    layout["shapes"] = shapes
+    names = {one["name"] for one in (*traces, *shapes) if one.get("name")}
     layout |= {
         "title": {"text": _escaped(ax.get_title(loc="left") or ax.get_title())},
         "showlegend": len(names) > 1,
         "barmode": "overlay",
+        "hovermode": "closest",
+        "annotations": [_annotation(it) for it in ax.texts if isinstance(it, Annotation)],
     }
     return {"data": traces, "layout": layout}
 
 
+def _of_axis(label: str) -> str:
+    """A label in one line."""
+    return _escaped(" ".join(label.split()))
+
+
 def _layout(ax: Axes) -> dict[str, Any]:
-    layout: dict[str, Any] = {
-        "xaxis": {"title": {"text": _escaped(ax.get_xlabel())}, "range": _list(ax.get_xlim())},
-        "yaxis": {"title": {"text": _escaped(ax.get_ylabel())}, "range": _list(ax.get_ylim())},
-    }
-    labels = [label.get_text() for label in ax.get_yticklabels()]
-    if any(isinstance(bar, BarContainer) for bar in ax.containers) and any(labels):
-        ticks = {"tickvals": _list(ax.get_yticks()), "ticktext": [_escaped(one) for one in labels]}
-        layout["yaxis"] |= ticks | {"tickmode": "array", "automargin": True}
+    layout: dict[str, Any] = {}
+    for name, axis in (("xaxis", ax.xaxis), ("yaxis", ax.yaxis)):
+        ends, is_log = axis.get_view_interval(), axis.get_scale() == "log"
+        layout[name] = AXIS | {
+            "title": {"text": _escaped(axis.label.get_text()).replace("\n", "<br>")}
+            | {"standoff": 8, "font": FONT},
+            "type": "log" if is_log else "linear",
+            "range": _list(np.log10(ends) if is_log else ends),
+        }
+    labels = _bar_labels(ax)
+    if labels:
+        ticks = {"tickvals": list(labels), "ticktext": list(labels.values())}
+        layout["yaxis"] |= ticks | {"tickmode": "array"}
     return layout
+
+
+def _bar_labels(ax: Axes) -> dict[float, str]:
+    """What stands beside bars, by their place."""
+    if not any(isinstance(bar, BarContainer) for bar in ax.containers):
+        return {}
+    texts = [_escaped(label.get_text()) for label in ax.get_yticklabels()]
+    return dict(zip(ax.get_yticks().tolist(), texts, strict=True)) if any(texts) else {}
 
 
 def _polar_layout() -> dict[str, Any]:
@@ -462,34 +529,129 @@ def _polar_layout() -> dict[str, Any]:
     return {"polar": {"angularaxis": angular}}
 
 
-def _line(ax: Axes, line: Line2D) -> dict[str, Any] | None:
+def _shape(ax: Axes, mark: Line2D | Patch) -> dict[str, Any] | None:
+    """A line or band from edge to edge of the Axes; None of others."""
+    across = ax.get_xaxis_transform("grid"), ax.get_yaxis_transform("grid")
+    transform = Artist.get_transform(mark)
+    if transform not in across:
+        return None
+    along, other = ("x", "y") if transform == across[0] else ("y", "x")
+    label = _name(mark)
+    shape: dict[str, Any] = {"name": label, "showlegend": bool(label)}
+    if isinstance(mark, Line2D):
+        low, *_ = _list(mark.get_xdata() if along == "x" else mark.get_ydata())
+        high = low
+        dash = DASHES.get(str(mark.get_linestyle()), "dash")
+        line = {"color": to_hex(mark.get_color()), "dash": dash, "width": mark.get_linewidth()}
+        shape |= {"type": "line", "line": line}
+    else:
+        box = mark.get_extents().transformed(ax.transData.inverted())
+        low, high = _list(box.intervalx if along == "x" else box.intervaly)
+        fill = {"fillcolor": _colour(mark.get_facecolor()), "line": {"width": 0}}
+        shape |= fill | {"type": "rect", "layer": "below"}
+    ends = {f"{along}0": low, f"{along}1": high, f"{other}0": 0, f"{other}1": 1}
+    return shape | ends | {f"{other}ref": "paper"}
+
+
+def _name(artist: Artist | BarContainer) -> str:
+    """The entry of a legend, empty if it has none."""
+    label = str(artist.get_label())
+    return "" if label.startswith("_") else _escaped(label)
+
+
+def _annotation(text: Annotation) -> dict[str, Any]:
+    """Words at the right of a place."""
+    (x, y), place = text.xy, {"showarrow": False, "xanchor": "left", "xshift": 3}
+    words = {"text": _escaped(text.get_text()), "font": {"size": 11}}
+    return place | words | {"x": float(x), "y": float(y)}
+
+
+def _line(ax: Axes, line: Line2D, labels: tuple[str, str]) -> dict[str, Any] | None:
     """A line in the coordinates of the Axes; not one drawn from edge to edge."""
     if line.get_transform() != ax.transData:
         return None
-    label = str(line.get_label())
     style = line.get_linestyle()
     mode = "lines" if line.get_marker() in ("None", "", None) else "lines+markers"
     return {
         "type": "scatter",
         "mode": mode,
-        "name": "" if label.startswith("_") else _escaped(label),
+        "name": _name(line),
         "x": _list(line.get_xdata()),
         "y": _list(line.get_ydata()),
         "line": {"color": to_hex(line.get_color()), "dash": DASHES.get(str(style), "dash")},
         "marker": {"size": 4},
+        "hovertemplate": _hover(*labels),
     }
 
 
-def _bars(bars: BarContainer) -> dict[str, Any]:
+def _hover(*labels: str) -> str:
+    """What is told of a place: labels with values, and the name beside them."""
+    axes = zip(labels, "xyz", strict=False)
+    return "<br>".join(f"{label}: %{{{axis}:.5~g}}" for label, axis in axes)
+
+
+def _area(area: FillBetweenPolyCollection, *, is_band: bool) -> dict[str, Any]:
+    """What lies between two curves: a band about lines, or one of several parts of a sum."""
+    edge = np.asarray(area.get_paths()[0].vertices)
+    half = len(edge) // 2 - 1
+    low, high = edge[1 : half + 1, 1], edge[half + 2 : 2 * half + 2, 1][::-1]
+    texts = [
+        f"{bottom:.4g} to {top:.4g}" if is_band else f"{top - bottom:.4g}"
+        for bottom, top in zip(low, high, strict=True)
+    ]
+    ends = (edge[1 : half + 1, 0], edge[half + 2 : 2 * half + 2, 0])
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": _name(area),
+        "x": _list(np.concatenate(ends)),
+        "y": _list(np.concatenate([low, high[::-1]])),
+        "fill": "toself",
+        "hoveron": "points",
+        "line": {"width": 0},
+        "fillcolor": _colour(area.get_facecolor()[0]),
+        "text": texts + texts[::-1],
+        "hovertemplate": "%{text}",
+    }
+
+
+def _colour(colour: Any) -> str:
+    red, green, blue, alpha = (round(255 * part) for part in to_rgba(colour))
+    return f"rgba({red},{green},{blue},{alpha / 255:.2f})"
+
+
+def _bars(ax: Axes, bars: BarContainer) -> dict[str, Any]:
     """Horizontal bars."""
-    patches = bars.patches
+    patches, names = bars.patches, _bar_labels(ax)
+    middles = [bar.get_y() + bar.get_height() / 2 for bar in patches]
+    unit = ax.get_xlabel().rpartition(", ")[2]
     return {
         "type": "bar",
         "orientation": "h",
+        "name": _name(bars),
         "base": _list([bar.get_x() for bar in patches]),
         "x": _list([bar.get_width() for bar in patches]),
-        "y": _list([bar.get_y() + bar.get_height() / 2 for bar in patches]),
-        "marker": {"color": [to_hex(bar.get_facecolor()) for bar in patches]},
+        "y": _list(middles),
+        "width": _list([bar.get_height() for bar in patches]),
+        "marker": {"color": [_colour(bar.get_facecolor()) for bar in patches]},
+        "customdata": [names.get(round(middle), "") for middle in middles],
+        "text": [f"{bar.get_width():.4g} {_escaped(unit)}" for bar in patches],
+        "textposition": "none",
+        "hovertemplate": "%{customdata}: %{text}",
+    }
+
+
+def _steps(steps: StepPatch, labels: tuple[str, str]) -> dict[str, Any]:
+    """A distribution."""
+    values, edges, _ = steps.get_data()
+    return {
+        "type": "bar",
+        "name": "",
+        "x": _list((edges[1:] + edges[:-1]) / 2),
+        "y": _list(values),
+        "width": _list(np.diff(edges)),
+        "marker": {"color": to_hex(steps.get_facecolor())},
+        "hovertemplate": _hover(*labels),
     }
 
 
@@ -503,23 +665,63 @@ def _polar_bars(bars: BarContainer) -> dict[str, Any]:
         "width": _list([math.degrees(bar.get_width()) for bar in patches]),
         "r": _list([bar.get_height() for bar in patches]),
         "marker": {"color": to_hex(patches[0].get_facecolor())},
+        "hovertemplate": "%{r:.4~g} at %{theta:.1f}°",
     }
 
 
-def _field(field: QuadMesh) -> dict[str, Any]:
-    """A field with its values at the corners (``shading="gouraud"``)."""
-    corners = np.asarray(field.get_coordinates())
+def _field(field: QuadMesh | TriMesh, labels: tuple[str, str]) -> dict[str, Any]:
+    """A field with its values at corners or at scattered points (``shading="gouraud"``)."""
     masked: Any = np.ma.asarray(field.get_array())
-    values = masked.filled(math.nan).reshape(corners.shape[:2])
-    colours = mpl.colormaps[field.get_cmap().name]
-    steps = np.linspace(0, 1, COLOUR_STEPS)
+    if isinstance(field, QuadMesh):
+        corners = np.asarray(field.get_coordinates())
+        x, y = corners[0, :, 0], corners[:, 0, 1]
+        values = masked.filled(math.nan).reshape(corners.shape[:2])
+    else:
+        known = field._triangulation  # type: ignore[attr-defined]
+        x, y = (np.linspace(one.min(), one.max(), GRID) for one in (known.x, known.y))
+        points = np.column_stack([known.x, known.y])
+        field_at = LinearNDInterpolator(points, masked.filled(math.nan), rescale=True)
+        values = field_at(*np.meshgrid(x, y))
+    steps, norm, cmap = np.linspace(0, 1, COLOUR_STEPS), field.norm, field.get_cmap()
+    low, high = (float(np.asarray(end)) for end in (norm.vmin, norm.vmax))
+    colours = map(to_hex, cmap(norm(low + steps * (high - low))))
+    bar = field.colorbar
+    label = bar.ax.get_ylabel() if bar else ""
     return {
         "type": "heatmap",
-        "x": _list(corners[0, :, 0]),
-        "y": _list(corners[:, 0, 1]),
+        "x": _list(x),
+        "y": _list(y),
         "z": [_list(row) for row in values],
-        "colorscale": [[float(step), to_hex(colours(step))] for step in steps],
+        "zmin": low,
+        "zmax": high,
+        "zsmooth": "best",
+        "hoverongaps": False,
+        "colorscale": [
+            [float(step), to_hex(one)] for step, one in zip(steps, colours, strict=True)
+        ],
+        "colorbar": {"title": {"text": _of_axis(label), "side": "right"}, "thickness": 14},
+        "hovertemplate": f"{_hover(*labels, _of_axis(label))}<extra></extra>",
     }
+
+
+def _levels(lines: ContourSet, field: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Lines of equal value on a field."""
+    for level in np.asarray(lines.levels).tolist():
+        yield {
+            **{name: field[name] for name in "xyz"},
+            "type": "contour",
+            "showscale": False,
+            "hoverinfo": "skip",
+            "line": {"color": "white", "width": 1},
+            "contours": {
+                "start": level,
+                "end": level,
+                "size": 1,
+                "coloring": "none",
+                "showlabels": True,
+                "labelfont": {"color": "white"},
+            },
+        }
 
 
 def _list(values: Any) -> list[float | None]:
@@ -546,23 +748,49 @@ _LONG_NUMBER = re.compile(r"(\.\d\d)\d+")  # What is more precise than a hundred
 _OWN_ID = re.compile(r'(?<=\sid=")|(?<=url\(#)|(?<=href="#)')
 
 
-def draw(stored: Stored, name: str, size: tuple[float, float] | None = None) -> list[Drawing]:
-    """Each panel of a plot as a figure of its own, of a size in millimetres or that which suits."""
-    drawings = []
+def draw(
+    stored: Stored,
+    name: str,
+    size: tuple[float, float] | None = None,  # Default: that which suits. [mm]
+    *,
+    is_live: bool = False,  # Without still pictures of what can be explored.
+) -> list[Drawing]:
+    """Each panel of a plot as a figure of its own."""
     plot = PLOTS[name]
+    suiting = plot.size if plot.is_wide else PAGE_PANEL
     point = ", ".join(filter(None, about(stored)))
-    for number, panel in enumerate(panels_of(stored, name)):
-        key = f"{name}-{number + 1}"
-        suiting = plot.size if plot.is_wide else PAGE_PANEL
-        inches = suiting if size is None else in_inches(size)
-        with styled_figure(1, 1, "", panel=inches, projection=plot.projection) as (figure, axes):
-            ax = panel.draw(axes[0, 0])
-            title = ax.get_title(loc="left") or ax.get_title()
-            caption = f"{title}, {panel.subject}" if panel.subject else title
-            ax.set_title("", loc="left")
-            ax.set_title("")
-        drawings.append(Drawing(key, caption, svg_text(figure, key), explorable(ax), point))
-    return drawings
+    return [
+        drawing(
+            panel,
+            f"{name}-{number + 1}",
+            suiting if size is None else in_inches(size),
+            projection=plot.projection,
+            point=point,
+            is_live=is_live,
+        )
+        for number, panel in enumerate(panels_of(stored, name))
+    ]
+
+
+def drawing(
+    panel: Panel,
+    key: str,
+    size: tuple[float, float],  # [inch]
+    *,
+    projection: str | None = None,
+    point: str = "",
+    is_live: bool = False,
+) -> Drawing:
+    """A panel as a figure of its own; its title stands beside it."""
+    with styled_figure(1, 1, "", panel=size, projection=projection) as (figure, axes):
+        ax = panel.draw(axes[0, 0])
+        title = ax.get_title(loc="left") or ax.get_title()
+        caption = f"{title}, {panel.subject}" if panel.subject else title
+        ax.set_title("", loc="left")
+        ax.set_title("")
+    plot = explorable(ax)
+    still = "" if is_live and plot else svg_text(figure, key)
+    return Drawing(key, caption, still, plot, point)
 
 
 def svg_text(figure: Figure, key: str) -> str:

@@ -19,7 +19,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from epicyclic.result.result import in_words
-from epicyclic.show.plots.mesh import top_of_scale
+from epicyclic.show.plots.mesh import scale_of
 from epicyclic.show.plots.style import COLOUR_MAP, COLOURS, label_of, legend_below, styled_figure
 
 # Drawings to scale: the gear set in the transverse plane, and the teeth of a mesh in contact.
@@ -39,6 +39,8 @@ SKIPPED_POINTS = 4
 """A whole gear is drawn with one point of so many: the others are too near to be seen."""
 HEIGHT_SHARE = 0.5  # Height of a drawing of teeth over its width, at least. [1]
 MARGIN = 1.04
+OIL_COLOUR, OIL_EDGE = (0.85, 0.65, 0.13, 0.35), "#8A6A10"
+SAME_LEVEL = 3  # Digits of a millimetre to which levels are the same.
 
 
 def plot_gear_set(
@@ -47,7 +49,7 @@ def plot_gear_set(
 ) -> Axes:
     """All gears at their places, to scale, seen along the axis."""
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
-    fills = _fills(gears)
+    fills = fills_of(gears)
     order = sorted(gears.items(), key=_is_behind)
     for row, (name, gear) in enumerate(order):
         label = f"{in_words(name)}, {int(gear.attrs['teeth'])} teeth"
@@ -89,7 +91,7 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
         _scalar(gears[name], "reference_diameter") / gears[name].attrs["teeth"] for name in names
     )
     half = SHOWN_MODULES * module
-    fills = _fills(gears)
+    fills = fills_of(gears)
     for number, name in enumerate(names):
         gear, center = gears[name], np.array([view["center_x"][number], view["center_y"][number]])
         turn = math.radians(float(view["direction"][number])) - math.pi / 2
@@ -118,6 +120,50 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     return ax
 
 
+def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
+    """Tip circles of all gears in the housing, to scale, in the oil at rest."""
+    fills = fills_of(gears)
+    low, high = np.full(2, math.inf), np.full(2, -math.inf)
+    levels: dict[str, float] = {}
+    for name, gear in sorted(gears.items(), key=_is_behind):
+        radius = _scalar(gear, "outside_diameter") / 2
+        for number, stand in enumerate(_stands(gear)):
+            shape = _path(_circle(radius) + stand)
+            if gear.attrs["internal"]:
+                inside = _circle(_scalar(gear, "tip_diameter") / 2)[::-1] + stand
+                shape = Path.make_compound_path(shape, _path(inside))
+            label = in_words(name) if number == 0 else None
+            ax.add_patch(PathPatch(shape, facecolor=fills[name], edgecolor="black", label=label))
+            low, high = np.minimum(low, stand - radius), np.maximum(high, stand + radius)
+            if "oil_depth" in gear and _scalar(gear, "oil_depth") > 0:
+                levels[name] = float(stand[1]) - radius + _scalar(gear, "oil_depth")
+    is_one = len({round(level, SAME_LEVEL) for level in levels.values()}) == 1
+    for number, (name, level) in enumerate(levels.items()):
+        label = "oil at rest" if number == 0 else None
+        if not is_one:  # depths that were stated gear by gear: each has its own
+            radius, stand = _scalar(gears[name], "outside_diameter") / 2, _stands(gears[name])[0]
+            left, right = stand[0] - radius, stand[0] + radius
+        elif number == 0:
+            left, right = low[0], high[0]
+        else:
+            break
+        base = low[1] if is_one else stand[1] - radius
+        box = Rectangle((left, base), right - left, level - base, label=label, color=OIL_COLOUR)
+        ax.add_patch(box)
+        ax.plot([left, right], [level, level], color=OIL_EDGE, lw=1.2)
+    _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
+    ax.set_adjustable("box")
+    ax.set_anchor("N")
+    legend_below(ax, ncols=3)
+    ax.set_title("Gears in the oil")
+    return ax
+
+
+def _stands(gear: xr.Dataset) -> Floats:
+    """Places in the housing, in rows. [mm]"""
+    return np.column_stack([gear["stands_x"], gear["stands_y"]])
+
+
 def layer_of(name: str, number: int) -> str:
     """What the layer of a gear is called in a picture, at one of its places."""
     return f"gear-{name}-{number}"
@@ -136,12 +182,12 @@ def _hides(front: xr.Dataset, gear: xr.Dataset) -> bool:
     return not gear.attrs["internal"] and seen < height and _centers(front) == _centers(gear)
 
 
-def _fills(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
+def fills_of(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
     """Colour of each gear: one for each kind, in several shades."""
     kinds: dict[str, list[str]] = {}
     for name, gear in gears.items():
         alone = "planet" if gear.sizes["place"] > 1 else "sun"
-        around = gear.attrs["internal"] or name == "gear"
+        around = gear.attrs["internal"] or gear.attrs["name"] == "gear"
         kinds.setdefault("ring" if around else alone, []).append(name)
     return {
         name: shade
@@ -231,7 +277,7 @@ def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> Floats:
 POSITION = "position"
 """Layers of a mesh position are called so, with its number and that of their Axes."""
 POINTS_PER_INCH = 72
-SET_SIZE, MESH_SIZE = (7.2, 6.4), (12.8, 5.6)  # Width and height of the drawings. [inch]
+SET_SIZE, MESH_SIZE = (6.2, 5.6), (8.8, 4.2)  # Width and height of the drawings. [inch]
 LARGEST_DOT = 260.0  # Area of the contact of a tooth pair that carries all. [point^2]
 LINE_WIDTH = 4.0
 
@@ -428,22 +474,13 @@ def _draw_plane(mesh: xr.Dataset, ax: Axes) -> None:
         xlabel=label_of(mesh["path_position"]),
         ylabel=label_of(mesh["face_position"]),
     )
-    _, told = _top(mesh)
-    ax.figure.colorbar(
-        ScalarMappable(_scale(mesh), COLOUR_MAP),
-        ax=ax,
-        label=f"{label_of(mesh['line_load'])}{told}",
-        extend="max" if told else "neither",
-    )
+    colours = ScalarMappable(_scale(mesh), COLOUR_MAP)
+    ax.figure.colorbar(colours, ax=ax, label=label_of(mesh["line_load"]))
 
 
 def _scale(mesh: xr.Dataset) -> Normalize:
-    return Normalize(0.0, _top(mesh)[0] or 1.0)
-
-
-def _top(mesh: xr.Dataset) -> tuple[float, str]:
     loads = mesh["line_load"].to_numpy()
-    return top_of_scale(loads[np.isfinite(loads)])
+    return scale_of(np.append(loads[np.isfinite(loads)], 0.0), 0.0)
 
 
 def _draw_lines(mesh: xr.Dataset, number: int, ax: Axes) -> None:

@@ -11,9 +11,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import FuncNorm, Normalize
 from matplotlib.patheffects import AbstractPathEffect, withStroke
-from matplotlib.ticker import MaxNLocator, NullLocator
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from epicyclic.result.result import in_words
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
     COLOURS,
@@ -39,10 +40,8 @@ LEAST_LINE = 90  # Lines of lower efficiencies run into one another where the to
 LABELS = 4  # Most labels that a line of equal value gets: more collide where lines are close.
 EDGE = 0.04
 """Share of the width and height of the Axes, along its edges, in which no such label begins."""
-HATCHES = ("", "///", "...", "\\\\\\", "xxx")
 ROOM = 1.03  # Height of an axis over the greatest value that it has to show. [1]
-STRETCHED = 0.02
-"""Part of the torque axis of an efficiency that is linear, over the largest torque. [1]"""
+MOST_PARTS, OTHERS = 6, "others"  # Of a stack of components; smaller ones are put together.
 MOST_LINES = 5
 MOST_PANELS = 12  # States and temperatures with a picture and tables of their own.
 LOSS_SUMS = ("load_dependent", "load_independent", "total", "input_power")
@@ -156,8 +155,6 @@ def plot_map(
         bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
         bar.ax.minorticks_off()
         levels = [one for one in levels if one >= LEAST_LINE] or levels
-    if of_efficiency and torque.min() <= 0 <= torque.max():
-        _stretch_zero(ax, torque)
     draw_lines(ax, (speed, torque, values.to_numpy()), levels)
     ax.grid(visible=False)
     ax.set(
@@ -185,7 +182,7 @@ def draw_lines(
     edge: list[AbstractPathEffect] = [withStroke(linewidth=2.0, foreground="0.25")]
     labelled = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
     to_axes = ax.transData - ax.transAxes
-    for text in ax.clabel(lines, labelled, fontsize="x-small", fmt="%g", inline=False):
+    for text in ax.clabel(lines, labelled, fontsize="small", fmt="%g", inline=False):
         text.set_path_effects(edge)
         place = to_axes.transform(text.get_position())
         if np.abs(place - 0.5).max() > 0.5 - EDGE:  # a part of it would be cut off
@@ -209,17 +206,6 @@ def _log_of_loss(efficiency: FloatArray) -> FloatArray:
 def _from_log_of_loss(value: FloatArray) -> FloatArray:
     found: FloatArray = 100 - np.power(10.0, -value)
     return found
-
-
-def _stretch_zero(ax: Axes, torque: FloatArray) -> None:
-    """A torque axis that is linear next to zero and logarithmic beyond."""
-    full = float(np.abs(torque).max())
-    ax.set_yscale("symlog", linthresh=full * STRETCHED, linscale=0.5)
-    ticks = full * np.array([STRETCHED, 0.1, 0.3, 1.0])
-    ticks = np.concatenate([-ticks[::-1], [0.0], ticks])
-    ax.set_yticks(ticks[(ticks >= torque.min()) & (ticks <= torque.max())])
-    ax.yaxis.set_major_formatter(lambda value, _: format_number(value, 3))
-    ax.yaxis.set_minor_locator(NullLocator())
 
 
 def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Limits = None) -> Axes:
@@ -253,22 +239,25 @@ def plot_map_parts(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None)
     """Components of the loss `name` over speed, one above the other, at the highest torque."""
     highest = data.isel(torque=-1)
     unit = data[name].attrs["units"]
-    parts = [
-        part
+    sizes = {
+        str(part): float(values.max())
         for part, values in highest.data_vars.items()
         if values.attrs.get("units") == unit and part not in LOSS_SUMS and float(values.max()) > 0
-    ]
-    parts = parts or [name]  # nothing is lost, as where a train turns as one body
-    areas = ax.stackplot(
+    }
+    largest = sorted(sizes, key=sizes.__getitem__)[-MOST_PARTS:]
+    parts = {part: highest[part] for part in sizes if part in largest}
+    if len(parts) < len(sizes):
+        others = [highest[part] for part in sizes if part not in largest]
+        parts[OTHERS] = xr.concat(others, OTHERS).sum(OTHERS)
+    parts = parts or {name: highest[name]}  # nothing is lost, as where a train turns as one body
+    ax.stackplot(
         highest["speed"],
-        [highest[part] for part in parts],
-        labels=[str(part).replace("_", " ") for part in parts],
+        list(parts.values()),
+        labels=[in_words(part) for part in parts],
         colors=COLOURS,
         edgecolor="white",
         linewidth=0.6,
     )
-    for number, area in enumerate(areas):  # which tell the same colours apart, and all in grey
-        area.set_hatch(HATCHES[number % len(HATCHES)])
     if limits is not None and limits[1] > 0:
         ax.set_ylim(0.0, ROOM * limits[1])
     torque = f"{float(highest['torque']):g} {unit_text(str(highest['torque'].attrs['units']))}"
@@ -277,15 +266,7 @@ def plot_map_parts(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None)
         xlabel=_axis_label(data, "speed"),
         ylabel=label_of(data[name]),
     )
-    handles, labels = ax.get_legend_handles_labels()
-    ax.legend(
-        handles[::-1],
-        labels[::-1],
-        fontsize="x-small",
-        loc="center left",
-        bbox_to_anchor=(1.0, 0.5),
-        frameon=False,
-    )
+    legend_below(ax, ncols=3)
     return ax
 
 

@@ -2,91 +2,127 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+import itertools
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.plots.style import COLOURS, legend_below, styled_figure, write_beside
+from epicyclic.study.bands.advice import in_few_words
 from epicyclic.units import decimals_of, format_number, percent, power_unit
 
 if TYPE_CHECKING:
     import xarray as xr
 
+FloatArray = NDArray[np.float64]
 
 # Losses of one result: how large each component is, and how they add up.
 
 
 GROUP_COLOURS = {"load-dependent": COLOURS[0], "load-independent": COLOURS[4]}
+EDGE: Any = {"edgecolor": "black", "linewidth": 0.5}
 SUM_COLOUR = "0.45"
 ROOM = 1.32  # Length of the axis over that of the longest bar, for the numbers beside the bars. [1]
-MOST_BARS = 16
+MOST_BARS = 16  # Losses of a set; of more, those of a mesh, bearing or body are one.
+MOST_ROWS, OTHERS = 20, "others"  # Of a picture; smaller losses are put together.
 
 
 def plot_losses(result: Result, ax: Axes) -> Axes:
     """Every component of the loss, its power and share; of several sets every set and part."""
     unit, scale = power_unit(result.total)
-    total, rows = result.total / scale, _rows(result, scale)
-    sums = dict.fromkeys((label for label, *_ in rows), 0.0)
-    starts = []
-    for label, _, watts in rows:
-        starts.append(sums[label])
-        sums[label] += watts
-    ax.barh(
-        [label for label, *_ in rows],
-        [watts for *_, watts in rows],
-        left=starts,
-        color=[GROUP_COLOURS[group] for _, group, _ in rows],
-        edgecolor="black",
-        linewidth=0.5,
-    )
-    for row, value in enumerate(sums.values()):
+    total, parts = result.total / scale, _parts(result, scale)
+    sums = [sum(own.values()) for own in parts.values()]
+    _draw(ax, parts, np.zeros(len(parts)))
+    for row, value in enumerate(sums):
         share = f" ({percent(value / total)})" if total else ""
         write_beside(ax, f"{value:.{decimals_of(total)}f}{share}", (value, row))
-    _finish(ax, sums.values())
+    _finish(ax, [*parts], sums)
     ax.set(title="Losses by component", xlabel=f"power loss, {unit}")
     return ax
 
 
 def plot_loss_sum(result: Result, ax: Axes) -> Axes:
-    """How the components add up to the total loss, the largest of each group first."""
-    start = 0.0
-    labels: list[str] = []
+    """How the components add up to the total loss, the largest first."""
     unit, scale = power_unit(result.total)
-    total, rows = result.total / scale, _rows(result, scale)
-    digits = decimals_of(total)
-    for group, colour in GROUP_COLOURS.items():
-        terms = [(watts, label) for label, own, watts in rows if own == group and watts]
-        for watts, label in sorted(terms, reverse=True):
-            _step(ax, len(labels), start, watts, colour, digits)
-            labels.append(label)
-            start += watts
-    _step(ax, len(labels), 0.0, total, SUM_COLOUR, digits)
-    ax.set_yticks(range(len(labels) + 1), [*labels, "total"])
-    _finish(ax, [total])
+    total, digits = result.total / scale, decimals_of(result.total / scale)
+    parts = {name: own for name, own in _parts(result, scale).items() if any(own.values())}
+    parts = dict(sorted(parts.items(), key=lambda it: (it[0] == OTHERS, -sum(it[1].values()))))
+    sums = np.array([sum(own.values()) for own in parts.values()])
+    ends = sums.cumsum()
+    _draw(ax, parts, ends - sums)
+    ax.barh(len(parts), total, color=SUM_COLOUR, **EDGE)
+    for row, (value, end) in enumerate(zip([*sums, total], [*ends, total], strict=True)):
+        write_beside(ax, f"{value:.{digits}f}", (end, row))
+    _finish(ax, [*parts, "total"], [total])
     ax.set(title="How the losses add up", xlabel=f"power loss, {unit}")
     return ax
 
 
-def _rows(result: Result, scale: float) -> list[tuple[str, str, float]]:
-    """Label, group and power of every bar: of every set, or what a single one loses by component.
+def plot_losses_beside(results: Mapping[str, Result], ax: Axes) -> Axes:
+    """The components of two results by their names, a bar for each."""
+    unit, scale = power_unit(max(result.total for result in results.values()))
+    found = [
+        {"total": result.total / scale}
+        | {name: sum(own.values()) for name, own in _parts(result, scale).items()}
+        for result in results.values()
+    ]
+    names = list(dict.fromkeys(itertools.chain.from_iterable(found)))
+    height = 0.8 / len(found)
+    for number, (name, own) in enumerate(zip(results, found, strict=True)):
+        places = np.arange(len(names)) + (number - (len(found) - 1) / 2) * height
+        watts = [own.get(label, 0.0) for label in names]
+        colour = COLOURS[0] if number else _light(COLOURS[0])
+        ax.barh(places, watts, height=height, color=colour, label=name, **EDGE)
+    _finish(ax, names, [own["total"] for own in found])
+    ax.set(title="Losses by component", xlabel=f"power loss, {unit}")
+    return ax
 
-    Where these are too many, all losses of a mesh, bearing or body are one.
+
+def _draw(ax: Axes, parts: Mapping[str, Mapping[str, float]], starts: FloatArray) -> None:
+    """Bars from `starts` on, a colour for each group."""
+    for group, colour in GROUP_COLOURS.items():
+        watts = np.array([own.get(group, 0.0) for own in parts.values()])
+        (rows,) = watts.nonzero()
+        ax.barh(rows, watts[rows], left=starts[rows], color=colour, label=group, **EDGE)
+        starts = starts + watts
+
+
+def _finish(ax: Axes, names: Sequence[str], watts: Iterable[float]) -> None:
+    ax.set_yticks(range(len(names)), names)
+    ax.invert_yaxis()
+    ax.grid(visible=False, axis="y")
+    ax.set_xlim(0, ROOM * max(watts, default=0.0) or 1.0)
+    legend_below(ax, ncols=2)
+
+
+def _parts(result: Result, scale: float) -> dict[str, dict[str, float]]:
+    """Power of every bar by group: of every set, or what a single one loses by component.
+
+    Where these are too many, all losses of a mesh, bearing or body are one, and the smallest
+    are put together.
     """
-    sums: dict[tuple[str, str], float] = {}
+    parts: dict[str, dict[str, float]] = {}
     labels = _labels(result)
     for term in result.terms:
         if term.name in labels:
-            key = in_words(labels[term.name]), term.group
-            sums[key] = sums.get(key, 0.0) + term.watts / scale
-    return [(label, group, power) for (label, group), power in sums.items()]
+            own = parts.setdefault(in_words(labels[term.name]), {})
+            own[term.group] = own.get(term.group, 0.0) + term.watts / scale
+    if len(parts) > MOST_ROWS:
+        by_size = sorted(parts, key=lambda name: -sum(parts[name].values()))
+        small = [parts.pop(name) for name in by_size[MOST_ROWS - 1 :]]
+        parts[OTHERS] = {
+            group: sum(own.get(group, 0.0) for own in small) for group in GROUP_COLOURS
+        }
+    return parts
 
 
 def _labels(result: Result) -> dict[str, str]:
@@ -102,25 +138,13 @@ def _labels(result: Result) -> dict[str, str]:
     return {name: component.rpartition("_")[0] for name, component in components.items()}
 
 
-def _step(ax: Axes, row: int, start: float, watts: float, colour: str, digits: int) -> None:
-    ax.barh(row, watts, left=start, color=colour, edgecolor="black", linewidth=0.5)
-    write_beside(ax, f"{watts:.{digits}f}", (start + watts, row))
-
-
-def _finish(ax: Axes, watts: Iterable[float]) -> None:
-    ax.invert_yaxis()
-    ax.grid(visible=False, axis="y")
-    ax.set_xlim(0, ROOM * max(watts, default=0.0) or 1.0)
-    handles = [Patch(facecolor=colour, label=group) for group, colour in GROUP_COLOURS.items()]
-    legend_below(ax, handles=handles, ncols=2)
-
-
 # How well a result is known: its distribution, and what that is due to.
 
 
 MOST_DRIVERS = 12
+RARE = 0.003  # Share of samples beyond each end of a distribution, which it leaves out. [1]
 TICKS = 6  # Most ticks under a distribution: its values have many digits.
-WIDE = (7.2, 4.2)  # Width and height of a picture with long names beside its bars. [inch]
+WIDE = (8.8, 4.6)  # Width and height of a picture with long names beside its bars. [inch]
 
 
 def drivers_figure(data: xr.Dataset) -> Figure:
@@ -170,15 +194,15 @@ def plot_shares(
     low, high = (end.to_numpy() for end in (own.min(over), own.max(over)))
     colours = [COLOURS[4 if key.startswith(MODEL_FORM) else 0] for key in drivers]
     middle = 100 * mean.to_numpy()
-    ax.barh(range(len(drivers)), middle, color=colours, edgecolor="black", linewidth=0.5)
+    ax.barh(range(len(drivers)), middle, color=colours, **EDGE)
     ax.hlines(range(len(drivers)), low, high, color="black", lw=1.2, label="minimum to maximum")
-    ax.set_yticks(range(len(drivers)), [_name(key) for key in drivers])
+    ax.set_yticks(range(len(drivers)), _names(data, drivers))
     ax.set(
         title="Causes of the uncertainty of the total loss",
         xlabel="share of its variance over the map, weighted with the loss, %",
     )
     for place, label in ((0, "inputs"), (4, "models")):
-        ax.barh([0], [0], color=COLOURS[place], edgecolor="black", linewidth=0.5, label=label)
+        ax.barh([0], [0], color=COLOURS[place], **EDGE, label=label)
     legend_below(ax, ncols=3)
     return ax
 
@@ -188,9 +212,19 @@ def _light(colour: str) -> tuple[float, ...]:
     return tuple((part + 2) / 3 for part in to_rgb(colour))
 
 
-def _name(key: str) -> str:
-    """``"model: sliding"``, or the key of an input."""
-    return f"model: {key.removeprefix(MODEL_FORM)}" if key.startswith(MODEL_FORM) else key
+def _names(data: xr.Dataset, drivers: Iterable[str]) -> list[str]:
+    """What inputs are called, or several that are correlated; with the set where two are alike."""
+    keys, names = (map(str, data[name].values) for name in ("input", "input_name"))
+    known = dict(zip(keys, names, strict=True))
+    found = [{key: in_few_words(known[key]) for key in it.split(" + ")} for it in drivers]
+    counts = Counter(name for own in found for name in own.values())
+    return [
+        " + ".join(
+            f"{name}, {key.split('.')[1]}" if counts[name] > 1 and key.startswith("sets.") else name
+            for key, name in own.items()
+        )
+        for own in found
+    ]
 
 
 def plot_drivers(
@@ -203,12 +237,12 @@ def plot_drivers(
     change = change.sortby(abs(change))[-MOST_DRIVERS:]
     keys = [str(key) for key in change["input"].values]
     models = [key.startswith(MODEL_FORM) for key in keys]
-    names = [_name(key) for key in keys]
+    names = _names(data, keys)
     for wanted, label, colour in ((False, "inputs", COLOURS[0]), (True, "models", COLOURS[4])):
         rows = [row for row, model in enumerate(models) if model == wanted]
         watts = change.values[rows]
-        ax.barh(rows, watts, color=colour, edgecolor="black", linewidth=0.5, label=label)
-        ax.barh(rows, -watts, color=_light(colour), edgecolor="black", linewidth=0.5)
+        ax.barh(rows, watts, color=colour, **EDGE, label=label)
+        ax.barh(rows, -watts, color=_light(colour), **EDGE)
     ax.set_yticks(range(len(names)), names)
     ax.axvline(0.0, color="black", lw=0.8)
     ax.set(
@@ -235,15 +269,18 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     values = one["value"].values * scale
     low, high, nominal = (float(one[key]) * scale for key in ("low", "high", "nominal"))
     ax.axvspan(low, high, color=COLOURS[5], alpha=0.25, label="95 % interval")
-    counts, edges = np.histogram(values[np.isfinite(values)], "auto")
+    values = values[np.isfinite(values)]
+    shown = tuple(np.quantile(values, (RARE, 1 - RARE)))
+    counts, edges = np.histogram(values, "auto", shown)
     ax.stairs(counts, edges, fill=True, color=COLOURS[0])
     ax.axvline(nominal, color=COLOURS[1], lw=1.6, label="case")
     ax.axvline(float(one["mean"]) * scale, color="black", lw=1.2, ls="--", label="mean")
     low_text, high_text = (f"{it:.2f}" if percent else format_number(it, 3) for it in (low, high))
     what = "total loss" if unit in {"W", "kW"} else "energy lost"
+    what, unit = ("efficiency", "%") if percent else (what, unit)
     ax.set(
-        title=f"95 %: {low_text} to {high_text} {'%' if percent else unit}",
-        xlabel="efficiency, %" if percent else f"{what}, {unit}",
+        title=f"{what.capitalize()}: 95 % from {low_text} to {high_text} {unit}",
+        xlabel=f"{what}, {unit}",
         ylabel="samples",
     )
     ax.xaxis.set_major_locator(MaxNLocator(TICKS))

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
@@ -26,7 +27,7 @@ from epicyclic.show.plots.style import (
     write_beside,
 )
 from epicyclic.study.friction import FrictionComparison, recommended
-from epicyclic.units import decimals_of, format_number
+from epicyclic.units import decimals_of
 
 # Planet bearing: which rollers carry, and where along their length.
 
@@ -119,8 +120,8 @@ MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power", "film_
 BOTH_WAYS = (FRICTION, "flash_temperature")  # Those drawn along the path of contact too.
 SAME = 1e-9  # Relative difference of coefficients of friction that are one number.
 NO_PEAK, PEAKED = 0.95, 1.15
-"""A scale of colours ends at this quantile where the highest value is more than so many times it:
-peaks at corners would take the scale from all the rest."""
+"""Half of a scale of colours ends at this quantile where the highest value is more than so many
+times it: peaks at corners would take the scale from all the rest."""
 MARGIN = 0.06  # Above a curve, of the height of the Axes.
 PATH_PLACES = 40  # Places on the path of contact at which values are taken together.
 
@@ -167,19 +168,19 @@ def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, 
     scale = np.ptp(path) / np.ptp(face)
     triangles = Triangulation(path, face * scale).triangles
     corners = Triangulation(path, face, triangles)
-    top, told = top_of_scale(values)
+    norm = scale_of(values, float(values.min()))
     drawn = ax.tripcolor(
-        corners, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True, vmax=top
+        corners, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True, norm=norm
     )
-    ax.figure.colorbar(drawn, ax=ax, label=f"{label}{told}", extend="max" if told else "neither")
+    ax.figure.colorbar(drawn, ax=ax, label=label)
 
 
-def top_of_scale(values: FloatArray) -> tuple[float, str]:
-    """Where a scale of colours ends, and what its label says of a peak beyond it."""
+def scale_of(values: FloatArray, low: float) -> Normalize:
+    """A scale of colours to the highest value; where that is a peak, it has half the colours."""
     highest, limit = float(values.max()), float(np.quantile(values, NO_PEAK))
-    if highest > PEAKED * limit > 0:
-        return limit, f"; highest {format_number(highest, 3)}"
-    return highest, ""
+    if highest > PEAKED * limit > PEAKED * max(0.0, low):
+        return TwoSlopeNorm(limit, low, highest)
+    return Normalize(low, highest)
 
 
 def _say(ax: Axes, text: str) -> None:
@@ -191,12 +192,11 @@ def plot_pair_loads(mesh: xr.Dataset, ax: Axes) -> Axes:
     """Load of every tooth pair over the roll angle of member 1, through its whole engagement."""
     angle = mesh["roll_angle"] + mesh["contact_line"] * float(mesh.attrs["pitch_angle_deg"])
     order = ("contact_line", "mesh_position")
-    ax.plot(
-        angle.transpose(*order).to_numpy().ravel(),
-        mesh["pair_load"].transpose(*order).to_numpy().ravel(),
-        marker=".",
-        ms=3,
-    )
+    angles, loads = (one.transpose(*order).to_numpy().ravel() for one in (angle, mesh["pair_load"]))
+    carrying = np.flatnonzero(loads > 0)
+    shown = slice(None) if not carrying.size else slice(max(0, carrying[0] - 1), carrying[-1] + 2)
+    ax.plot(angles[shown], loads[shown], marker=".", ms=3)
+    ax.set_ylim(bottom=0.0)
     ax.set(
         title="Load of one tooth pair through its engagement",
         xlabel=label_of(mesh["roll_angle"]),

@@ -37,20 +37,18 @@ LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")  # Beside colours, for prints in grey.
 PANEL = (4.8, 3.4)  # Width and height of one of the Axes of a figure. [inch]
 BELOW = 0.42  # Room for the ticks and the label of an x axis. [inch]
-PIXELS = 1920  # Width of a picture, if nothing else is asked for: that of a slide.
+WIDTH, DPI = 8.8, 218.0
+"""Width of a picture, and pixels an inch: letters have one size, that of a slide of 1920 pixels."""
 AROUND = 0.95  # Height that title, ticks and label of the x axis take from a row of Axes. [inch]
 SMALL_CHARACTERS, CHARACTERS = 19, 16  # That fit into an inch of a legend, and of a label.
 CHARACTER_POINTS = 132  # Characters in an inch of a line, times the size of its letters in points.
-SMALL_POINTS, MEDIUM_POINTS, TITLE_POINTS = 7.5, 9.0, 10.8  # Sizes of letters.
-TITLE_SHARE, CAPTION_SHARE = 1.1, 0.85
-"""Points of title and caption for an inch of a wide figure: it is made smaller on a slide."""
+SMALL_POINTS, MEDIUM_POINTS, TITLE_POINTS = 7.5, 9.0, 11.0  # Sizes of letters.
 TITLE_CHARACTERS = 11
 """Those of a title for an inch of the room of its Axes, which start beside their ticks. [1/inch]"""
 SHORT_SPAN = 300
 """Largest over smallest value of an axis with logarithms on which 2 and 5 have labels too. [1]"""
 SHORTEST = 12  # Characters of a line of a label, at least.
 ENTRY = 0.45  # Room in a legend, beside the text of an entry. [inch]
-WIDE = 9.0  # Width of a figure from which on its caption has larger letters. [inch]
 LEGEND_ROW, LEGEND_REST = 0.2, 0.45
 """Height of a line of the legend of a figure, and of what is above it. [inch]"""
 
@@ -63,7 +61,8 @@ STYLE: Any = {
     "axes.spines.right": False,
     "axes.titlesize": "medium",
     "axes.titlelocation": "left",
-    "font.size": 9.0,
+    "font.size": MEDIUM_POINTS,
+    "axes.titleweight": "bold",
     "svg.fonttype": "none",
 }
 
@@ -78,22 +77,16 @@ def styled_figure(
     projection: str | None = None,  # ``"polar"``.
     # Width and height of the whole; default: that of all panels. [inch]
     size: tuple[float, float] | None = None,
-    dpi: float | None = None,  # Pixels an inch; default: such that it is `PIXELS` wide.
+    dpi: float | None = None,  # Pixels an inch; default: `DPI`.
     caption: str = "",  # Below all, as the operating point; none if empty.
 ) -> Iterator[tuple[Figure, Any]]:
     """A figure and its array of Axes, drawn in the style of the package."""
     with mpl.rc_context(STYLE):
         size = size or (panel[0] * columns, panel[1] * rows)
-        figure = Figure(figsize=size, dpi=dpi or PIXELS / size[0], layout="constrained")
+        figure = Figure(figsize=size, dpi=dpi or DPI, layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, subplot_kw={"projection": projection})
         if title:
-            figure.suptitle(
-                title,
-                x=0.01,
-                ha="left",
-                fontsize=max(TITLE_POINTS, TITLE_SHARE * size[0]),
-                fontweight="bold",
-            )
+            figure.suptitle(title, x=0.01, ha="left", fontsize=TITLE_POINTS, fontweight="bold")
         if caption:
             caption_below(figure, caption)
         yield figure, axes
@@ -113,12 +106,11 @@ def _break_labels(figure: Figure, rows: int) -> None:
 def caption_below(figure: Figure, caption: str) -> None:
     """What a figure is of, as the operating point, in small letters below all."""
     width = float(figure.get_size_inches()[0])
-    points = SMALL_POINTS if width <= WIDE else max(MEDIUM_POINTS, CAPTION_SHARE * width)
     figure.supxlabel(
-        textwrap.fill(caption, max(1, int(width * CHARACTER_POINTS / points))),
+        textwrap.fill(caption, max(1, int(width * CHARACTER_POINTS / SMALL_POINTS))),
         x=0.01,
         ha="left",
-        fontsize=points,
+        fontsize=SMALL_POINTS,
         color="0.3",
     )
 
@@ -226,10 +218,10 @@ def label_of(variable: xr.DataArray) -> str:
 
 
 def in_percent(values: xr.DataArray) -> xr.DataArray:
-    """`values`, an efficiency in percent."""
+    """`values`, an efficiency in percent where anything comes out."""
     if values.name != "efficiency":
         return values
-    return (100 * values).assign_attrs(values.attrs | {"units": "%"})
+    return (100 * values.where(values > 0)).assign_attrs(values.attrs | {"units": "%"})
 
 
 def title_of(variable: xr.DataArray) -> str:

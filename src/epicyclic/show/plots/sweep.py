@@ -199,7 +199,7 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     for place, (_, ticks) in zip(places, columns, strict=True):
         ax.axvline(place, color="black", lw=0.8)
         for height, text in ticks:
-            write_beside(ax, text, (place, height), fontsize="x-small", bbox=_BACKGROUND)
+            write_beside(ax, text, (place, height), fontsize="small", bbox=_BACKGROUND)
     labels = [_axis_label(data, dim) for dim in dims]
     labels += [label_of(array) for array in arrays[len(dims) :]]
     ax.set_xticks(places, [_wrapped(label) for label in labels], fontsize="small")

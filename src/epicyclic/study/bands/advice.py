@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import sqrt
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 
 # How well a result is known: what sentences about it need, however it was found.
+
+MOST_DRIVERS = 3  # Inputs and models that are named after a band.
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +75,7 @@ def known_of(data: xr.Dataset) -> Known:
 
 # What limits the trust in a result, and what would raise it most.
 
+_KEY = re.compile(r"[\w.-]+\.[\w.-]+")
 LEAST = 0.02
 """Share in the variance of the total from which a value is said to limit the trust. [1]"""
 CONCERNED = 0.05  # Part of the total loss from which a warning matters. [1]
@@ -131,6 +135,14 @@ def _keys(driver: str) -> list[str]:
 def called(known: Known, driver: str) -> str:
     """The name of one value, or of several that are correlated."""
     return " + ".join(known.names[key] for key in _keys(driver))
+
+
+def in_few_words(name: str) -> str:
+    """The name of an input, ``"roughness of S sun"`` where that is its key."""
+    if not _KEY.fullmatch(name):
+        return name
+    *owners, last = name.replace("_", " ").split(".")
+    return f"{last} of {' '.join(one for one in owners if one not in ('sets', 'gears'))}"
 
 
 def _left(known: Known, name: str, uncertainty: float) -> float:

@@ -20,6 +20,7 @@ from epicyclic.machine.element import OIL
 from epicyclic.machine.heat import NetworkModel
 from epicyclic.messages import did_you_mean, written
 from epicyclic.result.result import Layout, number_fields
+from epicyclic.study.heat import with_network
 from epicyclic.study.maps.tables import Lookup, check_map, map_case, map_inputs
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.study.solve import solve
@@ -666,10 +667,7 @@ def lumped(case: Case) -> dict[str, float]:
     Raises `InputError` if no temperatures follow from the losses, or what the case stores is not
     known.
     """
-    if not case.computed:
-        allowed = "has given losses only, from which no temperatures can be computed."
-        raise one_problem("case", "", allowed, "Choose a case with an oil.")
-    warm = case.updated({"models.temperatures": "network"})
+    warm = with_network(case)
     model = build(warm).thermal
     assert isinstance(model, NetworkModel)
     capacity = sum(model.capacities().values())

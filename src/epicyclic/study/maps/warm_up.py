@@ -15,7 +15,7 @@ from scipy.interpolate import PchipInterpolator
 
 from epicyclic.build.machine import build, term_nodes
 from epicyclic.case.case import Case
-from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
+from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import OIL, joined_key
 from epicyclic.machine.heat import AMBIENT, HOTTEST, NetworkModel
@@ -26,6 +26,7 @@ from epicyclic.machine.solve import Solution, solve_machine
 from epicyclic.messages import refused, written
 from epicyclic.result.result import origin
 from epicyclic.schema.fields import quantity_of
+from epicyclic.study.heat import check_oil
 from epicyclic.study.maps.compute import held_shaft, map_plan, resolving_zero
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of
@@ -329,9 +330,7 @@ def _knots(low: float, high: float) -> list[float]:
 
 def _parsed(case: Case, duration: Any, start: Any) -> tuple[float, float]:
     """Duration [s] and temperature at the start [K]; raises `InputError` for all that is wrong."""
-    if not case.computed:
-        allowed = "has given losses only, from which no temperatures can be computed."
-        raise one_problem("case", "", allowed, "Choose a case with an oil.")
+    check_oil(case)
     found, problems = [], []
     if start is None:
         start = CELSIUS.exact_text(case.thermal.ambient_temperature)

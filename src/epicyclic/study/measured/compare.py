@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -23,12 +22,12 @@ from epicyclic.study.measured.comparison import (
     CALIBRATED,
     MeasuredComparison,
     all_errors,
-    near_values,
     notes_on,
 )
 from epicyclic.study.measured.fit import Tell, fit_parameters
 from epicyclic.study.measured.intervals import Fit, reaches
 from epicyclic.study.measured.residuals import Computed, MeasuredPoints
+from epicyclic.study.measured.rig import NO_RIG, Rig, rows_where
 from epicyclic.study.measured.table import (
     LOAD_DEPENDENT,
     Grid,
@@ -63,6 +62,7 @@ class Question:
     load_dependent: LoadDependent  # As for `compare_measured`.
     group: str | None  # As for `compare_measured`.
     table: Measurements
+    rig: Rig = NO_RIG
 
     def problems(self) -> Iterator[Problem]:
         """What is wrong with the question, beside mistakes in the table."""
@@ -111,10 +111,15 @@ def ask(
     component: str = "total",
     load_dependent: LoadDependent = COMPUTED,
     group: str | None = None,
+    rig: Rig = NO_RIG,
 ) -> Question:
     """The question with its measurements; raises `InputError` with every mistake in them."""
-    table = parse_measurements(grid, case, component)
-    return Question(case, grid, component, load_dependent, group, table)
+    grid = rig.grid(grid)
+    table = rig.losses(parse_measurements(grid, case, component))
+    if rig.unloaded and LOAD_DEPENDENT in table.component:  # what was measured is so computed
+        load_dependent = AS_TESTED
+    rig = replace(rig, torque_uncertainty="")  # the cells have it
+    return Question(case, grid, component, load_dependent, group, table, rig)
 
 
 def check_any(given: Computed) -> None:
@@ -148,7 +153,7 @@ class ComparisonPlan(PointList):
         asked = content["question"]
         rows = ((line, tuple(cells)) for line, cells in asked["rows"])
         grid = Grid(tuple(asked["header"]), tuple(rows), asked["measured"])
-        how = (asked["component"], asked["load_dependent"], asked["group"])
+        how = (asked["component"], asked["load_dependent"], asked["group"], Rig(**asked["rig"]))
         return cls.of(ask(build_case(content["case"], {}, source), grid, *how))
 
     def describe(self) -> dict[str, Any]:
@@ -161,6 +166,7 @@ class ComparisonPlan(PointList):
             "component": asked.component,
             "load_dependent": asked.load_dependent,
             "group": asked.group,
+            "rig": asdict(asked.rig),
         }
         return {**CasePlan.describe(self), "case": asked.case.given(), "question": about}
 
@@ -196,8 +202,6 @@ def _tested_problems(case: Case, table: Measurements, load_dependent: str) -> It
 # A fit never passes for a prediction: what it touched is named ``calibrated`` everywhere, and its
 # errors are given apart for the points it used and for those held out.
 
-_EQUATION = re.compile(r"(?P<column>[^=]+)=(?P<value>.*)")
-
 
 def compare_measured(
     case: Case,
@@ -211,6 +215,7 @@ def compare_measured(
     seed: int = 0,
     relative: float | None = None,
     confidence: float = 0.95,
+    rig: Rig = NO_RIG,
     form: TableForm = AS_IT_IS,
     jobs: int | None = None,
     dask: str | None = None,
@@ -249,6 +254,8 @@ def compare_measured(
         Standard uncertainty of all losses over them, of a table without such a column. [1]
     confidence : float, optional
         Confidence of the intervals of fitted values. [1]
+    rig : Rig, optional
+        How the losses of the set under test follow from those of a whole rig.
     form : TableForm, optional
         How a file is to be read, where it does not say so itself.
     jobs, dask, progress
@@ -271,7 +278,7 @@ def compare_measured(
     """
     runner = Runner(jobs, dask, journal=journal, progress=progress)
     grid = read_grid(measured, form)
-    question = ask(case, grid, component, load_dependent, group)
+    question = ask(case, grid, component, load_dependent, group, rig)
     table = question.table
     if relative is not None:
         raise_any(_relative_problems(table, relative), "the comparison")
@@ -330,20 +337,7 @@ def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> B
         drawn = np.random.default_rng(seed).permutation(count)[: round(share * count)]
         chosen[drawn] = True
         return chosen
-    match = _EQUATION.fullmatch(str(hold_out))
-    column = match["column"].strip() if match else ""
-    if match is None or column not in table.labels:
-        allowed = "must be COLUMN=VALUE, or a share between 0 and 1."
-        remedy = f"Columns are {', '.join(table.labels)}."
-        raise one_problem("hold_out", str(hold_out), allowed, remedy, "the comparison")
-    wanted = match["value"].strip()
-    cells = zip(table.labels[column], near_values(table.labels[column]), strict=True)
-    chosen = np.array([_same(cell, wanted) or _same(near, wanted) for cell, near in cells])
-    if not chosen.any():
-        values = ", ".join(dict.fromkeys(table.labels[column]))
-        allowed = f"matches no row; {column} has {values[:200]}."
-        raise one_problem("hold_out", str(hold_out), allowed, "Give one of them.", "the comparison")
-    return chosen
+    return rows_where(table, str(hold_out), "hold_out")
 
 
 def _share(hold_out: str | float) -> float | None:
@@ -352,14 +346,6 @@ def _share(hold_out: str | float) -> float | None:
     except ValueError:
         return None
     return share if 0 < share < 1 else None
-
-
-def _same(cell: str, wanted: str) -> bool:
-    """Equal as text or as numbers."""
-    try:
-        return cell == wanted or float(cell) == float(wanted)
-    except ValueError:
-        return False
 
 
 def make_parameters(

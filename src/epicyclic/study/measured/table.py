@@ -86,10 +86,13 @@ FloatArray = NDArray[np.float64]
 
 LOAD_DEPENDENT = "load_dependent"  # Sum of the losses that depend on the load, as a component.
 
-_OWN = (*AXES, "loss", "uncertainty", "component")
+SENSOR = "torque_uncertainty"
+"""Column of the standard uncertainty of each measured torque."""
+_OWN = (*AXES, "loss", "torque_loss", "uncertainty", SENSOR, "component")
 _EXAMPLES = {name: part.unit for name, part in OPERATING.items()} | {"loss": WATT.display}
 _PERCENT, _UNIT_OF_PARTS = "%", "dimensionless"
 _EFFICIENCY, _TORQUE_OUT, _SPEED_OUT = "efficiency", "output_torque", "output_speed"
+_TORQUE_LOSS = "torque_loss"
 """Columns from which the total loss follows where it is no column itself."""
 _RAD_PER_S = math.pi / 30  # One rpm.
 _NUMBER_WITH_UNIT = re.compile(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?\s*(?![eE][+-]?\d)[^\d\s.,].*")
@@ -189,9 +192,11 @@ def parse_measurements(
         for name, key in _conditions(case).items()
     }
     loss = _loss(columns, conditions, case, problems)
-    uncertainty = _uncertainty(columns.get("uncertainty"), loss, problems)
+    uncertainty = _uncertainty(columns, loss, problems)
+    if uncertainty is None and SENSOR in columns:
+        uncertainty = _of_torques(columns, conditions, loss, case, problems)
     components = _components(columns.get("component"), component, case, grid, problems)
-    total = columns.keys() & {_EFFICIENCY, _TORQUE_OUT} and "loss" not in columns
+    total = _two_torques(columns)
     if total and set(components) != {"total"}:
         allowed = "is stated by an efficiency or two torques only if it is the total."
         problems.found.append(Problem("component", first_of(components), allowed, "Give losses."))
@@ -274,8 +279,9 @@ def _examples(columns: Collection[str], headers: tuple[str, ...]) -> Iterator[tu
         remedy = missing_remedy("Add", name, unit, headers)
         if name != "loss":
             yield name, remedy
-        elif not {_EFFICIENCY, _TORQUE_OUT} & set(columns):
-            yield name, f"{remedy} Or add {_EFFICIENCY} [%] or {_TORQUE_OUT} [N*m]."
+        elif not {_EFFICIENCY, _TORQUE_OUT, _TORQUE_LOSS} & set(columns):
+            others = f"{_TORQUE_LOSS} [N*m], {_EFFICIENCY} [%] or {_TORQUE_OUT} [N*m]"
+            yield name, f"{remedy} Or add {others}."
 
 
 def _name_problem(column: _Column, case: Case) -> Problem | None:
@@ -327,7 +333,10 @@ def _loss(
     problems: _Problems,
 ) -> FloatArray:
     """The measured loss, or that which an efficiency or a second torque implies. [W]"""
-    if "loss" in columns or not {_EFFICIENCY, _TORQUE_OUT} & columns.keys():
+    if _TORQUE_LOSS in columns and "loss" not in columns:
+        taken = _numbers(columns[_TORQUE_LOSS], NEWTON_METRE, problems)
+        return taken * np.abs(conditions["speed"]) * _RAD_PER_S
+    if not _two_torques(columns):
         return _numbers(columns.get("loss"), WATT, problems)
     power = conditions["torque"] * conditions["speed"] * _RAD_PER_S
     if _EFFICIENCY in columns:
@@ -344,12 +353,55 @@ def _loss(
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(power > 0, power * (1 - share), -power * (1 / share - 1))
     torque = _numbers(columns[_TORQUE_OUT], NEWTON_METRE, problems)
-    if _SPEED_OUT in columns:
-        speed = _numbers(columns[_SPEED_OUT], RPM, problems)
-    else:
-        speed = conditions["speed"] * _ratios(columns.get(STATE), case, torque.size)
+    speed = _speed_out(columns, conditions, case, problems)
     leaving = np.abs(torque * speed) * _RAD_PER_S
     return np.where(power > 0, power - leaving, leaving + power)
+
+
+def _two_torques(columns: Collection[str]) -> bool:
+    """True if the loss is the difference of the powers at the two ends."""
+    return bool({_EFFICIENCY, _TORQUE_OUT} & set(columns)) and not (
+        {"loss", _TORQUE_LOSS} & set(columns)
+    )
+
+
+def _speed_out(
+    columns: Mapping[str, _Column],
+    conditions: Mapping[str, FloatArray],
+    case: Case,
+    problems: _Problems,
+) -> FloatArray:
+    """Of the output. [rpm]"""
+    if _SPEED_OUT in columns:
+        return _numbers(columns[_SPEED_OUT], RPM, problems)
+    speed = conditions["speed"]
+    return speed * _ratios(columns.get(STATE), case, speed.size)
+
+
+def _of_torques(
+    columns: Mapping[str, _Column],
+    conditions: Mapping[str, FloatArray],
+    loss: FloatArray,
+    case: Case,
+    problems: _Problems,
+) -> FloatArray:
+    """Standard uncertainty of the loss, from that of one torque, or of two independent ones. [W]"""
+    column, two = columns[SENSOR], _two_torques(columns)
+    entering = np.abs(conditions["torque"] * conditions["speed"]) * _RAD_PER_S
+    powers = [entering, np.abs(entering - loss)] if two else [np.abs(loss)]
+    if column.unit == _PERCENT:
+        share = _read(column, problems, _finite) / 100
+        parts = [share * power for power in powers]
+    else:
+        torque = _numbers(column, NEWTON_METRE, problems) * _RAD_PER_S
+        speeds = [conditions["speed"]]
+        speeds += [_speed_out(columns, conditions, case, problems)] if two else []
+        parts = [torque * np.abs(speed) for speed in speeds]
+    found = np.sqrt(sum(part**2 for part in parts))
+    for row in np.flatnonzero(found <= 0):
+        remedy = "Give the standard uncertainty of the torque as [N*m]."
+        problems.cell(column, int(row), "leaves a loss without uncertainty.", remedy)
+    return np.asarray(found)
 
 
 def _ratios(states: _Column | None, case: Case, count: int) -> FloatArray:
@@ -403,11 +455,15 @@ def _finite(cell: str) -> float:
 
 
 def _uncertainty(
-    column: _Column | None, loss: FloatArray, problems: _Problems
+    columns: Mapping[str, _Column], loss: FloatArray, problems: _Problems
 ) -> FloatArray | None:
     """Standard uncertainties in W, from W or from per cent of the loss."""
+    column = columns.get("uncertainty")
     if column is None:
         return None
+    if SENSOR in columns:
+        allowed = "is given together with uncertainty, which is that of the loss."
+        problems.found.append(Problem(SENSOR, "", allowed, "Keep one of them."))
     if column.unit == _PERCENT:
         values = _read(column, problems, _finite) / 100 * np.abs(loss)
     else:

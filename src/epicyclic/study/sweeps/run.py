@@ -176,7 +176,7 @@ def _files(case: Case) -> Iterator[str]:
     tables: list[Any] = [case.models]
     if isinstance(case, TrainCase):
         tables += [table.models for table in case.sets.values() if hasattr(table, "models")]
-        tables += [table for _, _, table in case.elements]
+    tables += [table for _, _, table in case.elements]
     for table in tables:
         for key in FILE_KEYS:
             file = getattr(table, key, None)

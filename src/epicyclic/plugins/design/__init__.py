@@ -1,0 +1,13 @@
+"""Choosing gears: safeties, masses, relief, and the search for designs."""
+
+from epicyclic.registry import PlugIn
+
+PLUG_IN = PlugIn(
+    commands={
+        "strength": "commands:strength",
+        "design": "commands:design",
+        "relief": "commands:relief",
+    },
+    details={"strength": "tables:strength_tables"},
+    names={"strength": "strength:strength", "design": "search:design"},
+)

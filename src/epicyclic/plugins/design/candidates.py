@@ -1,0 +1,642 @@
+"""Candidates of a task: enumerated, screened by what is known without solving, written as cases.
+
+Arrays over all candidates. A screen may only reject what the full computation would reject too, so
+strengths are bounds: load factors are 1 but for K_A, and limits are higher than any case gets.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from epicyclic.case.tables.strength import GearStrength, StrengthTable
+from epicyclic.errors import InputError, Problem
+from epicyclic.gears.gear import BasicRack
+from epicyclic.gears.mesh import closing_number, profile_shift_sum
+from epicyclic.plugins.design import iso_6336 as iso
+from epicyclic.plugins.design.strength import Material, material_of
+from epicyclic.plugins.design.task import Task
+
+FloatArray = NDArray[np.float64]
+Gears = dict[str, FloatArray]
+Row = Mapping[str, Any]
+
+BOUND_FRICTION = 0.012  # Less than any lubricated mesh has in its mean (estimate). [1]
+BEST_LIMIT = 1.2  # Z_L Z_v Z_R Z_W at their best, about. [1]
+LEAST_ROOT = 2.0  # Y_F Y_S of any tooth, about. [1]
+LEAST_HELIX = 0.75  # Y_beta. [1]
+TIP_ROOM = 0.35  # Roll length between base circle of a planet and tip of its ring. [modules]
+COARSE = {"mesh_positions": 12, "contact_segments": 12, "bearing_slices": 10}
+"""Numerics of designs, unless the task states others."""
+STEEL = 206e9 / (1 - 0.3**2)
+
+
+@dataclass(frozen=True, slots=True)
+class MeshOf:
+    """One mesh of an arrangement: its gears, and what it transmits for an input of 1."""
+
+    first: str
+    second: str
+    internal: bool
+    set: str  # "1" or "2": the stage.
+    torque: Callable[[Gears], FloatArray]  # At the first gear, all planets together.
+    speed: Callable[[Gears], FloatArray]  # Of the first gear against the carrier.
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """An arrangement of gears."""
+
+    gears: tuple[str, ...]
+    meshes: tuple[MeshOf, ...]
+    ratio: Callable[[Gears], FloatArray]
+    teeth: Callable[[Task], Iterator[tuple[int, ...]]]  # In the order of `gears`.
+    stages: int = 1
+
+
+def _simple(z: Gears, one: str = "") -> FloatArray:
+    return 1 + z[f"ring{one}"] / z[f"sun{one}"]
+
+
+def _planetary_meshes(one: str, torque: Callable[[Gears], FloatArray]) -> tuple[MeshOf, MeshOf]:
+    """Sun in, carrier out, ring held; `torque` of its sun over that of the input."""
+
+    def speed(z: Gears) -> FloatArray:
+        return (1 - 1 / _simple(z, one)) / torque(z)
+
+    def planet(z: Gears) -> FloatArray:
+        return z[f"planet{one}"] / z[f"sun{one}"]
+
+    stage = one or "1"
+    return (
+        MeshOf(f"sun{one}", f"planet{one}", False, stage, torque, speed),
+        MeshOf(
+            f"planet{one}",
+            f"ring{one}",
+            True,
+            stage,
+            lambda z: torque(z) * planet(z),
+            lambda z: speed(z) / planet(z),
+        ),
+    )
+
+
+def _teeth_of_set(low: int, high: int, ratio: float) -> Iterator[tuple[int, int, int]]:
+    """Sun, planet and ring near a ratio: the ring has as many as sun and two planets."""
+    for sun in range(low, high + 1):
+        nearest = round(((ratio - 1) * sun - sun) / 2)
+        for planet in range(max(12, nearest - 1), nearest + 2):
+            yield sun, planet, sun + 2 * planet
+
+
+def _pair_teeth(task: Task) -> Iterator[tuple[int, ...]]:
+    low, high = task.choices.pinion_teeth
+    for pinion in range(low, high + 1):
+        wanted = round(task.ratio * pinion)
+        for gear in range(max(low, wanted - 1), wanted + 2):
+            yield pinion, gear
+
+
+def _planetary_teeth(task: Task) -> Iterator[tuple[int, ...]]:
+    yield from _teeth_of_set(*task.choices.pinion_teeth, task.ratio)
+
+
+def _stepped_teeth(task: Task) -> Iterator[tuple[int, ...]]:
+    low, high = task.choices.pinion_teeth
+    for sun in range(low, high + 1):
+        for wide in range(sun, 4 * sun + 1, 2):
+            for narrow in range(max(low, wide // 3), wide):
+                ring = sun + wide + narrow
+                ratio = 1 + wide * ring / (sun * narrow)
+                if abs(ratio / task.ratio - 1) < 2 * task.limits.ratio_error:
+                    yield sun, wide, narrow, ring
+
+
+def _wolfrom_teeth(task: Task) -> Iterator[tuple[int, ...]]:
+    low, high = task.choices.pinion_teeth
+    steps = [it for it in range(-task.choices.step, task.choices.step + 1) if it]
+    for sun in range(low, high + 1):
+        for wide in range(max(low, sun // 2), 4 * sun + 1):
+            for step in steps:
+                fixed = sun + 2 * wide
+                if wide + step >= low:
+                    yield sun, wide, wide + step, fixed, fixed + step
+
+
+def _two_stage_teeth(task: Task) -> Iterator[tuple[int, ...]]:
+    low, high = task.choices.pinion_teeth
+    root = math.sqrt(task.ratio)
+    for first in (0.85 * root, root, 1.15 * root):
+        if min(first, task.ratio / first) < 2.5:
+            continue
+        for one in _teeth_of_set(low, high, first):
+            second = task.ratio / (1 + one[2] / one[0])
+            for sun in range(low, high + 1, 3):
+                planet = round((second - 2) * sun / 2)
+                if planet >= 12:
+                    yield (*one, sun, planet, sun + 2 * planet)
+
+
+def _whole(z: Gears) -> FloatArray:
+    """All that the input has."""
+    return np.ones(len(next(iter(z.values()))))
+
+
+def _stepped_ratio(z: Gears) -> FloatArray:
+    return 1 + z["wide"] * z["ring"] / (z["sun"] * z["narrow"])
+
+
+def _wolfrom_ratio(z: Gears) -> FloatArray:
+    train = z["fixed_ring"] * z["narrow"] / (z["wide"] * z["output_ring"])
+    return (1 + z["fixed_ring"] / z["sun"]) / (1 - train)
+
+
+def _wolfrom_speed(z: Gears) -> FloatArray:
+    """Of the planet against the carrier, for an input of 1."""
+    return (1 - 1 / (1 + z["fixed_ring"] / z["sun"])) * z["sun"] / z["wide"]
+
+
+LAYOUTS: dict[str, Layout] = {
+    "pair": Layout(
+        ("pinion", "gear"),
+        (MeshOf("pinion", "gear", False, "1", _whole, _whole),),
+        lambda z: z["gear"] / z["pinion"],
+        _pair_teeth,
+    ),
+    "planetary": Layout(
+        ("sun", "planet", "ring"),
+        _planetary_meshes("", _whole),
+        _simple,
+        _planetary_teeth,
+    ),
+    "stepped": Layout(
+        ("sun", "wide", "narrow", "ring"),
+        (
+            MeshOf("sun", "wide", False, "1", _whole, lambda z: 1 - 1 / _stepped_ratio(z)),
+            MeshOf("narrow", "ring", True, "1", lambda z: z["wide"] / z["sun"],
+                   lambda z: z["sun"] / z["wide"] * (1 - 1 / _stepped_ratio(z))),
+        ),
+        _stepped_ratio,
+        _stepped_teeth,
+    ),
+    "wolfrom": Layout(
+        ("sun", "wide", "narrow", "fixed_ring", "output_ring"),
+        (
+            MeshOf("sun", "wide", False, "1", _whole,
+                   lambda z: 1 - 1 / (1 + z["fixed_ring"] / z["sun"])),
+            MeshOf("wide", "fixed_ring", True, "1",
+                   lambda z: np.abs(_wolfrom_ratio(z) - 1) * z["wide"] / z["fixed_ring"],
+                   _wolfrom_speed),
+            MeshOf("narrow", "output_ring", True, "1",
+                   lambda z: np.abs(_wolfrom_ratio(z)) * z["narrow"] / z["output_ring"],
+                   _wolfrom_speed),
+        ),
+        _wolfrom_ratio,
+        _wolfrom_teeth,
+    ),
+    "two-stage": Layout(
+        ("sun", "planet", "ring", "sun2", "planet2", "ring2"),
+        (*_planetary_meshes("", _whole), *_planetary_meshes("2", _simple)),
+        lambda z: _simple(z) * _simple(z, "2"),
+        _two_stage_teeth,
+        stages=2,
+    ),
+}  # fmt: skip
+"""By the names of `choices.arrangements`."""
+SHARED = ("planets", "module", "helix", "shift", "distance_shift", "width_ratio", "module2")
+
+
+def enumerate_all(task: Task) -> pd.DataFrame:
+    """Every candidate of a task, one a row: arrangement, teeth by gear, and what is shared."""
+    parts = [_of_arrangement(task, name) for name in dict.fromkeys(task.choices.arrangements)]
+    table = pd.concat(parts, ignore_index=True)
+    if table.empty:
+        raise InputError(
+            [
+                Problem(
+                    "choices.pinion_teeth",
+                    ", ".join(map(str, task.choices.pinion_teeth)),
+                    f"allow no gears of the ratio {task.ratio:g}.",
+                    "Allow more teeth or other arrangements.",
+                )
+            ],
+            task.title,
+        )
+    return table
+
+
+def _of_arrangement(task: Task, name: str) -> pd.DataFrame:
+    layout, choices = LAYOUTS[name], task.choices
+    teeth = np.array([*layout.teeth(task)], dtype=float).reshape(-1, len(layout.gears))
+    planets = (1,) if name == "pair" else choices.planets
+    later = choices.module if layout.stages == 2 else (math.nan,)
+    axes = (
+        planets, choices.module, choices.helix_angle, choices.profile_shift,
+        choices.distance_shift, choices.width_ratio, later,
+    )  # fmt: skip
+    places = np.indices((len(teeth), *map(len, axes))).reshape(len(axes) + 1, -1)
+    columns = {gear: teeth[places[0], place] for place, gear in enumerate(layout.gears)}
+    columns |= {
+        key: np.array(values, dtype=float)[places[place]]
+        for place, (key, values) in enumerate(zip(SHARED, axes, strict=True), start=1)
+    }
+    return pd.DataFrame({"arrangement": name, **columns})
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What follows of some candidates of one arrangement without solving; lengths in metres."""
+
+    ratio: FloatArray
+    diameter: FloatArray
+    width: FloatArray
+    mass: FloatArray
+    margins: dict[str, FloatArray]  # By the limit: what is over what must be, 1 or more is met.
+    loss: FloatArray  # Less than the load-dependent loss over the cycle can be. [W]
+
+
+def inverse_involute(value: FloatArray) -> FloatArray:
+    """Of arrays, by Newton's method from above."""
+    angle = np.minimum(np.cbrt(3 * value), np.arctan(value + math.pi / 2))
+    for _ in range(12):
+        tangent = np.tan(angle)
+        angle = angle - (tangent - angle - value) / tangent**2
+    return angle
+
+
+def lives_at(cycles: FloatArray, knees: tuple[tuple[float, float], ...]) -> FloatArray:
+    """`iso_6336.life_factor` of arrays. [1]"""
+    at, factors = np.log(np.array(knees)).T
+    found: FloatArray = np.exp(np.interp(np.log(np.maximum(cycles, 1.0)), at, factors))
+    return found
+
+
+def ring_tip(usual: Any, base: Any, action: Any, module: Any) -> Any:
+    """Tip radius of a ring: the usual one, or that which leaves the involute of the planet. [m]"""
+    return np.maximum(usual, np.hypot(base, action + TIP_ROOM * module))
+
+
+def distances(task: Task, table: pd.DataFrame, stage: str = "1") -> FloatArray:
+    """Centre distance of a stage. [m]"""
+    one, two = ("pinion", "gear") if "pinion" in table else ("sun", "planet")
+    if "wide" in table:
+        two = "wide"
+    if stage == "2":
+        one, two = "sun2", "planet2"
+    module = table["module2" if stage == "2" else "module"].to_numpy()
+    total = (table[one] + table[two]).to_numpy() / (2 * np.cos(table["helix"].to_numpy()))
+    found: FloatArray = module * (total + table["distance_shift"].to_numpy())
+    return found
+
+
+def sizes(task: Task, table: pd.DataFrame) -> Sizes:
+    """Sizes and bounds of the candidates of one arrangement."""
+    name = str(table["arrangement"].iloc[0])
+    layout = LAYOUTS[name]
+    z = {gear: table[gear].to_numpy() for gear in layout.gears}
+    helix, planets = table["helix"].to_numpy(), table["planets"].to_numpy()
+    alpha_n = task.choices.pressure_angle
+    alpha_t = np.arctan(math.tan(alpha_n) / np.cos(helix))
+    inv_t = np.tan(alpha_t) - alpha_t
+    base_helix = np.arctan(np.tan(helix) * np.cos(alpha_t))
+    ratio = layout.ratio(z)
+    strength = _strength(task)
+    margins: dict[str, FloatArray] = {}
+
+    def least(key: str, values: FloatArray) -> None:
+        margins[key] = np.minimum(margins.get(key, np.full(len(table), np.inf)), values)
+
+    with np.errstate(all="ignore"):
+        error = np.abs(np.abs(ratio) / task.ratio - 1)
+        allowed = max(task.limits.ratio_error, 1e-9)
+        least("ratio_error", np.where(error <= allowed, 1.0, allowed / np.maximum(error, 1e-12)))
+        diameter, width, mass = (np.zeros(len(table)) for _ in range(3))
+        loss = np.zeros(len(table))
+        powers = sum(point.share * point.torque * point.speed for point in task.points)
+        power = abs(powers) / sum(point.share for point in task.points)
+        shifts: Gears = {}
+        for mesh in layout.meshes:
+            module = table["module2" if mesh.set == "2" else "module"].to_numpy()
+            distance = distances(task, table, mesh.set)
+            sign = -1.0 if mesh.internal else 1.0
+            z1, z2 = z[mesh.first], z[mesh.second]
+            pinion = z["sun2" if mesh.set == "2" else "pinion" if name == "pair" else "sun"]
+            face = table["width_ratio"].to_numpy() * module * pinion / np.cos(helix)
+            transverse = module / np.cos(helix)
+            bases = transverse * np.cos(alpha_t) / 2
+            cosine = (z2 + sign * z1) * bases / distance
+            angle = np.arccos(np.clip(cosine, -1, 1))
+            total = (np.tan(angle) - angle - inv_t) * (z2 + sign * z1) * sign
+            total = total / (2 * math.tan(alpha_n)) - task.choices.backlash / (
+                2 * module * math.sin(alpha_n)
+            )
+            x1 = shifts.setdefault(mesh.first, table["shift"].to_numpy())
+            x2 = shifts.setdefault(mesh.second, total - x1)
+            r1, r2 = z1 * transverse / 2, z2 * transverse / 2
+            tip1, tip2 = r1 + module * (x1 + 1), r2 + sign * module * (x2 + 1)
+            action, point = distance * np.sin(angle), np.abs(z1 * bases) * np.tan(angle)
+            if mesh.internal:
+                tip2 = ring_tip(tip2, z2 * bases, action, module)
+            roll1 = np.sqrt(np.maximum(0, tip1**2 - (z1 * bases) ** 2))
+            roll2 = np.sqrt(np.maximum(0, tip2**2 - (z2 * bases) ** 2))
+            pitch = math.pi * transverse * np.cos(alpha_t)
+            start = np.maximum(sign * (action - roll2), 0.0)
+            eps1, eps2 = (roll1 - point) / pitch, (point - start) / pitch
+            alpha = eps1 + eps2
+            overlap = face * np.tan(base_helix) / pitch
+            least("contact_ratio", (alpha + overlap) / task.limits.contact_ratio)
+            least(
+                "mesh",
+                np.where((np.abs(cosine) <= 1) & (alpha > 0.5) & np.isfinite(alpha), 1.0, 0.0),
+            )
+            # tips
+            tip_angle = np.arccos(np.clip(z1 * bases / tip1, -1, 1))
+            half = (
+                (math.pi / 2 + 2 * x1 * math.tan(alpha_n)) / z1
+                + inv_t
+                - (np.tan(tip_angle) - tip_angle)
+            )
+            tip = 2 * tip1 * half * np.cos(helix) / module
+            least("tip_thickness", np.clip(tip / max(task.limits.tip_thickness, 1e-9), 0, 10))
+            # bounds of loss and strength
+            carried = mesh.torque(z) * np.ones(len(table))
+            turning = mesh.speed(z) * np.ones(len(table))
+            factor = math.pi * (z2 + sign * z1) / (z1 * z2 * np.cos(base_helix))
+            factor = np.abs(factor) * (1 - alpha + eps1**2 + eps2**2)
+            loss += BOUND_FRICTION * power * np.abs(carried * turning) * np.maximum(factor, 0)
+            tangential = np.abs(carried) * task.operation.torque / planets / r1
+            tangential = tangential * strength.application_factor
+            zone = np.sqrt(2 * np.cos(base_helix) / np.tan(angle)) / np.cos(alpha_t)
+            beta = np.minimum(overlap, 1)
+            sharing = np.sqrt(
+                np.maximum((4 - alpha) / 3, 0.2) * (1 - beta) + beta / np.maximum(alpha, 0.5)
+            )
+            load = tangential / (2 * r1 * face) * (z2 + sign * z1) / z2
+            stress = zone * iso.elasticity_factor(STEEL) * sharing * np.sqrt(load)
+            slow = np.abs(turning) * task.operation.speed * strength.life / (2 * math.pi)
+            cycles = slow * np.minimum(1.0, z1 / z2)  # of the gear that turns less
+            lives = lives_at(cycles, iso.PITTING_LIFE["case-hardened"])
+            bears = [_material(strength, it) for it in (mesh.first, mesh.second)]
+            if task.limits.pitting:
+                best = BEST_LIMIT * max(it.contact for it in bears) * lives
+                least("pitting", best / stress / task.limits.pitting)
+            if task.limits.bending:
+                bent = tangential / (face * module) * LEAST_ROOT * LEAST_HELIX
+                lives = lives_at(cycles, iso.BENDING_LIFE["case-hardened"])
+                best = 2 * 1.1 * max(it.bending for it in bears) * lives
+                least("bending", best / bent / task.limits.bending)
+            outside = 2 * (tip2 if not mesh.internal else r2 + module * (1.25 - x2 + 3))
+            if name != "pair" and not mesh.internal:
+                outside = 2 * (distance + tip2)
+                side = 2 * distance * np.sin(math.pi / planets)
+                room = np.where(planets > 1, (side - 0.2 * module) / (2 * tip2), np.inf)
+                least("planets_touch", room)
+            if name == "pair":
+                outside = tip1 + tip2 + distance
+            diameter = np.maximum(diameter, outside)
+        counted = list(layout.gears)
+        faces: dict[str, FloatArray] = {}
+        for gear in counted:
+            two = gear.endswith("2")
+            module = table["module2" if two else "module"].to_numpy()
+            pinion = z["sun2" if two else "pinion" if name == "pair" else "sun"]
+            face = table["width_ratio"].to_numpy() * module * pinion / np.cos(helix)
+            faces[gear] = face
+            radius = z[gear] * module / np.cos(helix) / 2
+            x = shifts[gear]
+            number = planets if gear.startswith(("planet", "wide", "narrow")) else 1
+            area = radius**2 * np.ones(len(table))
+            if "ring" in gear:
+                area = (radius + module * (4.25 - x)) ** 2 - (radius + module * (0.125 - x)) ** 2
+            mass += number * math.pi * area * face * 7850.0
+        steps = ("sun", "sun2") if layout.stages == 2 else ("wide", "narrow")
+        width = sum((faces[it] for it in steps if it in faces), np.zeros(len(table)))
+        width = np.where(width == 0, faces[counted[0]], width)
+        for key, found in (("diameter", diameter), ("width", width), ("mass", mass)):
+            limit = getattr(task.limits, key)
+            if limit is not None:
+                least(key, limit / found)
+        least("assembly", _assembly(layout, z, planets))
+    return Sizes(
+        ratio, diameter, width, mass, {k: np.nan_to_num(v) for k, v in margins.items()}, loss
+    )
+
+
+def _assembly(layout: Layout, z: Gears, planets: FloatArray) -> FloatArray:
+    """1 where alike planets fit at equal angles, else 0. Theory (A6)."""
+    teeth = np.column_stack([z[gear] for gear in layout.gears]).astype(int)
+    kinds, places = np.unique(teeth, axis=0, return_inverse=True)
+    fits = np.ones(len(planets), dtype=bool)
+    for stage in {mesh.set for mesh in layout.meshes}:
+        numbers = np.array([_closing(layout, stage, kind) for kind in kinds])[places.ravel()]
+        fits &= numbers % planets == 0
+    return np.where(fits, 1.0, 0.0)
+
+
+def _closing(layout: Layout, stage: str, kind: Any) -> int:
+    """N of the planets of a stage, 0 of gears on fixed axes."""
+    own = dict(zip(layout.gears, map(int, kind), strict=True))
+    meshes = []
+    for mesh in layout.meshes:
+        if mesh.set == stage and "sun" in layout.gears:
+            planet, central = (
+                (mesh.first, mesh.second) if mesh.internal else (mesh.second, mesh.first)
+            )
+            sign = -1 if mesh.internal else 1
+            meshes.append(({"planet": own[planet]}, sign * own[central]))
+    return closing_number(meshes) if meshes else 0
+
+
+def _material(table: StrengthTable, gear: str) -> Material:
+    """The strongest that the task states for a gear, whatever its set is called."""
+    own = gear.removesuffix("2")
+    stated = [it for name, it in table.gears.items() if name.split(".")[-1] == own]
+    return max(map(material_of, stated or [GearStrength()]), key=lambda it: it.contact)
+
+
+def _strength(task: Task) -> StrengthTable:
+    return StrengthTable.model_validate(task.case.get("strength", {}))
+
+
+# A candidate as a case.
+
+
+def _mm(value: float) -> str:
+    return f"{1e3 * value:.6g} mm"
+
+
+def case_tables(task: Task, row: Row, point: int = -1) -> dict[str, Any]:
+    """The tables of a candidate's case, at the operating point or at one of the cycle."""
+    name = str(row["arrangement"])
+    where = task.operation if point < 0 else task.points[point]
+    operation = {
+        "torque": f"{where.torque:.9g} N*m",
+        "speed": f"{where.speed * 30 / math.pi:.9g} rpm",
+        "oil_inlet_temperature": f"{where.oil_inlet_temperature - 273.15:.6g} degC",
+    }
+    common = {"numerics": COARSE} | dict(task.case)
+    title = {"title": f"{task.title or 'design'}: {name} {teeth_text(row)}"}
+    if name == "pair":
+        own = _set_tables(task, row, "1", ("pinion", "gear"))
+        return title | {"kind": "gear_pair", "operation": operation} | own | common
+    if name == "planetary":
+        own = _set_tables(task, row, "1", ("sun", "planet", "ring"))
+        ends = {"input": "sun", "fixed": "ring"}
+        return title | {"kind": "planetary", "operation": ends | operation} | own | common
+    train = title | {"kind": "train", "operation": {"input": "in", "output": "out"} | operation}
+    if name == "two-stage":
+        sets = {
+            "A": _set_tables(task, row, "1", ("sun", "planet", "ring")),
+            "B": _set_tables(task, row, "2", ("sun2", "planet2", "ring2")),
+        }
+        shafts = {
+            "in": ["A.sun"],
+            "middle": ["A.carrier", "B.sun"],
+            "out": ["B.carrier"],
+            "housing": ["A.ring", "B.ring"],
+        }
+        return train | {"sets": sets, "shafts": shafts} | common
+    own = _listed_tables(task, row)
+    held, out = ("ring", "carrier") if name == "stepped" else ("fixed_ring", "output_ring")
+    shafts = {"in": ["S.sun"], "out": [f"S.{out}"], "housing": [f"S.{held}"]}
+    return train | {"sets": {"S": own}, "shafts": shafts} | common
+
+
+def teeth_text(row: Row) -> str:
+    """``"21/27/75"``."""
+    gears = LAYOUTS[str(row["arrangement"])].gears
+    return "/".join(f"{int(row[gear])}" for gear in gears)
+
+
+def _shared(task: Task, row: Row, stage: str) -> tuple[dict[str, str], BasicRack, float]:
+    module = float(row["module2" if stage == "2" else "module"])
+    helix = float(row["helix"])
+    distance = float(distances(task, pd.DataFrame([dict(row)]).dropna(axis=1), stage)[0])
+    alpha_n = task.choices.pressure_angle
+    alpha_t = math.atan(math.tan(alpha_n) / math.cos(helix))
+    rack = BasicRack(module / math.cos(helix), alpha_t, helix)
+    tables = {
+        "normal_module": _mm(module),
+        "normal_pressure_angle": f"{math.degrees(alpha_n):.9g} deg",
+        "helix_angle": f"{math.degrees(helix):.9g} deg",
+        "center_distance": f"{1e3 * distance:.9g} mm",
+    }
+    return tables, rack, distance
+
+
+def _shifts(task: Task, row: Row, stage: str, rack: BasicRack, distance: float) -> dict[str, float]:
+    """x of every gear of a stage: that of the sun as chosen, the others close their meshes."""
+    layout = LAYOUTS[str(row["arrangement"])]
+    found: dict[str, float] = {}
+    for mesh in layout.meshes:
+        if mesh.set != stage:
+            continue
+        sign = -1 if mesh.internal else 1
+        one, two = int(row[mesh.first]), int(row[mesh.second])
+        first = found.setdefault(mesh.first, float(row["shift"]))
+        try:
+            total = profile_shift_sum(rack, one + sign * two, distance, task.choices.backlash)
+        except ValueError as error:
+            problem = Problem("design", teeth_text(row), str(error), "Choose another one.")
+            raise InputError([problem], task.title) from None
+        found.setdefault(mesh.second, total - first)
+    return found
+
+
+def _gears(
+    task: Task, row: Row, stage: str, rack: BasicRack, distance: float, width: float
+) -> dict[str, dict[str, Any]]:
+    """The tables of the gears of a stage, rings with tips that leave the planets' involutes."""
+    module, transverse = rack.normal_module, rack.transverse_module
+    tables: dict[str, dict[str, Any]] = {
+        gear: {
+            "teeth": int(row[gear]),
+            "face_width": _mm(width),
+            "profile_shift_coefficient": round(shift, 9),
+            "roughness": task.choices.roughness,
+        }
+        for gear, shift in _shifts(task, row, stage, rack, distance).items()
+    }
+    for mesh in LAYOUTS[str(row["arrangement"])].meshes:
+        if mesh.internal and mesh.set == stage:
+            one, two = int(row[mesh.first]), int(row[mesh.second])
+            reference = two * transverse / 2
+            bases = transverse * math.cos(rack.transverse_pressure_angle) / 2
+            shift = cast(float, tables[mesh.second]["profile_shift_coefficient"])
+            action = math.sqrt(max(0.0, distance**2 - ((two - one) * bases) ** 2))
+            usual = reference - module * (1 + shift)
+            tip = float(ring_tip(usual, two * bases, action, module))
+            tables[mesh.second]["tip_diameter"] = _mm(2 * tip)
+    return tables
+
+
+def _planet_tables(
+    task: Task, row: Row, planet: str, rack: BasicRack, distance: float, width: float
+) -> dict[str, Any]:
+    """Bearing and carrier, in proportion to planet and centre distance."""
+    root = (int(row[planet]) / 2 - 1.25) * rack.normal_module
+    tables: dict[str, Any] = {
+        "carrier": {"outer_diameter": _mm(2 * (distance + 0.7 * root)), "width": _mm(1.4 * width)}
+    }
+    if task.choices.bearings:
+        pin, roller = 0.8 * root, 0.2 * root  # diameters: the bore is that of half the root
+        tables["planet_bearing"] = {
+            "rows": 2,
+            "rollers_per_row": max(8, int(0.85 * math.pi * (pin + roller) / roller)),
+            "roller_diameter": _mm(roller),
+            "roller_length": _mm(0.38 * width),
+            "pin_diameter": _mm(pin),
+            "diametral_clearance": _mm(6e-4 * pin + 5e-6),
+            "roller_roughness": "0.1 um",
+            "race_roughness": "0.15 um",
+        }
+    return tables
+
+
+def _set_tables(task: Task, row: Row, stage: str, gears: tuple[str, ...]) -> dict[str, Any]:
+    """A pair, or a planetary set."""
+    shared, rack, distance = _shared(task, row, stage)
+    width = float(row["width_ratio"]) * int(row[gears[0]]) * rack.transverse_module
+    made = _gears(task, row, stage, rack, distance, width)
+    plain = [gear.removesuffix("2") for gear in gears]
+    tables: dict[str, Any] = {"gears": shared}
+    tables |= {key: made[gear] for key, gear in zip(plain, gears, strict=True)}
+    meshes = ("sun_mesh", "ring_mesh") if len(gears) == 3 else ("mesh",)
+    tables["losses"] = _losses(task, meshes)
+    if len(gears) == 3:
+        tables["planet"]["count"] = int(row["planets"])
+        tables |= _planet_tables(task, row, gears[1], rack, distance, width)
+    return tables
+
+
+def _losses(task: Task, meshes: tuple[str, ...]) -> dict[str, Any]:
+    """Pocketing is left out where the task does not ask for it."""
+    left_out = {"include": False}
+    return {} if task.choices.pocketing else {f"{mesh}_pocketing": left_out for mesh in meshes}
+
+
+def _listed_tables(task: Task, row: Row) -> dict[str, Any]:
+    """A stepped or a Wolfrom set."""
+    layout = LAYOUTS[str(row["arrangement"])]
+    shared, rack, distance = _shared(task, row, "1")
+    width = float(row["width_ratio"]) * int(row["sun"]) * rack.transverse_module
+    gears: dict[str, Any] = shared | _gears(task, row, "1", rack, distance, width)
+    for gear in layout.gears:
+        if gear in ("wide", "narrow"):
+            gears[gear]["body"] = "planet"
+        if "ring" in gear:
+            gears[gear]["internal"] = True
+    smaller = min(("wide", "narrow"), key=lambda it: row[it])
+    return {
+        "planets": int(row["planets"]),
+        "meshes": [[mesh.first, mesh.second] for mesh in layout.meshes],
+        "gears": gears,
+        "losses": _losses(task, tuple(f"{it.first}_{it.second}_mesh" for it in layout.meshes)),
+        **_planet_tables(task, row, smaller, rack, distance, 2 * width),
+    }

@@ -1,0 +1,183 @@
+"""Micro-geometry over ranges: loss against transmission error, pressure and flash, with a band."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic.case.case import Case
+from epicyclic.errors import InputError, Problem
+from epicyclic.machine.gear_mesh import MeshFigures
+from epicyclic.plugins.design.search import non_dominated
+from epicyclic.study.sweeps.run import PointList
+from epicyclic.study.sweeps.runner import Rows, Runner
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FloatArray = NDArray[np.float64]
+OBJECTIVES: Mapping[str, str] = {
+    "loss": "total",
+    "transmission_error": "transmission_error_range",
+    "pressure": "hertz_pressure_max",
+    "flash": "flash_temperature_max",
+}
+"""What is to be small: the loss, and figures of the mesh."""
+DISPLAY = {"loss": "W", "transmission_error": "um", "pressure": "GPa", "flash": "K"}
+TOLERATED = ("tip_relief", "root_relief", "profile_crown", "lead_crown", "lead_slope",
+             "profile_slope", "end_relief")  # fmt: skip
+assert set(OBJECTIVES.values()) - {"total"} <= set(MeshFigures.__dataclass_fields__)
+
+
+@dataclass(frozen=True, slots=True)
+class Relief:
+    """What is varied, and over which loads."""
+
+    case: Case
+    mesh: str  # Whose figures count, ``"sun_mesh"``.
+    vary: Mapping[str, Sequence[str]]  # Keys of micro-geometry to values.
+    loads: Sequence[Mapping[str, str]] = field(default_factory=lambda: [{}])  # Operating points.
+    tolerance: float = 0.0  # Of every amount that is varied, 95 %, either way. [m]
+    objectives: Sequence[str] = ("loss", "transmission_error")
+
+    def combinations(self) -> list[dict[str, str]]:
+        """The full product of the values."""
+        from itertools import product
+
+        keys = [*self.vary]
+        return [dict(zip(keys, values, strict=True)) for values in product(*self.vary.values())]
+
+
+def key_problems(relief: Relief) -> list[Problem]:
+    """Keys that are none of micro-geometry or misalignment, a mesh that is not there."""
+    problems = []
+    for key in relief.vary:
+        if "micro_geometry" not in key and not key.endswith("misalignment"):
+            allowed = "is no key of micro-geometry."
+            remedy = 'As in "sun.micro_geometry.tip_relief=5:45:5 um".'
+            problems.append(Problem("--vary", key, allowed, remedy))
+    keys = [
+        f"{name}.{mesh.key}" if name else mesh.key
+        for name, own in relief.case.gearings.items()
+        for mesh in own.meshes
+    ]
+    if relief.mesh not in keys:
+        allowed = f"must be one of {', '.join(keys)}."
+        problems.append(Problem("--mesh", relief.mesh, allowed, f"Give --mesh {keys[0]}."))
+    for name in relief.objectives:
+        if name not in OBJECTIVES:
+            allowed = f"must be one of {', '.join(OBJECTIVES)}."
+            problems.append(Problem("--objective", name, allowed, "Give --objective loss."))
+    return problems
+
+
+def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
+    """Every combination with its objectives, their band, and which are not dominated.
+
+    Loss is the mean over the loads; the figures of the mesh are the largest of all loads. The band
+    comes from every amount that is varied being off by the tolerance, one at a time, and is the
+    root of the sum of squares.
+
+    Returns xarray.Dataset: over ``variant``, the varied keys, the objectives with ``_low`` and
+    ``_high`` where a tolerance is given, ``front``, ``status``.
+
+    Raises `InputError` for keys that are none of micro-geometry, or if no variant is solved.
+    """
+    import xarray as xr
+
+    problems = key_problems(relief)
+    if problems:
+        raise InputError(problems, "the command")
+    variants = relief.combinations()
+    points, owners = _points(relief, variants)
+    rows = (runner or Runner()).run(PointList(relief.case, points=tuple(points)))
+    values = _values(relief, rows)  # points by objectives
+    nominal = np.full((len(variants), len(relief.objectives)), np.nan)
+    spread = np.zeros_like(nominal)
+    for variant in range(len(variants)):
+        own = [place for place, (one, shift) in enumerate(owners) if one == variant and shift < 0]
+        nominal[variant] = _over_loads(relief, values[own])
+        for shift in range(len(_amounts(relief))):
+            off = [place for place, it in enumerate(owners) if it == (variant, shift)]
+            if off:
+                spread[variant] += (_over_loads(relief, values[off]) - nominal[variant]) ** 2
+    solved = np.isfinite(nominal).all(axis=1)
+    if not solved.any():
+        first = next(iter(rows.failures), "nothing was solved")
+        raise InputError([Problem("--vary", "", f"leads to no result: {first}", "Narrow it.")])
+    front = np.zeros(len(variants), dtype=bool)
+    front[solved] = non_dominated(nominal[solved])
+    data: dict[str, Any] = {
+        key: ("variant", [variant[key] for variant in variants]) for key in relief.vary
+    }
+    for place, name in enumerate(relief.objectives):
+        about = {"units": DISPLAY[name]}
+        data[name] = ("variant", nominal[:, place], about)
+        if relief.tolerance:
+            half = np.sqrt(spread[:, place])
+            data[f"{name}_low"] = ("variant", nominal[:, place] - half, about)
+            data[f"{name}_high"] = ("variant", nominal[:, place] + half, about)
+    data["front"] = ("variant", front)
+    data["status"] = ("variant", np.where(solved, "converged", "failed"))
+    attributes = {
+        "title": relief.case.title,
+        "mesh": relief.mesh,
+        "tolerance_um": relief.tolerance * 1e6,
+        "loads": len(relief.loads),
+    }
+    return xr.Dataset(data, attrs=attributes)
+
+
+def _amounts(relief: Relief) -> list[str]:
+    """The varied keys that have an amount with a tolerance."""
+    return [key for key in relief.vary if key.split(".")[-1] in TOLERATED]
+
+
+def _points(
+    relief: Relief, variants: Sequence[Mapping[str, str]]
+) -> tuple[list[dict[str, Any]], list[tuple[int, int]]]:
+    """Points to solve, and for each its variant and which amount is off; -1 for none."""
+    from epicyclic.schema.fields import find_field, quantity_of
+
+    points: list[dict[str, Any]] = []
+    owners: list[tuple[int, int]] = []
+    for number, variant in enumerate(variants):
+        for load in relief.loads:
+            points.append({**variant, **load})
+            owners.append((number, -1))
+            if not relief.tolerance:
+                continue
+            for place, key in enumerate(_amounts(relief)):
+                found = find_field(type(relief.case), key)
+                quantity = None if found is None else quantity_of(*found)
+                amount = relief.case.updated(dict(variant))[key]
+                off = f"{(amount + relief.tolerance) * 1e6:.9g} um"
+                if quantity is not None and amount is not None:
+                    points.append({**variant, **load, key: off})
+                    owners.append((number, place))
+    return points, owners
+
+
+def _values(relief: Relief, rows: Rows) -> FloatArray:
+    """Objectives of every point, in the units of `DISPLAY`."""
+    columns = []
+    for name in relief.objectives:
+        figure = OBJECTIVES[name]
+        key = figure if name == "loss" else f"{relief.mesh.replace('.', '_')}_{figure}"
+        columns.append(rows.numbers(key))
+    return np.array(columns).T
+
+
+def _over_loads(relief: Relief, values: FloatArray) -> FloatArray:
+    """The mean of losses and the largest of the others over the loads."""
+    if not len(values):
+        return np.full(len(relief.objectives), np.nan)
+    found: FloatArray = values.max(axis=0)
+    for place, name in enumerate(relief.objectives):
+        if name == "loss":
+            found[place] = values[:, place].mean()
+    return found

@@ -1,0 +1,216 @@
+"""What design and relief show and write: tables, pictures, files."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from epicyclic.errors import InputError, Problem
+from epicyclic.files import whole_file, write_file
+from epicyclic.plugins.design.candidates import teeth_text
+from epicyclic.plugins.design.search import SAFETIES, Found, write_case
+from epicyclic.plugins.design.tables import mass_table, strength_tables
+from epicyclic.show.page import Cell, Listing, Table, number
+from epicyclic.show.plots.style import styled_figure
+from epicyclic.show.terminal import as_on_page, spaced
+from epicyclic.study.sweeps.run import csv_safe, write_netcdf
+from epicyclic.units import Length
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from rich.console import RenderableType
+
+SHOWN = {
+    "loss": ("loss [W]", 1.0), "mass": ("mass [kg]", 1.0), "diameter": ("diameter [mm]", 1e3),
+    "width": ("width [mm]", 1e3), "transmission_error": ("transmission error [um]", 1.0),
+    "pressure": ("pressure [GPa]", 1.0), "flash": ("flash temperature [K]", 1.0),
+}  # fmt: skip
+
+
+def fates_table(found: Found) -> RenderableType:
+    """How many candidates ended how."""
+    rows = tuple((Cell(fate), number(count, "")) for fate, count in found.fates.items())
+    total = (Cell("candidates"), number(len(found.table), "", 7))
+    table = Table(
+        ("what became of them", "number"),
+        (*rows, total),
+        f"Candidates of {found.task.title or 'the task'}",
+        frozenset({len(rows)}),
+    )
+    return as_on_page(table)
+
+
+def tables(found: Found, sentences: Sequence[str]) -> RenderableType:
+    """Counts, the front, and the odds."""
+    parts: list[RenderableType] = [fates_table(found), as_on_page(front_table(found))]
+    if sentences:
+        parts.append(as_on_page(Listing(tuple(sentences), "Odds")))
+    return spaced(*parts)
+
+
+def front_table(found: Found) -> Table:
+    """The designs that no other one beats."""
+    objectives = found.task.search.objectives
+    safeties = [name for name in SAFETIES if found.table.loc[found.fronts, name].notna().any()]
+    rows = []
+    for place in found.fronts:
+        row = found.table.loc[place]
+        mark = " *" if place in found.chosen else ""
+        rows.append(
+            (
+                Cell(f"{place}{mark}"),
+                Cell(f"{row['arrangement']} {teeth_text(row)}"),
+                number(float(row["planets"]), ""),
+                number(1e3 * float(row["module"]), ""),
+                number(float(np.degrees(row["helix"])), ""),
+                *(number(SHOWN[it][1] * float(row[it]), "") for it in objectives),
+                *(number(float(row[it]), "", 3) for it in safeties),
+            )
+        )
+    head = (
+        "design", "gears", "planets", "m_n [mm]", "helix [°]",
+        *(SHOWN[it][0] for it in objectives), *(it.replace("_", " ") for it in safeties),
+    )  # fmt: skip
+    note = "* chosen and written. Mass is that of the gears as discs."
+    return Table(head, tuple(rows), "Designs that no other one beats", note=note)
+
+
+def as_json(found: Found, sentences: Sequence[str]) -> str:
+    """Counts, the front and the odds."""
+    front = json.loads(found.table.loc[found.fronts].to_json(orient="index"))
+    content = {
+        "title": found.task.title,
+        "candidates": len(found.table),
+        "fates": found.fates,
+        "front": {
+            key: {k: v for k, v in row.items() if v is not None} for key, row in front.items()
+        },
+        "chosen": found.chosen,
+        "odds": list(sentences),
+    }
+    return json.dumps(content, indent=2, ensure_ascii=False)
+
+
+def write_all(found: Found, sentences: Sequence[str], folder: Path) -> Iterator[Path]:
+    """Dataset, picture, cases and data sheets; their paths."""
+    from rich.console import Console
+
+    from epicyclic.cli.common import picture_bytes
+    from epicyclic.show.data_sheet import data_sheet
+
+    path = folder / "candidates.nc"
+    with whole_file(path) as temporary:
+        write_netcdf(found.dataset(), temporary)
+    yield path
+    path = folder / "front.png"
+    write_file(path, picture_bytes(front_figure(found), path))
+    yield path
+    for place in found.chosen:
+        path = folder / f"design-{place}.toml"
+        write_case(found, place, path)
+        yield path
+        case = found.case(place)
+        sheet = Console(file=io.StringIO(), width=100, highlight=False, emoji=False)
+        sheet.print(data_sheet(case))
+        items = (*strength_tables(case, None), mass_table(case))
+        sheet.print(spaced(*map(as_on_page, items)))
+        path = folder / f"design-{place}.txt"
+        assert isinstance(sheet.file, io.StringIO)
+        lines = (line.rstrip() for line in sheet.file.getvalue().splitlines())
+        write_file(path, "\n".join([case.title, "", *lines, *sentences]) + "\n")
+        yield path
+
+
+def front_figure(found: Found) -> Figure:
+    """The first two objectives of all solved designs, those of the front marked."""
+    one, two = (*found.task.search.objectives, "mass", "loss")[:2]
+    table = found.table[found.table["loss"].notna()]
+    title = found.task.title or "Designs"
+    with styled_figure(1, 1, title) as (figure, axes):
+        ax = axes[0, 0]
+        front = table.loc[found.fronts].sort_values(one)
+        met = table[table["fate"].isin(["front", "dominated"])]
+        for name, rows, style in (
+            ("miss a limit", table.drop(met.index), {"marker": "x", "alpha": 0.4}),
+            ("meet all limits", met, {"marker": "o", "alpha": 0.5}),
+        ):
+            ax.scatter(SHOWN[one][1] * rows[one], SHOWN[two][1] * rows[two], label=name, **style)
+        ax.plot(SHOWN[one][1] * front[one], SHOWN[two][1] * front[two], "-o", label="not beaten")
+        for place in found.chosen:
+            at = (SHOWN[one][1] * table.loc[place, one], SHOWN[two][1] * table.loc[place, two])
+            ax.annotate(f"{place}", at, textcoords="offset points", xytext=(6, 6))
+        ax.set(xlabel=SHOWN[one][0], ylabel=SHOWN[two][0])
+        ax.legend()
+    return figure
+
+
+# Relief.
+
+
+def parse_length(option: str, text: str | None) -> float:
+    """A length of an option; zero without one. [m]"""
+    from pydantic import TypeAdapter, ValidationError
+
+    if text is None:
+        return 0.0
+    try:
+        return float(TypeAdapter(Length).validate_python(text))
+    except ValidationError:
+        problem = Problem(option, f'"{text}"', "must be a length.", 'As in "3 um".')
+        raise InputError([problem], "the command") from None
+
+
+def variants_table(data: xr.Dataset) -> Table:
+    """All variants, with bands and which are not beaten."""
+    keys = [str(it) for it in data.data_vars if data[it].dtype.kind not in "fb" and it != "status"]
+    names = [it for it in SHOWN if it in data]
+    rows = []
+    for place in range(data.sizes["variant"]):
+        one = data.isel(variant=place)
+        cells = [Cell(str(one[key].item())) for key in keys]
+        for name in names:
+            text = f"{one[name].item():.4g}"
+            if f"{name}_low" in data:
+                text += f" ({one[f'{name}_low'].item():.4g} to {one[f'{name}_high'].item():.4g})"
+            cells.append(number(one[name].item(), "", text=text))
+        rows.append((*cells, Cell("yes" if one["front"].item() else "")))
+    short = [key.replace(".micro_geometry", "") for key in keys]
+    head = (*short, *(f"{it.replace('_', ' ')} [{data[it].attrs['units']}]" for it in names))
+    title = f"{data.attrs['mesh'].replace('_', ' ').capitalize()} of {data.attrs['title']}"
+    return Table((*head, "not beaten"), tuple(rows), title)
+
+
+def write_variants(data: xr.Dataset, path: Path) -> None:
+    """A dataset or a table."""
+    with whole_file(path) as temporary:
+        if path.suffix == ".nc":
+            write_netcdf(data, temporary)
+        elif path.suffix == ".csv":
+            csv_safe(data.to_dataframe()).to_csv(temporary, index=False)
+        else:
+            data.to_dataframe().to_parquet(temporary, index=False)
+
+
+def relief_figure(data: xr.Dataset) -> Figure:
+    """The first two objectives, with bands, and the front as a line."""
+    names = [it for it in SHOWN if it in data]
+    one, two = (*names, names[0])[:2]
+    with styled_figure(1, 1, data.attrs["title"]) as (figure, axes):
+        ax = axes[0, 0]
+        bars: dict[str, Any] = {}
+        for axis, name in (("xerr", one), ("yerr", two)):
+            if f"{name}_low" in data:
+                low, high = data[name] - data[f"{name}_low"], data[f"{name}_high"] - data[name]
+                bars[axis] = np.array([low, high])
+        ax.errorbar(data[one], data[two], fmt="o", alpha=0.6, label="all", **bars)
+        front = data.isel(variant=np.flatnonzero(data["front"])).sortby(one)
+        ax.plot(front[one], front[two], "-", label="not beaten")
+        ax.set(xlabel=SHOWN[one][0], ylabel=SHOWN[two][0])
+        ax.legend()
+    return figure

@@ -1,0 +1,473 @@
+"""The search for designs: enumerate, screen, solve in the order of bounds, polish, choose.
+
+A candidate is left unsolved only if a solved design beats it even where its loss is the least that
+friction allows, so that the front is that of brute force as long as `search.solved` is not reached.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from epicyclic.case.case import Case, read_case
+from epicyclic.errors import InputError, Problem, Status
+from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, enumerate_all, sizes
+from epicyclic.plugins.design.strength import strength
+from epicyclic.plugins.design.task import Task, read_task
+from epicyclic.schema.read import read_file
+from epicyclic.study.solve import loaded_meshes, solve
+from epicyclic.study.sweeps.runner import Plan, Row, Rows, Runner, failed_row
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FloatArray = NDArray[np.float64]
+SAFETIES = ("pitting", "bending", "micropitting", "scuffing", "bearing_life")
+KNOWN = ("mass", "diameter", "width")  # Objectives that are known without solving.
+SCREENS = {
+    "ratio_error": "error of the ratio",
+    "assembly": "planets do not fit between the gears at equal angles",
+    "planets_touch": "planets touch each other",
+    "mesh": "gears do not mesh",
+    "diameter": "diameter",
+    "width": "width",
+    "mass": "mass",
+    "contact_ratio": "contact ratio",
+    "tip_thickness": "thickness of the tips",
+    "pitting": "pitting, bound without solving",
+    "bending": "bending, bound without solving",
+}
+"""What a candidate may be rejected for before it is solved, in the order in which it is asked."""
+UNITS = {
+    "loss": "W", "mass": "kg", "diameter": "m", "width": "m", "transmission_error": "um",
+    "bearing_life": "h",
+}  # fmt: skip
+USUAL_SHARE = 0.6  # Of a computed safety in its bound, before any is solved. [1]
+POLISH_REACH, POLISH_STEPS = 0.15, 8
+
+
+def evaluate(task: Task, row: Mapping[str, Any]) -> dict[str, float]:
+    """Loss over the cycle, transmission error and safeties of one candidate, solved in full."""
+    total = sum(point.share for point in task.points)
+    loss = 0.0
+    for number, point in enumerate(task.points):
+        result = solve(read_case(case_tables(task, row, number)))
+        if result.status is not Status.CONVERGED:
+            raise InputError([Problem("design", "", result.notes[0], "Leave it out.")])
+        loss += point.share / total * result.total
+    case = read_case(case_tables(task, row))
+    found = {"loss": loss, **strength(case).least()}
+    if "transmission_error" in task.search.objectives:
+        found["transmission_error"] = max(
+            float(np.ptp(mesh.transmission_error)) * 1e6 for mesh in loaded_meshes(case).values()
+        )
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class DesignPlan(Plan):
+    """Candidates that are solved in full, each a point."""
+
+    kind: ClassVar[str] = "designs"
+    may_fail: ClassVar[bool] = True
+    task: Mapping[str, Any]  # As its file has it.
+    rows: tuple[Mapping[str, Any], ...]
+
+    @property
+    def batch(self) -> int:
+        """A design takes up to some seconds."""
+        return 1
+
+    @property
+    def size(self) -> int:
+        """Number of designs."""
+        return len(self.rows)
+
+    def order(self) -> range:
+        """Numbers of all designs."""
+        return range(self.size)
+
+    def _solve(self, index: int) -> Row:
+        try:
+            return Row("converged", numbers=evaluate(read_task(self.task), self.rows[index]))
+        except InputError as error:
+            return failed_row(_reason(error))
+
+    def describe(self) -> dict[str, Any]:
+        """The task and the candidates."""
+        return {"task": dict(self.task), "rows": [dict(row) for row in self.rows]}
+
+
+def _reason(error: InputError) -> str:
+    """Why a case is refused, without its numbers, so that equal reasons are counted together."""
+    first = error.problems[0]
+    key = first.key.split(".")[-1] if first.key else "case"
+    return f"refused by the checks of cases: {key} {first.allowed}"
+
+
+@dataclass
+class Found:
+    """The candidates of a task and what became of them.
+
+    `table` has a row for each candidate; its column `fate` says why it was rejected, or
+    ``"front"``, ``"dominated"``, ``"beaten by a bound"`` or ``"not solved"``.
+    """
+
+    task: Task
+    table: pd.DataFrame
+    margins: pd.DataFrame
+    bounds: pd.DataFrame = field(default_factory=pd.DataFrame)  # `margins` before solving.
+    fronts: list[int] = field(default_factory=list)
+    chosen: list[int] = field(default_factory=list)
+
+    @cached_property
+    def fates(self) -> dict[str, int]:
+        """How many candidates ended how; they sum to all."""
+        return {str(k): int(v) for k, v in self.table["fate"].value_counts().items()}
+
+    def case(self, number: int) -> Case:
+        """The case of a candidate."""
+        return read_case(case_tables(self.task, self.table.loc[number].to_dict()))
+
+    def dataset(self) -> xr.Dataset:
+        """All candidates over ``design``, with units."""
+        import xarray as xr
+
+        data = xr.Dataset.from_dataframe(self.table.rename_axis("design"))
+        for name in data.data_vars:
+            unit = UNITS.get(str(name), "")
+            if name in ("module", "module2"):
+                unit = "m"
+            data[name].attrs = {"units": unit or "1"}
+        data.attrs = {
+            "title": self.task.title,
+            "fates": json.dumps(self.fates),
+            "objectives": ", ".join(self.task.search.objectives),
+            "seed": self.task.search.seed,
+            "chosen": ", ".join(map(str, self.chosen)),
+        }
+        return data
+
+
+def non_dominated(values: FloatArray) -> NDArray[np.bool_]:
+    """Which rows no other row beats or equals in all columns and beats in one."""
+    keep = np.ones(len(values), dtype=bool)
+    for place, own in enumerate(values):
+        better = (values <= own).all(axis=1) & (values < own).any(axis=1)
+        keep[place] = not better.any()
+    return keep
+
+
+def design(
+    task: str | Path | Mapping[str, Any],
+    *,
+    jobs: int | None = None,
+    dask: str | None = None,
+    journal: str | Path | None = None,
+) -> Found:
+    """Gear sets that meet a task: those that no other one beats.
+
+    Parameters
+    ----------
+    task : str, Path or mapping
+        A TOML file, or its tables: ratio, operation, cycle, choices, limits, search, and the tables
+        that all cases share.
+    jobs, dask
+        As for `sweep`.
+    journal : str or Path, optional
+        Folder that keeps solved designs, from which the same task goes on.
+
+    Returns
+    -------
+    Found
+        ``table``, a row for each candidate with its ``fate``; ``fates``, how many ended how;
+        ``fronts`` and ``chosen``, their numbers; ``case(number)``; ``dataset()``.
+
+    Raises
+    ------
+    InputError
+        With all problems of the task, or the limit that no candidate meets, and by how much.
+    """
+    read = read_task(task)
+    raw = dict(task) if isinstance(task, Mapping) else read_file(Path(task))[0]
+    return search(read, raw, Runner(jobs, dask, journal=journal))
+
+
+def screen(task: Task) -> Found:
+    """All candidates of a task, screened without solving."""
+    table = enumerate_all(task)
+    rng = np.random.default_rng(task.search.seed)
+    most = task.search.most_candidates
+    if len(table) > most:
+        table = table.loc[np.sort(rng.choice(len(table), most, replace=False))]
+        table = table.reset_index(drop=True)
+    margins = pd.DataFrame(1.0, index=table.index, columns=[*SCREENS])
+    for name in ("ratio", *KNOWN, "bound"):
+        table[name] = math.nan
+    for name, own in table.groupby("arrangement"):
+        columns = [*LAYOUTS[str(name)].gears]
+        found = sizes(task, own.dropna(axis=1, how="all")[
+            ["arrangement", *columns, *(it for it in own.columns if it not in columns
+             and own[it].notna().any() and it not in ("arrangement",)
+             and not any(it in layout.gears for layout in LAYOUTS.values()))]
+        ])  # fmt: skip
+        for key, values in found.margins.items():
+            margins.loc[own.index, key] = values
+        for key in ("ratio", *KNOWN):
+            table.loc[own.index, key] = getattr(found, key)
+        table.loc[own.index, "bound"] = found.loss
+    fate = pd.Series("", index=table.index, dtype=object)
+    for key, text in SCREENS.items():
+        fate[(fate == "") & (margins[key] < 1 - 1e-9)] = text
+    table["fate"] = fate
+    return Found(task, table, margins, margins.copy())
+
+
+def _objectives(found: Found, rows: Any, loss: str) -> FloatArray:
+    """The objectives of some rows; `loss` names the column that has the loss."""
+    table, columns = found.table.loc[rows], []
+    for name in found.task.search.objectives:
+        if name == "transmission_error" and loss == "bound":
+            columns.append(np.zeros(len(table)))
+        else:
+            columns.append(table[loss if name == "loss" else name].to_numpy(dtype=float))
+    return np.array(columns).T.reshape(len(table), -1)
+
+
+def search(
+    task: Task,
+    raw: Mapping[str, Any],  # The task as its file has it.
+    runner: Runner | None = None,
+    *,
+    brute: bool = False,  # Solve every candidate that passes the screens.
+    tell: Callable[[str], None] = lambda text: None,
+) -> Found:
+    """Designs for a task: the non-dominated ones among all that meet the limits.
+
+    Raises `InputError` if no candidate meets all limits, with the limit that is nearest to be met.
+    """
+    runner = runner or Runner()
+    found = screen(task)
+    table = found.table
+    for name in ("loss", "transmission_error", *SAFETIES):
+        table[name] = math.nan
+    tell(f"{len(table):,} candidates, {int((table['fate'] == '').sum()):,} pass the screens")
+    solved = 0
+    limit = len(table) if brute else task.search.solved
+    while solved < limit:
+        left = table.index[table["fate"] == ""]
+        if not brute:
+            left = _not_beaten(found, left)
+        if not len(left):
+            break
+        batch = _next(found, left, min(task.search.batch, limit - solved))
+        rows = _solve(found, raw, batch, runner)
+        _judge(found, batch, rows)
+        solved += len(batch)
+        tell(f"{solved} solved, {int((table['fate'] == 'feasible').sum())} meet all limits")
+    table.loc[table["fate"] == "", "fate"] = "not solved"
+    good = table.index[table["fate"] == "feasible"]
+    if not len(good):
+        raise _impossible(found)
+    best = non_dominated(_objectives(found, good, "loss"))
+    table.loc[good, "fate"] = np.where(best, "front", "dominated")
+    found.fronts = [int(it) for it in good[best]]
+    if task.search.polished and not brute:
+        _polish(found, raw, tell)
+    found.chosen = _choose(found)
+    return found
+
+
+def _not_beaten(found: Found, left: Any) -> Any:
+    """Those of `left` that no feasible design beats at the least loss they can have."""
+    good = found.table.index[found.table["fate"] == "feasible"]
+    if not len(good):
+        return left
+    known, bounds = _objectives(found, good, "loss"), _objectives(found, left, "bound")
+    beaten = np.zeros(len(left), dtype=bool)
+    for own in known:
+        beaten |= (own <= bounds).all(axis=1) & (own < bounds).any(axis=1)
+    found.table.loc[left[beaten], "fate"] = "beaten by a bound"
+    return left[~beaten]
+
+
+def _next(found: Found, left: Any, count: int) -> list[int]:
+    """The next designs to solve: fronts of their bounds, those first that will probably hold.
+
+    Solved designs tell how far safeties stay below their bounds. That only changes the order.
+    """
+    bounds = _objectives(found, left, "bound")
+    rank = np.log(np.maximum(bounds, 1e-12)).sum(axis=1)
+    weak = np.zeros(len(left), dtype=bool)
+    for name in ("pitting", "bending"):
+        needed = getattr(found.task.limits, name)
+        if needed:
+            known = found.table[name] / needed / found.bounds[name]
+            usual = known.median() if known.notna().any() else USUAL_SHARE
+            weak |= (found.bounds.loc[left, name] * usual < 1).to_numpy()
+    order = np.lexsort((rank, weak))
+    few = order[: 40 * count]
+    few = few[weak[few] == weak[few[0]]]
+    front = few[non_dominated(bounds[few])]
+    first = set(front.tolist())
+    rest = [it for it in order if it not in first]
+    return [int(left[it]) for it in [*front, *rest][:count]]
+
+
+def _solve(found: Found, raw: Mapping[str, Any], batch: list[int], runner: Runner) -> Rows:
+    columns = [
+        it for it in found.table.columns
+        if it not in ("fate", "bound", "ratio", *KNOWN, "loss", "transmission_error", *SAFETIES)
+    ]  # fmt: skip
+    made = []
+    for number in batch:
+        row = found.table.loc[number, columns].dropna().to_dict()
+        made.append({k: v if isinstance(v, str) else float(v) for k, v in row.items()})
+    plan = DesignPlan(raw, tuple(made))
+    return runner.within(plan).run(plan)
+
+
+def _judge(found: Found, batch: list[int], rows: Rows) -> None:
+    """What became of solved candidates."""
+    limits = found.task.limits
+    for place, number in enumerate(batch):
+        if rows.status[place] != "converged":
+            text = rows.message[place]
+            found.table.loc[number, "fate"] = text.splitlines()[0][:100] or "no solution"
+            continue
+        fate = "feasible"
+        for name in ("loss", "transmission_error", *SAFETIES):
+            value = float(rows.numbers(name)[place])
+            found.table.loc[number, name] = value
+            needed = getattr(limits, name, None)
+            if needed is not None and name == "bearing_life":
+                needed = needed / 3600
+            if needed is not None and not math.isnan(value):
+                if name not in found.margins:
+                    found.margins[name] = 1.0
+                found.margins.loc[number, name] = value / needed if needed else 1.0
+                if value < needed and fate == "feasible":
+                    fate = name.replace("_", " ")
+        found.table.loc[number, "fate"] = fate
+
+
+def _impossible(found: Found) -> InputError:
+    """Which limit the nearest candidate misses, and by how much."""
+    margins = found.margins.clip(upper=1.0)
+    refused = found.table["fate"].str.startswith(("refused", "no solution"))
+    usable = margins[~refused] if (~refused).any() else margins
+    nearest = usable.min(axis=1).sort_values(ascending=False).index[0]
+    missed = usable.loc[nearest]
+    problems = []
+    for key in missed.index[missed < 1 - 1e-9]:
+        text = SCREENS.get(str(key), str(key).replace("_", " "))
+        short = 100 * (1 - missed[key])
+        row = found.table.loc[nearest]
+        problems.append(
+            Problem(
+                f"limits.{key}" if hasattr(found.task.limits, str(key)) else str(key),
+                "",
+                f"({text}) is missed by {short:.3g} % by the nearest of {len(found.table):,} "
+                f"candidates, a {row['arrangement']} with module {1e3 * row['module']:.3g} mm.",
+                "Relax this limit, or allow more choices.",
+            )
+        )
+    if not problems:
+        fates = "; ".join(f"{count} {fate}" for fate, count in found.fates.items())
+        problems = [Problem("search", "", f"found no design: {fates}.", "Raise search.solved.")]
+    return InputError(problems, found.task.title or "the task")
+
+
+def _polish(found: Found, raw: Mapping[str, Any], tell: Callable[[str], None]) -> None:
+    """Better profile shifts of the best designs, by a bounded search along x of the sun."""
+    from scipy.optimize import minimize_scalar
+
+    table, task = found.table, found.task
+    table["polished_shift"] = math.nan
+    for number in _choose(found)[: task.search.polished]:
+        start = float(table.loc[number, "shift"])
+        row = table.loc[number].dropna().to_dict()
+        known = float(table.loc[number, "loss"])
+
+        def loss_at(shift: float, row: dict[str, Any] = row, known: float = known) -> float:
+            try:
+                numbers = evaluate(task, row | {"shift": float(shift)})
+            except Exception:  # a shift that cannot be made is a bad one, whatever the reason
+                return 10 * known
+            for name in SAFETIES:
+                needed = getattr(task.limits, name, None)
+                scale = 3600 if name == "bearing_life" else 1
+                if needed is not None and numbers.get(name, math.inf) < needed / scale:
+                    return 10 * known
+            return numbers["loss"]
+
+        reach = (start - POLISH_REACH, start + POLISH_REACH)
+        best = minimize_scalar(
+            loss_at,
+            bounds=reach,
+            method="bounded",
+            options={"maxiter": POLISH_STEPS, "xatol": 5e-3},
+        )
+        if best.fun < known:
+            numbers = evaluate(task, row | {"shift": float(best.x)})
+            table.loc[number, "polished_shift"] = start
+            table.loc[number, ["shift", *numbers]] = [float(best.x), *numbers.values()]
+            tell(f"design {number}: x {start:.3g} -> {best.x:.3f} saves {known - best.fun:.3g} W")
+
+
+def _choose(found: Found) -> list[int]:
+    """Of the front the best in each objective and the one nearest to all of them."""
+    rows = found.fronts
+    values = _objectives(found, rows, "loss")
+    span = np.ptp(values, axis=0)
+    scaled = (values - values.min(axis=0)) / np.where(span > 0, span, 1.0)
+    wanted = [int(np.argmin(np.hypot.reduce(scaled, axis=1)))]
+    wanted += [int(it) for it in values.argmin(axis=0)]
+    wanted += [int(it) for it in np.argsort(np.hypot.reduce(scaled, axis=1), kind="stable")]
+    unique = list(dict.fromkeys(wanted))[: found.task.search.chosen]
+    return [rows[it] for it in unique]
+
+
+def odds(found: Found, samples: int, jobs: int | None = None) -> list[str]:
+    """Sentences on how probably the first chosen design loses less than the others, in pairs."""
+    from epicyclic.study.bands.compare_cases import compare_cases
+
+    first, *others = found.chosen
+    lines = []
+    for other in others:
+        data = compare_cases(
+            found.case(other), found.case(first),
+            samples=samples, seed=found.task.search.seed, jobs=jobs,
+        )  # fmt: skip
+        total = data.sel(result="total")
+        lines.append(
+            f"Design {first} loses less than design {other} in "
+            f"{100 * float(total.probability):.0f} % of {samples} paired draws: "
+            f"{float(total.difference):.3g} W on average, {float(total.low):.3g} to "
+            f"{float(total.high):.3g} W."
+        )
+    return lines
+
+
+def case_text(tables: Mapping[str, Any]) -> str:
+    """A case file, one line for each table."""
+    from epicyclic.show.template import toml_key, toml_value
+
+    return "".join(f"{toml_key(key)} = {toml_value(value)}\n" for key, value in tables.items())
+
+
+def write_case(found: Found, number: int, path: Path) -> None:
+    """The case file of a design."""
+    from epicyclic.files import write_file
+
+    row = found.table.loc[number].to_dict()
+    write_file(path, case_text(case_tables(found.task, row)))

@@ -1,0 +1,752 @@
+"""The strength of a case beside its losses: pitting, bending, micropitting, scuffing, bearings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from epicyclic import library
+from epicyclic.build.machine import Built
+from epicyclic.case.case import Case
+from epicyclic.case.tables.strength import GearStrength, StrengthTable
+from epicyclic.contact.elastic_teeth import LoadedMesh
+from epicyclic.contact.temperatures import (
+    LUBRICATION_FACTORS,
+    bulk_rise_of_flash,
+    bulk_rise_of_loss,
+)
+from epicyclic.errors import Problem, raise_any
+from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
+from epicyclic.gears.gear import Gear
+from epicyclic.gears.measures import flank_tolerances
+from epicyclic.gears.mesh import Mesh
+from epicyclic.losses.contact import LineLoads, MeshContact
+from epicyclic.losses.designations import roller_factor
+from epicyclic.losses.mesh import flash_temperatures
+from epicyclic.losses.planet_bearing import RollerBearing
+from epicyclic.machine.element import State, joined_key
+from epicyclic.machine.gear_mesh import MeshDuty, contact_under, distribute_load, elastic_loads
+from epicyclic.machine.gear_set import GearSet
+from epicyclic.messages import did_you_mean
+from epicyclic.oil.oil import Oil, oil_state
+from epicyclic.plugins.design import iso_6336 as iso
+from epicyclic.plugins.design import lubricated
+from epicyclic.plugins.design.mass import gear_body
+from epicyclic.study.solve import build_computed
+
+FloatArray = NDArray[np.float64]
+FACE_BINS = 8  # Parts of the face over which the load is averaged for K_Hbeta.
+MATERIAL_STIFFNESS = 0.8  # C_M of ISO 6336-1: measured over theoretical stiffness. [1]
+AFTER = {
+    "pitting": "after ISO 6336-2: stresses and factors of method B, without warm or static cases",
+    "bending": "after ISO 6336-3: method B, without thin rims, protuberance and grinding notches",
+    "loads": "after ISO 6336-1: K_v and K_Halpha of method B, K_Hbeta from the computed load",
+    "micropitting": "after ISO/TS 6336-22: its film under the computed pressure and friction",
+    "scuffing": "after ISO/TS 6336-20, -21: its limits for the computed flash temperatures",
+    "bearings": "after ISO 281: basic and modified life of cylindrical rollers, 90 %",
+}
+"""What the numbers are, and which parts are covered."""
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """What one gear bears, with its own and the default values."""
+
+    name: str
+    treatment: iso.Treatment
+    contact: float  # sigma_Hlim. [Pa]
+    bending: float  # sigma_Flim. [Pa]
+    hardness: float  # Vickers.
+    slip_layer: float  # rho'. [m]
+
+
+def material_of(table: GearStrength) -> Material:
+    """The class of a gear, with what its table states."""
+    entry = library.strength_table()["materials"][table.material]
+    hardness = table.hardness or entry["hardness"][0]
+
+    def limit(kind: str) -> float:
+        slope, start = entry[kind]
+        return float(slope * hardness + start) * 1e6
+
+    return Material(
+        name=table.material,
+        treatment=entry["treatment"],
+        contact=table.contact_strength or limit("contact"),
+        bending=table.bending_strength or limit("bending"),
+        hardness=hardness,
+        slip_layer=float(entry["slip_layer"].split()[0]) / iso.MM,
+    )
+
+
+def load_stages(table: StrengthTable, oil: Oil) -> tuple[int, int, str]:
+    """Failure load stages of the oil in scuffing and micropitting, and where they are from."""
+    known = library.strength_table()["oils"][oil.kind]
+    own = table.scuffing_stage, table.micropitting_stage
+    source = "as stated" if all(own) else known["source"]
+    return own[0] or known["scuffing_stage"], own[1] or known["micropitting_stage"], source
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadFactors:
+    """Factors on the nominal load of a mesh. [1]"""
+
+    application: float  # K_A.
+    sharing: float  # K_gamma.
+    dynamic: float  # K_v.
+    face: float  # K_Hbeta, as stated or computed.
+    face_computed: float  # K_Hbeta of the computed load along the contact lines.
+    transverse: float  # K_Halpha.
+    face_bending: float  # K_Fbeta.
+
+    @property
+    def common(self) -> float:
+        """K_A K_gamma K_v."""
+        return self.application * self.sharing * self.dynamic
+
+    @property
+    def contact(self) -> float:
+        """All that load the flanks."""
+        return self.common * self.face * self.transverse
+
+    @property
+    def bending(self) -> float:
+        """All that load the roots."""
+        return self.common * self.face_bending * self.transverse
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearRating:
+    """Pitting and bending of one gear in one mesh."""
+
+    gear: str
+    cycles: float
+    material: str
+    contact_stress: float  # sigma_H at the inner point of single contact. [Pa]
+    contact_limit: float  # sigma_HG. [Pa]
+    form_factor: float  # Y_F. [1]
+    stress_correction: float  # Y_S. [1]
+    nominal_root_stress: float  # sigma_F0. [Pa]
+    root_stress: float  # sigma_F. [Pa]
+    root_limit: float  # sigma_FG. [Pa]
+
+    @property
+    def pitting(self) -> float:
+        """S_H. [1]"""
+        return self.contact_limit / self.contact_stress
+
+    @property
+    def bending(self) -> float:
+        """S_F. [1]"""
+        return self.root_limit / self.root_stress
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlankRating:
+    """Micropitting and scuffing of one mesh; temperatures in kelvin, NaN without motion."""
+
+    bulk_temperature: float
+    film_ratio: float  # Smallest lambda_GFY. [1]
+    film_ratio_limit: float  # lambda_GFP. [1]
+    micropitting_place: float  # On the path of contact from the pitch point. [m]
+    contact_temperature: float  # theta_B, highest. [K]
+    scuffing_temperature: float  # theta_S. [K]
+    integral_temperature: float  # theta_int. [K]
+    integral_scuffing_temperature: float  # theta_intS. [K]
+    micropitting: float  # S_lambda. [1]
+    scuffing: float  # S_B. [1]
+    integral_scuffing: float  # S_intS. [1]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeshRating:
+    """Safeties of one mesh."""
+
+    key: str
+    factors: LoadFactors
+    nominal_contact_stress: float  # sigma_H0. [Pa]
+    tangential_force: float  # F_t of one mesh, nominal. [N]
+    gears: tuple[GearRating, GearRating]
+    flanks: FlankRating
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BearingRating:
+    """Life of one planet bearing."""
+
+    key: str
+    load: float  # P. [N]
+    speed: float  # Of the planet on its pin. [rad/s]
+    dynamic_load_rating: float  # C. [N]
+    viscosity_ratio: float  # kappa. [1]
+    life_factor: float  # a_ISO. [1]
+    basic_life: float  # L10. [s]
+    modified_life: float  # L10m. [s]
+
+
+@dataclass(frozen=True, slots=True)
+class Strength:
+    """Safeties of a case at its operating point."""
+
+    meshes: tuple[MeshRating, ...]
+    bearings: tuple[BearingRating, ...]
+    stages: tuple[int, int]  # Failure load stages of the oil, scuffing and micropitting.
+    stages_source: str
+
+    def least(self) -> dict[str, float]:
+        """The smallest safety of each kind, and the shortest life of a bearing in hours."""
+        gears = [gear for mesh in self.meshes for gear in mesh.gears]
+        found = {
+            "pitting": min(gear.pitting for gear in gears),
+            "bending": min(gear.bending for gear in gears),
+            **{
+                name: min(getattr(mesh.flanks, name) for mesh in self.meshes)
+                for name in ("micropitting", "scuffing", "integral_scuffing")
+            },
+        }
+        if self.bearings:
+            found["bearing_life"] = min(one.modified_life for one in self.bearings) / 3600
+        return found
+
+
+def strength(case: Case) -> Strength:
+    """Safeties of the gears and lives of the planet bearings of a case.
+
+    The names say which standards are followed; none is followed in full, see
+    ``epicyclic strength --help``.
+
+    Parameters
+    ----------
+    case : PlanetaryCase, GearPairCase or TrainCase
+        Its table ``[strength]`` states lives, factors and materials; without it defaults hold.
+
+    Returns
+    -------
+    Strength
+        For every mesh under load, of a planetary set of its most loaded planet.
+
+    Raises
+    ------
+    InputError
+        If the case is a train of given efficiencies.
+    ConvergenceError
+        If the machine has no solution.
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> found = ep.strength(ep.load_case("talbot-2012"))  # doctest: +SKIP
+    >>> [mesh.key for mesh in found.meshes]  # doctest: +SKIP
+    ['sun_mesh', 'ring_mesh']
+    """
+    return rated(case, build_computed(case))
+
+
+def rated(case: Case, built: Built) -> Strength:
+    """The strength of a case whose machine is there."""
+    table = case.strength or StrengthTable()
+    raise_any(_problems(case, table), case.source)
+    state = built.loaded_state()
+    assert case.lubricant is not None
+    oil = case.lubricant.oil
+    scuffing, micropitting, source = load_stages(table, oil)
+    rating = _Rating(case, table, state, oil, (scuffing, micropitting))
+    meshes: list[MeshRating] = []
+    bearings: list[BearingRating] = []
+    for name, own in built.sets.items():
+        mean = {duty.gears.key: duty for duty in own.mean_duties(state)}
+        for duty in own.loaded_duties(state):
+            if duty.torque1 != 0:
+                key = duty.gears.key
+                meshes.append(rating.mesh(name, own, duty, abs(mean[key].torque1)))
+        bearings += rating.bearings(name, own)
+    return Strength(tuple(meshes), tuple(bearings), (scuffing, micropitting), source)
+
+
+def _problems(case: Case, table: StrengthTable) -> Iterator[Problem]:
+    """Gears that the case does not have, and hardnesses that no steel of the class has."""
+    known = [
+        joined_key(name, gear) for name, gearing in case.gearings.items() for gear in gearing.tables
+    ]
+    for name, own in table.gears.items():
+        if name not in known:
+            remedy = did_you_mean(name, known) or f"Name one of {', '.join(known)}."
+            yield Problem(f"strength.gears.{name}", "", "is no gear of the case.", remedy)
+        _, low, high = library.strength_table()["materials"][own.material]["hardness"]
+        if own.hardness is not None and not low <= own.hardness <= high:
+            allowed = f"must be {low:g} to {high:g} for {own.material}."
+            remedy = (
+                f"Give such a hardness, {min(max(own.hardness, low), high):g}, or the strengths."
+            )
+            yield Problem(f"strength.gears.{name}.hardness", f"{own.hardness:g}", allowed, remedy)
+
+
+def face_load_factor(loads: LineLoads, mesh: Mesh) -> float:
+    """Largest load per face width over its mean: K_Hbeta of a computed load. ISO 6336-1, Eq. 40.
+
+    Means over parts of the face, every segment spread over its own width, and the straight
+    continuation of the last two to each end.
+    """
+    lines = loads.lines
+    force = lines.weight[:, None, None] * lines.length * loads.line_load
+    force, middle, length = (it[force > 0] for it in (force, lines.face_position, lines.length))
+    width = length * math.cos(mesh.gear1.rack.base_helix_angle)
+    edges = np.linspace(0.0, mesh.face_width, FACE_BINS + 1)[:, None]
+    below = np.clip((edges - middle) / width + 0.5, 0.0, 1.0) @ force
+    per_width = np.diff(below) / np.diff(below).mean()
+    ends = 1.5 * per_width[[0, -1]] - 0.5 * per_width[[1, -2]]
+    return float(max(1.0, per_width.max(), ends.max()))
+
+
+@dataclass(frozen=True, slots=True)
+class _Rating:
+    """What the ratings of all meshes share."""
+
+    case: Case
+    table: StrengthTable
+    state: State
+    oil: Oil
+    stages: tuple[int, int]
+
+    def mesh(self, name: str, own: GearSet, duty: MeshDuty, mean_torque: float) -> MeshRating:
+        """One mesh of a set; `mean_torque` of a planet with its mean share."""
+        table, gears = self.table, duty.gears
+        mesh = gears.mesh
+        loads = distribute_load(duty)
+        elastic = loads.elastic or elastic_loads(duty)
+        sharing = table.mesh_load_factor or abs(duty.torque1) / mean_torque
+        nominal = mean_torque / mesh.gear1.reference_radius
+        limits = [self._material(name, gear) for gear in (mesh.gear1, mesh.gear2)]
+        factors = self._factors(name, own, duty, loads, elastic, nominal, sharing, limits)
+        scale = mean_torque * factors.common / abs(duty.torque1)
+        key = joined_key(name, gears.key)
+        return MeshRating(
+            key=key,
+            factors=factors,
+            nominal_contact_stress=iso.nominal_contact_stress(
+                mesh, nominal, gears.flanks.equivalent_modulus
+            ),
+            tangential_force=nominal,
+            gears=self._gears(name, own, duty, nominal, factors, limits),
+            flanks=self._flanks(duty, loads, scale, key, own),
+        )
+
+    def _own(self, name: str, gear: Gear) -> GearStrength:
+        return self.table.gears.get(joined_key(name, gear.name), GearStrength())
+
+    def _material(self, name: str, gear: Gear) -> Material:
+        return material_of(self._own(name, gear))
+
+    def _factors(
+        self,
+        name: str,
+        own: GearSet,
+        duty: MeshDuty,
+        loads: LineLoads,
+        elastic: LoadedMesh,
+        nominal: float,
+        sharing: float,
+        limits: list[Material],
+    ) -> LoadFactors:
+        table, gears = self.table, duty.gears
+        mesh = gears.mesh
+        width = mesh.face_width
+        tables = self.case.gearings[name].tables
+        deviations = [
+            flank_tolerances(
+                tables[gear.name].accuracy_class or table.accuracy_class,
+                gear.rack.normal_module,
+                2 * gear.reference_radius,
+                gear.face_width,
+            )
+            for gear in (mesh.gear1, mesh.gear2)
+        ]
+        cosine = math.cos(mesh.gear1.rack.transverse_pressure_angle)
+        base = max(it.single_pitch for it in deviations) * cosine
+        form = max(it.profile_form for it in deviations)
+        run = [iso.running_in(it.treatment, it.contact, base) for it in limits]
+        worn, worn_form = (
+            min(run),
+            min(iso.running_in(it.treatment, it.contact, form) for it in limits),
+        )
+        reliefs = [
+            0.0 if it.tip_relief is None else it.tip_relief.amount
+            for it in (gears.deviations.member1, gears.deviations.member2)
+        ]
+        moved = iso.Excitation(
+            stiffness=MATERIAL_STIFFNESS * float(elastic.tangent_stiffness.mean()) / width,
+            contact_ratio=mesh.transverse_contact_ratio,
+            total_contact_ratio=mesh.transverse_contact_ratio + mesh.overlap_ratio,
+            pitch_deviation=max(base, form) - worn,
+            form_deviation=form - worn_form,
+            tip_relief=min(reliefs),
+        )
+        load = table.application_factor * sharing * nominal / width
+        dynamic = table.dynamic_factor
+        if dynamic is None:
+            resonance = self._resonance(name, own, duty, moved.stiffness)
+            dynamic = moved.dynamic_factor(load, resonance)
+        computed = face_load_factor(loads, mesh)
+        face = table.face_load_factor or computed
+        depth = max(abs(it.tip_radius - it.root_radius) for it in (mesh.gear1, mesh.gear2))
+        transverse = table.transverse_load_factor
+        if transverse is None:
+            most = (mesh.transverse_contact_ratio + mesh.overlap_ratio) / (
+                mesh.transverse_contact_ratio * iso.contact_ratio_factor(mesh) ** 2
+            )
+            found = moved.transverse_factor(load * dynamic * face)
+            transverse = max(1.0, min(found, most))
+        return LoadFactors(
+            application=table.application_factor,
+            sharing=sharing,
+            dynamic=dynamic,
+            face=face,
+            face_computed=computed,
+            transverse=transverse,
+            face_bending=iso.face_factor_bending(face, width, depth),
+        )
+
+    def _resonance(self, name: str, own: GearSet, duty: MeshDuty, stiffness: float) -> float:
+        """N: speed over that of the resonance. ISO 6336-1, Eq. 6; a held gear does not move."""
+        mesh, bodies = duty.gears.mesh, duty.gears.bodies
+        tables, compliance = self.case.gearings[name].tables, 0.0
+        for gear, body in zip((mesh.gear1, mesh.gear2), bodies, strict=True):
+            _, inertia = gear_body(gear, tables[gear.name])
+            if abs(self.state.speeds[body]) > 0:
+                mates = self._mates(own, gear)
+                compliance += mates * gear.base_radius**2 * gear.face_width / inertia
+        if compliance == 0:
+            return 0.0
+        natural = math.sqrt(stiffness * compliance) / mesh.gear1.teeth
+        return abs(duty.speed1) / natural
+
+    def _mates(self, own: GearSet, gear: Gear) -> int:
+        """How many gears are in mesh with one flank of it."""
+        planets = {planet.body for planet in own.planets}
+        for mesh in own.meshes:
+            for one, body in zip((mesh.mesh.gear1, mesh.mesh.gear2), mesh.bodies, strict=True):
+                if one.name == gear.name:
+                    return 1 if body in planets or not planets else own.count
+        return 1
+
+    def _gears(
+        self,
+        name: str,
+        own: GearSet,
+        duty: MeshDuty,
+        nominal: float,
+        factors: LoadFactors,
+        limits: list[Material],
+    ) -> tuple[GearRating, GearRating]:
+        mesh = duty.gears.mesh
+        modulus = duty.gears.flanks.equivalent_modulus
+        stress = iso.nominal_contact_stress(mesh, nominal, modulus) * math.sqrt(factors.contact)
+        single = iso.single_contact_factors(mesh)
+        speeds = abs(duty.speed1), abs(duty.speed1) / mesh.ratio
+        made = []
+        for member, gear in enumerate((mesh.gear1, mesh.gear2)):
+            material, table = limits[member], self._own(name, gear)
+            cycles = self.table.life * speeds[member] * self._mates(own, gear) / (2 * math.pi)
+            root = iso.tooth_root(gear, duty.gears.tools[member], mesh.transverse_contact_ratio)
+            bent = iso.nominal_root_stress(mesh, root, nominal, gear.face_width)
+            mean = table.mean_stress_factor or (0.7 if self._both_flanks(own, gear) else 1.0)
+            made.append(
+                GearRating(
+                    gear=joined_key(name, gear.name),
+                    cycles=cycles,
+                    material=material.name,
+                    contact_stress=stress * single[member],
+                    contact_limit=self._contact_limit(name, duty, member, limits, cycles),
+                    form_factor=root.form_factor,
+                    stress_correction=root.stress_correction,
+                    nominal_root_stress=bent,
+                    root_stress=bent * factors.bending,
+                    root_limit=root_limit(material, root, cycles, table.root_height, mean),
+                )
+            )
+        return made[0], made[1]
+
+    def _both_flanks(self, own: GearSet, gear: Gear) -> bool:
+        meshes = [it for it in own.meshes if gear.name in (it.mesh.gear1.name, it.mesh.gear2.name)]
+        return len(meshes) > 1
+
+    def _contact_limit(
+        self, name: str, duty: MeshDuty, member: int, limits: list[Material], cycles: float
+    ) -> float:
+        mesh = duty.gears.mesh
+        roughness = (duty.gears.flanks.roughness1, duty.gears.flanks.roughness2)
+        heights = [
+            self._own(name, gear).flank_height or RZ_OVER_RA * RA_OVER_RQ * rough
+            for gear, rough in zip((mesh.gear1, mesh.gear2), roughness, strict=True)
+        ]
+        radius = transverse_radius(duty)
+        viscosity = oil_state(self.oil, 40 + lubricated.ZERO_CELSIUS).kinematic_viscosity
+        speed = abs(duty.speed1) * mesh.gear1.reference_radius
+        return contact_limit(limits, member, cycles, heights, radius, viscosity, speed)
+
+    def _flanks(
+        self, duty: MeshDuty, loads: LineLoads, scale: float, key: str, own: GearSet
+    ) -> FlankRating:
+        """From the fields of the mesh, its load raised by `scale`."""
+        if duty.speed1 == 0:
+            return FlankRating(**dict.fromkeys(FlankRating.__dataclass_fields__, math.nan))
+        fluids = self.state.fluids
+        assert fluids is not None
+        raised = replace(loads, line_load=loads.line_load * scale)
+        stronger = replace(duty, torque1=duty.torque1 * scale)
+        contact = contact_under(stronger, raised, fluids.at(key), fluids.oil)
+        friction_model = duty.gears.models.friction.solved_for(contact)
+        friction = np.asarray(friction_model.coefficient(contact.seen_by(friction_model)))
+        flash = flash_temperatures(contact, friction, duty.gears.materials)
+        return self._damage(duty, contact, friction, flash, own)
+
+    def _damage(
+        self,
+        duty: MeshDuty,
+        contact: MeshContact,
+        friction: FloatArray,
+        flash: FloatArray,
+        own: GearSet,
+    ) -> FlankRating:
+        fluids = self.state.fluids
+        assert fluids is not None
+        mesh, oil = duty.gears.mesh, fluids.oil
+        lubrication = LUBRICATION_FACTORS[self.case.thermal.lubrication]
+        mates = max(self._mates(own, gear) for gear in (mesh.gear1, mesh.gear2))
+        power = contact.line_load * np.abs(contact.sliding_speed)
+        warm = self.case.models.temperatures != "inlet"
+        loss = float((friction * power) @ contact.weight)
+        bulk = contact.oil.temperature
+        if not warm:
+            rise = bulk_rise_of_loss(loss, mesh.center_distance, mesh.face_width, lubrication)
+            bulk = oil.temperature + rise
+        along = path_means(contact, flash)
+        scuffed = bulk if warm else oil.temperature + bulk_rise_of_flash(along, lubrication, mates)
+        film_oil = lubricated.FilmOil(self.oil)
+        temperatures, place = np.unique(np.round(bulk + flash), return_inverse=True)
+        film = lubricated.film_thickness(
+            contact.radius,
+            2 * contact.rolling_speed,
+            contact.hertz_pressure,
+            duty.gears.flanks.equivalent_modulus,
+            (film_oil.viscosity(bulk), film_oil.pressure_viscosity(bulk)),
+            (
+                film_oil.viscosity(temperatures)[place],
+                film_oil.pressure_viscosity(temperatures)[place],
+            ),
+        )
+        roughness = RA_OVER_RQ * (contact.flanks.roughness1 + contact.flanks.roughness2) / 2
+        thinnest = int(np.argmin(film))
+        stage, micro = self.stages
+        limit = lubricated.reference_film(self.oil, micro).permissible
+        viscosity40 = oil_state(self.oil, 40 + lubricated.ZERO_CELSIUS).kinematic_viscosity
+        factor = self.oil.lubricant_factor.value
+        scuffing = lubricated.scuffing_temperature(stage, oil.dynamic_viscosity, factor)
+        integral = scuffed + 1.5 * along
+        most = lubricated.integral_scuffing_temperature(stage, viscosity40, factor)
+        hottest = scuffed + float(flash.max())
+        ratio = float(film[thinnest]) / roughness
+        return FlankRating(
+            bulk_temperature=bulk,
+            film_ratio=ratio,
+            film_ratio_limit=limit,
+            micropitting_place=float(contact.path[thinnest]),
+            contact_temperature=hottest,
+            scuffing_temperature=scuffing,
+            integral_temperature=integral,
+            integral_scuffing_temperature=most,
+            micropitting=ratio / limit,
+            scuffing=lubricated.flash_safety(scuffing, hottest, oil.temperature),
+            integral_scuffing=lubricated.integral_safety(most, integral),
+        )
+
+    def bearings(self, name: str, own: GearSet) -> Iterator[BearingRating]:
+        """The roller bearings of the planets of a set."""
+        state, fluids = self.state, self.state.fluids
+        assert fluids is not None
+        carrier = state.speeds[own.carrier]
+        duties = {duty.gears.key: duty for duty in own.loaded_duties(state)}
+        for planet in own.planets:
+            rollers = getattr(planet.bearing, "bearing", None)
+            if not isinstance(rollers, RollerBearing):
+                continue
+            key = joined_key(name, planet.key)
+            load = replace(planet, tilts=False).load(duties, carrier)[1].force
+            load *= self.table.application_factor
+            speed = abs(state.speeds[planet.body] - carrier)
+            if load == 0 or speed == 0:
+                continue
+            viscosity = fluids.at(key).kinematic_viscosity
+            yield bearing_rating(key, rollers, load, speed, viscosity, self.table)
+
+
+def path_means(contact: MeshContact, values: FloatArray) -> float:
+    """Mean along the path of contact of the mean across it: theta_flm of ISO/TS 6336-20."""
+    edges = np.linspace(contact.path.min(), contact.path.max() * (1 + 1e-9) + 1e-12, 21)
+    weight, _ = np.histogram(contact.path, edges, weights=contact.weight)
+    total, _ = np.histogram(contact.path, edges, weights=contact.weight * values)
+    return float((total[weight > 0] / weight[weight > 0]).mean())
+
+
+def transverse_radius(duty: MeshDuty) -> float:
+    """rho_red at the pitch point in the transverse section. [m]"""
+    mesh = duty.gears.mesh
+    radius = mesh.equivalent_radius(mesh.pitch_point)
+    return radius * math.cos(mesh.gear1.rack.base_helix_angle)
+
+
+def contact_limit(
+    limits: list[Material],
+    member: int,
+    cycles: float,
+    heights: list[float],  # Rz of both flanks. [m]
+    radius: float,  # rho_red at the pitch point, transverse. [m]
+    viscosity40: float,  # [m^2/s]
+    speed: float,  # At the reference circle. [m/s]
+) -> float:
+    """sigma_HG of a gear. ISO 6336-2, Eq. 6. [Pa]"""
+    own, mate = limits[member], limits[1 - member]
+    softer = min(it.contact for it in limits)
+    factor = iso.oil_factor(softer, viscosity40) * iso.speed_factor(softer, speed)
+    factor *= iso.roughness_factor(softer, sum(heights) / 2, radius)
+    if own.treatment == "through-hardened" and mate.treatment != "through-hardened":
+        hard = heights[1 - member]
+        height = hard * math.pow(10e-3 / radius, 0.33)
+        height *= math.pow(heights[1 - member] / heights[member], 0.66)
+        height /= math.pow(max(viscosity40 * 1e6 * speed / 1500, 1e-6), 0.33)
+        factor *= iso.hardening_factor(own.hardness / 1.05, height)
+    return own.contact * factor * iso.life_factor(cycles, iso.PITTING_LIFE[own.treatment])
+
+
+def root_limit(
+    material: Material, root: iso.ToothRoot, cycles: float, height: float, mean: float
+) -> float:
+    """sigma_FG of a root with R_z `height` [m] and Y_M `mean`. ISO 6336-3, Eq. 5. [Pa]"""
+    factor = 2.0 * mean * iso.life_factor(cycles, iso.BENDING_LIFE[material.treatment])
+    factor *= iso.notch_sensitivity(root, material.slip_layer)
+    factor *= iso.root_surface_factor(material.treatment, height)
+    return material.bending * factor * iso.size_factor_bending(material.treatment, root.module)
+
+
+def bearing_rating(
+    key: str,
+    rollers: RollerBearing,
+    load: float,  # Radial. [N]
+    speed: float,  # [rad/s]
+    viscosity: float,  # Kinematic, of the oil at the bearing. [m^2/s]
+    table: StrengthTable,
+) -> BearingRating:
+    """L10 and L10m of cylindrical rollers. ISO 281:2007, 8 and 9; C0 of ISO 76."""
+    diameter, length = iso.MM * rollers.roller_diameter, iso.MM * rollers.roller_length
+    pitch = iso.MM * rollers.pitch_diameter
+    gamma, count = diameter / pitch, rollers.rollers_per_row
+    rating = 1.1 * roller_factor(gamma) * (rollers.rows * length) ** (7 / 9)
+    rating *= count**0.75 * diameter ** (29 / 27)
+    static = 44 * (1 - gamma) * rollers.rows * count * length * diameter
+    fatigue = static / 8.2 * (1.0 if pitch <= 100 else math.pow(100 / pitch, 0.3))
+    rpm = speed * 30 / math.pi
+    needed = 45_000 * math.pow(rpm, -0.83) if rpm < 1000 else 4500 * math.pow(rpm, -0.5)
+    kappa = viscosity * 1e6 / (needed / math.sqrt(pitch))
+    factor = life_modification(kappa, table.contamination_factor * fatigue / load)
+    basic = math.pow(rating / load, 10 / 3) * 1e6 * 2 * math.pi / speed
+    return BearingRating(
+        key=key,
+        load=load,
+        speed=speed,
+        dynamic_load_rating=rating,
+        viscosity_ratio=kappa,
+        life_factor=factor,
+        basic_life=basic,
+        modified_life=factor * basic,
+    )
+
+
+@cache
+def life_modification(kappa: float, load_ratio: float) -> float:
+    """a_ISO of radial roller bearings with e_C C_u/P, at most 50. ISO 281:2007, Eq. 34 to 36. [1]
+
+    Examples
+    --------
+    >>> round(life_modification(1.0, 0.2), 2)
+    1.21
+    """
+    held = min(max(kappa, 0.1), 4.0)
+    scale, exponent = (1.3993, 0.054381) if held < 0.4 else (1.2348, 0.19087)
+    if held >= 1:
+        exponent = 0.071739
+    inner = 1 - (1.5859 - scale / math.pow(held, exponent)) * math.pow(load_ratio, 0.4)
+    if inner <= 0:
+        return 50.0
+    return min(50.0, 0.1 * math.pow(inner, -9.185))
+
+
+def as_dict(found: Strength) -> dict[str, Any]:
+    """The strength as JSON holds it, with units in the keys."""
+    return {
+        "after": AFTER,
+        "least": found.least(),
+        "oil_stages": {
+            "scuffing": found.stages[0],
+            "micropitting": found.stages[1],
+            "source": found.stages_source,
+        },
+        "meshes": {mesh.key: _mesh_dict(mesh) for mesh in found.meshes},
+        "bearings": {one.key: _bearing_dict(one) for one in found.bearings},
+    }
+
+
+def _mesh_dict(mesh: MeshRating) -> dict[str, Any]:
+    factors = {name: getattr(mesh.factors, name) for name in LoadFactors.__dataclass_fields__}
+    gears = {
+        one.gear: {
+            "pitting": one.pitting,
+            "bending": one.bending,
+            "material": one.material,
+            "cycles": one.cycles,
+            "form_factor": one.form_factor,
+            "stress_correction": one.stress_correction,
+            "contact_stress_MPa": one.contact_stress / 1e6,
+            "contact_limit_MPa": one.contact_limit / 1e6,
+            "nominal_root_stress_MPa": one.nominal_root_stress / 1e6,
+            "root_stress_MPa": one.root_stress / 1e6,
+            "root_limit_MPa": one.root_limit / 1e6,
+        }
+        for one in mesh.gears
+    }
+    flanks: Mapping[str, float] = {
+        name: getattr(mesh.flanks, name) for name in FlankRating.__dataclass_fields__
+    }
+    own = {}
+    for name, value in flanks.items():
+        shown = None if math.isnan(value) else value
+        if name.endswith("temperature"):
+            own[f"{name}_degC"] = None if shown is None else shown - lubricated.ZERO_CELSIUS
+        elif name.endswith("place"):
+            own[f"{name}_mm"] = None if shown is None else shown * iso.MM
+        else:
+            own[name] = shown
+    return {
+        "load_factors": factors,
+        "tangential_force_N": mesh.tangential_force,
+        "nominal_contact_stress_MPa": mesh.nominal_contact_stress / 1e6,
+        "gears": gears,
+        "flanks": own,
+    }
+
+
+def _bearing_dict(one: BearingRating) -> dict[str, float]:
+    return {
+        "load_N": one.load,
+        "speed_rpm": one.speed * 30 / math.pi,
+        "dynamic_load_rating_N": one.dynamic_load_rating,
+        "viscosity_ratio": one.viscosity_ratio,
+        "life_factor": one.life_factor,
+        "basic_life_h": one.basic_life / 3600,
+        "modified_life_h": one.modified_life / 3600,
+    }

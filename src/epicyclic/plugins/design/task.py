@@ -1,0 +1,163 @@
+"""The file of a design task: what is asked for, what may be chosen, what must hold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from epicyclic.case.tables.base import ShortLength
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.schema.read import plain, read_file
+from epicyclic.schema.table import Table, option
+from epicyclic.schema.validation import validate
+from epicyclic.units import (
+    HelixAngle,
+    Length,
+    Number,
+    Quantity,
+    RotationalSpeed,
+    Temperature,
+    Torque,
+)
+
+Arrangement = Literal["pair", "planetary", "stepped", "wolfrom", "two-stage"]
+Objective = Literal["loss", "mass", "diameter", "width", "transmission_error"]
+Share = Annotated[Number, Field(gt=0, le=1)]
+Angle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
+
+
+class DutyPoint(Table):
+    """One operating point of the cycle, of the input."""
+
+    torque: Torque
+    speed: RotationalSpeed
+    oil_inlet_temperature: Temperature
+    share: Share = option("Of the time; shares are taken relative to their sum.", 1.0)
+
+
+class Choices(Table):
+    """What the search may choose; every combination is a candidate."""
+
+    arrangements: tuple[Arrangement, ...] = option(None, ("planetary",))
+    module: tuple[Length, ...] = Field(description="Normal modules.")
+    helix_angle: tuple[HelixAngle, ...] = option(None, ("0 deg",))
+    pressure_angle: Angle = option("alpha_n.", "20 deg")
+    pinion_teeth: tuple[int, int] = option("Fewest and most, of the pinion or the sun.", (17, 35))
+    planets: tuple[int, ...] = option("Numbers of planets.", (3,))
+    profile_shift: tuple[Number, ...] = option("x of the pinion or the sun.", (0.0, 0.3))
+    distance_shift: tuple[Number, ...] = option(
+        "Centre distance beyond that of gears without shift, in modules.", (0.0,)
+    )
+    width_ratio: tuple[Number, ...] = option(
+        "Face width over reference diameter of pinion or sun.", (0.8,)
+    )
+    step: int = option("Most teeth between both steps of the planet of a Wolfrom set.", 6, ge=1)
+    backlash: ShortLength = option("j_bn of every mesh.", "60 um")
+    roughness: str = option("Of all flanks, as in a case.", "Ra 0.4 um")
+    pocketing: bool = option(
+        "Compute the loss of oil and air in the pockets, which takes long.", False
+    )
+    bearings: bool = option(
+        "Planets run on cylindrical rollers in a bore of half their root.", True
+    )
+
+
+class Limits(Table):
+    """What every design must meet; keys left out are no limit."""
+
+    ratio_error: Number = option("Relative.", 0.03, ge=0, le=0.5)
+    diameter: Length | None = option("Of the gears, outside.")
+    width: Length | None = option("Of all face widths side by side.")
+    mass: Annotated[float, Quantity("a mass", "kg", "kg", low=0.0, high=1e7)] | None = None
+    contact_ratio: Number = option("Least epsilon_alpha + epsilon_beta.", 1.1, ge=1, le=10)
+    tip_thickness: Number = option("Least, in normal modules.", 0.2, ge=0, le=1)
+    pitting: Number | None = option("Least S_H.", 1.0, ge=0)
+    bending: Number | None = option("Least S_F.", 1.4, ge=0)
+    micropitting: Number | None = option("Least S_lambda.", None, ge=0)
+    scuffing: Number | None = option("Least S_B.", None, ge=0)
+    bearing_life: Annotated[float, Quantity("a time", "s", "h", low=0.0, high=1e7)] | None = option(
+        "Least L10m of planet bearings."
+    )
+
+
+class Search(Table):
+    """How far the search goes."""
+
+    objectives: tuple[Objective, ...] = option("All to be small.", ("loss", "mass"))
+    solved: int = option("Most designs that are solved with all physics.", 60, ge=1, le=100_000)
+    batch: int = option("Solved before the search looks again.", 16, ge=1, le=1000)
+    polished: int = option("Designs whose profile shift is polished.", 1, ge=0, le=50)
+    chosen: int = option("Designs that are written as cases.", 3, ge=1, le=50)
+    most_candidates: int = option("Drawn at random from more.", 100_000, ge=1, le=2_000_000)
+    seed: int = option("Of all that is drawn.", 1, ge=0)
+
+
+class Task(Table):
+    """A whole task."""
+
+    title: str = ""
+    ratio: Number = Field(gt=1, le=1000, description="Speed of the input over that of the output.")
+    operation: DutyPoint = Field(description="Where the safeties hold.")
+    cycle: tuple[DutyPoint, ...] = option("Where the loss is averaged. Default: operation.", ())
+    choices: Choices
+    limits: Limits = Limits()
+    search: Search = Search()
+    case: Any = Field(
+        default={}, description="Tables of every case: lubricant, strength, models, numerics."
+    )
+
+    @property
+    def points(self) -> tuple[DutyPoint, ...]:
+        """The cycle, or the operating point alone."""
+        return self.cycle or (self.operation,)
+
+
+OF_CASES = ("lubricant", "strength", "models", "numerics", "surroundings", "thermal", "lubrication")
+
+
+def read_task(source: str | Path | Mapping[str, Any]) -> Task:
+    """A task from a TOML file or its tables; `InputError` with every problem."""
+    problems: list[Problem] = []
+    if isinstance(source, Mapping):
+        raw, name = plain(source), "the given tables"
+    else:
+        name = str(source)
+        raw, problems = read_file(Path(source))
+    found = validate(Task, raw)
+    raise_any([*problems, *found.problems], name)
+    task = found.case
+    if task is None:
+        raise InputError([Problem("TASK", name, "is not a task.", "See the page on design.")])
+    raise_any(_problems(task), name)
+    return task
+
+
+def _problems(task: Task) -> list[Problem]:
+    """Contradictions between tables."""
+    problems = []
+    low, high = task.choices.pinion_teeth
+    if not 5 <= low <= high:
+        allowed = "must be two numbers of teeth, 5 or more, the smaller one first."
+        problems.append(
+            Problem("choices.pinion_teeth", f"{low}, {high}", allowed, "Give [17, 35].")
+        )
+    for name in ("module", "helix_angle", "planets", "profile_shift", "width_ratio"):
+        if not getattr(task.choices, name):
+            problems.append(Problem(f"choices.{name}", "[]", "is empty.", "Give one value."))
+    tables = task.case if isinstance(task.case, dict) else {}
+    for key in tables.keys() - set(OF_CASES):
+        allowed = f"is no table that designs share; these are {', '.join(OF_CASES)}."
+        problems.append(Problem(f"case.{key}", "", allowed, "Leave it out."))
+    if "lubricant" not in tables:
+        problems.append(
+            Problem("case.lubricant", "", "is missing.", 'Add [case.lubricant] oil = "...".')
+        )
+    if task.cycle and not any(point.torque for point in task.cycle):
+        problems.append(Problem("cycle", "", "has no torque.", "Give points with torque."))
+    if task.operation.torque <= 0 or task.operation.speed <= 0:
+        allowed = "must have a positive torque and speed."
+        problems.append(Problem("operation", "", allowed, "Give the point of the largest load."))
+    return problems

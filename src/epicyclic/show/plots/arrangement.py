@@ -1,0 +1,248 @@
+"""The arrangement of a train, to scale: its sets on their shafts, from two sides."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
+
+from epicyclic.gears.gear import HOUSING
+from epicyclic.result.result import in_words
+from epicyclic.show.plots.drawing import fills_of, plot_gear_set
+from epicyclic.units import MILLIMETRE
+
+Floats = NDArray[np.float64]
+
+SHAFT = 9.0  # Diameter of a shaft of which no bearing is known. [mm]
+GAP = 0.15  # Between sets whose places are not given, over the width of the gears. [1]
+FLAT = 0.3  # Width of a bearing of which it is not given, over the height of its section. [1]
+ENDS = 0.06  # Length of a shaft beyond what is on it, over that of the train. [1]
+
+
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """Where the shafts and sets of a train are. Lengths in mm."""
+
+    gears: Mapping[str, xr.Dataset]  # All gears about the axis of the input.
+    axes: Mapping[str, Floats]  # Axis of each shaft, seen along them.
+    middles: Mapping[str, float]  # Place of each set along the axes.
+    starts: Mapping[str, float]  # Place along the axes from which those on a shaft are counted.
+    widths: Mapping[str, float]  # Of the faces of the gears.
+    assumed: tuple[str, ...]  # Sets whose places along the axes are not given.
+
+
+def arrangement_of(
+    inputs: Mapping[str, Any], gears: Mapping[str, xr.Dataset]
+) -> Arrangement | None:
+    """The arrangement of a train; None if the dimensions of a set are not known."""
+    shafts = {name: list(members) for name, members in inputs.get("shafts", {}).items()}
+    sets = {name.partition(".")[0] for name in gears}
+    if not sets or sets != set(inputs["sets"]):
+        return None
+    on = {member: shaft for shaft, members in shafts.items() for member in members}
+    centers = _centers(inputs, gears, on)
+    origins: dict[str, Floats] = {}
+    axes = {inputs["operation"]["input"]: np.zeros(2)}
+    while grown := list(_next_to(axes, origins, centers, on)):
+        for name, shaft, place in grown:
+            (axes if shaft else origins).setdefault(shaft or name, place)
+    if sets - origins.keys():
+        return None
+    widths = {name: _face_width(inputs, name) for name in gears}
+    middles, starts, assumed = _along(
+        inputs, sorted(sets, key=list(inputs["sets"]).index), on, widths
+    )
+    moved = {
+        name: gear.assign(
+            center_x=gear["center_x"] + origins[own][0], center_y=gear["center_y"] + origins[own][1]
+        )
+        for name, gear in gears.items()
+        for own in (name.partition(".")[0],)
+    }
+    return Arrangement(moved, axes, middles, starts, widths, assumed)
+
+
+def _table(inputs: Mapping[str, Any], gear: str) -> Mapping[str, Any]:
+    """The table of a gear in the inputs."""
+    name, _, own = gear.partition(".")
+    table = inputs["sets"][name]
+    found: Mapping[str, Any] = table.get(own) or table["gears"][own]
+    return found
+
+
+def _face_width(inputs: Mapping[str, Any], gear: str) -> float:
+    return _millimetres(_table(inputs, gear)["face_width"])
+
+
+def _centers(
+    inputs: Mapping[str, Any], gears: Mapping[str, xr.Dataset], on: Mapping[str, str]
+) -> dict[str, Floats]:
+    """Axis of each member of a set, by its name on shafts, about the origin of the set."""
+    found = {member: np.zeros(2) for member in on}
+    for name, gear in gears.items():
+        body = _table(inputs, name).get("body") or name.partition(".")[2]
+        member = f"{name.partition('.')[0]}.{body}"
+        if gear.sizes["place"] == 1:
+            found[member] = np.array([float(gear["center_x"][0]), float(gear["center_y"][0])])
+    return found
+
+
+def _next_to(
+    axes: Mapping[str, Floats],
+    origins: Mapping[str, Floats],
+    centers: Mapping[str, Floats],
+    on: Mapping[str, str],
+) -> Iterator[tuple[str, str, Floats]]:
+    """Sets, and shafts, whose places follow from what is known."""
+    for member, shaft in on.items():
+        name = member.partition(".")[0]
+        if shaft in axes and name not in origins:
+            yield name, "", axes[shaft] - centers[member]
+        elif name in origins and shaft not in axes:
+            yield name, shaft, origins[name] + centers[member]
+
+
+def _along(
+    inputs: Mapping[str, Any], sets: list[str], on: Mapping[str, str], widths: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, float], tuple[str, ...]]:
+    """Places of sets and shafts along the axes; the sets for which none is given, side by side."""
+    given = {
+        member: _millimetres(text)
+        for member, text in inputs.get("positions", {}).items()
+        if member in on
+    }
+    middles: dict[str, float] = {}
+    starts: dict[str, float] = {}
+    assumed: list[str] = []
+    while left := [name for name in sets if name not in middles]:
+        known = len(middles)
+        for member, place in given.items():
+            name, shaft = member.partition(".")[0], on[member]
+            if not starts and not middles:
+                starts[shaft] = 0.0
+            if shaft in starts:
+                middles.setdefault(name, starts[shaft] + place)
+            elif name in middles:
+                starts[shaft] = middles[name] - place
+        if len(middles) == known:
+            name = left[0]
+            width = max(it for gear, it in widths.items() if gear.startswith(f"{name}."))
+            ends = [
+                middles[gear.partition(".")[0]] + it / 2
+                for gear, it in widths.items()
+                if gear.partition(".")[0] in middles
+            ]
+            middles[name] = max(ends, default=-width / 2) + GAP * width + width / 2
+            assumed.append(name)
+    for member, place in given.items():
+        starts.setdefault(on[member], middles[member.partition(".")[0]] - place)
+    return middles, starts, tuple(assumed)
+
+
+def plot_from_the_end(found: Arrangement, ax: Axes) -> Axes:
+    """All gears at their places, seen along the axes."""
+    plot_gear_set(found.gears, ax)
+    ax.set_title("Arrangement, seen along the shafts")
+    return ax
+
+
+def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) -> Axes:
+    """Gears, shafts and bearings at their places along the axes, seen across the widest side."""
+    places = np.array(list(found.axes.values()))
+    _, sizes, sides = np.linalg.svd(places - places.mean(axis=0))
+    up = sides[0] if sizes[0] else np.array([0.0, 1.0])
+    up = up * math.copysign(1.0, up[np.abs(up).argmax()])
+    heights = {shaft: float(place @ up) for shaft, place in found.axes.items()}
+    spans: dict[str, list[float]] = {}
+    colours = fills_of(found.gears)
+    for name, gear in sorted(found.gears.items(), key=lambda it: -float(it[1]["tip_diameter"])):
+        middle, width = found.middles[name.partition(".")[0]], found.widths[name]
+        tip, outside = float(gear["tip_diameter"]) / 2, float(gear["outside_diameter"]) / 2
+        ends = ((-outside, -tip), (tip, outside)) if gear.attrs["internal"] else ((-tip, tip),)
+        for x, y in zip(gear["center_x"].values, gear["center_y"].values, strict=True):
+            height = float(np.array([x, y]) @ up)
+            for low, high in ends:
+                _rectangle(ax, (middle, height), (width, low, high), facecolor=colours[name])
+    for shaft, members in inputs["shafts"].items():
+        sets = {member.partition(".")[0] for member in members} & found.middles.keys()
+        half = {
+            name: max(it for gear, it in found.widths.items() if gear.startswith(f"{name}.")) / 2
+            for name in sets
+        }
+        spans[shaft] = [
+            found.middles[name] + sign * half[name] for name in sets for sign in (-1, 1)
+        ]
+    bores: dict[str, float] = {}
+    for table in inputs.get("bearings", {}).values():
+        shaft = table["shaft"]
+        if "position" not in table or shaft not in found.starts or shaft not in heights:
+            continue
+        middle = found.starts[shaft] + _millimetres(table["position"])
+        bore, outer = (_millimetres(table[key]) / 2 for key in ("bore", "outside_diameter"))
+        given = table.get("width")
+        width = _millimetres(given) if given else 2 * FLAT * (outer - bore)
+        for low, high in ((-outer, -bore), (bore, outer)):
+            place = middle, heights[shaft]
+            _rectangle(ax, place, (width, low, high), facecolor="white", hatch="xxxx", zorder=3)
+        spans[shaft] += [middle - width / 2, middle + width / 2]
+        bores[shaft] = min(2 * bore, bores.get(shaft, math.inf))
+    length = max(map(max, filter(None, spans.values()))) - min(
+        map(min, filter(None, spans.values()))
+    )
+    for shaft, own in spans.items():
+        if shaft not in heights or not own or shaft == HOUSING:
+            continue
+        low, high = min(own) - ENDS * length, max(own) + ENDS * length
+        radius = bores.get(shaft, SHAFT) / 2
+        style: dict[str, Any] = {"facecolor": "0.75", "zorder": 0.5}
+        _rectangle(ax, ((low + high) / 2, heights[shaft]), (high - low, -radius, radius), **style)
+        ax.plot((low, high), [heights[shaft]] * 2, color="black", lw=0.6, ls="-.")
+    _write_names(ax, spans, heights, ENDS * length)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.autoscale_view()
+    ax.margins(0.05)
+    ax.grid(visible=False)
+    told = f"; place along the shaft not given: {', '.join(map(in_words, found.assumed))}"
+    ax.set(
+        title="Arrangement, seen from the side",
+        xlabel=f"along the shafts, mm{told if found.assumed else ''}",
+        ylabel="across the shafts, mm",
+    )
+    return ax
+
+
+def _millimetres(text: str) -> float:
+    """A length of the inputs."""
+    return MILLIMETRE.to_display(MILLIMETRE.parse(text))
+
+
+def _rectangle(
+    ax: Axes, place: tuple[float, float], size: tuple[float, float, float], **style: Any
+) -> None:
+    """Something about a place on an axis: its width, and its ends across the axis."""
+    width, low, high = size
+    corner = place[0] - width / 2, place[1] + low
+    ax.add_patch(Rectangle(corner, width, high - low, edgecolor="black", linewidth=0.6, **style))
+
+
+def _write_names(
+    ax: Axes, spans: Mapping[str, list[float]], heights: Mapping[str, float], gap: float
+) -> None:
+    """Names at the ends of the shafts; of those on one axis left and right in turn."""
+    taken: dict[float, int] = {}
+    for shaft, own in spans.items():
+        if shaft == HOUSING or shaft not in heights or not own:
+            continue
+        height = round(heights[shaft], 3)
+        is_left = taken.get(height, 0) % 2 == 0
+        taken[height] = taken.get(height, 0) + 1
+        place = min(own) - 1.5 * gap if is_left else max(own) + 1.5 * gap
+        side = "right" if is_left else "left"
+        ax.text(place, height, in_words(shaft), ha=side, va="center", fontsize="small")

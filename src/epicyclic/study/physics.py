@@ -1,0 +1,496 @@
+"""The main formulas of the losses as functions of numbers and arrays, without a case.
+
+Arguments are in SI units, or texts with a unit ("20 mm"), each one value or an array of values;
+arrays are broadcast against each other as numpy does it. Results are arrays in SI units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import PydanticCustomError
+
+from epicyclic.build.elements import build_element
+from epicyclic.case.tables.elements import ShaftBearingTable
+from epicyclic.case.tables.operation import Lubricant
+from epicyclic.contact.line_contact import Flanks, LineContacts
+from epicyclic.errors import InputError, one_problem
+from epicyclic.kernels.line_contact import equivalent_modulus
+from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings
+from epicyclic.losses.journal_bearing import JournalBearing, JournalState, solve_journal
+from epicyclic.losses.rolling import ROLLING_MODELS
+from epicyclic.losses.shaft_bearing import BearingLoad
+from epicyclic.losses.windage import MIST_SHARE, DragModel, Teeth, Turning, drag
+from epicyclic.machine.convection import GRAVITY_TEMPERATURE, WATER, oil_heat_capacity
+from epicyclic.machine.shaft_parts import ShaftBearing
+from epicyclic.messages import refused, written
+from epicyclic.oil.oil import Oil, OilState, mixture_state, oil_state
+from epicyclic.schema.validation import validate
+from epicyclic.units import (
+    CELSIUS,
+    METRE_PER_SECOND,
+    MICROMETRE,
+    MILLIMETRE,
+    NEWTON,
+    NEWTON_PER_MM,
+    RPM,
+)
+
+FloatArray = NDArray[np.float64]
+OilName = str | Mapping[str, Any]
+STEEL = equivalent_modulus(206e9, 0.3, 206e9, 0.3)  # E_eq of two bodies of steel. [Pa]
+AMBIENT = 101325.0  # [Pa]
+LOCAL_FRICTION = (
+    "mixed-lubrication", "mixed-ehl", "mixed-ehl+pairing", "xu-2007", "benedict-kelley",
+    "matsumoto", "doleschel",
+)  # fmt: skip
+"""Friction models that need no more than the contact; the others are means over a gear mesh."""
+
+
+_UNITS = {
+    "line_load": NEWTON_PER_MM,
+    "radius": MILLIMETRE,
+    "rolling_speed": METRE_PER_SECOND,
+    "sliding_speed": METRE_PER_SECOND,
+    "roughness1": MICROMETRE,
+    "roughness2": MICROMETRE,
+    "roughness": MICROMETRE,
+    "temperature": CELSIUS,
+    "diameter": MILLIMETRE,
+    "pitch_diameter": MILLIMETRE,
+    "width": MILLIMETRE,
+    "length": MILLIMETRE,
+    "clearance": MICROMETRE,
+    "speed": RPM,
+    "force": NEWTON,
+    "radial_force": NEWTON,
+    "axial_force": NEWTON,
+}
+"""What texts with units measure, by the name of the argument."""
+
+
+def _si(key: str, given: Any) -> FloatArray:
+    """Numbers in SI, and texts with units."""
+    if not isinstance(given, str) and np.ndim(given):
+        return np.array([_si(key, one) for one in given])
+    if isinstance(given, int | float | np.number) and not isinstance(given, bool):
+        return np.array(float(given))
+    try:
+        return np.array(_UNITS[key].parse(given))
+    except PydanticCustomError as error:
+        raise InputError([refused(error, key, written(given))]) from None
+
+
+def _each(function: Callable[..., tuple[Any, ...]], **given: Any) -> list[FloatArray]:
+    """The results of a function of numbers in SI, one array for each of them."""
+    arrays = np.broadcast_arrays(*(_si(key, value) for key, value in given.items()))
+    found = [function(*map(float, point)) for point in zip(*map(np.ravel, arrays), strict=True)]
+    return [
+        np.array(column, dtype=float).reshape(arrays[0].shape)
+        for column in zip(*found, strict=True)
+    ]
+
+
+def _oil(given: OilName) -> Oil:
+    read = validate(Lubricant, {"oil": given})
+    if read.case is None:
+        raise InputError(read.problems)
+    return read.case.oil
+
+
+def _chosen(name: str, known: Mapping[str, Any], among: tuple[str, ...]) -> Any:
+    if name not in among:
+        allowed = f"must be one of {', '.join(among)}."
+        raise one_problem("model", written(name), allowed, "Choose one of them.")
+    return known[name]
+
+
+class OilProperties(NamedTuple):
+    """An oil at one or more temperatures, SI."""
+
+    kinematic_viscosity: FloatArray  # nu. [m^2/s]
+    dynamic_viscosity: FloatArray  # mu. [Pa s]
+    density: FloatArray  # rho. [kg/m^3]
+    pressure_viscosity: FloatArray  # alpha. [1/Pa]
+
+
+def oil_properties(oil: OilName, temperature: Any) -> OilProperties:
+    """Viscosity, density and pressure-viscosity coefficient of an oil.
+
+    lg lg (nu + 0.7) = A - B lg T (ASTM D341), a density linear in T, and the pressure-viscosity
+    coefficient by Gold's constants or Roelands' equation. See (L3) in the theory.
+
+    Parameters
+    ----------
+    oil : str or mapping
+        A name of the oil library, or a table as below ``[lubricant]``: ``{"iso_vg": 220}``.
+    temperature : float, str or array_like
+        [K], or ``"90 degC"``.
+
+    Returns
+    -------
+    OilProperties
+        In m^2/s, Pa s, kg/m^3 and 1/Pa.
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> found = ep.oil_properties("iso-vg-100-pao", ["40 degC", "100 degC"])
+    >>> (1e6 * found.kinematic_viscosity).round(1).tolist()
+    [100.0, 15.3]
+    """
+    names = OilProperties._fields
+
+    def at(kelvin: float) -> tuple[float, ...]:
+        state = oil_state(_oil(oil), kelvin)
+        return tuple(getattr(state, name) for name in names)
+
+    return OilProperties(*_each(at, temperature=temperature))
+
+
+class LineContact(NamedTuple):
+    """Pressure and film of line contacts, SI."""
+
+    hertz_pressure: FloatArray  # p_h. [Pa]
+    half_width: FloatArray  # b_h. [m]
+    minimum_film: FloatArray  # h_min. [m]
+    film_ratio: FloatArray  # h_min over sqrt(Rq1^2 + Rq2^2). [1]
+
+
+def _at_contacts(
+    function: Callable[[LineContacts], tuple[Any, ...]],
+    *,
+    line_load: Any,
+    radius: Any,
+    rolling_speed: Any,
+    temperature: Any,
+    oil: OilName,
+    sliding_speed: Any = 0.0,
+    roughness1: Any = "0.4 um",
+    roughness2: Any = "0.4 um",
+    modulus: float = STEEL,
+) -> list[FloatArray]:
+    """What a function makes of each contact."""
+    liquid = _oil(oil)
+
+    def at(rq1: float, rq2: float, t: float, *local: float) -> tuple[float, ...]:
+        load, own, rolling, sliding = (np.array([one]) for one in local)
+        flanks = Flanks(modulus, rq1, rq2)
+        contact = LineContacts(load, own, rolling, sliding, flanks, oil_state(liquid, t))
+        return tuple(float(np.ravel(one)[0]) for one in function(contact))
+
+    return _each(
+        at, roughness1=roughness1, roughness2=roughness2, temperature=temperature,
+        line_load=line_load, radius=radius, rolling_speed=rolling_speed,
+        sliding_speed=sliding_speed,
+    )  # fmt: skip
+
+
+def line_contact(**contact: Any) -> LineContact:
+    """Hertz pressure and film thickness of a lubricated line contact.
+
+    b_h = sqrt(8 W' R/(pi E_eq)), p_h = 2 W'/(pi b_h) (Johnson 1985, Eq. 4.43) and h_min/R = 1.714
+    U^0.694 G^0.568 W^-0.128 of smooth, isothermal contacts (Pan and Hamrock 1989).
+    See (C10) in the theory.
+
+    Parameters
+    ----------
+    line_load : float, str or array_like
+        W' [N/m], or ``"300 N/mm"``.
+    radius : float, str or array_like
+        Equivalent radius of curvature R, 1/R = 1/r_1 + 1/r_2. [m]
+    rolling_speed : float, str or array_like
+        (u_1 + u_2)/2. [m/s]
+    temperature : float, str or array_like
+        Of the oil at the inlet. [K]
+    oil : str or mapping
+        As for `oil_properties`.
+    roughness1, roughness2 : float, str or array_like
+        Rms roughness Rq of both surfaces. [m]
+    modulus : float
+        E_eq = 2/[(1 - nu1^2)/E1 + (1 - nu2^2)/E2]. Default: steel on steel. [Pa]
+
+    Returns
+    -------
+    LineContact
+        In Pa, m, m and 1.
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> found = ep.line_contact(line_load=["100 N/mm", "300 N/mm"], radius="12 mm",
+    ...     rolling_speed="7 m/s", temperature="70 degC", oil="iso-vg-100-pao")
+    >>> (1e-6 * found.hertz_pressure).round(0).tolist()
+    [548.0, 949.0]
+    >>> (1e6 * found.minimum_film).round(2).tolist()
+    [0.61, 0.53]
+    """
+    names = ("hertz_pressure", "hertz_half_width", "minimum_film", "film_ratio")
+    return LineContact(
+        *_at_contacts(lambda it: tuple(getattr(it, name) for name in names), **contact)
+    )
+
+
+def friction(model: str, **contact: Any) -> FloatArray:
+    """Coefficient of friction of a line contact by one of the models of gear flanks.
+
+    Parameters
+    ----------
+    model : str
+        A local model of ``models.friction``: ``"mixed-lubrication"`` (this package, any oil),
+        ``"mixed-ehl"`` (Talbot 2012, Eq. 5.8), ``"mixed-ehl+pairing"``, ``"xu-2007"``,
+        ``"benedict-kelley"`` (1961), ``"matsumoto"`` (2014) or ``"doleschel"`` (2002).
+        See (F6) in the theory.
+        Models that are means over a mesh need a case: see `solve`.
+    **contact
+        As for `line_contact`, with ``sliding_speed``, u_1 - u_2. [m/s]
+
+    Returns
+    -------
+    ndarray
+        mu. [1]
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> mu = ep.friction("benedict-kelley", line_load="300 N/mm", radius="12 mm",
+    ...     rolling_speed="7 m/s", sliding_speed=["1 m/s", "3 m/s"], temperature="70 degC",
+    ...     oil="iso-vg-100-pao")
+    >>> mu.round(4).tolist()
+    [0.0596, 0.0507]
+    """
+    chosen = _chosen(model, FRICTION_MODELS, LOCAL_FRICTION)
+    return _at_contacts(lambda it: (chosen.function(it, FrictionSettings()),), **contact)[0]
+
+
+def rolling_loss(model: str, **contact: Any) -> FloatArray:
+    """Rolling loss per length of a line contact.
+
+    Parameters
+    ----------
+    model : str
+        ``"goksem-hargreaves"`` (1978; (R7) in the theory), ``"mixed-ehl"`` (Talbot 2012,
+        Eq. 5.10; (R5)) or ``"mixed-ehl+pairing"``.
+    **contact
+        As for `line_contact`; the regressions take ``sliding_speed``, u_1 - u_2, too. [m/s]
+
+    Returns
+    -------
+    ndarray
+        [W/m]
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> loss = ep.rolling_loss("goksem-hargreaves", line_load="300 N/mm", radius="12 mm",
+    ...     rolling_speed=["5 m/s", "9 m/s"], temperature="70 degC", oil="iso-vg-100-pao")
+    >>> loss.round(0).tolist()
+    [1116.0, 2704.0]
+    """
+    local = tuple(name for name in ROLLING_MODELS if name != "fitted")
+    chosen = _chosen(model, ROLLING_MODELS, local)
+    return _at_contacts(lambda it: (chosen.loss_density(it),), **contact)[0]
+
+
+def windage(
+    *,
+    diameter: Any,
+    width: Any,
+    speed: Any,
+    temperature: Any,
+    oil: OilName,
+    oil_share: float = 0.05,
+    teeth: int | None = None,
+    pitch_diameter: Any = None,
+    tooth_space: float = 0.2,
+    model: DragModel = "theodorsen-regier",
+) -> FloatArray:
+    """Drag of a disc, or of a gear, that turns in a mixture of oil and air.
+
+    P = omega T of the rim, tau = C_d rho (omega r)^2/2, and of both faces, T = C_M rho omega^2
+    r^5/2, laminar to turbulent (Theodorsen and Regier 1944; von Karman); with ``teeth`` also what
+    the teeth pump (Anderson and Loewenthal, or Diab et al. 2004).
+    See (V11), (V12), (V13) in the theory.
+
+    Parameters
+    ----------
+    diameter, width : float, str or array_like
+        Of the disc; of a gear its tip diameter and face width. [m]
+    speed : float, str or array_like
+        [rad/s], or ``"9000 rpm"``.
+    temperature, oil
+        Of the oil, as for `oil_properties`; the air has the same temperature and 1.01325 bar.
+    oil_share : float
+        Volume of oil in the mixture. [1]
+    teeth : int, optional
+        Number of teeth.
+    pitch_diameter : float or str, optional
+        Reference diameter of the teeth. Default: `diameter`. [m]
+    tooth_space : float
+        Angle of a tooth space at the tip circle. [rad]
+    model : str
+        ``"theodorsen-regier"``, ``"anderson-loewenthal"`` or ``"diab-ville-velex"``.
+
+    Returns
+    -------
+    ndarray
+        [W]
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> loss = ep.windage(diameter="200 mm", width="30 mm", speed=["3000 rpm", "9000 rpm"],
+    ...     temperature="80 degC", oil="atf-dexron-vi", oil_share=0.01)
+    >>> loss.round(1).tolist()
+    [107.1, 1779.7]
+    """
+    liquid = _oil(oil)
+
+    def at(size: float, face: float, omega: float, t: float, pitch: float) -> tuple[float]:
+        state = oil_state(liquid, t)
+        toothed = Teeth(teeth, pitch / 2, size / 2, face, tooth_space) if teeth else None
+        mixture = mixture_state(state, oil_share, AMBIENT)
+        mist = mixture_state(state, min(oil_share, MIST_SHARE), AMBIENT)
+        body = Turning(size / 2, face, toothed)
+        return (sum(drag(body, omega, mixture, mist, state.dynamic_viscosity, model)),)
+
+    pitch = diameter if pitch_diameter is None else pitch_diameter
+    return _each(
+        at, diameter=diameter, width=width, speed=speed, temperature=temperature,
+        pitch_diameter=pitch,
+    )[0]  # fmt: skip
+
+
+def bearing_loss(
+    designation: str,
+    *,
+    speed: Any,
+    temperature: Any,
+    oil: OilName,
+    radial_force: Any,
+    axial_force: Any = 0.0,
+    model: Literal["auto", "palmgren", "harris", "zhou-hoeprich"] = "auto",
+) -> FloatArray:
+    """Loss of a rolling bearing by its designation.
+
+    Sizes follow from the ISO plans and load ratings are estimated (ISO 281, ISO 76; (J27)
+    in the theory). The friction is Palmgren's, M = f_1 F d_m/2 + M_0, or of tapered bearings that
+    of Zhou and Hoeprich (1991).
+
+    Parameters
+    ----------
+    designation : str
+        ``"6208"``, ``"NU 2210"``, ``"32006"``, ``"NKI 40/30"``.
+    speed : float, str or array_like
+        Of one ring against the other. [rad/s]
+    temperature, oil
+        Of the oil in the bearing, as for `oil_properties`.
+    radial_force, axial_force : float, str or array_like
+        [N]
+    model : str
+        As in ``[bearings.NAME]``.
+
+    Returns
+    -------
+    ndarray
+        [W]
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> ep.bearing_loss("6208", speed=["1500 rpm", "6000 rpm"], temperature="70 degC",
+    ...     oil="iso-vg-100-pao", radial_force="2 kN").round(1).tolist()
+    [14.9, 116.0]
+    """
+    liquid = _oil(oil)
+    given = {"shaft": "shaft", "designation": designation, "model": model, "radial_force": "1 N"}
+    read = validate(ShaftBearingTable, given)
+    if read.case is None:
+        raise InputError(read.problems)
+    made = build_element(
+        "bearings", "bearing", read.case, shafts={"shaft": "shaft"}, oil=liquid, folder=Path()
+    )
+    assert isinstance(made, ShaftBearing)
+
+    def at(omega: float, t: float, radial: float, axial: float) -> tuple[float]:
+        parts = made.model.parts(
+            made.bearing, BearingLoad(radial, axial), omega, oil_state(liquid, t)
+        )
+        return (sum(part.watts for part in parts),)
+
+    return _each(
+        at, speed=speed, temperature=temperature, radial_force=radial_force,
+        axial_force=axial_force,
+    )[0]  # fmt: skip
+
+
+def plain_pin(
+    *,
+    diameter: Any,
+    length: Any,
+    clearance: Any,
+    force: Any,
+    speed: Any,
+    temperature: Any,
+    oil: OilName,
+    roughness: Any = "0.5 um",
+    conductance: float = 0.0,
+) -> dict[str, FloatArray]:
+    """Film, temperature and loss of a journal bearing: a planet on a plain pin.
+
+    Reynolds' equation of a short to long bearing with the mean temperature of its film, asperities
+    of Greenwood and Tripp where the film is thin. See (Z3), (Z5) in the theory.
+
+    Parameters
+    ----------
+    diameter, length, clearance : float, str or array_like
+        Of the pin, of the bore, and the difference of their diameters. [m]
+    force : float, str or array_like
+        [N]
+    speed : float, str or array_like
+        [rad/s]
+    temperature, oil
+        Of the oil as it enters, as for `oil_properties`.
+    roughness : float, str or array_like
+        Rms, of both surfaces together. [m]
+    conductance : float
+        From the film to pin and planet; 0: all heat leaves with the oil. [W/K]
+
+    Returns
+    -------
+    dict of str to ndarray
+        ``watts`` and the fields of `epicyclic.losses.journal_bearing.JournalState`, SI.
+
+    Examples
+    --------
+    >>> import epicyclic as ep
+    >>> pin = ep.plain_pin(diameter="25 mm", length="30 mm", clearance="40 um", force="3 kN",
+    ...     speed=["600 rpm", "2400 rpm"], temperature="60 degC", oil="iso-vg-100-pao")
+    >>> pin["watts"].round(1).tolist(), (1e6 * pin["film"]).round(1).tolist()
+    ([5.2, 40.8], [3.4, 8.0])
+    """
+    liquid = _oil(oil)
+    names = ("watts", *(one.name for one in fields(JournalState)))
+
+    def at(*values: float) -> tuple[float, ...]:
+        inner, long, gap, rough, load, omega, t = values
+        state: OilState = oil_state(liquid, t)
+        bearing = JournalBearing(
+            inner, long, gap, rough, STEEL / 2, state.boundary_friction, conductance
+        )
+        gravity = oil_state(liquid, GRAVITY_TEMPERATURE).density / WATER
+        own = liquid.specific_heat_capacity
+        capacity = oil_heat_capacity(t, gravity) if own is None else own.value
+        found = solve_journal(bearing, load, omega, state, capacity)
+        return tuple(getattr(found, name) for name in names)
+
+    columns = _each(
+        at, diameter=diameter, length=length, clearance=clearance, roughness=roughness,
+        force=force, speed=speed, temperature=temperature,
+    )  # fmt: skip
+    return dict(zip(names, columns, strict=True))
