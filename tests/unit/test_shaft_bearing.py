@@ -225,15 +225,6 @@ def test_measured_torque_of_a_32216():
     assert abs(np.mean(errors)) < 0.05
 
 
-def test_measured_torque_of_an_lm12700():
-    measured = {200: 450, 400: 200, 800: 115, 1600: 85, 2400: 90, 3200: 100, 4000: 110, 4800: 120}
-    load = BearingLoad(0.0, 3600.0)
-    errors = [
-        torque(SMALL_MODEL, SMALL, load, rpm, THIN) / found - 1 for rpm, found in measured.items()
-    ]
-    assert np.abs(errors).mean() < 0.15
-
-
 def test_tapered_moments_vanish_with_the_load_and_grow_with_it():
     moments = [
         tapered_moments(LARGE_MODEL, LARGE, BearingLoad(radial, axial), 100.0, fva_3(50))
