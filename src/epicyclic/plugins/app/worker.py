@@ -28,7 +28,6 @@ from epicyclic.losses.friction import contact_progress
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.files import is_rexs
 from epicyclic.result.result import Result, in_words, set_of
-from epicyclic.show.html import report_html, report_pdf
 from epicyclic.show.page import Drawing, KeyFigure, Section, Table
 from epicyclic.show.plots.catalogue import PLOTS, Panel, Stored, draw, drawing, figure_of, svg_text
 from epicyclic.show.plots.drawing import POSITION, Turning, turning_mesh, turning_set
@@ -40,10 +39,9 @@ from epicyclic.show.result_page import (
     map_sections,
     result_section,
     result_sections,
-    summary_section,
 )
 from epicyclic.show.result_tables import side_by_side
-from epicyclic.show.summary import head_figures
+from epicyclic.show.summary import head_figures, summary_section
 from epicyclic.show.views import save
 from epicyclic.study.bands.advice import Known, known_of
 from epicyclic.study.maps.compute import loss_map
@@ -447,6 +445,8 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
     Of a REXS file a copy of the original with the results; of a format with a file for each state,
     these in an archive.
     """
+    from epicyclic.show.html import report_html, report_pdf
+
     found = _stored(study, progress)
     with tempfile.TemporaryDirectory() as folder, contact_progress(progress):
         path = Path(folder) / f"result{_suffix(name)}"
