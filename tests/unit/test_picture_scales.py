@@ -16,6 +16,7 @@ import listed_trains
 from epicyclic.cli.common import parse_size
 from epicyclic.result.result import of_gear
 from epicyclic.show.page import Cell, Table
+from epicyclic.show.plots.arrangement import arrangement_of
 from epicyclic.show.plots.catalogue import draw, figure_of
 from epicyclic.show.plots.drawing import plot_gear_set
 from epicyclic.show.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
@@ -321,3 +322,17 @@ def test_pictures_of_published_figures_have_few_rows():
 def test_a_result_without_a_value_shows_none_in_the_table_of_bands():
     assert [_shown(float("nan"), unit).text for unit in ("1", "W", "kJ")] == ["-"] * 3
     assert _shown(0.98765, "1").text == "98.765"
+
+
+def test_sets_and_shafts_of_a_train_lie_where_the_case_has_them():
+    case = ep.load_case("train-eaxle", {"sets.pair.direction": "90 deg"})
+    inputs = case.given() | {"operation": {"input": "motor"}}
+    found = arrangement_of(inputs, gear_shapes(case))
+    assert found.axes["motor"] == pytest.approx([0.0, 0.0])
+    assert found.axes["middle"] == pytest.approx([0.0, 90.0])
+    assert found.axes["differential"] == pytest.approx(found.axes["middle"])
+    assert float(found.gears["planets.sun"]["center_y"][0]) == pytest.approx(90.0)
+    assert found.middles["pair"] == pytest.approx(40.0)
+    assert found.starts["middle"] == pytest.approx(5.0)  # its gear stands at 35 mm
+    assert found.middles["planets"] > 40.0 + (30.0 + 36.0) / 2
+    assert found.assumed == ("planets",)

@@ -35,9 +35,7 @@ from epicyclic.show.page import (
 from epicyclic.show.plots.loss_map import at_temperatures, left_out_line, map_at
 from epicyclic.show.plots.sweep import LEFT_OUT, shown_results
 from epicyclic.show.record import ResultRecord, sets_of
-from epicyclic.show.summary import first_remarks, first_warnings, loss_summary
 from epicyclic.show.uncertainty_tables import grid_table, uncertainty_items
-from epicyclic.study.bands.advice import Known
 from epicyclic.study.friction import methods_of
 from epicyclic.study.maps.tables import map_case, map_inputs, statements
 from epicyclic.study.operating import AXES
@@ -55,14 +53,6 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
 def result_section(record: ResultRecord, drawings: Drawings, name: str) -> Section:
     """One chapter, without content if the record has none for it."""
     return _CHAPTERS[name](record, drawings)
-
-
-def summary_section(result: Result, known: Known | None, drawings: Drawings) -> Section:
-    """What is read first, as on the first screen of the command."""
-    remarks = Listing(tuple(first_remarks(result, known)))
-    lists = [it for it in (remarks, first_warnings(result)) if it.items]
-    row = Row((loss_summary(result), *gallery(drawings, "losses")))
-    return Section("summary", "Summary", (row, *lists))
 
 
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")

@@ -17,7 +17,7 @@ from epicyclic.losses.ranges import concern_text, range_text, weight_of
 from epicyclic.machine.element import note_watts
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result, in_words
-from epicyclic.show.page import KeyFigure, Listing, Table
+from epicyclic.show.page import Drawings, KeyFigure, Listing, Row, Section, Table, gallery
 from epicyclic.show.result_tables import key_figures, locking_text, losses_table, sums_table
 from epicyclic.show.terminal import Sentence, as_on_page, spaced
 from epicyclic.study.bands.advice import (
@@ -167,3 +167,11 @@ def first_warnings(result: Result) -> Listing:
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))
     count = len(result.warnings)
     return Listing(shown, f"Warnings, {len(shown)} of {count} by the watts concerned")
+
+
+def summary_section(result: Result, known: Known | None, drawings: Drawings) -> Section:
+    """What is read first, as on the first screen of the command."""
+    remarks = Listing(tuple(first_remarks(result, known)))
+    lists = [it for it in (remarks, first_warnings(result)) if it.items]
+    row = Row((loss_summary(result), *gallery(drawings, "losses")))
+    return Section("summary", "Summary", (row, *lists))

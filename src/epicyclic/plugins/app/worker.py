@@ -39,10 +39,9 @@ from epicyclic.show.result_page import (
     map_sections,
     result_section,
     result_sections,
-    summary_section,
 )
 from epicyclic.show.result_tables import side_by_side
-from epicyclic.show.summary import head_figures
+from epicyclic.show.summary import head_figures, summary_section
 from epicyclic.show.views import save
 from epicyclic.study.bands.advice import Known, known_of
 from epicyclic.study.maps.compute import loss_map
@@ -446,6 +445,8 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
     Of a REXS file a copy of the original with the results; of a format with a file for each state,
     these in an archive.
     """
+    from epicyclic.show.html import report_html, report_pdf
+
     found = _stored(study, progress)
     with tempfile.TemporaryDirectory() as folder, contact_progress(progress):
         path = Path(folder) / f"result{_suffix(name)}"
