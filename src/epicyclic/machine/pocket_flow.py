@@ -178,18 +178,16 @@ def mesh_flows(
             flows[duty.gears.key] = MeshFlow(figures)
     _begin(tuple(family for family, *_ in wanted.values() if family.model in NETWORK_MODELS))
     direct: dict[str, FlowRequest] = {}
-    for duty in duties:
-        if duty.gears.key not in wanted:
-            continue
-        request = wanted[duty.gears.key]
-        figures, tables = None, duty.gears.models.pockets.tables
+    tables = {duty.gears.key: duty.gears.models.pockets.tables for duty in duties}
+    for key, request in wanted.items():
+        figures = None
         if not request[0].scales(*request[1:]):
-            if request[0] in tables:
-                figures = tables[request[0]].figures(*request[1:])
+            if request[0] in tables[key]:
+                figures = tables[key][request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
         if figures is None:
-            direct[duty.gears.key] = request
-        flows[duty.gears.key] = MeshFlow(figures)
+            direct[key] = request
+        flows[key] = MeshFlow(figures)
     solved = dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
     for key, flow in solved.items():
         if flow.figures is not None:
@@ -227,7 +225,7 @@ def _begin(families: tuple[FlowFamily, ...]) -> None:
 @lru_cache(maxsize=256)
 def _solve_all(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
     """All flows at once: their kernels release the interpreter."""
-    if all(request[0].scales(*request[1:]) for request in requests):  # threads would cost more
+    if all(it[0].scales(*it[1:]) for it in requests):  # threads would cost more
         return tuple(map(_solve, requests))
     with ThreadPoolExecutor(len(requests)) as pool:
         return tuple(pool.map(_solve, requests))
