@@ -110,16 +110,7 @@ def _chosen(name: str, known: Mapping[str, Any], among: tuple[str, ...]) -> Any:
     return known[name]
 
 
-class OilProperties(NamedTuple):
-    """An oil at one or more temperatures, SI."""
-
-    kinematic_viscosity: FloatArray  # nu. [m^2/s]
-    dynamic_viscosity: FloatArray  # mu. [Pa s]
-    density: FloatArray  # rho. [kg/m^3]
-    pressure_viscosity: FloatArray  # alpha. [1/Pa]
-
-
-def oil_properties(oil: OilName, temperature: Any) -> OilProperties:
+def oil_properties(oil: OilName, temperature: Any) -> dict[str, FloatArray]:
     """Viscosity, density and pressure-viscosity coefficient of an oil.
 
     lg lg (nu + 0.7) = A - B lg T (ASTM D341), a density linear in T, and the pressure-viscosity
@@ -134,23 +125,30 @@ def oil_properties(oil: OilName, temperature: Any) -> OilProperties:
 
     Returns
     -------
-    OilProperties
-        In m^2/s, Pa s, kg/m^3 and 1/Pa.
+    dict of str to ndarray
+        In SI: "kinematic_viscosity" [m^2/s], "dynamic_viscosity" [Pa s], "density" [kg/m^3],
+        "pressure_viscosity" [1/Pa], "thermal_conductivity" [W/(m K)].
 
     Examples
     --------
     >>> import epicyclic as ep
     >>> found = ep.oil_properties("iso-vg-100-pao", ["40 degC", "100 degC"])
-    >>> (1e6 * found.kinematic_viscosity).round(1).tolist()
+    >>> (1e6 * found["kinematic_viscosity"]).round(1).tolist()
     [100.0, 15.3]
     """
-    names = OilProperties._fields
+    names = (
+        "kinematic_viscosity",
+        "dynamic_viscosity",
+        "density",
+        "pressure_viscosity",
+        "thermal_conductivity",
+    )
 
     def at(kelvin: float) -> tuple[float, ...]:
         state = oil_state(_oil(oil), kelvin)
         return tuple(getattr(state, name) for name in names)
 
-    return OilProperties(*_each(at, temperature=temperature))
+    return dict(zip(names, _each(at, temperature=temperature), strict=True))
 
 
 class LineContact(NamedTuple):
