@@ -556,7 +556,7 @@ def test_load_below_the_minimum_is_named(state):
 
 
 def test_speed_beyond_the_thermal_rating_is_named(state):
-    """(J33) by hand for 6208: seat 6,786 mm2 takes 108.6 W; N mm, mm2/s, 1/min."""
+    """(J35) by hand for 6208: seat 6,786 mm2 takes 108.6 W; N mm, mm2/s, 1/min."""
     own = replace(BALL, bore=0.04, outside_diameter=0.08, width=0.018, static_load_rating=19e3)
     rating = thermal_speed_rating(own) / RPM
     moment = 2 * 1e-7 * (12 * rating) ** (2 / 3) * 60**3 + 0.0002 * 950 * 60

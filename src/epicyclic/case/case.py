@@ -570,7 +570,7 @@ class TrainCase(_TrainHead):
     def centers(self) -> dict[str, dict[str, tuple[complex, ...]]]:
         """Where the bodies of each set stand from the shaft of [housing], y upwards. [m]
 
-        Theory (N11). Sets that no shafts of known places join to it are left out.
+        Sets that no shafts of known places join to it are left out.
         """
         own = self.housing or HousingLevel.model_construct(shaft=None, tilt=0.0)
         turn = cmath.exp(1j * own.tilt)
@@ -585,7 +585,10 @@ class TrainCase(_TrainHead):
 
     @property
     def oil_heights(self) -> dict[str, dict[str, float]]:
-        """The oil of [housing] above the axis of each body, by the sets that dip into it. [m]"""
+        """The oil of [housing] above the axis of each body, by the sets that dip into it. [m]
+
+        Theory (N11).
+        """
         if self.housing is None:
             return {}
         level, centers = self.housing.height, self.centers

@@ -424,7 +424,7 @@ FASTEST = 1e5  # Of all speeds, in which the rating is sought. [rad/s]
 def thermal_speed_rating(bearing: CatalogueBearing) -> float:
     """Speed at which a bearing in an oil bath heats itself from 20 to 70 degC. [rad/s]
 
-    Theory (J33). NaN without width or static load rating.
+    Theory (J35). NaN without width or static load rating.
 
     Examples
     --------
