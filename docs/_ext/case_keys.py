@@ -77,6 +77,9 @@ def _fields(table: type[BaseModel]) -> Iterator[tuple[str, str]]:
 def _text(default: Any, quantity: Quantity | None) -> str:
     if default is None:
         return ""
+    if isinstance(default, tuple):
+        parts = (it if isinstance(it, str) else _text(it, quantity) for it in default)
+        return ", ".join(parts)
     if quantity is not None and not isinstance(default, str):
         return quantity.text(default)
     if isinstance(default, bool):
