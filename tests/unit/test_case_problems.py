@@ -229,7 +229,7 @@ def test_every_table_may_be_something_else(name, value):
     tables = builtin_case("talbot-2012") | {name: value}
     problems = problems_of(read_case, tables)
     problem = next(problem for problem in problems if problem.key == name)
-    what = "names" if name == "uncertainty" else "keys"
+    what = "names" if name in ("uncertainty", "seals") else "keys"
     assert problem.allowed == f"must be a table of {what}."
     assert f"[{name}" in problem.remedy
 

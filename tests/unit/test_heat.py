@@ -140,8 +140,9 @@ def test_what_cannot_be_found_is_an_input_error(quantity, temperature, words):
 def test_given_losses_warm_an_oil_that_is_stated():
     case = ep.load_case("train-8hp70")
     heat = ep.heat_balance(case)
+    ways = {way.key: way for way in heat.ways}
     assert heat.oil - heat.given["oil_inlet"] == pytest.approx(
-        solve(case).total / (heat.way("oil-outflow").conductance), rel=1e-9
+        solve(case).total / ways["oil-outflow"].conductance, rel=1e-9
     )
     with pytest.raises(InputError, match="lubricant: is missing; the heat needs it"):
         ep.heat_balance(case.updated({"lubricant": None}))

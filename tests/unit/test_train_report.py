@@ -100,7 +100,7 @@ def test_a_train_that_is_jammed_is_said_to_stand_still():
         "narrow": {"teeth": 38, "body": "planet"},
     }
     meshes = [["sun", "wide"], ["narrow", "ring"], ["wide", "second_ring"]]
-    train = one_set(gears, meshes, "second_ring", ("carrier", "ring"), 0.46)
+    train = one_set(gears, meshes, "second_ring", ("carrier", "ring"), 0.46, planets=1)
     train["operation"]["torque"] = "-30 N*m"
     result = ep.solve(ep.load_case(train))
     told = result.to_dict()
@@ -165,7 +165,7 @@ def test_the_template_of_a_train_is_a_sound_case():
 
     text = case_template("train")
     assert ep.load_case(tomllib.loads(text)).kind == "train"
-    extra = text.partition("# [drags.pump]")[2].partition("# [models]")[0]
+    extra = text.partition("# [drags.pump]")[2].partition("# [housing]")[0]
     drag = "[drags.pump]" + extra.replace("\n# ", "\n")
     assert tomllib.loads(drag)["drags"]["pump"]["between"] == ["motor", "housing"]
     assert ep.load_case(tomllib.loads(text + "\n" + drag))

@@ -115,7 +115,9 @@ def test_no_torque_no_tilt(talbot):
 def test_torque_and_speed_may_have_any_sign(talbot):
     there = misalignments(talbot)
     for changes in ({"operation.torque": "-1000 N*m"}, {"operation.speed": "-4000 rpm"}):
-        assert misalignments(talbot.updated(changes)) == pytest.approx(there, rel=1e-6)
+        # the face width is counted from the end where contact begins
+        back = [-value for value in misalignments(talbot.updated(changes))]
+        assert back == pytest.approx(there, rel=1e-6)
 
 
 @pytest.mark.parametrize("torque", ["0.01 N*m", "10 N*m", "10000 N*m"])

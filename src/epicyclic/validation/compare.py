@@ -396,7 +396,7 @@ def _compute(figure: Mapping[str, Any], bands: _Bands, draw: int) -> float:
 _MODEL = "models.temperatures"
 _OF_TESTS = ("branch_slope", "slope_gain", "loss_in_test", "loss_change", "loss_share")
 """Figures that follow from the loaded tests."""
-_OTHER_PARTS = ("load_independent", "total", "input_power")
+_OTHER_PARTS = ("load_independent", "without_union", "total", "input_power")
 """Losses and powers that are not formed as loaded less unloaded."""
 
 

@@ -295,7 +295,8 @@ def planet_bearing_loss(
 ) -> float:
     """Rolling loss of one planet bearing; other keys as in a case. [W]"""
     rough = f"{composite_roughness / math.sqrt(2)} um"
-    case = source_case().updated({
+    case = read_case("talbot-2012").updated({  # without what turns beside the set
+        **AS_IN_THE_SOURCE,
         "operation.torque": f"{3 * branch_torque} N*m",
         "operation.speed": f"{speed} rpm",
         "operation.oil_inlet_temperature": temperature,
