@@ -45,7 +45,8 @@ def test_at_inlet_temperature_they_are_the_figures_of_the_default_comparison(fig
     published = [
         item
         for item in of_shaved_planets()
-        if item["with"].get("part") not in ("total", "load_independent", "without_union", "input_power")
+        if item["with"].get("part")
+        not in ("total", "load_independent", "without_union", "input_power")
     ]
     assert len(published) == 12
     assert len(figures) == len(published)
