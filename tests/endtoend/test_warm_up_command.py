@@ -40,7 +40,8 @@ def test_a_cycle_and_another_start(epicyclic, tmp_path):
 
 
 def test_what_is_missing_is_told(epicyclic):
-    done = epicyclic(*COLD[:4], "--set", "thermal.housing.area=0.3 m^2")
+    keys = ("thermal.housing.area=0.3 m^2", "thermal.oil_volume=")
+    done = epicyclic(*COLD[:4], *(option for key in keys for option in ("--set", key)))
     assert done.returncode == 2
     assert "thermal.oil_volume" in done.stderr
     assert "thermal.housing.mass" in done.stderr

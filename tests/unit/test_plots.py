@@ -14,9 +14,9 @@ from epicyclic.show.plots.loss_map import map_at
 
 OF_MAPS = [name for name in PLOTS if "map" in name or name.startswith("loss-over")] + ["loss-parts"]
 OF_BANDS = ["loss-band", "loss-band-lines"]
-OF_HEAT, OF_TRAINS = "heat-network", "arrangement"
+OF_HEAT, OF_TRAINS = "heat-network", ("arrangement", "oil")
 OF_SWEEPS = ["lines", "contours", "parallel"]
-OTHERS = (*OF_MAPS, *OF_BANDS, *OF_SWEEPS, OF_HEAT, OF_TRAINS)
+OTHERS = (*OF_MAPS, *OF_BANDS, *OF_SWEEPS, OF_HEAT, *OF_TRAINS)
 OF_RESULTS = [name for name in PLOTS if name not in OTHERS]
 
 

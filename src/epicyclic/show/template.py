@@ -16,6 +16,7 @@ from epicyclic import library
 from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase, form_of_set, read_case
 from epicyclic.case.gear_tables import SharedGears
 from epicyclic.case.tables.elements import ElementTables
+from epicyclic.case.tables.uncertainty import DistributionTable
 from epicyclic.case.train_tables import ListedSet, PlanetarySet
 from epicyclic.messages import dotted, key_parts
 from epicyclic.schema.fields import choices_of, dict_value, entry_of, quantity_of, table_of
@@ -147,12 +148,18 @@ class _Writer:
             return ["", f"# [{key}] = {toml_value(values)}"]
         doc = (table.__doc__ or "").strip().splitlines()[0]
         mark = "" if values or field.is_required() else "# "
-        lines = ["", f"{mark}[{key}]".ljust(COMMENT_COLUMN) + f"# {self.about.get(key, doc)}"]
+        # named parts have a table each, values of "uncertainty" stand in one by the name of a key
+        parts = dict_value(field.annotation) is not None and table is not DistributionTable
+        place = f"{key}.NAME" if parts and not values else key
+        lines = ["", f"{mark}[{place}]".ljust(COMMENT_COLUMN) + f"# {self.about.get(key, doc)}"]
         if dict_value(field.annotation) is not None:
             lines += [f"{toml_key(name)} = {toml_value(value)}" for name, value in values.items()]
-            return [*lines, *(f'# "NAME" = {{ {name} = ... }}' for name in table.model_fields)]
+            if not parts:
+                lines += [f'# "NAME" = {{ {name} = ... }}' for name in table.model_fields]
+            if place == key:
+                return lines
         for name, inner in table.model_fields.items():
-            lines += self._field_lines(key, name, inner, values)
+            lines += self._field_lines(place, name, inner, values)
         return lines
 
     def _field_lines(

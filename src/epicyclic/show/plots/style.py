@@ -37,8 +37,8 @@ LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")  # Beside colours, for prints in grey.
 PANEL = (4.8, 3.4)  # Width and height of one of the Axes of a figure. [inch]
 BELOW = 0.42  # Room for the ticks and the label of an x axis. [inch]
-WIDTH, DPI = 8.8, 218.0
-"""Width of a picture, and pixels an inch: letters have one size, that of a slide of 1920 pixels."""
+WIDTH = 8.8  # Of a picture. [inch]
+DPI = 1920 / WIDTH  # Letters have one size: a picture is as wide as a slide of 1920 pixels.
 AROUND = 0.95  # Height that title, ticks and label of the x axis take from a row of Axes. [inch]
 SMALL_CHARACTERS, CHARACTERS = 19, 16  # That fit into an inch of a legend, and of a label.
 CHARACTER_POINTS = 132  # Characters in an inch of a line, times the size of its letters in points.
@@ -120,6 +120,8 @@ def legend_below(ax: Axes, **options: Any) -> None:
     figure = ax.get_figure()
     assert isinstance(figure, Figure)
     handles = options.get("handles") or ax.get_legend_handles_labels()[0]
+    if not handles:  # no bar has a length
+        return
     longest = max((len(str(handle.get_label())) for handle in handles), default=0)
     columns = int(room_of(ax) / (ENTRY + longest / SMALL_CHARACTERS))
     options["ncols"] = max(1, min(columns, options.get("ncols", 1)))
