@@ -10,6 +10,7 @@ import pytest
 from epicyclic import library
 from epicyclic.build import models
 from epicyclic.case.tables import uncertainty
+from epicyclic.gears.flanks import FlankDeviations
 from epicyclic.gears.gearing import Gearing
 from epicyclic.losses.windage import LAMINAR_RIMS
 from epicyclic.study.bands import inputs
@@ -47,3 +48,14 @@ def former_models_of_shaft_bearings(monkeypatch):
     (entry,) = (it for it in table["model_form"] if it["kind"] == "shaft-bearings")
     entry["lognormal_factor"] = 1.25
     monkeypatch.setattr(library, "uncertainty_table", lambda: table)
+
+
+@pytest.fixture(autouse=True)
+def former_face_width(monkeypatch):
+    """Deviations over it began where contact begins if gear 1 drives, whichever gear drove."""
+    made = FlankDeviations.__init__
+
+    def as_then(self, *args, mirrored=False, **others):
+        made(self, *args, **others)
+
+    monkeypatch.setattr(FlankDeviations, "__init__", as_then)
