@@ -66,7 +66,8 @@ BRAKE: list[Edit] = [
         "build/elements.py",
         "from epicyclic.case.tables.elements import",
         "from epicyclic.machine.magnet_brake import MagnetBrake\n"
-        "from epicyclic.case.tables.elements import MagnetBrakeTable,",
+        "from epicyclic.case.tables.elements import MagnetBrakeTable\n"
+        "from epicyclic.case.tables.elements import",
     ),
 ]
 

@@ -11,6 +11,7 @@ import xarray as xr
 
 import epicyclic as ep
 from epicyclic.errors import InputError
+from epicyclic.machine.element import note_watts
 from epicyclic.show.record import open_map
 
 
@@ -32,6 +33,12 @@ def file(content, tmp_path):
 def test_a_file_gives_back_what_was_kept(talbot_record, file):
     found = ep.open_result(file)
     assert found.result.to_json() == talbot_record.result.to_json()
+    # which orders warnings, and is not in the JSON
+    for notes in (found.result.notes, talbot_record.result.notes):
+        assert min(map(note_watts, notes)) == 0.0
+    assert list(map(note_watts, found.result.notes)) == list(
+        map(note_watts, talbot_record.result.notes)
+    )
     assert found.given == talbot_record.given
     assert found.created == talbot_record.created
     assert found.numbers.identical(talbot_record.numbers)

@@ -127,7 +127,7 @@ def test_small_uncertainties_add_up_as_in_the_gum(case):
         "operation.oil_inlet_temperature": {"normal": "0.05 K"},
         "models.boundary_friction": {"exact": True},
         "thermal.jet_effectiveness": {"exact": True},
-        "model_form.drag": {"exact": True},
+        "model_form.windage": {"exact": True},
     }
     kinds = ("sliding", "rolling")
     small |= {f"model_form.{kind}": {"lognormal_factor": 1.004} for kind in kinds}

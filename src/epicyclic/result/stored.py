@@ -10,7 +10,7 @@ from typing import Any, Literal
 from epicyclic.errors import Status
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.ranges import OUT_OF_RANGE, ValidityFlag
-from epicyclic.machine.element import OIL, FluidFigures, PartFigures
+from epicyclic.machine.element import OIL, FluidFigures, Note, PartFigures, note_watts
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.planets import BearingFigures
 from epicyclic.result.codec import Reader
@@ -60,6 +60,7 @@ _MORE: dict[str, tuple[Any, Any]] = {
     "planet_bearing": (BearingFigures | None, None),
     "bearings": (Mapping[str, BearingFigures], {}),
     "parts": (Mapping[str, PartFigures], {}),
+    "note_watts": (Numbers, {}),
 }
 """What only some state, and what it is for the others."""
 _Check = Callable[[Mapping[str, Any]], str]
@@ -76,8 +77,15 @@ class StatedCase:
         return self.stated
 
 
+def stated_result(result: Result) -> dict[str, Any]:
+    """What `read_result` reads: also the losses that notes concern, by which they are ordered."""
+    known = {note: note_watts(note) for note in result.notes}
+    finite = {str(note): watts for note, watts in known.items() if math.isfinite(watts)}
+    return {**result.to_dict(), "note_watts": finite}
+
+
 def read_result(
-    data: Any,  # As `Result.to_dict` returns it.
+    data: Any,  # As `stated_result` or `Result.to_dict` returns it.
     check_inputs: _Check = lambda inputs: "",  # What is wrong with the inputs, in words.
 ) -> tuple[Result | None, list[tuple[str, str]]]:
     """The result, or None and where `data` is none with what is wrong there."""
@@ -152,6 +160,8 @@ def _made(found: dict[str, Any], data: Mapping[str, Any]) -> Result:
     heat: HeatBalance | None = found["heat"]
     models = found["inputs"].get("models")
     tested = isinstance(models, Mapping) and models.get("load_dependent") == "as-tested"
+    notes = (text for text in found["warnings"] if not text.startswith(OUT_OF_RANGE))
+    known = found["note_watts"]
     return Result(
         title=found["title"],
         kind=found["kind"],
@@ -190,7 +200,7 @@ def _made(found: dict[str, Any], data: Mapping[str, Any]) -> Result:
         models=found["models"],
         standing=found["standing"],
         flags=found["validity"],
-        notes=tuple(text for text in found["warnings"] if not text.startswith(OUT_OF_RANGE)),
+        notes=tuple(Note(text, known[text]) if text in known else text for text in notes),
         load_methods={key: text for key, text in methods.items() if key not in losses},
         load_sources={key: text for key, text in citations.items() if key not in losses},
         sources=found["sources"],

@@ -21,7 +21,7 @@ from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.messages import one_line
 from epicyclic.netcdf_file import read_groups
 from epicyclic.result.result import Result, set_of
-from epicyclic.result.stored import read_result
+from epicyclic.result.stored import read_result, stated_result
 from epicyclic.study.bands.study import quick_dataset
 from epicyclic.study.maps.tables import check_map
 from epicyclic.study.meshes import bearing_details, mesh_details
@@ -473,7 +473,7 @@ def save_result(result: ResultRecord | Case, path: str | Path) -> None:
     check_result_output(target)
     kept = result if isinstance(result, ResultRecord) else record(result)
     contents = kept.result
-    text = json.dumps(contents.to_dict(), allow_nan=False, ensure_ascii=False)
+    text = json.dumps(stated_result(contents), allow_nan=False, ensure_ascii=False)
     attributes = {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,

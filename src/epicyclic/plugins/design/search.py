@@ -1,7 +1,9 @@
 """The search for designs: enumerate, screen, solve in the order of bounds, polish, choose.
 
 A candidate is left unsolved only if a solved design beats it even where its loss is the least that
-friction allows, so that the front is that of brute force as long as `search.solved` is not reached.
+friction allows. How far losses stay above that least is learned from all solved designs of the same
+arrangement, with a margin, and asked again after every batch. So the front is that of brute force
+as long as `search.solved` is not reached and no candidate loses far less than all solved ones.
 """
 
 from __future__ import annotations
@@ -52,6 +54,9 @@ UNITS = {
     "bearing_life": "h",
 }  # fmt: skip
 USUAL_SHARE = 0.6  # Of a computed safety in its bound, before any is solved. [1]
+LOSS_MARGIN = 0.8  # Of the smallest solved loss over its bound, for candidates not solved. [1]
+ENOUGH_SOLVED = 16  # Designs of an arrangement that tell this.
+BEATEN = "beaten by a bound"
 POLISH_REACH, POLISH_STEPS = 0.15, 8
 
 
@@ -264,6 +269,7 @@ def search(
     solved = 0
     limit = len(table) if brute else task.search.solved
     while solved < limit:
+        table.loc[table["fate"] == BEATEN, "fate"] = ""  # the last batch may have told more
         left = table.index[table["fate"] == ""]
         if not brute:
             left = _not_beaten(found, left)
@@ -293,11 +299,23 @@ def _not_beaten(found: Found, left: Any) -> Any:
     if not len(good):
         return left
     known, bounds = _objectives(found, good, "loss"), _objectives(found, left, "bound")
+    if "loss" in found.task.search.objectives:
+        bounds[:, found.task.search.objectives.index("loss")] *= _least_ratios(found, left)
     beaten = np.zeros(len(left), dtype=bool)
     for own in known:
         beaten |= (own <= bounds).all(axis=1) & (own < bounds).any(axis=1)
-    found.table.loc[left[beaten], "fate"] = "beaten by a bound"
+    found.table.loc[left[beaten], "fate"] = BEATEN
     return left[~beaten]
+
+
+def _least_ratios(found: Found, rows: Any) -> FloatArray:
+    """Least loss that some rows will have over its bound, 1 or more, by their arrangement."""
+    table = found.table
+    ratios = (table["loss"] / table["bound"].where(table["bound"] > 0)).groupby(
+        table["arrangement"]
+    )
+    least = (LOSS_MARGIN * ratios.min()).where(ratios.count() >= ENOUGH_SOLVED).clip(lower=1.0)
+    return table.loc[rows, "arrangement"].map(least).fillna(1.0).to_numpy(dtype=float)
 
 
 def _next(found: Found, left: Any, count: int) -> list[int]:
