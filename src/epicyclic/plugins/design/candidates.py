@@ -28,7 +28,8 @@ Gears = dict[str, FloatArray]
 Row = Mapping[str, Any]
 
 BOUND_FRICTION = 0.012  # Less than any lubricated mesh has in its mean (estimate). [1]
-BEST_LIMIT = 1.2  # Z_L Z_v Z_R Z_W at their best, about. [1]
+BEST_LIMIT = 1.2  # Z_L Z_v Z_R at their best, about; Z_W is 1 for the harder gear. [1]
+BEST_SOFT_LIMIT = 1.5  # The same if one of both gears is through-hardened. [1]
 LEAST_ROOT = 2.0  # Y_F Y_S of any tooth, about. [1]
 LEAST_HELIX = 0.75  # Y_beta. [1]
 TIP_ROOM = 0.35  # Roll length between base circle of a planet and tip of its ring. [modules]
@@ -381,14 +382,20 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             stress = zone * iso.elasticity_factor(STEEL) * sharing * np.sqrt(load)
             slow = np.abs(turning) * task.operation.speed * strength.life / (2 * math.pi)
             cycles = slow * np.minimum(1.0, z1 / z2)  # of the gear that turns less
-            lives = lives_at(cycles, iso.PITTING_LIFE["case-hardened"])
             bears = [_material(strength, it) for it in (mesh.first, mesh.second)]
+            soft = any(it.treatment == "through-hardened" for it in bears)
             if task.limits.pitting:
-                best = BEST_LIMIT * max(it.contact for it in bears) * lives
+                lives = np.maximum(
+                    *(lives_at(cycles, iso.PITTING_LIFE[it.treatment]) for it in bears)
+                )
+                factor = BEST_SOFT_LIMIT if soft else BEST_LIMIT
+                best = factor * max(it.contact for it in bears) * lives
                 least("pitting", best / stress / task.limits.pitting)
             if task.limits.bending:
                 bent = tangential / (face * module) * LEAST_ROOT * LEAST_HELIX
-                lives = lives_at(cycles, iso.BENDING_LIFE["case-hardened"])
+                lives = np.maximum(
+                    *(lives_at(cycles, iso.BENDING_LIFE[it.treatment]) for it in bears)
+                )
                 best = 2 * 1.1 * max(it.bending for it in bears) * lives
                 least("bending", best / bent / task.limits.bending)
             outside = 2 * (tip2 if not mesh.internal else r2 + module * (1.25 - x2 + 3))

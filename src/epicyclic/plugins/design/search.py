@@ -315,7 +315,8 @@ def _least_ratios(found: Found, rows: Any) -> FloatArray:
         table["arrangement"]
     )
     least = (LOSS_MARGIN * ratios.min()).where(ratios.count() >= ENOUGH_SOLVED).clip(lower=1.0)
-    return table.loc[rows, "arrangement"].map(least).fillna(1.0).to_numpy(dtype=float)
+    own: FloatArray = table.loc[rows, "arrangement"].map(least).fillna(1.0).to_numpy(dtype=float)
+    return own
 
 
 def _next(found: Found, left: Any, count: int) -> list[int]:
