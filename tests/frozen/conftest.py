@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import copy
 from dataclasses import replace
 
 import pytest
 
-from epicyclic import library
 from epicyclic.build import models
 from epicyclic.case.tables import uncertainty
 from epicyclic.gears.flanks import FlankDeviations
@@ -44,10 +42,10 @@ def former_boundary_friction(monkeypatch):
 @pytest.fixture(autouse=True)
 def former_models_of_shaft_bearings(monkeypatch):
     """Their factor was 1.25 before the residuals of tapered bearings became smaller."""
-    table = copy.deepcopy(library.uncertainty_table())
-    (entry,) = (it for it in table["model_form"] if it["kind"] == "shaft-bearings")
-    entry["lognormal_factor"] = 1.25
-    monkeypatch.setattr(library, "uncertainty_table", lambda: table)
+    forms = uncertainty.model_forms()
+    then = forms | {"shaft-bearings": (1.25, forms["shaft-bearings"][1])}
+    for module in (uncertainty, inputs):
+        monkeypatch.setattr(module, "model_forms", lambda: then)
 
 
 @pytest.fixture(autouse=True)

@@ -38,7 +38,7 @@ def test_units_in_print(unit, text):
     assert unit_text(unit) == text
 
 
-NEEDY = ("[thrust_bearing]", "[planet_pin]", "[lubrication]", "[friction_table]")
+NEEDY = ("[thrust_bearing]", "[planet_pin]", "[seals.NAME]", "[lubrication]", "[friction_table]")
 """Tables with keys that have no defaults."""
 
 

@@ -52,7 +52,7 @@ def as_tested(*changes):
     )
 
 
-def tests_as_tested(temperature, finish, planets):
+def as_on_the_rig(temperature, finish, planets):
     return [as_tested(*it.items()) for it in loaded_conditions(temperature, finish, planets)]
 
 
@@ -74,7 +74,7 @@ def test_at_inlet_temperature_they_are_the_figures_of_the_default_comparison(fig
         )
         compute = FIGURES[figure["compute"]]
         # differences of total losses: rounding
-        exact = compute(**figure["with"], tests=tests_as_tested)
+        exact = compute(**figure["with"], tests=as_on_the_rig)
         assert row.inlet == pytest.approx(exact, rel=1e-9)
         assert row.inlet == pytest.approx(compute(**figure["with"]), rel=5e-3)
 
