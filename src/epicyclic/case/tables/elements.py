@@ -501,11 +501,15 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
 
 
 def _roller_problems(table: ShaftBearingTable) -> Iterator[Problem]:
-    """What the rolling of rollers cannot be computed with."""
+    """What rolling and drag of rollers cannot be computed with."""
     wanted = table.model == "zhou-hoeprich"
     if wanted and table.width is table.roller_length is None:
         reason = "is missing; it tells how long the rollers are."
         yield Problem("width", "", reason, "Add B from the catalogue, or roller_length.")
+    bathed = table.model == "skf-2018" or table.roller_length is not None
+    if bathed and table.oil_level > 0 and table.type != "deep-groove" and table.width is None:
+        reason = "is missing; the drag of rollers in an oil bath needs it."
+        yield Problem("width", "", reason, "Add B from the catalogue.")
     if wanted and table.cage == "full-complement":
         reason = "is not covered by zhou-hoeprich: rollers that touch rub on each other."
         remedy = 'Choose model = "palmgren" or "skf-2018".'
@@ -554,9 +558,6 @@ def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
         remedy = did_you_mean(table.series or "", known) or 'Or choose model = "palmgren".'
         reason = f"is not in the table; the series of {table.type} bearings are {choice}."
         yield Problem("series", written(table.series), reason, remedy)
-    if table.oil_level > 0 and table.type != "deep-groove" and table.width is None:
-        reason = "is missing; the drag of rollers in an oil bath needs it."
-        yield Problem("width", "", reason, "Add B from the catalogue.")
 
 
 def _own_table_problems(
