@@ -37,10 +37,12 @@ from epicyclic.losses.planet_bearing import (
     RollerBearing,
     RollerLoads,
     Rubbing,
+    centrifugal_forces,
     fitted_rolling_loss,
     mixed_ehl_rolling_loss,
     palmgren_flags,
     palmgren_loss,
+    pressed_alone,
     radial_stiffness,
     roller_loads,
     roller_loads_next_to,
@@ -559,7 +561,8 @@ def solve_bearing(
     oil: OilState,
     speed: float,  # Speed of the planet against the carrier. [rad/s]
     last: RollerLoads | None = None,  # The rollers under nearly this load, which saves work.
-    acceleration: float = 0.0,  # Of the planet around the axis of the set. [m/s^2]
+    pin_radius: float = 0.0,  # From the axis of the set to that of the planet. [m]
+    carrier: float = 0.0,  # Speed of the carrier. [rad/s]
 ) -> BearingResult:
     """Losses of `count` planet bearings under the same load."""
     bearing = own.bearing
@@ -569,20 +572,22 @@ def solve_bearing(
         loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     else:
         loads = roller_loads_next_to(last, bearing, load.force, load.moment_x, load.moment_y)
-    if isinstance(own.model, FittedRolling):
-        beyond = _palmgren(own, loads, load, speed) if own.palmgren_beyond else None
-        loss = fitted_rolling_loss(bearing, loads, speed, oil, own.model, beyond)
-    elif own.model in ("mixed-ehl", FULL_COMPLEMENT):
-        loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil, oil_held=own.oil_held)
-    else:
-        loss = _palmgren(own, loads, load, speed)
+    loss = _by_load(own, loads, load.force, speed, oil)
     notes: tuple[str, ...] = ()
     if own.model == FULL_COMPLEMENT:
         volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
-        pull = own.roller_density * volume * acceleration
+        pull = own.roller_density * volume * pin_radius * carrier**2
         rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
         loss = replace(loss, loss=loss.loss + rubbed.between + rubbed.skewed)
         notes = (_rubbing_note(key.replace("_", " "), rubbed),)
+    forces = centrifugal_forces(
+        bearing, loads.azimuth, own.roller_density, pin_radius, carrier, speed, load.outward
+    )
+    alone = pressed_alone(loads, forces, bearing.roller_length)
+    held = float(alone.intensity.sum()) * bearing.roller_length
+    if held:  # on one race each, by slices as long as the roller
+        idle = _by_load(own, alone, held / bearing.slices, speed, oil).loss * bearing.slices / 2
+        loss = replace(loss, loss=loss.loss + idle)
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
@@ -611,11 +616,21 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
     )
 
 
-def _palmgren(
-    own: PlanetBearing, loads: RollerLoads, load: PlanetLoad, speed: float
+def _by_load(
+    own: PlanetBearing, loads: RollerLoads, force: float, speed: float, oil: OilState
 ) -> BearingLoss:
+    """Loss that grows with the load, after the model of the bearing; `force` for Palmgren."""
+    if isinstance(own.model, FittedRolling):
+        beyond = _palmgren(own, loads, force, speed) if own.palmgren_beyond else None
+        return fitted_rolling_loss(own.bearing, loads, speed, oil, own.model, beyond)
+    if own.model in ("mixed-ehl", FULL_COMPLEMENT):
+        return mixed_ehl_rolling_loss(own.bearing, loads, speed, oil, oil_held=own.oil_held)
+    return _palmgren(own, loads, force, speed)
+
+
+def _palmgren(own: PlanetBearing, loads: RollerLoads, force: float, speed: float) -> BearingLoss:
     bearing = own.bearing
-    watts = palmgren_loss(own.palmgren_coefficient, load.force, bearing.pitch_diameter, speed)
+    watts = palmgren_loss(own.palmgren_coefficient, force, bearing.pitch_diameter, speed)
     return BearingLoss(watts, Flags(partial(palmgren_flags, bearing, loads, speed)))
 
 
