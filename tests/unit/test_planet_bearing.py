@@ -22,7 +22,7 @@ from epicyclic.losses.planet_bearing import (
     roller_loads,
 )
 from epicyclic.machine.gear_mesh import MeshDuty
-from epicyclic.machine.planets import PlanetContact, planet_load
+from epicyclic.machine.planets import PlanetContact, bearing_limits, planet_load
 
 BEARING_SPEED = 4000 * 125 / 198 * 73 / 26 * math.pi / 30  # at 4000 rpm of the sun, rad/s
 
@@ -361,3 +361,39 @@ def test_rollers_that_carry_are_not_pressed_twice(article):
     assert idle.any()
     carried = alone.intensity[:, :, 0] * bearing.roller_length
     assert carried == pytest.approx(np.where(idle, np.abs(forces), 0.0))
+
+
+# --- least load and speed -------------------------------------------------------------------------
+
+
+def test_least_load_and_speed_follow_from_the_rollers(article):
+    bearing, _ = bearing_and_loads(article)
+    least, fastest = bearing_limits(bearing)
+    # ISO 281 by hand: 2 rows of 16 rollers 4.015 x 9.52 mm on a pitch circle of 30.0 mm
+    gamma = 4.015 / 30.008
+    f_c = 172.6 * (1 + (1.04 * ((1 - gamma) / (1 + gamma)) ** (143 / 108)) ** 4.5) ** (-2 / 9)
+    f_c *= gamma ** (2 / 9) * (1 - gamma) ** (29 / 27) / (1 + gamma) ** 0.25
+    rating = 1.1 * f_c * (2 * 9.52) ** (7 / 9) * 16**0.75 * 4.015 ** (29 / 27)
+    assert least == pytest.approx(0.02 * rating, rel=1e-3)
+    # heat of 16 mW/mm2 on the seats at the reference speed (J35)
+    static = 44 * (1 - gamma) * 2 * 16 * 9.52 * 4.015
+    rpm = fastest * 30 / math.pi
+    moment = 5e-7 * (12 * rpm) ** (2 / 3) * 30.008**3 + 0.0005 * 0.05 * static * 30.008
+    seats = math.pi * 2 * 30.008 * 2 * 9.52
+    assert moment * fastest == pytest.approx(16 * seats, rel=1e-3)
+
+
+def test_loads_and_speeds_beyond_them_are_told(talbot):
+    def told(**changes):
+        notes = [it for it in ep.solve(talbot.updated(changes)).warnings if "by its rollers" in it]
+        return [it.split(": the load")[0].split(" against")[0] for it in notes]
+
+    quick = {
+        "losses.sun_mesh_pocketing.include": False,
+        "losses.ring_mesh_pocketing.include": False,
+    }
+    assert told(**quick) == []
+    light = {"operation.torque": "7 N*m", "operation.speed": "900 rpm"}
+    assert told(**quick, **light) == ["planet bearing"]
+    (fast,) = told(**quick, **{"operation.torque": "900 N*m", "operation.speed": "6100 rpm"})
+    assert fast.endswith("rpm")

@@ -453,6 +453,7 @@ class GearSet:
                     last_rollers.get((planet.key, share)),
                     planet.pin_radius,
                     carrier,
+                    loaded=any(duty.torque1 for duty in tilted),
                 )
                 notes += bearing.notes
                 rollers[planet.key, share] = bearing.loads
