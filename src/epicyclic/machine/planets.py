@@ -52,7 +52,12 @@ from epicyclic.losses.planet_bearing import (
 )
 from epicyclic.losses.ranges import Flags
 from epicyclic.losses.rolling import FittedRolling
-from epicyclic.losses.shaft_bearing import CatalogueBearing, minimum_load, thermal_speed_rating
+from epicyclic.losses.shaft_bearing import (
+    CatalogueBearing,
+    minimum_load,
+    thermal_excess,
+    thermal_speed_rating,
+)
 from epicyclic.machine.convection import oil_heat_capacity, roller_conductance
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
@@ -621,10 +626,10 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
 
 
 @lru_cache(maxsize=64)
-def bearing_limits(bearing: RollerBearing) -> tuple[float, float]:
-    """Minimum load [N] and thermal reference speed [rad/s] by rollers and races; estimates.
+def rated(bearing: RollerBearing) -> CatalogueBearing:
+    """A planet bearing between pin and race of the planet with the ratings of its rollers.
 
-    Theory (J13), (J35), with the ratings (J27), (J28).
+    Theory (J13), (J35), with (J27), (J28).
     """
     sizes = bearing.inner_diameter, bearing.outer_diameter, 2 * bearing.half_width
     rollers = DesignatedBearing(
@@ -638,15 +643,14 @@ def bearing_limits(bearing: RollerBearing) -> tuple[float, float]:
         elements=bearing.rollers_per_row,
     )
     ratings = rollers.dynamic_load_rating, rollers.static_load_rating
-    known = CatalogueBearing("needle", *sizes, "caged", *ratings)
-    return minimum_load(known, 0.0, 0.0), thermal_speed_rating(known)
+    return CatalogueBearing("needle", *sizes, "caged", *ratings)
 
 
 def _limit_notes(
     where: str, bearing: RollerBearing, force: float, speed: float, watts: float
 ) -> tuple[Note, ...]:
-    least, rating = bearing_limits(bearing)
-    notes = []
+    known, notes = rated(bearing), []
+    least = minimum_load(known, 0.0, 0.0)
     if speed and force < least:
         text = (
             f"{where}: the load of {NEWTON.text(force, 3)} is below the minimum load of "
@@ -654,7 +658,8 @@ def _limit_notes(
             "the loss is that of the actual load without slip."
         )
         notes.append(Note(text, watts))
-    if abs(speed) > rating:
+    if thermal_excess(known, abs(speed)) > 0:
+        rating = thermal_speed_rating(known)
         text = (
             f"{where}: {RPM.text(abs(speed), 4)} against the carrier exceed the thermal reference "
             f"speed of {RPM.text(rating, 2)}, an estimate after ISO 15312 by its rollers. Above it "
