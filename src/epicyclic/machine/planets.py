@@ -629,7 +629,7 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
 def rated(bearing: RollerBearing) -> CatalogueBearing:
     """A planet bearing between pin and race of the planet with the ratings of its rollers.
 
-    Theory (J13), (J35), with (J27), (J28).
+    Theory (J27), (J28).
     """
     sizes = bearing.inner_diameter, bearing.outer_diameter, 2 * bearing.half_width
     rollers = DesignatedBearing(
