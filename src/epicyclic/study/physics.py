@@ -404,8 +404,8 @@ def bearing_loss(
     """Loss of a rolling bearing by its designation.
 
     Sizes follow from the ISO plans and load ratings are estimated (ISO 281, ISO 76; (J27)
-    in the theory). The friction is Palmgren's, M = f_1 F d_m/2 + M_0, or of tapered bearings that
-    of Zhou and Hoeprich (1991).
+    in the theory). The friction is Palmgren's, M = f_1 F d_m/2 + M_0, or of tapered and caged
+    cylindrical bearings that of Zhou and Hoeprich (1991).
 
     Parameters
     ----------
