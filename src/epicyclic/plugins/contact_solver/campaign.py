@@ -466,7 +466,7 @@ def oil_tables(oil: str | Path | Mapping[str, Any]) -> Any:
         remedy = did_you_mean(str(oil), library.names("oils")) or "See 'epicyclic oils'."
         problem = Problem("OIL", str(oil), "is neither a .toml file nor a built-in oil.", remedy)
         raise InputError([problem], "the command")
-    tables, problems = read_file(path)
+    tables, problems = read_file(path, "'epicyclic oils' shows the properties of others.")
     raise_any(problems, str(path))
     return {"name": path.stem} | tables
 
