@@ -27,6 +27,7 @@ from epicyclic.study.bands.plan import (
     without_table,
 )
 from epicyclic.study.bands.samples import probabilities, quantiles, sample_summary
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.runner import Progress, Runner
 
@@ -39,8 +40,8 @@ PAIRS = 256
 
 
 def compare_cases(
-    first: Case,
-    second: Case,
+    first: CaseSource,
+    second: CaseSource,
     *,
     samples: int = PAIRS,
     seed: int = 1,
@@ -77,7 +78,7 @@ def compare_cases(
         If a case, or hardly any pair of samples, can be solved.
     """
     check_samples(samples)
-    cases = first, second
+    cases = as_case(first), as_case(second)
     results = [solve(case) for case in cases]
     values = [known_values(case, result) for case, result in zip(cases, results, strict=True)]
     shared = _shared(values, results)
