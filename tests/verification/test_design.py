@@ -7,14 +7,15 @@ import math
 import time
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from epicyclic.case.case import read_case
 from epicyclic.errors import InputError
 from epicyclic.plugins.design import search as searching
-from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances
+from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances, sizes
 from epicyclic.plugins.design.relief import Relief, relief_front
-from epicyclic.plugins.design.search import design, non_dominated, screen, search
+from epicyclic.plugins.design.search import design, dominated, screen, search
 from epicyclic.plugins.design.task import read_task
 from epicyclic.study.load import load_case
 from epicyclic.study.sweeps.runner import Runner
@@ -131,9 +132,70 @@ def test_all_problems_of_a_task_are_told_at_once():
     assert keys == {"choices.pinion_teeth", "choices.module", "case.sun", "case.lubricant"}
 
 
-def test_non_dominated_rows():
+def test_dominated_rows():
     values = np.array([[1.0, 5.0], [2.0, 3.0], [2.5, 3.0], [4.0, 1.0], [4.0, 1.0], [5.0, 2.0]])
-    assert non_dominated(values).tolist() == [True, True, False, True, True, False]
+    assert dominated(values, values).tolist() == [False, False, True, False, False, True]
+
+
+def made_up(task, row):
+    """A loss that falls with size and profile shift, without solving; all safeties are met."""
+    size = 1e3 * row["module"] * row["width_ratio"] * row["pinion"]
+    loss = 31.0 + 5200.0 / size - 47.0 * row["shift"]
+    return {"loss": loss, "pitting": 7.1, "bending": 8.3}
+
+
+def test_a_search_ends_when_all_are_solved(monkeypatch):
+    monkeypatch.setattr(searching, "evaluate", made_up)
+    raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 19])
+    raw["search"] |= {"solved": 1000, "objectives": ["loss", "transmission_error"]}
+    raw["limits"] = {"pitting": 0.05, "bending": 0.05}
+    monkeypatch.setattr(
+        searching, "evaluate", lambda *it: made_up(*it) | {"transmission_error": it[1]["pinion"]}
+    )
+    found = search(read_task(raw), raw, Runner(1))
+    assert not found.fates.keys() & {"", "not solved"}
+
+
+def test_a_polished_design_meets_the_limits_and_the_front_is_told_anew(monkeypatch):
+    monkeypatch.setattr(searching, "evaluate", made_up)
+    raw = task_of("pair", ratio=3.1)
+    raw["limits"] |= {"pitting": 0.05, "bending": 0.05, "tip_thickness": 0.61}
+    raw["search"] |= {"solved": 40, "polished": 1}
+    task = read_task(raw)
+    found = search(task, raw, Runner(1))
+    (number,) = found.table.index[found.table.polished_shift.notna()]
+    own = sizes(task, found.table.loc[[number]].dropna(axis=1))
+    assert min(it[0] for it in own.margins.values()) >= 1 - 1e-9
+    assert found.table.loc[number, "mass"] == pytest.approx(own.mass[0], rel=1e-12)
+    assert found.table.loc[number, "shift"] > found.table.loc[number, "polished_shift"]
+    values = found.table.loc[found.fronts, ["loss", "mass"]].to_numpy()
+    assert not dominated(values, values).any()
+
+
+def test_what_only_solved_designs_tell_is_counted_apart_from_bounds(monkeypatch):
+    """Helical gears lose far less than the spur gears that are solved first."""
+
+    def helical_loses_less(task, row):
+        return made_up(task, row) | {"loss": (3.0 if row["helix"] else 90.0) * bound(row)}
+
+    def bound(row):
+        return float(sizes(task, pd.DataFrame([dict(row)])).loss[0])
+
+    raw = task_of("pair", ratio=3.1)
+    raw["limits"] |= {"pitting": 0.05, "bending": 0.05}
+    raw["search"] |= {"solved": 24, "batch": 8}
+    task = read_task(raw)
+    monkeypatch.setattr(searching, "evaluate", helical_loses_less)
+    found = search(task, raw, Runner(1))
+    losses = [
+        helical_loses_less(task, row.dropna().to_dict())["loss"]
+        for _, row in found.table.iterrows()
+    ]
+    values = np.column_stack([losses, found.table.mass])
+    passing = (found.bounds >= 1 - 1e-9).all(axis=1)
+    beaten = dominated(values, values[passing])
+    assert beaten[found.table.fate == searching.BEATEN].all()
+    assert not beaten[found.table.fate == searching.LIKELY].all()
 
 
 @pytest.mark.slow
