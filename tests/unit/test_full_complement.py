@@ -9,6 +9,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.losses.planet_bearing import RollerLoads, _pressed, roller_loads, rubbing
+from epicyclic.machine.planets import planet_load
 from epicyclic.validation.compute import planet_bearing
 
 FULL = {
@@ -52,6 +53,11 @@ def test_rollers_that_are_pulled_apart_do_not_touch():
     along = np.array([0.0, -1.5, -2.5, 1.25, 0.5])
     # two lean back on the loaded one, two lean forward on it, and the chain parts between them
     assert _pressed(loaded, along, along) == pytest.approx([4.0, 2.5, 0.0, 1.25, 1.75])
+
+
+def test_loaded_rollers_stand_opposite_to_the_force_on_the_planet():
+    """Centrifugal force alone pushes the bore of a planet against the inner side of its pin."""
+    assert math.cos(planet_load((), 120.0).outward) == pytest.approx(-1)
 
 
 def test_without_load_a_row_hangs_like_a_chain(bearing, oil):

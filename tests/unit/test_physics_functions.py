@@ -2,12 +2,15 @@
 
 import doctest
 import importlib
+import math
 
 import numpy as np
 import pytest
 
 import epicyclic as ep
 from epicyclic.losses.friction import FrictionSettings, friction_model
+from epicyclic.losses.windage import Teeth, Turning, drag
+from epicyclic.oil.oil import mixture_state, oil_state
 
 CONTACT = {
     "line_load": "210 N/mm",
@@ -79,3 +82,24 @@ def test_bad_arguments_are_named(changes, key):
 def test_a_mean_of_a_mesh_is_no_model_of_a_contact():
     with pytest.raises(ep.InputError, match="benedict-kelley"):
         ep.friction("schlenk", **CONTACT, sliding_speed=1.0)
+
+
+def test_teeth_of_a_gear_are_those_of_its_rack(make_gear):
+    gear = make_gear(41, module=2.5e-3)
+    r, face, omega = gear.tip_radius, gear.face_width, 930.0
+    oil = ep.load_case("talbot-2012", {"lubricant.oil": "iso-vg-100-pao"}).lubricant.oil
+    state = oil_state(oil, 341.0)
+    air = mixture_state(state, 0.0, 101325.0)
+    space = 2 * (math.pi / 41 - gear.half_angle_at(r))
+    body = Turning(r, face, Teeth(41, gear.reference_radius, r, face, space))
+    teeth = sum(drag(body, omega, air, air, state.dynamic_viscosity, "diab-ville-velex"))
+    turning = {
+        "diameter": 2 * r,
+        "width": face,
+        "speed": omega,
+        "temperature": 341.0,
+        "oil": "iso-vg-100-pao",
+        "oil_share": 0.0,
+    }
+    assert ep.windage(**turning, teeth=41) == pytest.approx(teeth, rel=1e-9)
+    assert ep.windage(**turning) < 0.5 * teeth

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -57,6 +58,18 @@ def test_loaded_less_unloaded_of_the_same_set(asked):
     three = RPM * np.array([1500, 17 * 1001, 13600, 74000]) - half
     assert table.loss[4::2] == pytest.approx(three[::2])
     assert table.loss[5::2] == pytest.approx(three[1::2] - three[::2])
+
+
+def test_a_baseline_in_another_state_is_none(asked):
+    rig = Rig(baseline="reaction=equal")
+    table = asked(RIG, Rig()).table
+    states = [*["first"] * 4, *["second"] * 4]
+    changes = [
+        {**own, "operation.state": state} for own, state in zip(table.changes, states, strict=True)
+    ]
+    with pytest.raises(ep.InputError, match="line 6"):
+        rig.losses(replace(table, changes=tuple(changes)))
+    assert len(rig.losses(table)) == 8
 
 
 def test_the_sensor_tells_how_uncertain_each_loss_is(asked):

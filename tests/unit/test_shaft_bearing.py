@@ -577,6 +577,8 @@ def test_speed_beyond_the_thermal_rating_is_named(state):
     (note,) = stated.evaluate(state(1.6 * rating, load)).notes
     assert "estimate" not in note
     assert math.isnan(thermal_speed_rating(replace(own, width=math.nan)))
+    tiny = replace(own, bore=1e-4, outside_diameter=2e-4, width=0.01, static_load_rating=1.0)
+    assert thermal_speed_rating(tiny) > 1e5
 
 
 def test_estimated_drag_is_named(state):

@@ -15,6 +15,7 @@ from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
+from epicyclic.case.changes import Changes, with_changes
 from epicyclic.case.expand import expand, gearing_of
 from epicyclic.case.gear_tables import (
     Gears,
@@ -25,7 +26,7 @@ from epicyclic.case.gear_tables import (
     SetMesh,
     SharedGears,
 )
-from epicyclic.case.keys import field_at, known_keys, owner_without_keys, value_of
+from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.case.rules import (
     bearing_force_problems,
     check_listed_bearings,
@@ -92,8 +93,6 @@ from epicyclic.messages import (
     PART_NAME,
     PART_NAME_RULE,
     did_you_mean,
-    dotted,
-    key_parts,
     misspelt,
     one_line,
     path_of,
@@ -102,18 +101,10 @@ from epicyclic.messages import (
     written,
 )
 from epicyclic.oil.grades import short_oil_told
-from epicyclic.schema.fields import find_field, locate, quantity_of, to_inputs
-from epicyclic.schema.read import (
-    flattened,
-    plain,
-    read_file,
-    split_key,
-    with_unit_of_key,
-    with_value,
-    without,
-)
+from epicyclic.schema.fields import quantity_of, to_inputs
+from epicyclic.schema.read import flattened, plain, read_file, split_key
 from epicyclic.schema.table import Table
-from epicyclic.schema.validation import AnyCase, Validation, tables_of, unknown_key, validate
+from epicyclic.schema.validation import AnyCase, Validation, tables_of, validate
 from epicyclic.units import unit_text
 
 if TYPE_CHECKING:
@@ -420,75 +411,6 @@ def _position(kind: type[Table], problem: Problem) -> int:
     table = path_of(problem.key)[0] if problem.key else ""
     tables = ["", *kind.model_fields]
     return tables.index(table) if table in tables else len(tables)
-
-
-class _Changes(NamedTuple):
-    """Tables with some keys changed."""
-
-    tables: dict[str, Any]
-    problems: list[Problem]  # Of keys that cannot be changed.
-    replaced: tuple[Found, ...]  # Keys that were removed, because a changed one excludes them.
-
-
-def with_changes(kind: type[Table], tables: dict[str, Any], changes: Mapping[str, Any]) -> _Changes:
-    """`tables` with some dotted keys changed, and without those that these exclude."""
-    problems: list[Problem] = []
-    stated = []
-    for key, value in changes.items():
-        own, unit = split_key(str(key))
-        try:
-            new = plain(with_unit_of_key(value, unit))
-            tables = _changed(kind, tables, own, new)
-        except InputError as error:
-            problems += [replace(problem, key=str(key)) for problem in error.problems]
-        else:
-            leaves = flattened(new, f"{own}.") if isinstance(new, dict) else [(own, new)]
-            stated += [tuple(key_parts(leaf)) for leaf, _ in leaves]
-    replaced = []
-    for path in stated:
-        for other in [] if value_at(tables, path) is None else _excluded(kind, tables, path):
-            if not any(one[: len(other)] == other for one in stated):
-                former = f"replaces {dotted(other)} = {written(value_at(tables, other))}."
-                shown = written(value_at(tables, path))
-                replaced.append(Found(dotted(path), shown, former))
-                tables = without(tables, other)
-    return _Changes(tables, problems, tuple(replaced))
-
-
-_SUMP = ("thermal", "oil_volume")
-"""The same volume as lubrication.oil_volume."""
-
-
-def _excluded(
-    kind: type[Table], tables: dict[str, Any], path: Sequence[str]
-) -> Iterator[tuple[str, ...]]:
-    """Keys of `tables` that cannot stand beside the one at `path`, which is complete by itself."""
-    for depth, name in enumerate(path):
-        owner = locate(kind, path[: depth + 1]).owner
-        if owner is None or not issubclass(owner, Table):
-            continue
-        given = value_at(tables, path[:depth]) or {}
-        for group in (*owner.EXACTLY_ONE, *owner.AT_MOST_ONE, *owner.REPLACING):
-            choices = [keys.split("+") for keys in group]
-            if any(name in keys and given.keys() >= set(keys) for keys in choices):
-                others = {key for keys in choices if name not in keys for key in keys}
-                yield from ((*path[:depth], key) for key in others if key in given)
-    if tuple(path[-2:]) == ("lubrication", "oil_volume") and value_at(tables, _SUMP) is not None:
-        yield _SUMP
-
-
-def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """`tables` with dotted `key` set to `value`, or removed if that is None."""
-    path = key_parts(key)
-    if problem := owner_without_keys(tables, key):
-        raise InputError([replace(problem, value=written(value))])
-    if value is not None:
-        return with_value(tables, path, value)
-    if value_at(tables, path) is not None:
-        return without(tables, path)
-    if find_field(kind, key) is None:
-        raise InputError([unknown_key(locate(kind, path), None, tables_of(kind).items())])
-    return tables
 
 
 # A train: gear sets joined by shafts, with brakes, clutches, bearings, seals and other drags.
@@ -1053,7 +975,7 @@ def read_case(
     return _build_any(tables, name, problems)
 
 
-def _changed_case(changed: _Changes, source: str, problems: Sequence[Problem] = ()) -> Case:
+def _changed_case(changed: Changes, source: str, problems: Sequence[Problem] = ()) -> Case:
     """The case of changed tables, which tells what the changes replaced."""
     made = _build_any(changed.tables, source, [*problems, *changed.problems])
     made._replaced = changed.replaced

@@ -63,7 +63,8 @@ _LEAST = 1e-300
 def asperity_share(film_ratio: Real) -> Real:
     """Share of the load on asperities, exp(-1.8 Lambda^1.2). Theory (Y5), (J25). [1]
 
-    S. Aihara, J. Tribol. 109 (1987) 471, for roller ends on a rib.
+    S. Aihara, J. Tribol. 109 (1987) 471, for roller ends on a rib; for flanks an assumption. Any
+    film ratio from 0 on gives a share between 1 and 0.
 
     Examples
     --------

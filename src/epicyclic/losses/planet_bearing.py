@@ -445,7 +445,7 @@ def rubbing(
     speed: float,
     oil: OilState,
     pull: float,  # With which the carrier pulls each roller outward. [N]
-    outward: float,  # Azimuth of that pull from the load. [rad]
+    outward: float,  # Azimuth of that pull from the most loaded rollers. [rad]
 ) -> Rubbing:
     """Sliding of rollers without a cage. Theory (B21), (B23).
 

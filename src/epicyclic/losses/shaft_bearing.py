@@ -418,9 +418,10 @@ THERMAL_VISCOSITY = 12e-6  # Reference viscosity at 70 degC. [m^2/s]
 THERMAL_LOAD = 0.05  # Reference load over the static load rating. [1]
 THERMAL_DENSITY, THERMAL_AREA, THERMAL_EXPONENT = 0.016e6, 0.05, -0.34
 """Heat that a seat takes up for its area [W/m^2], and how that falls beyond an area [m^2]."""
-FASTEST = 1e5  # Of all speeds, in which the rating is sought. [rad/s]
+FASTEST = 1e12  # Beyond the rating of any bearing, however small. [rad/s]
 
 
+@lru_cache(maxsize=256)
 def thermal_speed_rating(bearing: CatalogueBearing) -> float:
     """Speed at which a bearing in an oil bath heats itself from 20 to 70 degC. [rad/s]
 

@@ -200,7 +200,8 @@ class PlanetLoad:
     force: float  # Radial. [N]
     moment_x: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
     moment_y: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
-    outward: float = 0.0  # Azimuth of the way outward from the axis of the set. [rad]
+    # Azimuth of the way outward from the axis of the set, from the most loaded rollers. [rad]
+    outward: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,7 +272,8 @@ def planet_load(
         moment += couple * complex(*contact.outward)
     force = _radial_force(contacts, centrifugal)
     turned = moment * cmath.rect(1.0, -cmath.phase(force))
-    outward = math.pi / 2 - cmath.phase(force)
+    # the bore of a pushed planet meets its pin on the other side: those rollers carry
+    outward = math.pi / 2 - cmath.phase(-force)
     return PlanetLoad(abs(force), turned.real, turned.imag, outward)
 
 

@@ -6,82 +6,95 @@ arrays are broadcast against each other as numpy does it. Results are arrays in 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.build.elements import build_element
-from epicyclic.case.tables.elements import ShaftBearingTable
+from epicyclic.build.machine import oil_medium
+from epicyclic.case.tables.elements import Force, ShaftBearingTable
 from epicyclic.case.tables.operation import Lubricant
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import InputError, one_problem
+from epicyclic.gears.gear import involute
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings
 from epicyclic.losses.journal_bearing import JournalBearing, JournalState, solve_journal
 from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.losses.shaft_bearing import BearingLoad
-from epicyclic.losses.windage import MIST_SHARE, DragModel, Teeth, Turning, drag
-from epicyclic.machine.convection import GRAVITY_TEMPERATURE, WATER, oil_heat_capacity
+from epicyclic.losses.windage import (
+    DRAG_METHODS,
+    LAMINAR_RIMS,
+    MIST_SHARE,
+    DragModel,
+    Teeth,
+    Turning,
+    drag,
+)
+from epicyclic.machine.convection import STANDARD_PRESSURE
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.messages import refused, written
-from epicyclic.oil.oil import Oil, OilState, mixture_state, oil_state
+from epicyclic.oil.oil import Oil, mixture_state, oil_state
+from epicyclic.schema.fields import quantity_of
 from epicyclic.schema.validation import validate
 from epicyclic.units import (
-    CELSIUS,
     METRE_PER_SECOND,
-    MICROMETRE,
-    MILLIMETRE,
-    NEWTON,
     NEWTON_PER_MM,
-    RPM,
+    Length,
+    RotationalSpeed,
+    SmallLength,
+    Speed,
+    Temperature,
 )
 
 FloatArray = NDArray[np.float64]
 OilName = str | Mapping[str, Any]
 STEEL = equivalent_modulus(206e9, 0.3, 206e9, 0.3)  # E_eq of two bodies of steel. [Pa]
-AMBIENT = 101325.0  # [Pa]
+ALPHA = math.radians(20)  # Pressure angle of the basic rack (ISO 53). [rad]
 LOCAL_FRICTION = (
     "mixed-lubrication", "mixed-ehl", "mixed-ehl+pairing", "xu-2007", "benedict-kelley",
     "matsumoto", "doleschel",
 )  # fmt: skip
 """Friction models that need no more than the contact; the others are means over a gear mesh."""
 
-
-_UNITS = {
-    "line_load": NEWTON_PER_MM,
-    "radius": MILLIMETRE,
-    "rolling_speed": METRE_PER_SECOND,
-    "sliding_speed": METRE_PER_SECOND,
-    "roughness1": MICROMETRE,
-    "roughness2": MICROMETRE,
-    "roughness": MICROMETRE,
-    "temperature": CELSIUS,
-    "diameter": MILLIMETRE,
-    "pitch_diameter": MILLIMETRE,
-    "width": MILLIMETRE,
-    "length": MILLIMETRE,
-    "clearance": MICROMETRE,
-    "speed": RPM,
-    "force": NEWTON,
-    "radial_force": NEWTON,
-    "axial_force": NEWTON,
+_LINE_LOAD = replace(NEWTON_PER_MM, low=0.0, high=1e6)
+_MEASURES: dict[str, Any] = {
+    "line_load": Annotated[float, _LINE_LOAD],
+    "radius": Length,
+    "rolling_speed": Speed,
+    "sliding_speed": Annotated[float, METRE_PER_SECOND],
+    "roughness1": SmallLength,
+    "roughness2": SmallLength,
+    "roughness": SmallLength,
+    "temperature": Temperature,
+    "diameter": Length,
+    "pitch_diameter": Length,
+    "width": Length,
+    "length": Length,
+    "clearance": Length,
+    "speed": RotationalSpeed,
+    "force": Force,
+    "radial_force": Force,
+    "axial_force": Force,
 }
-"""What texts with units measure, by the name of the argument."""
+"""What the arguments measure, with the ranges of a case."""
 
 
 def _si(key: str, given: Any) -> FloatArray:
     """Numbers in SI, and texts with units."""
     if not isinstance(given, str) and np.ndim(given):
         return np.array([_si(key, one) for one in given])
-    if isinstance(given, int | float | np.number) and not isinstance(given, bool):
-        return np.array(float(given))
+    quantity = quantity_of(_MEASURES[key])
+    assert quantity is not None
+    is_number = isinstance(given, int | float | np.number) and not isinstance(given, bool)
     try:
-        return np.array(_UNITS[key].parse(given))
+        return np.array(quantity.parse(f"{float(given)!r} {quantity.si}" if is_number else given))
     except PydanticCustomError as error:
         raise InputError([refused(error, key, written(given))]) from None
 
@@ -103,7 +116,7 @@ def _oil(given: OilName) -> Oil:
     return read.case.oil
 
 
-def _chosen(name: str, known: Mapping[str, Any], among: tuple[str, ...]) -> Any:
+def _chosen(name: str, known: Mapping[Any, Any], among: tuple[str, ...]) -> Any:
     if name not in among:
         allowed = f"must be one of {', '.join(among)}."
         raise one_problem("model", written(name), allowed, "Choose one of them.")
@@ -144,8 +157,10 @@ def oil_properties(oil: OilName, temperature: Any) -> dict[str, FloatArray]:
         "thermal_conductivity",
     )
 
+    liquid = _oil(oil)
+
     def at(kelvin: float) -> tuple[float, ...]:
-        state = oil_state(_oil(oil), kelvin)
+        state = oil_state(liquid, kelvin)
         return tuple(getattr(state, name) for name in names)
 
     return dict(zip(names, _each(at, temperature=temperature), strict=True))
@@ -305,14 +320,13 @@ def windage(
     oil_share: float = 0.05,
     teeth: int | None = None,
     pitch_diameter: Any = None,
-    tooth_space: float = 0.2,
-    model: DragModel = "theodorsen-regier",
+    model: DragModel = "diab-ville-velex",
 ) -> FloatArray:
     """Drag of a disc, or of a gear, that turns in a mixture of oil and air.
 
     P = omega T of the rim, tau = C_d rho (omega r)^2/2, and of both faces, T = C_M rho omega^2
     r^5/2, laminar to turbulent (Theodorsen and Regier 1944; von Karman); with ``teeth`` also what
-    the teeth pump (Anderson and Loewenthal, or Diab et al. 2004).
+    the teeth pump (Diab et al. 2004), or all of it by the formula of Anderson and Loewenthal.
     See (V11), (V12), (V13) in the theory.
 
     Parameters
@@ -326,13 +340,12 @@ def windage(
     oil_share : float
         Volume of oil in the mixture. [1]
     teeth : int, optional
-        Number of teeth.
-    pitch_diameter : float or str, optional
-        Reference diameter of the teeth. Default: `diameter`. [m]
-    tooth_space : float
-        Angle of a tooth space at the tip circle. [rad]
+        Number of teeth, of 20 deg and without profile shift.
+    pitch_diameter : float, str or array_like, optional
+        Reference diameter of the teeth. Default: d_a z/(z + 2), that of full depth. [m]
     model : str
-        ``"theodorsen-regier"``, ``"anderson-loewenthal"`` or ``"diab-ville-velex"``.
+        ``"diab-ville-velex"``, ``"anderson-loewenthal"``, which is for mist of one part of oil in
+        34.25 of air whatever `oil_share` is, or ``"theodorsen-regier"``, without teeth.
 
     Returns
     -------
@@ -346,18 +359,32 @@ def windage(
     ...     temperature="80 degC", oil="atf-dexron-vi", oil_share=0.01)
     >>> loss.round(1).tolist()
     [107.1, 1779.7]
+    >>> gear = ep.windage(diameter="296 mm", width="30 mm", speed="700 rad/s", teeth=72,
+    ...     temperature="30 degC", oil="iso-vg-100-pao", oil_share=0.0)
+    >>> round(float(gear))  # of it 183 W of rim and faces
+    1076
     """
     liquid = _oil(oil)
+    _chosen(model, DRAG_METHODS, tuple(name for name in DRAG_METHODS if name != LAMINAR_RIMS))
+    if not 0 <= oil_share <= 1:
+        allowed = "must be from 0 to 1."
+        raise one_problem("oil_share", written(oil_share), allowed, "Give parts of the volume.")
 
     def at(size: float, face: float, omega: float, t: float, pitch: float) -> tuple[float]:
         state = oil_state(liquid, t)
-        toothed = Teeth(teeth, pitch / 2, size / 2, face, tooth_space) if teeth else None
-        mixture = mixture_state(state, oil_share, AMBIENT)
-        mist = mixture_state(state, min(oil_share, MIST_SHARE), AMBIENT)
+        toothed = None
+        if teeth:
+            tip_angle = math.acos(min(1.0, pitch / size * math.cos(ALPHA)))
+            tip_half = math.pi / (2 * teeth) + involute(ALPHA) - involute(tip_angle)
+            toothed = Teeth(teeth, pitch / 2, size / 2, face, 2 * (math.pi / teeth - tip_half))
+        mixture = mixture_state(state, oil_share, STANDARD_PRESSURE)
+        mist = mixture_state(state, min(oil_share, MIST_SHARE), STANDARD_PRESSURE)
         body = Turning(size / 2, face, toothed)
         return (sum(drag(body, omega, mixture, mist, state.dynamic_viscosity, model)),)
 
-    pitch = diameter if pitch_diameter is None else pitch_diameter
+    pitch = pitch_diameter
+    if pitch is None:
+        pitch = _si("diameter", diameter) * (teeth / (teeth + 2) if teeth else 1.0)
     return _each(
         at, diameter=diameter, width=width, speed=speed, temperature=temperature,
         pitch_diameter=pitch,
@@ -477,14 +504,11 @@ def plain_pin(
 
     def at(*values: float) -> tuple[float, ...]:
         inner, long, gap, rough, load, omega, t = values
-        state: OilState = oil_state(liquid, t)
+        state = oil_state(liquid, t)
         bearing = JournalBearing(
             inner, long, gap, rough, STEEL / 2, state.boundary_friction, conductance
         )
-        gravity = oil_state(liquid, GRAVITY_TEMPERATURE).density / WATER
-        own = liquid.specific_heat_capacity
-        capacity = oil_heat_capacity(t, gravity) if own is None else own.value
-        found = solve_journal(bearing, load, omega, state, capacity)
+        found = solve_journal(bearing, load, omega, state, oil_medium(liquid, t).heat_capacity)
         return tuple(getattr(found, name) for name in names)
 
     columns = _each(

@@ -337,10 +337,10 @@ def measured_figures(runner: Runner = HERE) -> tuple[MeasuredFigure, ...]:
 
 
 def _figures() -> Iterable[dict[str, Any]]:
-    """Those that are measured, of the tests and computed."""
+    """Those that are measured, of the tests and computed, and calibrated nothing."""
     for figure in published_figures():
-        what = figure["what"]
-        if what.endswith(MEASURED) and "compute" in figure:
+        what, calibrated = figure["what"], figure["role"] == "calibration"
+        if what.endswith(MEASURED) and "compute" in figure and not calibrated:
             yield {**figure, "what": what.removesuffix(f", {MEASURED}")}
 
 

@@ -13,7 +13,7 @@ from epicyclic.errors import InputError, Problem, first_of, one_problem
 from epicyclic.messages import one_line
 from epicyclic.study.measured.comparison import near_values
 from epicyclic.study.measured.table import LOAD_DEPENDENT, SENSOR, Grid, Measurements
-from epicyclic.study.operating import AXES
+from epicyclic.study.operating import AXES, STATE_KEY
 
 BoolArray = NDArray[np.bool_]
 
@@ -129,16 +129,16 @@ def _less(
     *,
     alike: bool = False,  # True if they also agree in what the table sets of the case.
 ) -> Measurements:
-    """The table with the mean loss of the rows that belong to each taken off."""
+    """The table with the mean loss of the rows that belong to each taken off.
+
+    All agree in the state of a train.
+    """
     loss, known = table.loss.copy(), table.uncertainty
     squares = None if known is None else known**2
+    shown = [_case_of(it) if alike else it.get(STATE_KEY) for it in table.changes]
     lacking = []
     for row in map(int, np.flatnonzero(rows)):
-        own = others & _agree(table, row, equal)
-        if alike:
-            own &= np.array(
-                [_case_of(one) == _case_of(table.changes[row]) for one in table.changes]
-            )
+        own = others & _agree(table, row, equal) & np.array([it == shown[row] for it in shown])
         if not own.any():
             lacking.append(f"line {table.lines[row]}")
             continue
