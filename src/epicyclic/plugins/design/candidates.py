@@ -21,7 +21,7 @@ from epicyclic.gears.gear import BasicRack
 from epicyclic.gears.mesh import closing_number, profile_shift_sum
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design.strength import Material, material_of
-from epicyclic.plugins.design.task import Task
+from epicyclic.plugins.design.task import DutyPoint, Task
 
 FloatArray = NDArray[np.float64]
 Gears = dict[str, FloatArray]
@@ -478,25 +478,29 @@ def _mm(value: float) -> str:
     return f"{1e3 * value:.6g} mm"
 
 
+def operation(point: DutyPoint) -> dict[str, str]:
+    """What a case states of an operating point."""
+    return {
+        "torque": f"{point.torque:.9g} N*m",
+        "speed": f"{point.speed * 30 / math.pi:.9g} rpm",
+        "oil_inlet_temperature": f"{point.oil_inlet_temperature - 273.15:.6g} degC",
+    }
+
+
 def case_tables(task: Task, row: Row, point: int = -1) -> dict[str, Any]:
     """The tables of a candidate's case, at the operating point or at one of the cycle."""
     name = str(row["arrangement"])
-    where = task.operation if point < 0 else task.points[point]
-    operation = {
-        "torque": f"{where.torque:.9g} N*m",
-        "speed": f"{where.speed * 30 / math.pi:.9g} rpm",
-        "oil_inlet_temperature": f"{where.oil_inlet_temperature - 273.15:.6g} degC",
-    }
+    at = operation(task.operation if point < 0 else task.points[point])
     common = {"numerics": COARSE} | dict(task.case)
     title = {"title": f"{task.title or 'design'}: {name} {teeth_text(row)}"}
     if name == "pair":
         own = _set_tables(task, row, "1", ("pinion", "gear"))
-        return title | {"kind": "gear_pair", "operation": operation} | own | common
+        return title | {"kind": "gear_pair", "operation": at} | own | common
     if name == "planetary":
         own = _set_tables(task, row, "1", ("sun", "planet", "ring"))
         ends = {"input": "sun", "fixed": "ring"}
-        return title | {"kind": "planetary", "operation": ends | operation} | own | common
-    train = title | {"kind": "train", "operation": {"input": "in", "output": "out"} | operation}
+        return title | {"kind": "planetary", "operation": ends | at} | own | common
+    train = title | {"kind": "train", "operation": {"input": "in", "output": "out"} | at}
     if name == "two-stage":
         sets = {
             "A": _set_tables(task, row, "1", ("sun", "planet", "ring")),

@@ -126,7 +126,7 @@ def design(
     if journal is not None:
         make_folder(journal, "--journal")
     found = search(read, raw, replace(runner, journal=journal), tell=tell)
-    sentences = tuple(odds(found, draws, runner.jobs)) if draws else ()
+    sentences = tuple(odds(found, draws, runner)) if draws else ()
     if output is not None:
         for name in report.write_all(found, sentences, output):
             echo(f"Wrote {name}.")

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, read_case
 from epicyclic.errors import EpicyclicError, InputError, Problem, Status
-from epicyclic.plugins.design.candidates import case_tables, enumerate_all, sizes
+from epicyclic.plugins.design.candidates import case_tables, enumerate_all, operation, sizes
 from epicyclic.plugins.design.strength import strength
 from epicyclic.plugins.design.task import Task, read_task
 from epicyclic.schema.read import read_file
@@ -476,23 +476,24 @@ def _choose(found: Found) -> list[int]:
     return [rows[it] for it in unique]
 
 
-def odds(found: Found, samples: int, jobs: int | None = None) -> list[str]:
+def odds(found: Found, samples: int, runner: Runner | None = None) -> list[str]:
     """Sentences on how probably the first chosen design loses less than the others, or they less.
 
-    At the point of the cycle through which most energy goes, by paired draws.
+    Over the cycle, by paired draws that are the same at all of its points.
     """
     from epicyclic.study.bands.compare_cases import compare_cases
 
-    points = found.task.points
-    work = [abs(point.share * point.torque * point.speed) for point in points]
-    most = work.index(max(work))
-    where = f"{points[most].torque:.4g} N m and {points[most].speed * 30 / math.pi:.4g} rpm"
+    runner, points = runner or Runner(), found.task.points
+    times = [
+        (point.share, {f"operation.{key}": text for key, text in operation(point).items()})
+        for point in points
+    ]
     first, *others = found.chosen
     lines = []
     for other in others:
         data = compare_cases(
-            found.case(other, most), found.case(first, most),
-            samples=samples, seed=found.task.search.seed, jobs=jobs,
+            found.case(other), found.case(first), samples=samples, seed=found.task.search.seed,
+            points=times, jobs=runner.jobs, dask=runner.dask,
         )  # fmt: skip
         total = data.sel(result="total")
         share, mean = float(total.probability), float(total.difference)
@@ -503,7 +504,7 @@ def odds(found: Found, samples: int, jobs: int | None = None) -> list[str]:
             share, mean, low, high = 1 - share, -mean, -high, -low
         lines.append(
             f"Design {better} loses less than design {worse} in {100 * share:.0f} % of {samples} "
-            f"paired draws at {where}: {-mean:.3g} W on average, {-high:.3g} to {-low:.3g} W."
+            f"paired draws over the cycle: {-mean:.3g} W on average, {-high:.3g} to {-low:.3g} W."
         )
     return lines
 
