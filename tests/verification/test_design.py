@@ -9,6 +9,7 @@ import time
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.optimize import linprog
 
 from epicyclic.case.case import read_case
 from epicyclic.errors import InputError
@@ -100,6 +101,38 @@ def test_every_candidate_has_one_fate_and_they_sum_up():
 
 
 @pytest.mark.parametrize(
+    "name",
+    ["planetary", *(pytest.param(it, marks=pytest.mark.slow) for it in RATIOS if it[0] in "sw")],
+)
+def test_backlash_is_how_far_the_output_turns_with_the_input_held(name):
+    """Against the largest rotation that keeps every mesh within its play, by linear programming."""
+    task = read_task(task_of(name, ratio=RATIOS[name]))
+    found = screen(task)
+    number = found.table.index[found.table.fate == ""][-1]
+    (gearing,) = found.case(number).gearings.values()
+    columns = {"planet": 0, "output_ring": 1, "carrier": 2}  # all else is held
+    rows, plays = [], []
+    for mesh in gearing.geometries:
+        first, second = mesh.gear1, mesh.gear2
+        row = np.zeros(3)
+        for gear, side in ((first, 1), (second, -1 if mesh.internal else 1)):
+            body = gearing.bodies[gear.name]
+            row[0] += side * gear.base_radius * (body in gearing.planets)
+            if body not in gearing.planets:
+                row[2] -= side * gear.base_radius  # against the carrier
+                if gear.name == "output_ring":
+                    row[1] += side * gear.base_radius
+        rows.append(row)
+        plays.append(mesh.normal_backlash / math.cos(first.rack.base_helix_angle) / 2)
+    output = np.zeros(3)
+    output[columns["output_ring" if name == "wolfrom" else "carrier"]] = -1.0
+    most = linprog(
+        output, np.vstack([rows, np.negative(rows)]), [*plays, *plays], bounds=(None, None)
+    )
+    assert 2 * -most.fun == pytest.approx(found.table.loc[number, "backlash"], rel=1e-5)
+
+
+@pytest.mark.parametrize(
     ("limits", "key"),
     [
         ({"diameter": "37 mm"}, "limits.diameter"),
@@ -108,6 +141,7 @@ def test_every_candidate_has_one_fate_and_they_sum_up():
         ({"pitting": 60}, "limits.pitting"),
         ({"bending": 90}, "limits.bending"),
         ({"contact_ratio": 8}, "limits.contact_ratio"),
+        ({"backlash": "0.7 arcmin"}, "limits.backlash"),
     ],
 )
 def test_an_impossible_task_names_the_limit_and_by_how_much(limits, key):

@@ -258,6 +258,7 @@ class Sizes:
     diameter: FloatArray
     width: FloatArray
     mass: FloatArray
+    backlash: FloatArray  # Play of the output with the input held. [rad]
     margins: dict[str, FloatArray]  # By the limit: what is over what must be, 1 or more is met.
     loss: FloatArray  # Less than the load-dependent loss over the cycle can be. [W]
 
@@ -317,7 +318,7 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
         error = np.abs(np.abs(ratio) / task.ratio - 1)
         allowed = max(task.limits.ratio_error, 1e-9)
         least("ratio_error", np.where(error <= allowed, 1.0, allowed / np.maximum(error, 1e-12)))
-        diameter, width, mass = (np.zeros(len(table)) for _ in range(3))
+        diameter, width, mass, backlash = (np.zeros(len(table)) for _ in range(4))
         loss = np.zeros(len(table))
         powers = sum(point.share * point.torque * point.speed for point in task.points)
         power = abs(powers) / sum(point.share for point in task.points)
@@ -368,6 +369,9 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             # bounds of loss and strength
             carried = mesh.torque(z) * np.ones(len(table))
             turning = mesh.speed(z) * np.ones(len(table))
+            # virtual work: the play of a mesh moves the output as its force loads it
+            play = task.choices.backlash / np.cos(base_helix)
+            backlash += np.abs(carried / (z1 * bases * ratio)) * play
             factor = math.pi * (z2 + sign * z1) / (z1 * z2 * np.cos(base_helix))
             factor = np.abs(factor) * (1 - alpha + eps1**2 + eps2**2)
             loss += BOUND_FRICTION * power * np.abs(carried * turning) * np.maximum(factor, 0)
@@ -425,14 +429,14 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
         steps = ("sun", "sun2") if layout.stages == 2 else ("wide", "narrow")
         width = sum((faces[it] for it in steps if it in faces), np.zeros(len(table)))
         width = np.where(width == 0, faces[counted[0]], width)
-        for key, found in (("diameter", diameter), ("width", width), ("mass", mass)):
+        known = {"diameter": diameter, "width": width, "mass": mass, "backlash": backlash}
+        for key, found in known.items():
             limit = getattr(task.limits, key)
             if limit is not None:
                 least(key, limit / found)
         least("assembly", _assembly(layout, z, planets))
-    return Sizes(
-        ratio, diameter, width, mass, {k: np.nan_to_num(v) for k, v in margins.items()}, loss
-    )
+    met = {key: np.nan_to_num(values) for key, values in margins.items()}
+    return Sizes(ratio, **known, margins=met, loss=loss)
 
 
 def _assembly(layout: Layout, z: Gears, planets: FloatArray) -> FloatArray:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 SAFETIES = ("pitting", "bending", "micropitting", "scuffing", "bearing_life")
-KNOWN = ("mass", "diameter", "width")  # Objectives that are known without solving.
+KNOWN = ("mass", "diameter", "width", "backlash")  # Without solving.
 SCREENS = {
     "ratio_error": "error of the ratio",
     "assembly": "planets do not fit between the gears at equal angles",
@@ -44,6 +44,7 @@ SCREENS = {
     "diameter": "diameter",
     "width": "width",
     "mass": "mass",
+    "backlash": "backlash of all meshes at the output",
     "contact_ratio": "contact ratio",
     "tip_thickness": "thickness of the tips",
     "pitting": "pitting, bound without solving",
@@ -51,8 +52,8 @@ SCREENS = {
 }
 """What a candidate may be rejected for before it is solved, in the order in which it is asked."""
 UNITS = {
-    "loss": "W", "mass": "kg", "diameter": "m", "width": "m", "transmission_error": "um",
-    "bearing_life": "h",
+    "loss": "W", "mass": "kg", "diameter": "m", "width": "m", "backlash": "rad",
+    "transmission_error": "um", "bearing_life": "h",
 }  # fmt: skip
 USUAL_SHARE = 0.6  # Of a computed safety in its bound, before any is solved. [1]
 LOSS_MARGIN = 0.8  # Of the smallest solved loss over its bound, for candidates not solved. [1]
