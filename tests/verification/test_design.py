@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import io
+import json
 import math
 import time
 
@@ -11,14 +13,17 @@ import pandas as pd
 import pytest
 from scipy.optimize import linprog
 
+from asymmetric import gear_pair
 from epicyclic.case.case import read_case
 from epicyclic.errors import InputError
 from epicyclic.plugins.design import search as searching
 from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances, sizes
 from epicyclic.plugins.design.relief import Relief, relief_front
+from epicyclic.plugins.design.rotor import rotor_dynamics, rotor_text
 from epicyclic.plugins.design.search import design, dominated, screen, search
 from epicyclic.plugins.design.task import read_task
 from epicyclic.study.load import load_case
+from epicyclic.study.meshes import mesh_details
 from epicyclic.study.sweeps.runner import Runner
 
 ROUNDING = 1e-6  # Case files have nine digits, face widths six.
@@ -356,3 +361,29 @@ def test_tolerance_gives_a_band_around_every_variant():
     half = (data.loss_high - data.loss_low).to_numpy() / 2
     assert half == pytest.approx(np.abs((shifted.loss - data.loss).to_numpy()), rel=1e-6)
     assert math.isclose(float((data.loss_high + data.loss_low)[0]), 2 * float(data.loss[0]))
+
+
+@pytest.mark.slow
+def test_harmonics_for_rotor_dynamics_give_back_stiffness_and_transmission_error():
+    case = load_case(gear_pair(), {"numerics.mesh_positions": 40, "numerics.contact_segments": 6})
+    found = rotor_dynamics(case)
+    (own,) = found["meshes"].values()
+    course = mesh_details(case)["mesh"]
+    width = case.gearings[""].geometries[0].face_width
+    known = {
+        "stiffness_{}_N_per_m": 1e9 * width * course.mesh_stiffness.to_numpy(),
+        "transmission_error_{}_m": 1e-6 * course.transmission_error.to_numpy(),
+    }
+    turned = own["teeth"][0] * np.radians(course.roll_angle.to_numpy())
+    for name, values in known.items():
+        amplitudes = np.array(own[name.format("amplitude")])
+        phases = np.radians(own[name[: name.index("{")] + "phase_deg"])
+        waves = np.cos(np.outer(turned, np.arange(1, len(phases) + 1)) + phases)
+        rebuilt = own[name.format("mean")] + waves @ amplitudes
+        assert np.ptp(rebuilt - values) < 0.12 * np.ptp(values)
+        assert own[name.format("mean")] == pytest.approx(course.weight.to_numpy() @ values)
+    assert own["frequency_Hz"] == pytest.approx(case.operation.speed / (2 * math.pi) * 19)
+    table = pd.read_csv(io.StringIO(rotor_text(found, ".csv")))
+    rows = table[table.quantity == "stiffness_amplitude_N_per_m"]
+    assert rows.value.astype(float).tolist() == own["stiffness_amplitude_N_per_m"]
+    assert json.loads(rotor_text(found, ".json")) == found
