@@ -144,8 +144,8 @@ class Planet:
     def _roller_note(self, where: str, pull: float, force: float) -> Note:
         return Note(
             f"{where}: the carrier presses each roller outward with {NEWTON.text(pull, 3)}, beside "
-            f"{NEWTON.text(force, 3)} on the bearing. Unloaded rollers roll under this force and "
-            "press on their cage, which the loss leaves out."
+            f"{NEWTON.text(force, 3)} on the bearing. Unloaded rollers roll under this force, "
+            "which the loss contains, and press on their cage, which it leaves out."
         )
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
@@ -451,7 +451,9 @@ class GearSet:
                     oil,
                     speed,
                     last_rollers.get((planet.key, share)),
-                    planet.pin_radius * carrier**2,
+                    planet.pin_radius,
+                    carrier,
+                    loaded=any(duty.torque1 for duty in tilted),
                 )
                 notes += bearing.notes
                 rollers[planet.key, share] = bearing.loads
