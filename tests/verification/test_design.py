@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import inspect
 import io
 import json
 import math
@@ -54,6 +55,20 @@ def task_of(*arrangements, ratio=4.1, **choices):
             "numerics": {"mesh_positions": 6, "contact_segments": 6},
         },
     }
+
+
+def test_help_shows_a_whole_task_and_what_lacks_one_names_it(tmp_path):
+    from epicyclic.plugins.design.commands import design as command
+
+    shown = inspect.cleandoc(command.help).split("\b\n")[1]
+    path = tmp_path / "task.toml"
+    path.write_text(shown)
+    assert read_task(path).choices.module == (0.0015, 0.002)
+    for text in ("", "# nothing", "ratio = 4.2"):
+        path.write_text(text)
+        with pytest.raises(InputError, match="'epicyclic design --help' shows") as caught:
+            read_task(path)
+        assert "init" not in str(caught.value)
 
 
 RATIOS = {"pair": 3.1, "planetary": 4.1, "stepped": 12.3, "wolfrom": 40.0, "two-stage": 17.3}

@@ -119,6 +119,19 @@ def design(
     With --journal an interrupted search goes on where it stopped.
 
     \b
+    ratio = 4.2
+    [operation]  # where the safeties hold; [[cycle]]: where the loss is averaged
+    torque = "180 N*m"
+    speed = "6000 rpm"
+    oil_inlet_temperature = "80 degC"
+    [choices]
+    module = ["1.5 mm", "2 mm"]
+    [limits]
+    diameter = "260 mm"
+    [case.lubricant]
+    oil = "atf-dexron-vi"
+
+    \b
     epicyclic design axle.toml -o axle
     epicyclic design axle.toml --screen
     """

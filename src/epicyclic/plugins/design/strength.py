@@ -38,6 +38,7 @@ from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design import lubricated
 from epicyclic.plugins.design.mass import gear_body
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import build_computed
 
 FloatArray = NDArray[np.float64]
@@ -215,7 +216,7 @@ class Strength:
         return found
 
 
-def strength(case: Case) -> Strength:
+def strength(case: CaseSource) -> Strength:
     """Safeties of the gears and lives of the planet bearings of a case.
 
     The names say which standards are followed; none is followed in full, see
@@ -245,6 +246,7 @@ def strength(case: Case) -> Strength:
     >>> [mesh.key for mesh in found.meshes]  # doctest: +SKIP
     ['sun_mesh', 'ring_mesh']
     """
+    case = as_case(case)
     return rated(case, build_computed(case))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -101,6 +101,8 @@ class Search(Table):
 class Task(Table):
     """A whole task."""
 
+    SHOWN_BY: ClassVar[str] = "'epicyclic design --help'"
+
     title: str = ""
     ratio: Number = Field(gt=1, le=1000, description="Speed of the input over that of the output.")
     operation: DutyPoint = Field(description="Where the safeties hold.")
@@ -128,7 +130,7 @@ def read_task(source: str | Path | Mapping[str, Any]) -> Task:
         raw, name = plain(source), "the given tables"
     else:
         name = str(source)
-        raw, problems = read_file(Path(source))
+        raw, problems = read_file(Path(source), f"{Task.SHOWN_BY} shows one.")
     found = validate(Task, raw)
     raise_any([*problems, *found.problems], name)
     task = found.case

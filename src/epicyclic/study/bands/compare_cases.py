@@ -28,6 +28,7 @@ from epicyclic.study.bands.plan import (
     without_table,
 )
 from epicyclic.study.bands.samples import probabilities, quantiles, sample_summary
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.runner import Progress, Runner
 
@@ -40,8 +41,8 @@ PAIRS = 256
 
 
 def compare_cases(
-    first: Case,
-    second: Case,
+    first: CaseSource,
+    second: CaseSource,
     *,
     samples: int = PAIRS,
     seed: int = 1,
@@ -83,7 +84,7 @@ def compare_cases(
         If a case, or hardly any pair of samples, can be solved.
     """
     check_samples(samples)
-    cases, changes = (first, second), [dict(change) for _, change in points]
+    cases, changes = (as_case(first), as_case(second)), [dict(change) for _, change in points]
     results = [[solve(case.updated(it) if it else case) for it in changes] for case in cases]
     values = [values_at(case, own[0], changes) for case, own in zip(cases, results, strict=True)]
     at_points = zip(*values, *results, strict=True)
