@@ -19,12 +19,14 @@ from epicyclic.case.case import read_case
 from epicyclic.errors import InputError
 from epicyclic.plugins.design import search as searching
 from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances, sizes
+from epicyclic.plugins.design.front import front_of, stored
 from epicyclic.plugins.design.relief import Relief, relief_front
 from epicyclic.plugins.design.rotor import rotor_dynamics, rotor_text
-from epicyclic.plugins.design.search import design, dominated, screen, search
+from epicyclic.plugins.design.search import case_text, design, dominated, screen, search
 from epicyclic.plugins.design.task import read_task
 from epicyclic.study.load import load_case
 from epicyclic.study.meshes import mesh_details
+from epicyclic.study.sweeps.run import write_netcdf
 from epicyclic.study.sweeps.runner import Runner
 
 ROUNDING = 1e-6  # Case files have nine digits, face widths six.
@@ -200,7 +202,7 @@ def made_up(task, row):
 
 def test_a_search_ends_when_all_are_solved(monkeypatch):
     monkeypatch.setattr(searching, "evaluate", made_up)
-    raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 19])
+    raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 18], module=["2 mm"])
     raw["search"] |= {"solved": 1000, "objectives": ["loss", "transmission_error"]}
     raw["limits"] = {"pitting": 0.05, "bending": 0.05}
     monkeypatch.setattr(
@@ -249,6 +251,27 @@ def test_what_only_solved_designs_tell_is_counted_apart_from_bounds(monkeypatch)
     assert {searching.BEATEN, searching.LIKELY, "not solved"} <= found.fates.keys()
     assert beaten[found.table.fate == searching.BEATEN].all()
     assert not beaten[found.table.fate == searching.LIKELY].all()
+
+
+@pytest.mark.slow
+def test_a_stored_search_has_its_front_and_the_cases_of_its_points(monkeypatch, tmp_path):
+    monkeypatch.setattr(searching, "evaluate", made_up)
+    raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 19])
+    raw["limits"] |= {"pitting": 0.05, "bending": 0.05}
+    raw["search"] |= {"solved": 8, "batch": 8}
+    found = search(read_task(raw), raw, Runner(1))
+    path = tmp_path / "candidates.nc"
+    write_netcdf(found.dataset(), path)
+    again = stored(path)
+    assert (again.fronts, again.chosen) == (found.fronts, sorted(found.chosen))
+    front = front_of(again)
+    shown = {number for trace in front.chart.plot["data"] for number in trace["customdata"]}
+    assert shown == set(front.cases) == set(found.table.index[found.table.loss.notna()])
+    number = found.chosen[0]
+    assert front.cases[number] == case_text(case_tables(found.task, found.table.loc[number]))
+    write_netcdf(found.dataset().drop_vars("bound"), path)
+    with pytest.raises(InputError, match="no dataset of designs"):
+        stored(path)
 
 
 @pytest.mark.slow

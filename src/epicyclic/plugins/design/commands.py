@@ -139,6 +139,7 @@ def design(
     from epicyclic.plugins.design.search import odds, screen, search
     from epicyclic.plugins.design.task import read_task
     from epicyclic.schema.read import read_file
+    from epicyclic.show.terminal import as_on_page
     from epicyclic.study.bands.plan import check_samples
 
     if draws:
@@ -150,7 +151,11 @@ def design(
     if only_screen:
         found = screen(read)
         found.table.loc[found.table["fate"] == "", "fate"] = "passes the screens"
-        show(lambda: report.fates_table(found), lambda: report.as_json(found, ()), json_file)
+        show(
+            lambda: as_on_page(report.fates_table(found)),
+            lambda: report.as_json(found, ()),
+            json_file,
+        )
         return
     if journal is not None:
         make_folder(journal, "--journal")

@@ -26,7 +26,7 @@ from epicyclic.errors import EpicyclicError, InputError, Problem, Status
 from epicyclic.plugins.design.candidates import case_tables, enumerate_all, operation, sizes
 from epicyclic.plugins.design.strength import strength
 from epicyclic.plugins.design.task import Task, read_task
-from epicyclic.schema.read import read_file
+from epicyclic.schema.read import plain, read_file
 from epicyclic.study.solve import loaded_meshes, solve
 from epicyclic.study.sweeps.runner import Plan, Row, Rows, Runner, failed_row
 
@@ -136,6 +136,7 @@ class Found:
     bounds: pd.DataFrame = field(default_factory=pd.DataFrame)  # `margins` before solving.
     fronts: list[int] = field(default_factory=list)
     chosen: list[int] = field(default_factory=list)
+    raw: Mapping[str, Any] = field(default_factory=dict)  # The task as its file has it.
 
     @cached_property
     def fates(self) -> dict[str, int]:
@@ -162,6 +163,7 @@ class Found:
             "objectives": ", ".join(self.task.search.objectives),
             "seed": self.task.search.seed,
             "chosen": ", ".join(map(str, self.chosen)),
+            "task": json.dumps(plain(self.raw)),
         }
         return data
 
@@ -252,6 +254,7 @@ def search(
     *,
     brute: bool = False,  # Solve every candidate that passes the screens.
     tell: Callable[[str], None] = lambda text: None,
+    progress: Callable[[int, int], None] = lambda done, total: None,  # Of the designs to solve.
 ) -> Found:
     """Designs for a task: the non-dominated ones among all that meet the limits.
 
@@ -259,6 +262,7 @@ def search(
     """
     runner = runner or Runner()
     found = screen(task)
+    found.raw = raw
     table = found.table
     for name in ("loss", "transmission_error", *SAFETIES):
         table[name] = math.nan
@@ -273,6 +277,7 @@ def search(
         rows = _solve(found, raw, batch, runner)
         _judge(found, batch, rows)
         solved += len(batch)
+        progress(solved, min(limit, solved + len(left) - len(batch)))
         tell(f"{solved} solved, {int((table['fate'] == 'feasible').sum())} meet all limits")
     table.loc[table["fate"] == "", "fate"] = "not solved"
     if not (table["fate"] == "feasible").any():

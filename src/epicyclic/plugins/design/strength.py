@@ -397,20 +397,14 @@ class _Rating:
         computed = face_load_factor(loads, mesh)
         face = table.face_load_factor or computed
         depth = max(abs(it.tip_radius - it.root_radius) for it in (mesh.gear1, mesh.gear2))
-        transverse = table.transverse_load_factor
-        if transverse is None:
-            most = (mesh.transverse_contact_ratio + mesh.overlap_ratio) / (
-                mesh.transverse_contact_ratio * iso.contact_ratio_factor(mesh) ** 2
-            )
-            found = moved.transverse_factor(load * dynamic * face)
-            transverse = max(1.0, min(found, most))
         return LoadFactors(
             application=table.application_factor,
             sharing=sharing,
             dynamic=dynamic,
             face=face,
             face_computed=computed,
-            transverse=transverse,
+            transverse=table.transverse_load_factor
+            or moved.transverse_share(load * dynamic * face, iso.contact_ratio_factor(mesh)),
             face_bending=iso.face_factor_bending(face, width, depth),
         )
 
