@@ -203,7 +203,7 @@ def validate(
         problems += [unknown_key(place, value_at(raw, place.path), tables) for place in unknown]
         raw = _mend_names(raw, unknown)
         case, details = _try(kind, raw)
-    alternatives = _check_alternatives(kind, raw)
+    alternatives = _check_alternatives(kind, {k: v for k, v in raw.items() if k not in sound})
     problems += alternatives + [translate(kind, detail) for detail in details]
     if case is not None and not problems:
         given = {name: getattr(case, name) for name in tables_of(kind)}
