@@ -132,6 +132,13 @@ _OPERATED = ("operation", "title")
 Kept = TypeVar("Kept")
 
 
+class _Kept(dict[Any, tuple[Any, Any]]):
+    """Answers that copies and workers find again."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _Kept, ()
+
+
 class CaseTable(Table):
     if TYPE_CHECKING:  # every kind has them, each in its place
         lubrication: LubricationTable | None
@@ -147,7 +154,7 @@ class CaseTable(Table):
     _gearings: dict[str, Gearing] = PrivateAttr(default_factory=dict)
     _sound: Mapping[str, Table] = PrivateAttr(default_factory=dict)
     """What became of each of `_tables` by itself: those that stay need not be read again."""
-    _kept: dict[Any, tuple[Any, Any]] = PrivateAttr(default_factory=dict)
+    _kept: _Kept = PrivateAttr(default_factory=_Kept)
     """Last answers of `kept`, shared by cases that differ in [operation] and title only."""
 
     @property
@@ -197,11 +204,6 @@ class CaseTable(Table):
         stands = (one for one in self._replaced if value_at(changed.tables, path_of(one.key)))
         made._replaced = (*stands, *changed.replaced)
         return made
-
-    def __getstate__(self) -> dict[Any, Any]:
-        state = super().__getstate__()
-        own = (state["__pydantic_private__"] or {}) | {"_kept": {}}  # workers find it themselves
-        return state | {"__pydantic_private__": own}
 
     def kept(self, find: Callable[..., Kept], *arguments: Any) -> Kept:
         """`find(case, *arguments)`, which looks at nothing of [operation] but the arguments.
