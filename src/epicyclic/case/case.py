@@ -128,12 +128,14 @@ _BESIDE_GEARS = {
 """Tables on which gears, their bearings and how they share the load do not depend."""
 
 
-_OPERATED = ("operation", "title")
+_OPERATED, _FILES = {"operation", "title"}, set(FILE_KEYS)
 Kept = TypeVar("Kept")
 
 
 class _Kept(dict[Any, tuple[Any, Any]]):
     """Answers that copies and workers find again."""
+
+    files: bool | None = None  # Whether tables name files, whose content may change.
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _Kept, ()
@@ -220,12 +222,14 @@ class CaseTable(Table):
         if before is None or not before._tables:
             return False
         one, two = self._tables, before._tables
-        alike = all(
-            key in _OPERATED or one.get(key) is two.get(key) for key in one.keys() | two.keys()
-        ) and not any(key.rpartition(".")[2] in FILE_KEYS for key, _ in flattened(one))
-        if alike:
+        if any(one.get(key) is not two.get(key) for key in (one.keys() | two.keys()) - _OPERATED):
+            return False
+        if before._kept.files is None:
+            leaves = (key.rpartition(".")[2] for key, _ in flattened(two))
+            before._kept.files = not _FILES.isdisjoint(leaves)
+        if not before._kept.files:
             self._kept = before._kept
-        return alike
+        return not before._kept.files
 
     def _unchanged(self, tables: Mapping[str, Any]) -> dict[str, Table]:
         """Those of its own tables that `tables`, made from them by changes, still have."""

@@ -272,9 +272,11 @@ def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]
     """One of each group of alternatives must be given, and that one whole."""
     problems = []
     for name, table in tables_of(kind).items():
-        given = {name: raw.get(name)}
+        if name not in raw:
+            continue
+        given = {name: raw[name]}
         has_names = dict_value(kind.model_fields[name].annotation) is not None  # [states.NAME]
-        if has_names and isinstance(raw.get(name), dict):
+        if has_names and isinstance(raw[name], dict):
             given = {f"{name}.{dotted([key])}": item for key, item in raw[name].items()}
         for key, item in given.items():
             if isinstance(item, dict):
