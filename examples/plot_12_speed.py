@@ -3,7 +3,7 @@ An e-axle up to 25,000 rpm
 ==========================
 
 Losses without load grow with the second to third power of the speed and dominate at the speeds of
-electric motors. This study shows these losses and their uncertainty over the speed range of a motor.
+electric motors. This study shows them, with their uncertainty, over the speed range of a motor.
 """
 
 import matplotlib.pyplot as plt
