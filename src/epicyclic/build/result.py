@@ -581,8 +581,8 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     if held:
         yield (
             f"{', '.join(in_words(key) for key in held)}: the teeth do not roll on each other, so "
-            "their torques are those without friction. Friction at rest holds other ones too, up "
-            "to what the given efficiency leaves in either direction."
+            "their torques are those without friction. Static friction can also hold other "
+            "torques, within the limits set by the given efficiency in both directions."
         )
     if settled.change > AGREEMENT:
         yield (

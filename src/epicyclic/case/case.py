@@ -40,8 +40,8 @@ from epicyclic.case.tables.elements import (
     Carrier,
     ElementTable,
     ElementTables,
-    PlainPins,
     PlanetBearing,
+    PlanetPin,
     SealTable,
     ThrustBearing,
     between,
@@ -935,7 +935,7 @@ class _SetTables(CaseTable):
         return self._gearings
 
 
-class PlanetaryCase(_SetTables, PlainPins):
+class PlanetaryCase(_SetTables):
     """A planetary gear set with its oil, surroundings and operating point."""
 
     kind: Literal["planetary"]
@@ -948,6 +948,7 @@ class PlanetaryCase(_SetTables, PlainPins):
     sun_mesh: SetMesh = SetMesh()
     ring_mesh: SetMesh = SetMesh()
     planet_bearing: PlanetBearing | None = None
+    planet_pin: PlanetPin | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None

@@ -596,7 +596,7 @@ def _read_json(stated: Mapping[str, Any], name: str, problems: list[Problem]) ->
     try:
         found = from_json(str(stated[name]))
     except ValueError as error:  # also if it is nested too deep
-        problems.append(_problem(name, f"Value error, {error}"))
+        problems.append(_problem(name, str(error)))
         return None
     if isinstance(found, dict):
         return found
@@ -615,9 +615,9 @@ def _attribute_problems(stated: Mapping[str, Any], *more: str) -> Iterator[Probl
     versions = _read_json(stated, "versions", problems)
     yield from problems
     if case is not None and (wrong := _wrong_inputs(case)):
-        yield _problem("case", f"Value error, {wrong}")
+        yield _problem("case", wrong)
     if versions is not None and not isinstance(versions.get("epicyclic"), str):
-        yield _problem("versions", "Value error, must name the version of epicyclic")
+        yield _problem("versions", "must name the version of epicyclic")
 
 
 def _wrong_inputs(inputs: Mapping[str, Any]) -> str:

@@ -156,8 +156,8 @@ def _other_programs(mesh: Mesh, loads: LineLoads) -> Iterator[str]:
     if loads.elastic is not None:
         yield (
             "The stiffness is the theoretical one of the teeth. ISO 6336-1 multiplies it by C_M "
-            "= 0.8 and by a factor of the gear blank: programs that follow it state 0.7 to 0.8 "
-            "of this."
+            "= 0.8 and by a factor of the gear blank: programs that follow it report 0.7 to 0.8 "
+            "of this value."
         )
     yield (
         "The film thickness is that of smooth contacts with oil at the temperature of the case. "

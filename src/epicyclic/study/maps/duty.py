@@ -32,7 +32,16 @@ from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_cas
 from epicyclic.study.operating import STATE
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
 from epicyclic.study.table_file import AS_IT_IS, TableForm
-from epicyclic.units import CELSIUS, KILOJOULE, NEWTON_METRE, RPM, SECOND, Quantity, format_number
+from epicyclic.units import (
+    CELSIUS,
+    KILOJOULE,
+    NEWTON_METRE,
+    RPM,
+    SECOND,
+    Quantity,
+    format_number,
+    percent,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -394,7 +403,7 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
                     name,
                     f"{low} to {high} {unit.display}",
                     allowed,
-                    f"Compute a larger map, or use --clamp; {share:.3g} of the duration is "
+                    f"Compute a larger map, or use --clamp; {percent(share)} of the duration is "
                     "outside.",
                 )
             )
