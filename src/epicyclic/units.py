@@ -407,10 +407,7 @@ class Quantity:
 
     def scale_and_offset(self) -> tuple[float, float]:
         """What arrays of SI values are multiplied by, and what is added, for the display unit."""
-        if not self.si:
-            return 1.0, 0.0
-        zero = self.to_display(0.0)
-        return self.to_display(1.0) - zero, zero
+        return _rounded_scale(self) if self.si else (1.0, 0.0)
 
     def text(self, value: float, digits: int = 6) -> str:
         """SI `value` as text in the display unit, ``"139.23 mm"``."""
@@ -483,6 +480,12 @@ def _scale(si: str, display: str) -> tuple[float, float]:
         return 1 / size, 0.0
     zero, one = (float(registry().Quantity(it, si).to(display).magnitude) for it in (0.0, 1.0))
     return one - zero, zero
+
+
+@cache
+def _rounded_scale(unit: Quantity) -> tuple[float, float]:
+    zero = unit.to_display(0.0)
+    return unit.to_display(1.0) - zero, zero
 
 
 # Kinds of values that are only shown; a case does not read them, so that they have no bounds.

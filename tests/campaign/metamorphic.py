@@ -368,7 +368,7 @@ def _compared(case: Any, form: Form, rng: random.Random) -> tuple[str, str]:
     off = [(abs(one - two) / scale, name) for name, one, two in pairs if scale]
     worst = max(off, default=(0.0, ""))
     if worst[0] <= tolerance:
-        return "same", ""
+        return "same", f"{worst[0]:.1e}"
     if _floats(result) or _floats(again):
         return "two balances, told in a note", ""
     return "differs", f"{worst[1]} by {worst[0]:.1e} of {scale:.6g} W"

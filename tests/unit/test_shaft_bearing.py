@@ -15,6 +15,8 @@ from epicyclic import library
 from epicyclic.build.elements import build_element, catalogue_bearing
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.gears.gear import HOUSING
+from epicyclic.kernels.line_contact import hertz_pressure, inlet_film_factor
+from epicyclic.losses import shaft_bearing
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.shaft_bearing import (
@@ -23,11 +25,13 @@ from epicyclic.losses.shaft_bearing import (
     AxialSpring,
     BearingLoad,
     CatalogueBearing,
+    CylindricalModel,
     PalmgrenModel,
     SkfModel,
     TableModel,
     TaperedModel,
     bearing_types,
+    cylindrical_rolling,
     drag_variable,
     friction_load,
     full_film_friction,
@@ -37,6 +41,7 @@ from epicyclic.losses.shaft_bearing import (
     preload_of,
     roller_loads,
     rolling_force,
+    rolling_moment,
     seal_moment,
     skf_constants,
     skf_drag_moment,
@@ -269,6 +274,61 @@ def test_auto_takes_the_rib_where_the_width_is_known():
 
 
 TAPER_MODEL = TaperedModel(18, 10.4e-3, 12.6e-3, 1.2e-3, RIB_ROUGHNESS, SUPPLY)
+
+
+# --- rolling of cylindrical rollers ---------------------------------------------------------------
+
+NJ = CatalogueBearing("cylindrical", 30e-3, 90e-3, 23e-3)
+NJ_MODEL = CylindricalModel(
+    9, 16.5e-3, 15e-3, 3.0, SkfModel(skf_constants("cylindrical", "4"), 0.02)
+)
+GEAR_OIL = lubricant(40e-3, 47e-6, 17e-9, 0.035)
+
+
+def test_rollers_of_a_cylindrical_bearing_carry_its_force(monkeypatch):
+    given = []
+    monkeypatch.setattr(shaft_bearing, "rolling_moment", lambda *args: given.extend(args[3]) or 0.0)
+    cylindrical_rolling(NJ_MODEL, NJ, 2000.0, 100.0, GEAR_OIL)
+    upright = [force * math.cos(2 * math.pi * k / len(given)) for k, force in enumerate(given)]
+    # 9 rollers in all positions carry 2 kN, the most loaded 4.08 F_r/z of half of them (NSK)
+    assert sum(upright) * 9 / len(given) == pytest.approx(2000.0, rel=1e-12)
+    assert max(given) == pytest.approx(4.08 * 2000.0 / 9, rel=0.005)
+
+
+def test_rolling_of_cylindrical_rollers_on_two_equal_raceways():
+    # one of many small rollers, by hand: both races have nearly the radius of the pitch circle
+    model = replace(NJ_MODEL, rollers=1, roller_diameter=1e-6)
+    speed, force = 100.0, 50.0
+    moment = rolling_moment(model, NJ, 0.0, [force], speed, GEAR_OIL)
+    radius, R, u = 30e-3, 0.5e-6, speed * 15e-3
+    E = 206e9 / (1 - 0.3**2)
+    own = rolling_force(40e-3 * u / (E * R), 17e-9 * E, force / 15e-3 / (E * R))
+    heat = inlet_film_factor(GEAR_OIL.thermal_load(u), hertz_pressure(force / 15e-3, R, E) / E, 0.0)
+    _, starved = skf_reduction_factors(NJ, NJ_MODEL.skf.constants, 3e-8, speed, 47e-6)
+    assert moment == pytest.approx(2 * own * heat * R / 17e-9 * 15e-3 * radius * starved, rel=1e-3)
+
+
+@pytest.mark.parametrize("force", [0.0, 2.0, 2000.0])
+def test_an_idle_cylindrical_bearing_loses_its_viscous_moment(force):
+    speed, load = 1000 * RPM, BearingLoad(force, 0.0)
+    watts = {it.key: it.watts for it in NJ_MODEL.parts(NJ, load, speed, GEAR_OIL)}
+    assert watts["viscous"] == bearing_viscous_loss(3.0, 47e-6, speed, 60e-3)
+    moments = skf_moments(NJ_MODEL.skf, NJ, load, speed, 47e-6)
+    loaded = cylindrical_rolling(NJ_MODEL, NJ, force, speed, GEAR_OIL) + moments.sliding
+    assert sum(watts.values()) == pytest.approx(max(watts["viscous"], loaded * speed), rel=1e-12)
+    assert (watts["mechanical"] > 0) == (force > 100)
+
+
+def test_auto_takes_palmgren_for_what_rollers_are_not_known(oil, tmp_path):
+    def model(**changes):
+        table = bearing_table(type="cylindrical", **changes)
+        element = build_element("bearings", "b", table, shafts=SHAFTS, oil=oil, folder=tmp_path)
+        return element.model.name
+
+    assert model(width="18 mm") == "zhou-hoeprich"
+    assert model(roller_length="11 mm") == "zhou-hoeprich"
+    assert model() == model(width="18 mm", cage="full-complement") == "palmgren"
+    assert model(width="18 mm", palmgren_coefficient=0.0004) == "palmgren"
 
 
 # --- SKF ------------------------------------------------------------------------------------------
@@ -735,6 +795,19 @@ def test_table_over_the_load(oil, tmp_path, state):
         ({"model": "skf-2018", "series": "62", "static_load_rating": None}, "static_load_rating"),
         ({"model": "harris", "static_load_rating": None}, "static_load_rating"),
         ({"type": "cylindrical", "model": "skf-2018", "series": "2", "oil_level": "3 mm"}, "width"),
+        ({"type": "cylindrical", "roller_length": "9 mm", "oil_level": "3 mm"}, "width"),
+        ({"type": "cylindrical", "model": "zhou-hoeprich"}, "width"),
+        ({"type": "cylindrical", "rib_height": "1 mm"}, "rib_height"),
+        ({"type": "cylindrical", "roller_diameter": "20 mm"}, "roller_diameter"),
+        (
+            {
+                "type": "cylindrical",
+                "model": "zhou-hoeprich",
+                "width": "18 mm",
+                "cage": "full-complement",
+            },
+            "cage",
+        ),
         ({"type": "tapered"}, "axial_factor"),
         ({"type": "tapered", "axial_factor": 1.6, "contact_angle": "14 deg"}, "axial_factor"),
         ({"axial_factor": 1.6}, "axial_factor"),

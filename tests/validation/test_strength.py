@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from asymmetric import oil_table
 from epicyclic import validation
 from epicyclic.case.tables.operation import Lubricant
 from epicyclic.contact.temperatures import flash_temperature
@@ -174,16 +175,13 @@ def test_dynamic_and_transverse_factor_are_as_printed():
 def oil():
     return Lubricant.model_validate(
         {
-            "oil": {
-                "name": "mineral oil of 220 mm^2/s",
-                "kind": "mineral",
-                "kinematic_viscosity": [
-                    {"temperature": "40 degC", "value": "220 mm^2/s"},
-                    {"temperature": "100 degC", "value": "19 mm^2/s"},
-                ],
-                "density": [{"temperature": "15 degC", "value": "890 kg/m^3"}],
-                "pressure_viscosity": {"law": "gold", "s": 9.904, "t": 0.139},
-            }
+            "oil": oil_table(
+                "mineral oil of 220 mm^2/s",
+                "mineral",
+                {40: 220, 100: 19},
+                (15, 890),
+                (9.904, 0.139),
+            )
         }
     ).oil
 

@@ -25,14 +25,13 @@ from epicyclic.losses.shaft_bearing import (
     DEFAULT_VISCOUS_FACTORS,
     RIB_HEIGHT,
     RIB_ROUGHNESS,
-    ROLLER_DIAMETER,
-    ROLLER_FILL,
-    ROLLER_LENGTH,
+    ROLLER_SHARES,
     STARVATION,
     AxialSpring,
     BearingLoad,
     BearingModel,
     CatalogueBearing,
+    CylindricalModel,
     PalmgrenModel,
     SkfConstants,
     SkfModel,
@@ -42,6 +41,7 @@ from epicyclic.losses.shaft_bearing import (
     preload_of,
     seal_moment,
     skf_constants,
+    skf_series,
     skf_supply,
 )
 from epicyclic.machine.clutch import Clutch
@@ -109,8 +109,8 @@ def _spring(table: ShaftBearingTable) -> AxialSpring:
         fits = with_elements(DesignatedBearing("", table.type, *size, angle))
         return AxialSpring(fits.elements, fits.element_diameter, 0.0, angle)
     diameter, count = _rollers(table)
-    length = table.roller_length or ROLLER_LENGTH * (
-        table.width or 0.8 * (table.outside_diameter - table.bore) / 2
+    length = _roller_length(table) or ROLLER_SHARES["tapered"][2] * (
+        0.8 * (table.outside_diameter - table.bore) / 2
     )
     return AxialSpring(count, diameter, length, angle)
 
@@ -127,10 +127,13 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
     if table.model == "skf-2018":
         constants = skf_constants(table.type, table.series or "", table.cage)
         return _skf_model(table, oil, constants)
-    length = table.roller_length or ROLLER_LENGTH * (table.width or 0.0)
-    if table.type == "tapered" and length and table.model in ("auto", "zhou-hoeprich"):
-        return _tapered_model(table, oil, length)
     kind = (table.type, table.cage)
+    stated = table.palmgren_coefficient is not None or table.flange_coefficient is not None
+    if _roller_length(table) and table.model in ("auto", "zhou-hoeprich"):
+        if table.type == "tapered":
+            return _tapered_model(table, oil)
+        if table.cage == "caged" and (table.model != "auto" or not stated):
+            return _cylindrical_model(table, oil)
     constant = None
     if table.model != "harris":
         constant = table.palmgren_coefficient or DEFAULT_COEFFICIENTS[kind]
@@ -143,22 +146,43 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
 
 
 def _rollers(table: ShaftBearingTable) -> tuple[float, int]:
-    """Diameter and number of the rollers of a tapered bearing."""
-    diameter = table.roller_diameter or ROLLER_DIAMETER * (table.outside_diameter - table.bore)
+    """Diameter and number of the rollers of a tapered or cylindrical bearing."""
+    share, fill, _ = ROLLER_SHARES[table.type]
+    diameter = table.roller_diameter or share * (table.outside_diameter - table.bore)
     pitch_circle = math.pi * (table.outside_diameter + table.bore) / 2
-    return diameter, table.rollers or max(4, int(ROLLER_FILL * pitch_circle / diameter))
+    return diameter, table.rollers or max(4, int(fill * pitch_circle / diameter))
 
 
-def _tapered_model(table: ShaftBearingTable, oil: Oil, length: float) -> TaperedModel:
+def _roller_length(table: ShaftBearingTable) -> float:
+    """Of a tapered or cylindrical bearing; 0 where it is not known."""
+    if table.type not in ROLLER_SHARES:
+        return 0.0
+    return table.roller_length or ROLLER_SHARES[table.type][2] * (table.width or 0.0)
+
+
+def _tapered_model(table: ShaftBearingTable, oil: Oil) -> TaperedModel:
     height = table.outside_diameter - table.bore
     diameter, count = _rollers(table)
     return TaperedModel(
         rollers=count,
         roller_diameter=diameter,
-        roller_length=length,
+        roller_length=_roller_length(table),
         rib_height=table.rib_height or RIB_HEIGHT * height,
         rib_roughness=table.rib_roughness or RIB_ROUGHNESS,
         skf=_skf_model(table, oil, skf_supply(table.type, table.cage)),
+    )
+
+
+def _cylindrical_model(table: ShaftBearingTable, oil: Oil) -> CylindricalModel:
+    diameter, count = _rollers(table)
+    factor = table.viscous_factor
+    return CylindricalModel(
+        rollers=count,
+        roller_diameter=diameter,
+        roller_length=_roller_length(table),
+        viscous_factor=DEFAULT_VISCOUS_FACTORS[table.type, "caged"] if factor is None else factor,
+        # all series slide alike
+        skf=_skf_model(table, oil, skf_constants(table.type, skf_series(table.type)[0])),
     )
 
 

@@ -76,7 +76,7 @@ GENERAL = {
 """What ``auto`` stands for with the preset ``general``."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SetCase:
     """A gear set with its tables, and those of the case that it is part of.
 

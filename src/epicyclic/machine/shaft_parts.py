@@ -17,7 +17,6 @@ from epicyclic.losses.shaft_bearing import (
     BearingModel,
     CatalogueBearing,
     SkfModel,
-    TaperedModel,
     friction_load,
     minimum_load,
     thermal_speed_rating,
@@ -394,7 +393,7 @@ class ShaftBearing:
                 f"by up to {percent(best, 0)}."
             )
             notes.append(Note(text, watts))
-        skf = self.model.skf if isinstance(self.model, TaperedModel) else self.model
+        skf = getattr(self.model, "skf", self.model)
         if isinstance(skf, SkfModel) and skf.drag_is_estimated:
             text = (
                 f"{self.key}: the drag variable V_M is an estimate, because SKF's diagram was "

@@ -170,7 +170,10 @@ class _BadLine(NamedTuple):
     reason: str
 
 
-def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
+def read_file(
+    path: Path,
+    start: str = "'epicyclic init' writes one to start from.",  # Where a whole file is found.
+) -> tuple[dict[str, Any], list[Problem]]:
     """The tables of a TOML file, and the problems of its lines.
 
     A value that only lacks its quotes is read as if it had them, so that the rest of the file can
@@ -180,7 +183,7 @@ def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
     try:
         tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE))
         if not tables and not bad_lines:
-            refuse("is empty.", "Fill it; 'epicyclic init' writes one to start from.")
+            refuse("is empty.", f"Fill it; {start}")
         return _take_marks(plain(tables), bad_lines)
     except InputError as error:
         raise InputError(error.problems, one_line(str(path), _LONGEST_PATH)) from None

@@ -23,6 +23,7 @@ from epicyclic.netcdf_file import read_groups
 from epicyclic.result.result import Result, set_of
 from epicyclic.result.stored import read_result, stated_result
 from epicyclic.study.bands.study import quick_dataset
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.tables import check_map
 from epicyclic.study.meshes import bearing_details, mesh_details
 from epicyclic.study.operating import AXES
@@ -121,7 +122,7 @@ def growing_record(case: Case) -> ResultRecord:
 
 
 def record(
-    case: Case, *, result: Result | None = None, groups: Collection[str] | None = None
+    case: CaseSource, *, result: Result | None = None, groups: Collection[str] | None = None
 ) -> ResultRecord:
     """Solve a case and keep everything that reports and plots show.
 
@@ -142,6 +143,7 @@ def record(
     ConvergenceError
         As for `solve`.
     """
+    case = as_case(case)
     result = solve(case) if result is None else result
     fields = {
         f"{group}/{name}": data
@@ -452,7 +454,7 @@ FORMAT = "epicyclic result"
 FORMAT_VERSION = 1
 
 
-def save_result(result: ResultRecord | Case, path: str | Path) -> None:
+def save_result(result: ResultRecord | CaseSource, path: str | Path) -> None:
     """Write a result with everything that reports and plots show, whole or not at all.
 
     Parameters

@@ -6,12 +6,12 @@ Matplotlib.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Self, cast
 
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
@@ -20,7 +20,7 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.result import result as plain
 from epicyclic.study import heat
 from epicyclic.study import solve as study
-from epicyclic.study.load import load_case
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import operating_line
 
 if TYPE_CHECKING:
@@ -165,9 +165,7 @@ def _record_of(result: plain.Result) -> ResultRecord:
     return record(cast(Case, result.case), result=result)
 
 
-def solve(
-    case: Case | str | Path | Mapping[str, Any], *, flow_tables: FlowTables | None = None
-) -> Result:
+def solve(case: CaseSource, *, flow_tables: FlowTables | None = None) -> Result:
     """The losses of a case.
 
     Parameters
@@ -189,13 +187,11 @@ def solve(
     ConvergenceError
         If an iteration ends without a solution, or a loss is not a finite number.
     """
-    if isinstance(case, str | Path | Mapping):
-        case = load_case(case)
-    return Result.of(study.solve(case, flow_tables=flow_tables))
+    return Result.of(study.solve(as_case(case), flow_tables=flow_tables))
 
 
 def solve_for(
-    case: Case,
+    case: CaseSource,
     quantity: str,
     temperature: str | float,
     *,
@@ -232,5 +228,5 @@ def solve_for(
     >>> round(found.result.heat.oil - 273.15, 4)
     110.0
     """
-    found = heat.solve_for(case, quantity, temperature, progress=progress)
+    found = heat.solve_for(as_case(case), quantity, temperature, progress=progress)
     return replace(found, result=Result.of(found.result))

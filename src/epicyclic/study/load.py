@@ -25,6 +25,8 @@ class ForeignCase(Protocol):
 
 
 CaseReader = Callable[[str | Path], ForeignCase]
+CaseSource = Case | str | Path | Mapping[str, Any]
+"""A case, or what `load_case` reads."""
 
 
 def reader_of(path: str | Path) -> CaseReader | None:
@@ -59,3 +61,8 @@ def load_case(
     if isinstance(source, str | Path) and (reader := reader_of(source)) is not None:
         return reader(source).case(changes)
     return read_case(source, changes)
+
+
+def as_case(source: CaseSource) -> Case:
+    """The case that a function was given, or that `load_case` reads there."""
+    return load_case(source) if isinstance(source, str | Path | Mapping) else source

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.build.result import load_notes
-from epicyclic.case.case import Case
 from epicyclic.errors import one_problem
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.line_contact import hertz_pressure
@@ -21,6 +20,7 @@ from epicyclic.losses.planet_bearing import RollerBearing, RollerLoads
 from epicyclic.machine.element import Fluids, joined_key
 from epicyclic.machine.gear_mesh import MeshDuty, contact_under, distribute_load
 from epicyclic.result.result import of_gear
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import build_computed
 from epicyclic.units import (
     DEGREE,
@@ -67,7 +67,7 @@ FloatArray = NDArray[np.float64]
 _DIMENSIONS = ("mesh_position", "contact_line", "segment")
 
 
-def mesh_details(case: Case) -> dict[str, xr.Dataset]:
+def mesh_details(case: CaseSource) -> dict[str, xr.Dataset]:
     """Load, pressure, sliding and friction at every point of every loaded mesh of a case.
 
     Of a planetary set both meshes of the most loaded planet; of a train every set whose losses are
@@ -93,6 +93,7 @@ def mesh_details(case: Case) -> dict[str, xr.Dataset]:
     ConvergenceError
         If the load on the teeth is not found.
     """
+    case = as_case(case)
     if case.operation.torque == 0:
         raise one_problem(
             "operation.torque",

@@ -294,7 +294,8 @@ class BearingSealTable(Table):
     constant: DragTorque = option("K_S2.", "0 N*m")
 
 
-_OF_TAPERED = ("rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness")
+_OF_ROLLERS = ("rollers", "roller_diameter", "roller_length")
+_OF_TAPERED = (*_OF_ROLLERS, "rib_height", "rib_roughness")
 
 
 class ShaftBearingTable(ElementTable):
@@ -314,11 +315,15 @@ class ShaftBearingTable(ElementTable):
         "full-complement: cylindrical and needle rollers only.", "caged"
     )
     model: Literal["auto", "zhou-hoeprich", "palmgren", "harris", "skf-2018", "table"] = option(
-        "auto: tapered with width zhou-hoeprich, else palmgren; skf-2018: needs series.", "auto"
+        "auto: tapered or caged cylindrical with width zhou-hoeprich, else palmgren; skf-2018: "
+        "needs series.",
+        "auto",
     )
-    rollers: int | None = option("Tapered. Default: as many as fit.", ge=4, le=200)
-    roller_diameter: Length | None = option("Mean, tapered. Default: 0.26 (D - d).")
-    roller_length: Length | None = option("Tapered. Default: 0.7 width.")
+    rollers: int | None = option("Tapered or cylindrical. Default: as many as fit.", ge=4, le=200)
+    roller_diameter: Length | None = option(
+        "Mean. Default: tapered 0.26 (D - d), cylindrical 0.275 (D - d)."
+    )
+    roller_length: Length | None = option("Default: tapered 0.7, cylindrical 0.65 width.")
     rib_height: Length | None = option("Of the contact on the rib. Default: 0.03 (D - d).")
     rib_roughness: Roughness | None = option("Rms, rib and roller ends. Default: 0.24 um.")
     series: str | None = option("For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ...", max_length=20)
@@ -428,6 +433,7 @@ class ShaftBearingTable(ElementTable):
             yield Problem("model", written(model), reason, 'Choose model = "palmgren" or "table".')
             return
         yield from _own_table_problems(self, LossTableTable.AXES)
+        yield from _roller_problems(self)
         if model == "skf-2018":
             yield from _skf_problems(self)
         balls = kind in ("deep-groove", "angular-contact")
@@ -476,7 +482,8 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
             reason, remedy = "is missing.", 'Add that of the catalogue: "40 deg" of 72 B and 73 B.'
             yield Problem("contact_angle", "", reason, remedy)
     elif table.type != "tapered":
-        for key in [*angles, *(key for key in _OF_TAPERED if getattr(table, key) is not None)]:
+        foreign = _OF_TAPERED[len(_OF_ROLLERS) :] if table.type == "cylindrical" else _OF_TAPERED
+        for key in [*angles, *(key for key in foreign if getattr(table, key) is not None)]:
             yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
     elif table.model != "table" and not angles:
         reason = "is missing; give axial_factor or contact_angle."
@@ -485,9 +492,27 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     elif table.model != "table" and len(angles) == 2:
         reason = "is given together with contact_angle; each follows from the other."
         yield Problem("axial_factor", "", reason, "Delete one.")
-    elif table.model == "zhou-hoeprich" and table.width is table.roller_length is None:
+
+
+def _roller_problems(table: ShaftBearingTable) -> Iterator[Problem]:
+    """What rolling and drag of rollers cannot be computed with."""
+    wanted = table.model == "zhou-hoeprich"
+    if wanted and table.width is table.roller_length is None:
         reason = "is missing; it tells how long the rollers are."
         yield Problem("width", "", reason, "Add B from the catalogue, or roller_length.")
+    bathed = table.model == "skf-2018" or table.roller_length is not None
+    if bathed and table.oil_level > 0 and table.type != "deep-groove" and table.width is None:
+        reason = "is missing; the drag of rollers in an oil bath needs it."
+        yield Problem("width", "", reason, "Add B from the catalogue.")
+    if wanted and table.cage == "full-complement":
+        reason = "is not covered by zhou-hoeprich: rollers that touch rub on each other."
+        remedy = 'Choose model = "palmgren" or "skf-2018".'
+        yield Problem("cage", written(table.cage), reason, remedy)
+    room = (table.outside_diameter - table.bore) / 2
+    if table.roller_diameter is not None and table.roller_diameter >= room:
+        reason = f"must be less than half of outside_diameter less bore, {millimetres(room)}."
+        written_diameter = millimetres(table.roller_diameter)
+        yield Problem("roller_diameter", written_diameter, reason, "Correct one of the three.")
 
 
 def _pair_problems(table: ShaftBearingTable) -> Iterator[Problem]:
@@ -527,9 +552,6 @@ def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
         remedy = did_you_mean(table.series or "", known) or 'Or choose model = "palmgren".'
         reason = f"is not in the table; the series of {table.type} bearings are {choice}."
         yield Problem("series", written(table.series), reason, remedy)
-    if table.oil_level > 0 and table.type != "deep-groove" and table.width is None:
-        reason = "is missing; the drag of rollers in an oil bath needs it."
-        yield Problem("width", "", reason, "Add B from the catalogue.")
 
 
 def _own_table_problems(

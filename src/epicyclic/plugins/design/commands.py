@@ -12,6 +12,7 @@ import click
 
 from epicyclic.cli.common import (
     case_argument,
+    check_ending,
     draw,
     echo,
     journal_option,
@@ -25,7 +26,7 @@ from epicyclic.cli.common import (
     show,
     tell,
 )
-from epicyclic.files import make_folder
+from epicyclic.files import make_folder, write_file
 
 if TYPE_CHECKING:
     from epicyclic.study.sweeps.runner import Runner
@@ -35,7 +36,17 @@ if TYPE_CHECKING:
 @case_argument
 @set_option
 @json_option
-def strength(case: str, changes: tuple[str, ...], json_file: str | None) -> None:
+@click.option(
+    "--rotor-dynamics",
+    "rotor",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Write inertias, and mean and harmonics of mesh stiffness and transmission error, to a "
+    ".json or .csv file.",
+)
+def strength(
+    case: str, changes: tuple[str, ...], json_file: str | None, rotor: Path | None
+) -> None:
     """Show safeties against damage, bearing lives and masses of a case.
 
     Pitting and bending after ISO 6336-2, -3, loads after -1 with K_Hbeta from the computed load
@@ -49,14 +60,19 @@ def strength(case: str, changes: tuple[str, ...], json_file: str | None) -> None
     epicyclic strength talbot-2012 --set "strength.life=500 h"
     epicyclic strength talbot-2012 --set "strength.gears.ring.material=nitrided-mq" --json -
     """
+    from epicyclic.plugins.design import rotor as dynamics
     from epicyclic.plugins.design.mass import as_list, parts
     from epicyclic.plugins.design.strength import as_dict
     from epicyclic.plugins.design.strength import strength as rate
     from epicyclic.plugins.design.tables import mass_table, tables_of
     from epicyclic.show.terminal import as_on_page, titled
 
+    if rotor is not None:
+        check_ending("--rotor-dynamics", rotor, dynamics.ENDINGS)
     loaded = load_with(case, changes)
     found = rate(loaded)
+    if rotor is not None:
+        write_file(rotor, dynamics.rotor_text(dynamics.rotor_dynamics(loaded), rotor.suffix))
     show(
         lambda: titled(
             loaded.title or loaded.kind,
@@ -103,6 +119,19 @@ def design(
     With --journal an interrupted search continues where it stopped.
 
     \b
+    ratio = 4.2
+    [operation]  # where the safeties hold; [[cycle]]: where the loss is averaged
+    torque = "180 N*m"
+    speed = "6000 rpm"
+    oil_inlet_temperature = "80 degC"
+    [choices]
+    module = ["1.5 mm", "2 mm"]
+    [limits]
+    diameter = "260 mm"
+    [case.lubricant]
+    oil = "atf-dexron-vi"
+
+    \b
     epicyclic design axle.toml -o axle
     epicyclic design axle.toml --screen
     """
@@ -110,6 +139,7 @@ def design(
     from epicyclic.plugins.design.search import odds, screen, search
     from epicyclic.plugins.design.task import read_task
     from epicyclic.schema.read import read_file
+    from epicyclic.show.terminal import as_on_page
     from epicyclic.study.bands.plan import check_samples
 
     if draws:
@@ -121,12 +151,16 @@ def design(
     if only_screen:
         found = screen(read)
         found.table.loc[found.table["fate"] == "", "fate"] = "passes the screens"
-        show(lambda: report.fates_table(found), lambda: report.as_json(found, ()), json_file)
+        show(
+            lambda: as_on_page(report.fates_table(found)),
+            lambda: report.as_json(found, ()),
+            json_file,
+        )
         return
     if journal is not None:
         make_folder(journal, "--journal")
     found = search(read, raw, replace(runner, journal=journal), tell=tell)
-    sentences = tuple(odds(found, draws, runner.jobs)) if draws else ()
+    sentences = tuple(odds(found, draws, runner)) if draws else ()
     if output is not None:
         for name in report.write_all(found, sentences, output):
             echo(f"Wrote {name}.")

@@ -38,6 +38,7 @@ from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design import lubricated
 from epicyclic.plugins.design.mass import gear_body
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import build_computed
 
 FloatArray = NDArray[np.float64]
@@ -215,7 +216,7 @@ class Strength:
         return found
 
 
-def strength(case: Case) -> Strength:
+def strength(case: CaseSource) -> Strength:
     """Safeties of the gears and lives of the planet bearings of a case.
 
     The names say which standards are followed; none is followed in full, see
@@ -245,6 +246,7 @@ def strength(case: Case) -> Strength:
     >>> [mesh.key for mesh in found.meshes]  # doctest: +SKIP
     ['sun_mesh', 'ring_mesh']
     """
+    case = as_case(case)
     return rated(case, build_computed(case))
 
 
@@ -395,20 +397,14 @@ class _Rating:
         computed = face_load_factor(loads, mesh)
         face = table.face_load_factor or computed
         depth = max(abs(it.tip_radius - it.root_radius) for it in (mesh.gear1, mesh.gear2))
-        transverse = table.transverse_load_factor
-        if transverse is None:
-            most = (mesh.transverse_contact_ratio + mesh.overlap_ratio) / (
-                mesh.transverse_contact_ratio * iso.contact_ratio_factor(mesh) ** 2
-            )
-            found = moved.transverse_factor(load * dynamic * face)
-            transverse = max(1.0, min(found, most))
         return LoadFactors(
             application=table.application_factor,
             sharing=sharing,
             dynamic=dynamic,
             face=face,
             face_computed=computed,
-            transverse=transverse,
+            transverse=table.transverse_load_factor
+            or moved.transverse_share(load * dynamic * face, iso.contact_ratio_factor(mesh)),
             face_bending=iso.face_factor_bending(face, width, depth),
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -16,6 +16,7 @@ from epicyclic.schema.validation import validate
 from epicyclic.units import (
     HelixAngle,
     Length,
+    Mass,
     Number,
     Quantity,
     RotationalSpeed,
@@ -26,6 +27,7 @@ from epicyclic.units import (
 Arrangement = Literal["pair", "planetary", "stepped", "wolfrom", "two-stage"]
 Objective = Literal["loss", "mass", "diameter", "width", "transmission_error"]
 Share = Annotated[Number, Field(gt=0, le=1)]
+Play = Annotated[float, Quantity("an angle", "rad", "deg", low=0.0, high=30.0, open_low=True)]
 Angle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
 
 
@@ -71,7 +73,8 @@ class Limits(Table):
     ratio_error: Number = option("Relative.", 0.03, ge=0, le=0.5)
     diameter: Length | None = option("Of the gears, outside.")
     width: Length | None = option("Of all face widths side by side.")
-    mass: Annotated[float, Quantity("a mass", "kg", "kg", low=0.0, high=1e7)] | None = None
+    mass: Mass | None = option("Of all gears, as discs.")
+    backlash: Play | None = option("Of all meshes, as play of the output with the input held.")
     contact_ratio: Number = option("Least epsilon_alpha + epsilon_beta.", 1.1, ge=1, le=10)
     tip_thickness: Number = option("Least, in normal modules.", 0.2, ge=0, le=1)
     pitting: Number | None = option("Least S_H.", 1.0, ge=0)
@@ -97,6 +100,8 @@ class Search(Table):
 
 class Task(Table):
     """A whole task."""
+
+    SHOWN_BY: ClassVar[str] = "'epicyclic design --help'"
 
     title: str = ""
     ratio: Number = Field(gt=1, le=1000, description="Speed of the input over that of the output.")
@@ -125,7 +130,7 @@ def read_task(source: str | Path | Mapping[str, Any]) -> Task:
         raw, name = plain(source), "the given tables"
     else:
         name = str(source)
-        raw, problems = read_file(Path(source))
+        raw, problems = read_file(Path(source), f"{Task.SHOWN_BY} shows one.")
     found = validate(Task, raw)
     raise_any([*problems, *found.problems], name)
     task = found.case

@@ -578,8 +578,9 @@ def _line(ax: Axes, line: Line2D, labels: tuple[str, str]) -> dict[str, Any] | N
     """A line in the coordinates of the Axes; not one drawn from edge to edge."""
     if line.get_transform() != ax.transData:
         return None
-    style = line.get_linestyle()
-    mode = "lines" if line.get_marker() in ("None", "", None) else "lines+markers"
+    style, nothing = line.get_linestyle(), ("None", "", " ", None)
+    parts = {"lines": style, "markers": line.get_marker()}
+    mode = "+".join(part for part, look in parts.items() if look not in nothing) or "none"
     return {
         "type": "scatter",
         "mode": mode,

@@ -408,7 +408,7 @@ def sampled_case(
     active: Sequence[bool] | None = None,
 ) -> SampledCase:
     """Samples of a case with the same probabilities of all inputs at each operating point."""
-    values = _values_at(case, result, points)
+    values = values_at(case, result, points)
     (first, *_) = values
     inputs = [
         number
@@ -448,7 +448,7 @@ def nearby_at(
 ) -> tuple[Nearby, ...]:
     """Losses at operating points, at each with every input off by a standard deviation."""
     outputs = outputs_of(case, result)
-    values = _values_at(case, result, points)
+    values = values_at(case, result, points)
     changes = [
         [{**point, **step} for step in ({}, *steps(own))]
         for point, own in zip(points, values, strict=True)
@@ -468,7 +468,7 @@ def nearby_at(
     return tuple(found)
 
 
-def _values_at(
+def values_at(
     case: Case, result: Result, points: Sequence[Point]
 ) -> list[tuple[UncertainValue, ...]]:
     """What is uncertain at each operating point: everywhere the same keys."""

@@ -37,6 +37,7 @@ from epicyclic.study.bands.study import (
     summaries,
     uncertainty_study,
 )
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.compute import MapPlan, changes_at, further_values, stored_plan
 from epicyclic.study.maps.cycle import Cycle, open_cycle
 from epicyclic.study.maps.duty import Sums, add_up, cycle_map, parse_temperatures
@@ -357,7 +358,7 @@ class CycleStudy(Study):
 
 
 def uncertainty(
-    source: Case | xr.Dataset,
+    source: CaseSource | xr.Dataset,
     cycle: Any = None,
     temperature: Iterable[Any] | None = None,
     *,
@@ -414,8 +415,11 @@ def uncertainty(
     ConvergenceError
         If the case itself, or hardly any sample of it, can be solved.
     """
+    import xarray as xr
+
     runner = Runner(jobs, dask, None, journal, progress)
     study: Study
+    source = source if isinstance(source, xr.Dataset) else as_case(source)
     if cycle is not None:
         checked = open_cycle(cycle)
         celsius = parse_temperatures(checked, temperature)

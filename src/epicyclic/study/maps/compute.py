@@ -21,6 +21,7 @@ from epicyclic.machine.heat import NetworkModel
 from epicyclic.messages import did_you_mean, written
 from epicyclic.result.result import Layout, number_fields
 from epicyclic.study.heat import with_network
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.tables import Lookup, check_map, map_case, map_inputs
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.study.solve import solve
@@ -326,7 +327,7 @@ class MapPlan(SweepPlan):
 
 
 def loss_map(
-    case: Case,
+    case: CaseSource,
     speed: Iterable[Any],
     torque: Iterable[Any],
     temperature: Iterable[Any] | None = None,
@@ -385,7 +386,7 @@ def loss_map(
     """
     runner = Runner(jobs, dask, shard, journal, progress)
     torques = resolving_texts(torque) if resolve_zero else torque
-    plan = map_plan(case, speed, torques, temperature, vary, states)
+    plan = map_plan(as_case(case), speed, torques, temperature, vary, states)
     return checked_map(plan, runner.run(plan))
 
 
@@ -628,7 +629,7 @@ SURROUNDINGS = "surroundings_temperature"
 """Attributes of a map whose temperature follows from its losses, in J/K, W/K and K."""
 
 
-def with_temperature_state(data: xr.Dataset, case: Case) -> xr.Dataset:
+def with_temperature_state(data: xr.Dataset, case: CaseSource) -> xr.Dataset:
     """A map with what makes its temperature follow from the losses, for an FMU.
 
     Parameters
@@ -651,7 +652,7 @@ def with_temperature_state(data: xr.Dataset, case: Case) -> xr.Dataset:
         raise one_problem(
             "models.temperatures", '"network"', allowed, "Compute the map again.", "the map"
         )
-    return data.assign_attrs(lumped(case))
+    return data.assign_attrs(lumped(as_case(case)))
 
 
 def check_axis(count: int) -> None:

@@ -15,6 +15,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import did_you_mean, refused, written
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.compute import (
     Deviation,
     MapPlan,
@@ -66,7 +67,7 @@ SAMPLES = 20  # Points that are solved to measure the error of the interpolation
 
 
 def duty_cycle(
-    map_or_case: xr.Dataset | Case,
+    map_or_case: xr.Dataset | CaseSource,
     cycle: Any,
     temperature: Iterable[Any] | None = None,
     *,
@@ -128,12 +129,14 @@ def duty_cycle(
         With all problems of the cycle; for points outside of the map and states that it does not
         have; for a map with gaps, further axes of several values, or two driven members.
     """
+    import xarray as xr
+
     runner = Runner(jobs, dask, journal=journal)
     checked = open_cycle(cycle, form=form)
     celsius = parse_temperatures(checked, temperature)
     data = map_or_case
-    if isinstance(data, Case):
-        data = cycle_map(data, checked, celsius, replace(runner, progress=progress))
+    if not isinstance(data, xr.Dataset):
+        data = cycle_map(as_case(data), checked, celsius, replace(runner, progress=progress))
     sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
     return with_distance(make_duty(data, checked, sums, runner), distance)
 

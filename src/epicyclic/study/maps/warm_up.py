@@ -27,6 +27,7 @@ from epicyclic.messages import refused, written
 from epicyclic.result.result import origin
 from epicyclic.schema.fields import quantity_of
 from epicyclic.study.heat import check_oil
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.compute import held_shaft, map_plan, resolving_zero
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of
@@ -228,7 +229,7 @@ REACHED = 0.9  # Part of the way to the end whose time is told. [1]
 
 
 def warm_up(
-    case: Case,
+    case: CaseSource,
     duration: Any,
     start_temperature: Any = None,
     *,
@@ -272,6 +273,7 @@ def warm_up(
     ConvergenceError
         If the gearbox gets so hot that nothing is left to compute.
     """
+    case = as_case(case)
     seconds, start = _parsed(case, duration, start_temperature)
     warm = _with_fixed_jets(case.updated({"models.temperatures": "network"}))
     model = build(warm).thermal
