@@ -149,7 +149,7 @@ def _along(
 
 def plot_from_the_end(found: Arrangement, ax: Axes) -> Axes:
     """All gears at their places, seen along the axes."""
-    plot_gear_set(found.gears, ax)
+    plot_gear_set(found.gears, ax, hidden=False)
     ax.set_title("Arrangement, seen along the shafts")
     return ax
 
@@ -254,6 +254,13 @@ def _write_names(
         taken[height] = taken.get(height, 0) + 1
         place = min(own) - 1.5 * gap if is_left else max(own) + 1.5 * gap
         side = "right" if is_left else "left"
-        ax.text(place, height, in_words(shaft), ha=side, va="center", fontsize="small")
+        style: dict[str, Any] = {
+            "facecolor": "white",
+            "edgecolor": "none",
+            "alpha": 0.8,
+            "pad": 0.5,
+        }
+        text = ax.text(place, height, in_words(shaft), ha=side, va="center", fontsize="small")
+        text.set_bbox(style)
         ends.append((place, -len(shaft) if is_left else len(shaft)))
     return ends
