@@ -939,7 +939,7 @@ def rolling_force(speed_number: float, material_number: float, load_number: floa
 def raceways(
     model: TaperedModel | CylindricalModel, bearing: CatalogueBearing, axis: float
 ) -> tuple[float, float]:
-    """Radii of both raceways where rollers touch, whose axis has the angle `axis`. (J21) [m]"""
+    """Radii of both raceways where rollers touch, whose axis is at `axis`. Theory (J21). [m]"""
     offset = model.roller_diameter / bearing.pitch_diameter * math.cos(axis)
     inner, outer = ((1 + side * offset) * bearing.pitch_diameter / 2 for side in (-1, 1))
     return inner, outer
@@ -983,7 +983,7 @@ def cylindrical_rolling(
     speed: float,  # Speed of one ring against the other. [rad/s]
     oil: OilState,
 ) -> float:
-    """Rolling moment of cylindrical rollers, half of which carry, in all positions. (J36) [N m]"""
+    """Rolling moment of cylindrical rollers, half of which carry. Theory (J36). [N m]"""
     shares = roller_loads(math.inf, POSITIONS)
     held = sum(
         share * math.cos(2 * math.pi * place / POSITIONS) for place, share in enumerate(shares)

@@ -626,7 +626,7 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
 def bearing_limits(bearing: RollerBearing) -> tuple[float, float]:
     """Minimum load [N] and thermal reference speed [rad/s] by rollers and races; estimates.
 
-    Theory (J13), (J35), with the ratings (J27), (J28).
+    Theory (J13), (J35); the ratings are those of (J27), (J28).
     """
     sizes = bearing.inner_diameter, bearing.outer_diameter, 2 * bearing.half_width
     rollers = DesignatedBearing(

@@ -151,8 +151,8 @@ def _evaluate(
         points=tuple(changes),
     )
     rows = runner.run(plan)
-    shape = (len(changes), -1)
-    losses = np.array([rows.numbers(name).reshape(shape) for name in outputs.numbers])
+    shape = len(changes), drawn.shape[-1]
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, *shape)
     power, shaft = (rows.numbers(name).reshape(shape) for name in (INPUT_POWER, SHAFT_POWER))
     found, entering = [], []
     for point in range(len(changes)):
