@@ -17,6 +17,7 @@ from scipy.optimize import linprog
 from asymmetric import gear_pair
 from epicyclic.case.case import read_case
 from epicyclic.errors import InputError
+from epicyclic.plugins.design import candidates as enumerating
 from epicyclic.plugins.design import search as searching
 from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances, sizes
 from epicyclic.plugins.design.front import front_of, stored
@@ -166,14 +167,38 @@ def test_backlash_is_how_far_the_output_turns_with_the_input_held(name):
         ({"backlash": "0.7 arcmin"}, "limits.backlash"),
     ],
 )
-def test_an_impossible_task_names_the_limit_and_by_how_much(limits, key):
+def test_an_impossible_task_names_the_limit_and_by_how_much(limits, key, monkeypatch):
     raw = task_of("planetary")
     raw["limits"] |= limits
     with pytest.raises(InputError) as error:
         design(raw)
     (problem,) = error.value.problems
     assert problem.key == key
-    assert "% by the nearest of" in problem.allowed
+    assert "%: the nearest of" in problem.allowed
+    strong = {"pitting": 1e3, "bending": 1e3}
+    monkeypatch.setattr(searching, "evaluate", lambda *it: made_up(*it) | strong)
+    relaxed = problem.remedy.removeprefix("Relax it to ").split(", or")[0]
+    name = key.removeprefix("limits.")
+    raw["limits"][name] = relaxed if " " in relaxed else float(relaxed)
+    assert design(raw, jobs=1).fronts
+
+
+def test_of_many_combinations_the_stated_number_is_drawn(monkeypatch):
+    raw = task_of("planetary", "pair")
+    whole = screen(read_task(raw))
+    assert whole.combinations == len(whole.table)
+    raw["search"] |= {"most_candidates": 37, "seed": 5}
+    one, two = (screen(read_task(raw)) for _ in range(2))
+    assert one.combinations == len(whole.table)
+    assert len(one.table) == 37
+    assert one.table.equals(two.table)
+    known = set(map(tuple, whole.table.astype(str).to_numpy()))
+    drawn = set(map(tuple, one.table.astype(str).to_numpy()))
+    assert len(drawn) == 37
+    assert drawn <= known
+    monkeypatch.setattr(enumerating, "MOST_TEETH", 5)
+    with pytest.raises(InputError, match="combinations of teeth"):
+        screen(read_task(raw))
 
 
 def test_all_problems_of_a_task_are_told_at_once():
@@ -195,7 +220,7 @@ def test_dominated_rows():
 
 def made_up(task, row):
     """A loss that falls with size and profile shift, without solving; all safeties are met."""
-    size = 1e3 * row["module"] * row["width_ratio"] * row["pinion"]
+    size = 1e3 * row["module"] * row["width_ratio"] * row.get("pinion", row.get("sun"))
     loss = 31.0 + 5200.0 / size - 47.0 * row["shift"]
     return {"loss": loss, "pitting": 7.1, "bending": 8.3}
 

@@ -701,7 +701,7 @@ def side_by_side(
 def _losses(first: Result, second: Result, names: tuple[str, str]) -> Table:
     found = first.losses, second.losses
     digits = max(_known_unit(one, in_watts=True)[2] for one in (first, second))
-    pairs = {name: tuple(one.get(name) for one in found) for name in found[0] | found[1]}
+    pairs = {name: (found[0].get(name), found[1].get(name)) for name in found[0] | found[1]}
     pairs["total"] = first.total, second.total
     rows = [_difference(in_words(name), *pair, digits) for name, pair in pairs.items()]
     strong = frozenset({len(rows) - 1})

@@ -7,8 +7,10 @@ strengths are bounds: load factors are 1 but for K_A, and limits are higher than
 from __future__ import annotations
 
 import math
+import random
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, cast
 
 import numpy as np
@@ -213,41 +215,62 @@ LAYOUTS: dict[str, Layout] = {
 SHARED = ("planets", "module", "helix", "shift", "distance_shift", "width_ratio", "module2")
 
 
-def enumerate_all(task: Task) -> pd.DataFrame:
-    """Every candidate of a task, one a row: arrangement, teeth by gear, and what is shared."""
-    parts = [_of_arrangement(task, name) for name in dict.fromkeys(task.choices.arrangements)]
-    table = pd.concat(parts, ignore_index=True)
-    if table.empty:
-        raise InputError(
-            [
-                Problem(
-                    "choices.pinion_teeth",
-                    ", ".join(map(str, task.choices.pinion_teeth)),
-                    f"allow no gears of the ratio {task.ratio:g}.",
-                    "Allow more teeth or other arrangements.",
-                )
-            ],
-            task.title,
-        )
-    return table
+MOST_TEETH = 1_000_000  # Combinations of teeth of an arrangement.
 
 
-def _of_arrangement(task: Task, name: str) -> pd.DataFrame:
-    layout, choices = LAYOUTS[name], task.choices
-    teeth = np.array([*layout.teeth(task)], dtype=float).reshape(-1, len(layout.gears))
-    planets = (1,) if name == "pair" else choices.planets
-    later = choices.module if layout.stages == 2 else (math.nan,)
-    axes = (
-        planets, choices.module, choices.helix_angle, choices.profile_shift,
-        choices.distance_shift, choices.width_ratio, later,
-    )  # fmt: skip
-    places = np.indices((len(teeth), *map(len, axes))).reshape(len(axes) + 1, -1)
-    columns = {gear: teeth[places[0], place] for place, gear in enumerate(layout.gears)}
-    columns |= {
-        key: np.array(values, dtype=float)[places[place]]
-        for place, (key, values) in enumerate(zip(SHARED, axes, strict=True), start=1)
-    }
-    return pd.DataFrame({"arrangement": name, **columns})
+def enumerate_all(task: Task) -> tuple[pd.DataFrame, int]:
+    """Candidates of a task, one a row: arrangement, teeth by gear, and what is shared.
+
+    And how many combinations there are: of more than `Search.most_candidates` that many are drawn.
+    """
+    choices = [_Choices(task, name) for name in dict.fromkeys(task.choices.arrangements)]
+    ends = np.cumsum([it.size for it in choices])
+    total, most = int(ends[-1]), task.search.most_candidates
+    if not total:
+        stated = ", ".join(map(str, task.choices.pinion_teeth))
+        told = f"allow no gears of the ratio {task.ratio:g}."
+        remedy = "Allow more teeth or other arrangements."
+        raise InputError([Problem("choices.pinion_teeth", stated, told, remedy)], task.title)
+    numbers = np.arange(total)
+    if total > most:
+        numbers = np.sort(random.Random(task.search.seed).sample(range(total), most))
+    parts = [
+        it.rows(numbers[(numbers >= end - it.size) & (numbers < end)] - (end - it.size))
+        for it, end in zip(choices, ends, strict=True)
+    ]
+    return pd.concat([it for it in parts if len(it)], ignore_index=True), total
+
+
+class _Choices:
+    """All combinations of an arrangement, made when they are asked for."""
+
+    def __init__(self, task: Task, name: str) -> None:
+        self.name, self.layout, choices = name, LAYOUTS[name], task.choices
+        found = [*islice(self.layout.teeth(task), MOST_TEETH + 1)]
+        if len(found) > MOST_TEETH:
+            stated = ", ".join(map(str, choices.pinion_teeth))
+            told = f"allow more than {MOST_TEETH:,} combinations of teeth, arrangement {name}."
+            problem = Problem("choices.pinion_teeth", stated, told, "Narrow it, as in [17, 35].")
+            raise InputError([problem], task.title)
+        self.teeth = np.array(found, dtype=float).reshape(-1, len(self.layout.gears))
+        planets = (1,) if name == "pair" else choices.planets
+        later = choices.module if self.layout.stages == 2 else (math.nan,)
+        self.axes = (
+            planets, choices.module, choices.helix_angle, choices.profile_shift,
+            choices.distance_shift, choices.width_ratio, later,
+        )  # fmt: skip
+        self.shape = (len(self.teeth), *map(len, self.axes))
+        self.size = math.prod(self.shape)
+
+    def rows(self, numbers: NDArray[np.int64]) -> pd.DataFrame:
+        """Some of them."""
+        first, *places = np.unravel_index(numbers, self.shape) if self.size else [numbers] * 8
+        columns = {gear: self.teeth[first, at] for at, gear in enumerate(self.layout.gears)}
+        columns |= {
+            key: np.array(values, dtype=float)[place]
+            for place, key, values in zip(places, SHARED, self.axes, strict=True)
+        }
+        return pd.DataFrame({"arrangement": self.name, **columns})
 
 
 @dataclass(frozen=True, slots=True)

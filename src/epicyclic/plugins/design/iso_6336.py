@@ -230,7 +230,8 @@ class Excitation:
         below = 0.32 * pitch + c2 * form + c3 * relief
         main = 1 + 0.32 * pitch + c2 * form + c4 * relief
         above = 0.47 * pitch + c6 * form + c7
-        if resonance <= 0.85:
+        lightly = min(load / 100e3, 1.0)  # below 100 N/mm the resonance is wider
+        if resonance <= 0.5 + 0.35 * math.sqrt(lightly):
             return 1 + resonance * below
         if resonance <= 1.15:
             return main

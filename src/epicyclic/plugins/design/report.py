@@ -39,13 +39,17 @@ FRONT = "not beaten"
 
 def fates_table(found: Found) -> Table:
     """How many candidates ended how."""
-    rows = tuple((Cell(fate), number(count, "")) for fate, count in found.fates.items())
-    total = (Cell("candidates"), number(len(found.table), "", 7))
+    rows = tuple(
+        (Cell(fate), number(count, "", text=f"{count:,}")) for fate, count in found.fates.items()
+    )
+    is_drawn = found.combinations > len(found.table)
+    total = (Cell("candidates"), number(len(found.table), "", text=f"{len(found.table):,}"))
     return Table(
         ("what became of them", "number"),
         (*rows, total),
         f"Candidates of {found.task.title or 'the task'}",
         frozenset({len(rows)}),
+        note=f"Drawn from {found.combinations:,} combinations." * is_drawn,
     )
 
 
@@ -89,6 +93,7 @@ def as_json(found: Found, sentences: Sequence[str]) -> str:
     front = json.loads(found.table.loc[found.fronts].to_json(orient="index"))
     content = {
         "title": found.task.title,
+        "combinations": found.combinations,
         "candidates": len(found.table),
         "fates": found.fates,
         "front": {

@@ -23,7 +23,13 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, read_case
 from epicyclic.errors import EpicyclicError, InputError, Problem, Status
-from epicyclic.plugins.design.candidates import case_tables, enumerate_all, operation, sizes
+from epicyclic.plugins.design.candidates import (
+    case_tables,
+    enumerate_all,
+    operation,
+    sizes,
+    teeth_text,
+)
 from epicyclic.plugins.design.strength import strength
 from epicyclic.plugins.design.task import Task, read_task
 from epicyclic.schema.read import plain, read_file
@@ -55,6 +61,12 @@ UNITS = {
     "loss": "W", "mass": "kg", "diameter": "m", "width": "m", "backlash": "rad",
     "transmission_error": "um", "bearing_life": "h",
 }  # fmt: skip
+SHOWN_LIMITS = {
+    "diameter": (1e3, "mm"), "width": (1e3, "mm"), "mass": (1.0, "kg"),
+    "backlash": (180 / math.pi, "deg"), "bearing_life": (1 / 3600, "h"),
+}  # fmt: skip
+"""What limits are told in."""
+ROUNDED = 5e-4  # Largest error of four digits. [1]
 USUAL_SHARE = 0.6  # Of a computed safety in its bound, before any is solved. [1]
 LOSS_MARGIN = 0.8  # Of the smallest solved loss over its bound, for candidates not solved. [1]
 ENOUGH_SOLVED = 16  # Designs of an arrangement that tell this.
@@ -136,6 +148,7 @@ class Found:
     bounds: pd.DataFrame = field(default_factory=pd.DataFrame)  # `margins` before solving.
     fronts: list[int] = field(default_factory=list)
     chosen: list[int] = field(default_factory=list)
+    combinations: int = 0  # Of which the candidates are all, or drawn.
     raw: Mapping[str, Any] = field(default_factory=dict)  # The task as its file has it.
 
     @cached_property
@@ -161,6 +174,7 @@ class Found:
             "title": self.task.title,
             "fates": json.dumps(self.fates),
             "objectives": ", ".join(self.task.search.objectives),
+            "combinations": self.combinations,
             "seed": self.task.search.seed,
             "chosen": ", ".join(map(str, self.chosen)),
             "task": json.dumps(plain(self.raw)),
@@ -213,12 +227,7 @@ def design(
 
 def screen(task: Task) -> Found:
     """All candidates of a task, screened without solving."""
-    table = enumerate_all(task)
-    rng = np.random.default_rng(task.search.seed)
-    most = task.search.most_candidates
-    if len(table) > most:
-        table = table.loc[np.sort(rng.choice(len(table), most, replace=False))]
-        table = table.reset_index(drop=True)
+    table, combinations = enumerate_all(task)
     margins = pd.DataFrame(1.0, index=table.index, columns=[*SCREENS])
     for name in ("ratio", *KNOWN, "bound"):
         table[name] = math.nan
@@ -233,7 +242,7 @@ def screen(task: Task) -> Found:
     for key, text in SCREENS.items():
         fate[(fate == "") & (margins[key] < 1 - 1e-9)] = text
     table["fate"] = fate
-    return Found(task, table, margins, margins.copy())
+    return Found(task, table, margins, margins.copy(), combinations=combinations)
 
 
 def _objectives(found: Found, rows: Any, loss: str) -> FloatArray:
@@ -266,6 +275,8 @@ def search(
     table = found.table
     for name in ("loss", "transmission_error", *SAFETIES):
         table[name] = math.nan
+    if found.combinations > len(table):
+        tell(f"{len(table):,} candidates are drawn from {found.combinations:,} combinations")
     tell(f"{len(table):,} candidates, {int((table['fate'] == '').sum()):,} pass the screens")
     solved = 0
     limit = len(table) if brute else task.search.solved
@@ -397,24 +408,38 @@ def _impossible(found: Found) -> InputError:
     usable = margins[~refused] if (~refused).any() else margins
     nearest = usable.min(axis=1).sort_values(ascending=False).index[0]
     missed = usable.loc[nearest]
-    problems = []
-    for key in missed.index[missed < 1 - 1e-9]:
-        text = SCREENS.get(str(key), str(key).replace("_", " "))
-        short = 100 * (1 - missed[key])
-        row = found.table.loc[nearest]
-        problems.append(
-            Problem(
-                f"limits.{key}" if hasattr(found.task.limits, str(key)) else str(key),
-                "",
-                f"({text}) is missed by {short:.3g} % by the nearest of {len(found.table):,} "
-                f"candidates, a {row['arrangement']} with module {1e3 * row['module']:.3g} mm.",
-                "Relax this limit, or allow more choices.",
-            )
-        )
+    row = found.table.loc[nearest]
+    what = (
+        f"the nearest of {len(found.table):,} candidates, "
+        f"{row['arrangement']} {teeth_text(row)} with module {1e3 * row['module']:.3g} mm"
+    )
+    problems = [
+        _missed(found.task, str(key), float(missed[key]), what, bool(np.isnan(row["loss"])))
+        for key in missed.index[missed < 1 - 1e-9]
+    ]
     if not problems:
         fates = "; ".join(f"{count} {fate}" for fate, count in found.fates.items())
         problems = [Problem("search", "", f"found no design: {fates}.", "Raise search.solved.")]
     return InputError(problems, found.task.title or "the task")
+
+
+def _missed(task: Task, key: str, margin: float, what: str, is_bound: bool) -> Problem:
+    """A limit that even the nearest candidate does not meet, and what it reaches."""
+    if not hasattr(task.limits, key):
+        text = f"lead to no design: {SCREENS[key]}, even of {what}."
+        return Problem("choices", "", text, "Allow other numbers of teeth and planets.")
+    scale, unit = SHOWN_LIMITS.get(key, (1.0, ""))
+    limit = getattr(task.limits, key)
+    is_least = key in (*SAFETIES, "contact_ratio", "tip_thickness")
+    reached = limit * margin if is_least else limit / max(margin, 1e-12)
+    safe = reached * (1 - ROUNDED if is_least else 1 + ROUNDED)
+    stated, known, safe = (f"{scale * it:.4g} {unit}".rstrip() for it in (limit, reached, safe))
+    told = f"is missed by {100 * (1 - margin):.3g} %: {what}, has {known}"
+    if is_bound and key in SAFETIES:
+        told += " at best"
+    return Problem(
+        f"limits.{key}", stated, f"{told}.", f"Relax it to {safe}, or allow more choices."
+    )
 
 
 def _needed(task: Task) -> dict[str, float]:

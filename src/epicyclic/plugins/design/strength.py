@@ -20,6 +20,7 @@ from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     bulk_rise_of_flash,
     bulk_rise_of_loss,
+    mates_factor,
 )
 from epicyclic.errors import Problem, raise_any
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
@@ -544,7 +545,9 @@ class _Rating:
         viscosity40 = oil_state(self.oil, 40 + lubricated.ZERO_CELSIUS).kinematic_viscosity
         factor = self.oil.lubricant_factor.value
         scuffing = lubricated.scuffing_temperature(stage, oil.dynamic_viscosity, factor)
-        integral = scuffed + 1.5 * along
+        rise = lubrication * mates_factor(mates)
+        warmed = bulk if warm else lubricated.integral_bulk(oil.temperature, along, rise)
+        integral = lubricated.integral_temperature(warmed, along)
         most = lubricated.integral_scuffing_temperature(stage, viscosity40, factor)
         hottest = scuffed + float(flash.max())
         ratio = float(film[thinnest]) / roughness
@@ -670,7 +673,7 @@ def life_modification(kappa: float, load_ratio: float) -> float:
     Examples
     --------
     >>> round(life_modification(1.0, 0.2), 2)
-    1.21
+    0.65
     """
     held = min(max(kappa, 0.1), 4.0)
     scale, exponent = (1.3993, 0.054381) if held < 0.4 else (1.2348, 0.19087)
