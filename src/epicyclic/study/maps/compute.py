@@ -368,8 +368,8 @@ def loss_map(
         States of a train. Default: all in which it can run; the attribute ``states_left_out``
         names the others.
     resolve_zero : bool
-        True to add torques that crowd at zero, where losses rise steeply, if zero is among the
-        torques or between them.
+        True to add torques close to zero, where losses rise steeply, if zero is among the torques
+        or between them.
     jobs, dask, shard, journal, progress
         As for `sweep`.
 
@@ -640,7 +640,7 @@ SURROUNDINGS = "surroundings_temperature"
 
 
 def with_temperature_state(data: xr.Dataset, case: CaseSource) -> xr.Dataset:
-    """A map with what makes its temperature follow from the losses, for an FMU.
+    """Add the heat balance to a map, so that an FMU computes its temperature from the losses.
 
     Parameters
     ----------
@@ -648,13 +648,13 @@ def with_temperature_state(data: xr.Dataset, case: CaseSource) -> xr.Dataset:
         From `loss_map`, with all parts at the temperature of the oil, over two temperatures or
         more.
     case : PlanetaryCase, GearPairCase or TrainCase
-        Whose network of heat, settled at its operating point, gives the conductance.
+        Its heat network, in the steady state at its operating point, gives the conductance.
 
     Raises
     ------
     InputError
-        If the map has no axis of temperatures or was made at settled ones, or if what the case
-        stores is not known.
+        If the map has no temperature axis or has steady-state temperatures, or if the heat capacity
+        of the case is unknown.
     """
     check_axis(data.sizes.get("temperature", 0))
     if map_inputs(data).get("models", {}).get("temperatures") == "network":

@@ -80,7 +80,7 @@ def duty_cycle(
     journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Energy in, out and lost over a duty cycle, by component.
+    """Input, output and lost energy of a duty cycle, by component.
 
     Parameters
     ----------
@@ -96,8 +96,8 @@ def duty_cycle(
         Oil inlet temperatures as text with units, for a cycle without a column of them. Default:
         that of the case, or of a map that has one.
     clamp : bool
-        True: points outside of the map lose what the point at its border loses. False: they are
-        refused.
+        True: points outside of the map have the torque loss of the nearest point on its
+        boundary. False: they are refused.
     samples : int
         Points of the cycle that are solved directly to measure the error of the interpolation.
     form : TableForm
