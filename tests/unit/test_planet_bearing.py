@@ -21,8 +21,9 @@ from epicyclic.losses.planet_bearing import (
     pressed_alone,
     roller_loads,
 )
+from epicyclic.losses.shaft_bearing import minimum_load, thermal_speed_rating
 from epicyclic.machine.gear_mesh import MeshDuty
-from epicyclic.machine.planets import PlanetContact, bearing_limits, planet_load
+from epicyclic.machine.planets import PlanetContact, planet_load, rated
 
 BEARING_SPEED = 4000 * 125 / 198 * 73 / 26 * math.pi / 30  # at 4000 rpm of the sun, rad/s
 
@@ -368,7 +369,7 @@ def test_rollers_that_carry_are_not_pressed_twice(article):
 
 def test_least_load_and_speed_follow_from_the_rollers(article):
     bearing, _ = bearing_and_loads(article)
-    least, fastest = bearing_limits(bearing)
+    least, fastest = minimum_load(rated(bearing), 0.0, 0.0), thermal_speed_rating(rated(bearing))
     # ISO 281 by hand: 2 rows of 16 rollers 4.015 x 9.52 mm on a pitch circle of 30.0 mm
     gamma = 4.015 / 30.008
     f_c = 172.6 * (1 + (1.04 * ((1 - gamma) / (1 + gamma)) ** (143 / 108)) ** 4.5) ** (-2 / 9)

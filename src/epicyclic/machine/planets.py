@@ -52,7 +52,12 @@ from epicyclic.losses.planet_bearing import (
 )
 from epicyclic.losses.ranges import Flags
 from epicyclic.losses.rolling import FittedRolling
-from epicyclic.losses.shaft_bearing import CatalogueBearing, minimum_load, thermal_speed_rating
+from epicyclic.losses.shaft_bearing import (
+    CatalogueBearing,
+    minimum_load,
+    thermal_excess,
+    thermal_speed_rating,
+)
 from epicyclic.machine.convection import oil_heat_capacity, roller_conductance
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
@@ -226,9 +231,7 @@ class PlanetContact:
         t, r = self.outward
         # not -0.0, which prints oddly
         outward = (0.0 - t, r)
-        return PlanetContact(
-            self.duty, self.member, outward, -self.sense, self.hand, 0.0 - self.position
-        )
+        return replace(self, outward=outward, sense=-self.sense, position=0.0 - self.position)
 
     @property
     def face_sense(self) -> int:
@@ -276,14 +279,14 @@ def planet_load(
         radius = mesh.operating_radius1 if contact.member == 1 else mesh.operating_radius2
         couple = contact.axial_force * radius  # operating radius of the planet in this mesh
         moment += couple * complex(*contact.outward)
-    force = radial_force(contacts, centrifugal)
+    force = _radial_force(contacts, centrifugal)
     turned = moment * cmath.rect(1.0, -cmath.phase(force))
     # the bore of a pushed planet meets its pin on the other side: those rollers carry
     outward = math.pi / 2 - cmath.phase(-force)
     return PlanetLoad(abs(force), turned.real, turned.imag, outward)
 
 
-def radial_force(contacts: Contacts, centrifugal: float) -> complex:
+def _radial_force(contacts: Contacts, centrifugal: float) -> complex:
     """Force of all meshes and of rotation on the planet, t + i r. [N]"""
     forces = (contact.duty.force * contact.direction for contact in contacts)
     return sum(forces, complex(0.0, centrifugal))
@@ -319,7 +322,7 @@ def tilt_planet(
     if np.abs(found.fun).max() <= TILT_TOLERANCE:
         tilt = found.x * scale
         return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
-    axes = np.array(_axes(radial_force(contacts, centrifugal)))
+    axes = np.array(_axes(_radial_force(contacts, centrifugal)))
     excess = _excess(contacts, bearing, centrifugal)
     reach = (bearing.diametral_clearance + bearing.crown_drop) / bearing.half_width + SMALL_TILT
     tilts = _tilt_by_newton(excess, reach)
@@ -337,7 +340,7 @@ def _excess(
     In the planes of the axis and the radial force, and at right angles to it; both rise with the
     tilt in that plane.
     """
-    force = radial_force(contacts, centrifugal)
+    force = _radial_force(contacts, centrifugal)
     axes = np.array(_axes(force))
     size = abs(force)
 
@@ -472,7 +475,7 @@ def _tilt_under(
 ) -> FloatArray:
     """Tilt of the planet under `load`, in t and r. [rad]"""
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
-    along, across = _axes(radial_force(contacts, centrifugal))
+    along, across = _axes(_radial_force(contacts, centrifugal))
     tilt: FloatArray = loads.displacement[2] * along + loads.displacement[3] * across
     return tilt
 
@@ -623,10 +626,10 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
 
 
 @lru_cache(maxsize=64)
-def bearing_limits(bearing: RollerBearing) -> tuple[float, float]:
-    """Minimum load [N] and thermal reference speed [rad/s] by rollers and races; estimates.
+def rated(bearing: RollerBearing) -> CatalogueBearing:
+    """A planet bearing between pin and race of the planet with the ratings of its rollers.
 
-    Theory (J13), (J35); the ratings are those of (J27), (J28).
+    Theory (J27), (J28).
     """
     sizes = bearing.inner_diameter, bearing.outer_diameter, 2 * bearing.half_width
     rollers = DesignatedBearing(
@@ -640,15 +643,14 @@ def bearing_limits(bearing: RollerBearing) -> tuple[float, float]:
         elements=bearing.rollers_per_row,
     )
     ratings = rollers.dynamic_load_rating, rollers.static_load_rating
-    known = CatalogueBearing("needle", *sizes, "caged", *ratings)
-    return minimum_load(known, 0.0, 0.0), thermal_speed_rating(known)
+    return CatalogueBearing("needle", *sizes, "caged", *ratings)
 
 
 def _limit_notes(
     where: str, bearing: RollerBearing, force: float, speed: float, watts: float
 ) -> tuple[Note, ...]:
-    least, rating = bearing_limits(bearing)
-    notes = []
+    known, notes = rated(bearing), []
+    least = minimum_load(known, 0.0, 0.0)
     if speed and force < least:
         text = (
             f"{where}: the load of {NEWTON.text(force, 3)} is below the minimum load of "
@@ -656,7 +658,8 @@ def _limit_notes(
             "the loss is that of the actual load without slip."
         )
         notes.append(Note(text, watts))
-    if abs(speed) > rating:
+    if thermal_excess(known, abs(speed)) > 0:
+        rating = thermal_speed_rating(known)
         text = (
             f"{where}: {RPM.text(abs(speed), 4)} against the carrier exceed the thermal reference "
             f"speed of {RPM.text(rating, 2)}, an estimate after ISO 15312 by its rollers. Above it "
