@@ -213,6 +213,16 @@ def test_all_problems_of_a_task_are_told_at_once():
     assert keys == {"choices.pinion_teeth", "choices.module", "case.sun", "case.lubricant"}
 
 
+def test_files_of_a_task_are_beside_it(tmp_path):
+    raw = task_of("pair")
+    raw["case"]["models"] = {"friction": "mixed-ehl", "oil_model": "measured.nc"}
+    (tmp_path / "task.toml").write_text(case_text(raw))
+    read = read_task(tmp_path / "task.toml")
+    assert read.case["models"] == {
+        "friction": "mixed-ehl", "oil_model": str(tmp_path / "measured.nc")
+    }  # fmt: skip
+
+
 def test_dominated_rows():
     values = np.array([[1.0, 5.0], [2.0, 3.0], [2.5, 3.0], [4.0, 1.0], [4.0, 1.0], [5.0, 2.0]])
     assert dominated(values, values).tolist() == [False, False, True, False, False, True]

@@ -31,8 +31,8 @@ from epicyclic.plugins.design.candidates import (
     teeth_text,
 )
 from epicyclic.plugins.design.strength import strength
-from epicyclic.plugins.design.task import Task, read_task
-from epicyclic.schema.read import plain, read_file
+from epicyclic.plugins.design.task import Task, read_task, task_tables
+from epicyclic.schema.read import plain
 from epicyclic.study.solve import loaded_meshes, solve
 from epicyclic.study.sweeps.runner import Plan, Row, Rows, Runner, failed_row
 
@@ -221,7 +221,7 @@ def design(
         With all problems of the task, or the limit that no candidate meets, and by how much.
     """
     read = read_task(task)
-    raw = dict(task) if isinstance(task, Mapping) else read_file(Path(task))[0]
+    raw = dict(task) if isinstance(task, Mapping) else task_tables(Path(task))[0]
     return search(read, raw, Runner(jobs, dask, journal=journal))
 
 

@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from epicyclic.case.case import FILE_KEYS
 from epicyclic.case.tables.base import ShortLength
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.schema.read import plain, read_file
@@ -130,7 +131,7 @@ def read_task(source: str | Path | Mapping[str, Any]) -> Task:
         raw, name = plain(source), "the given tables"
     else:
         name = str(source)
-        raw, problems = read_file(Path(source), f"{Task.SHOWN_BY} shows one.")
+        raw, problems = task_tables(Path(source))
     found = validate(Task, raw)
     raise_any([*problems, *found.problems], name)
     task = found.case
@@ -138,6 +139,23 @@ def read_task(source: str | Path | Mapping[str, Any]) -> Task:
         raise InputError([Problem("TASK", name, "is not a task.", "See the page on design.")])
     raise_any(_problems(task), name)
     return task
+
+
+def task_tables(path: Path) -> tuple[dict[str, Any], list[Problem]]:
+    """The tables of a task's file, with the places of the files that they name; and problems."""
+    raw, problems = read_file(path, f"{Task.SHOWN_BY} shows one.")
+    if "case" in raw:
+        raw["case"] = _found_from(path.absolute().parent, raw["case"])
+    return raw, problems
+
+
+def _found_from(folder: Path, value: Any, key: str = "") -> Any:
+    """Tables with files in a folder by their whole path: designs are written elsewhere."""
+    if isinstance(value, Mapping):
+        return {name: _found_from(folder, own, name) for name, own in value.items()}
+    if isinstance(value, list):
+        return [_found_from(folder, own, key) for own in value]
+    return str(folder / value) if key in FILE_KEYS and isinstance(value, str) else value
 
 
 def _problems(task: Task) -> list[Problem]:
