@@ -204,13 +204,45 @@ def test_of_many_combinations_the_stated_number_is_drawn(monkeypatch):
 def test_all_problems_of_a_task_are_told_at_once():
     raw = task_of("planetary")
     raw["choices"]["pinion_teeth"] = [30, 20]
-    raw["choices"]["module"] = []
     raw["case"]["sun"] = {"teeth": 3}
     del raw["case"]["lubricant"]
     with pytest.raises(InputError) as error:
         read_task(raw)
     keys = {problem.key for problem in error.value.problems}
-    assert keys == {"choices.pinion_teeth", "choices.module", "case.sun", "case.lubricant"}
+    assert keys == {"choices.pinion_teeth", "case.sun", "case.lubricant"}
+
+
+def test_no_choice_may_be_empty_or_out_of_range():
+    raw = task_of("planetary")
+    raw["cycle"] = [raw["operation"] | {"torque": "17 N*m"}]
+    wrong = {"arrangements": [], "module": [], "distance_shift": [], "planets": [0, 3]}
+    raw["choices"] |= wrong | {"width_ratio": [0.6, -0.5]}
+    raw["search"]["objectives"] = []
+    with pytest.raises(InputError) as error:
+        read_task(raw)
+    keys = {problem.key.split("[")[0] for problem in error.value.problems}
+    assert {f"choices.{name}" for name in (*wrong, "width_ratio")} | {"search.objectives"} == {
+        key.removesuffix(".0").removesuffix(".1") for key in keys
+    }
+
+
+def test_tables_that_all_cases_share_are_checked_before_anything_is_solved():
+    raw = task_of("planetary")
+    raw["case"] |= {"lubricant": {"oil": "nonsense"}, "numerics": {"mesh_positions": 1}}
+    with pytest.raises(InputError) as error:
+        screen(read_task(raw))
+    keys = {problem.key for problem in error.value.problems}
+    assert keys == {"case.lubricant.oil", "case.numerics.mesh_positions"}
+
+
+def test_files_of_a_task_are_beside_it(tmp_path):
+    raw = task_of("pair")
+    raw["case"]["models"] = {"friction": "mixed-ehl", "oil_model": "measured.nc"}
+    (tmp_path / "task.toml").write_text(case_text(raw))
+    read = read_task(tmp_path / "task.toml")
+    assert read.case["models"] == {
+        "friction": "mixed-ehl", "oil_model": str(tmp_path / "measured.nc")
+    }  # fmt: skip
 
 
 def test_dominated_rows():

@@ -22,6 +22,7 @@ from epicyclic.schema.fields import (
     choices_of,
     describe,
     dict_value,
+    is_array,
     locate,
     quantity_of,
     table_of,
@@ -323,7 +324,8 @@ def _sound_sections(
     """The tables that are sound, or can be made so by stand-ins for their `bad` keys."""
     sound: dict[str, Table] = {}
     for name, table in tables_of(kind).items():
-        if dict_value(kind.model_fields[name].annotation) is not None:
+        annotation = kind.model_fields[name].annotation
+        if dict_value(annotation) is not None or is_array(annotation):
             continue
         if name not in raw:
             default = kind.model_fields[name].default

@@ -137,15 +137,14 @@ def design(
     """
     from epicyclic.plugins.design import report
     from epicyclic.plugins.design.search import odds, screen, search
-    from epicyclic.plugins.design.task import read_task
-    from epicyclic.schema.read import read_file
+    from epicyclic.plugins.design.task import read_task, task_tables
     from epicyclic.show.terminal import as_on_page
     from epicyclic.study.bands.plan import check_samples
 
     if draws:
         check_samples(draws)
     read = read_task(task)
-    raw, _ = read_file(task)
+    raw, _ = task_tables(task)
     if output is not None:
         make_folder(output)
     if only_screen:

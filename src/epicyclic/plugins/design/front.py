@@ -21,8 +21,7 @@ from epicyclic.plugins.design.report import (
     front_table,
 )
 from epicyclic.plugins.design.search import KNOWN, SAFETIES, Found, case_text, search
-from epicyclic.plugins.design.task import read_task
-from epicyclic.schema.read import read_file
+from epicyclic.plugins.design.task import read_task, task_tables
 from epicyclic.show.page import Drawing, Table
 from epicyclic.show.plots.catalogue import Panel, drawing
 from epicyclic.study.sweeps.runner import Runner
@@ -43,7 +42,7 @@ class Front:
 def found_in(path: Path, progress: Callable[[int, int], None]) -> Front:
     """The front of a task, whose search begins, or of the dataset of one that has ended."""
     if path.suffix == ".toml":
-        return front_of(search(read_task(path), read_file(path)[0], Runner(), progress=progress))
+        return front_of(search(read_task(path), task_tables(path)[0], Runner(), progress=progress))
     return front_of(stored(path))
 
 

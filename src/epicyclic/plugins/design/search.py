@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -22,7 +22,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, read_case
-from epicyclic.errors import EpicyclicError, InputError, Problem, Status
+from epicyclic.errors import EpicyclicError, InputError, Problem, Status, raise_any
 from epicyclic.plugins.design.candidates import (
     case_tables,
     enumerate_all,
@@ -31,8 +31,8 @@ from epicyclic.plugins.design.candidates import (
     teeth_text,
 )
 from epicyclic.plugins.design.strength import strength
-from epicyclic.plugins.design.task import Task, read_task
-from epicyclic.schema.read import plain, read_file
+from epicyclic.plugins.design.task import OF_CASES, Task, read_task, task_tables
+from epicyclic.schema.read import plain
 from epicyclic.study.solve import loaded_meshes, solve
 from epicyclic.study.sweeps.runner import Plan, Row, Rows, Runner, failed_row
 
@@ -221,13 +221,14 @@ def design(
         With all problems of the task, or the limit that no candidate meets, and by how much.
     """
     read = read_task(task)
-    raw = dict(task) if isinstance(task, Mapping) else read_file(Path(task))[0]
+    raw = dict(task) if isinstance(task, Mapping) else task_tables(Path(task))[0]
     return search(read, raw, Runner(jobs, dask, journal=journal))
 
 
 def screen(task: Task) -> Found:
     """All candidates of a task, screened without solving."""
     table, combinations = enumerate_all(task)
+    _check_tables(task, table.loc[0].dropna().to_dict())
     margins = pd.DataFrame(1.0, index=table.index, columns=[*SCREENS])
     for name in ("ratio", *KNOWN, "bound"):
         table[name] = math.nan
@@ -243,6 +244,21 @@ def screen(task: Task) -> Found:
         fate[(fate == "") & (margins[key] < 1 - 1e-9)] = text
     table["fate"] = fate
     return Found(task, table, margins, margins.copy(), combinations=combinations)
+
+
+def _check_tables(task: Task, row: Mapping[str, Any]) -> None:
+    """Raise what is wrong with the tables that all cases share, as any candidate's case has it."""
+    try:
+        read_case(case_tables(task, row))
+    except InputError as error:
+        raise_any(
+            [
+                replace(it, key=f"case.{it.key}")
+                for it in error.problems
+                if it.key.split(".")[0] in OF_CASES
+            ],
+            task.title or "the task",
+        )
 
 
 def _objectives(found: Found, rows: Any, loss: str) -> FloatArray:
