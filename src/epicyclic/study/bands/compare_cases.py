@@ -77,7 +77,7 @@ def compare_cases(
     ConvergenceError
         If a case, or hardly any pair of samples, can be solved.
     """
-    check_samples(samples)
+    check_samples(samples, seed)
     cases = as_case(first), as_case(second)
     results = [solve(case) for case in cases]
     values = [known_values(case, result) for case, result in zip(cases, results, strict=True)]
