@@ -44,7 +44,8 @@ def test_a_stored_sweep_has_its_own_plots(data, tmp_path):
     assert [ax.get_ylabel() for ax in figure.axes] == ["total loss, W", "efficiency, %"]
     caption = " ".join(figure.get_supxlabel().split())
     assert "torque 37 to 91 N·m; speed 2000 to 7000 rpm" in caption
-    assert "friction schlenk, constant; " in caption and caption.endswith("; oil at 90 °C")
+    assert "friction schlenk, constant; " in caption
+    assert caption.endswith("; oil at 90 °C")
 
 
 def test_lines_are_over_the_key_with_most_values(data):
