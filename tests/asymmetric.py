@@ -13,6 +13,21 @@ __all__ = ["gear_pair", "planetary"]
 Tables = dict[str, Any]
 
 
+def oil_table(name, kind, viscosities, density, gold):
+    """An oil with two measured viscosities by degC, a density, and the law of Gold."""
+    temperature, value = density
+    return {
+        "name": name,
+        "kind": kind,
+        "kinematic_viscosity": [
+            {"temperature": f"{celsius} degC", "value": f"{number} mm^2/s"}
+            for celsius, number in viscosities.items()
+        ],
+        "density": [{"temperature": f"{temperature} degC", "value": f"{value} kg/m^3"}],
+        "pressure_viscosity": {"law": "gold", "s": gold[0], "t": gold[1]},
+    }
+
+
 def planetary(between: str = "carrier-housing") -> Tables:
     """The tables of a planetary set of two driven members, its thrust bearing `between` two."""
     return {
@@ -125,16 +140,11 @@ def planetary(between: str = "carrier-housing") -> Tables:
             "count": 3,
         },
         "lubricant": {
-            "oil": {
-                "name": "asymmetric oil",
-                "kind": "ester",
-                "kinematic_viscosity": [
-                    {"temperature": "38 degC", "value": "61.3 mm^2/s"},
-                    {"temperature": "99 degC", "value": "9.7 mm^2/s"},
-                ],
-                "density": [{"temperature": "15 degC", "value": "905 kg/m^3"}],
+            "oil": oil_table(
+                "asymmetric oil", "ester", {38: 61.3, 99: 9.7}, (15, 905), (6.605, 0.136)
+            )
+            | {
                 "density_slope": {"value": -0.71},
-                "pressure_viscosity": {"law": "gold", "s": 6.605, "t": 0.136},
                 "lubricant_factor": {"value": 0.78},
                 "thermal_conductivity": {"value": "0.144 W/(m*K)"},
             },
@@ -220,16 +230,11 @@ def gear_pair() -> Tables:
         },
         "mesh": {"misalignment": "5.7 um"},
         "lubricant": {
-            "oil": {
-                "name": "another asymmetric oil",
-                "kind": "pao",
-                "kinematic_viscosity": [
-                    {"temperature": "41 degC", "value": "96.4 mm^2/s"},
-                    {"temperature": "97 degC", "value": "15.6 mm^2/s"},
-                ],
-                "density": [{"temperature": "16 degC", "value": "858 kg/m^3"}],
+            "oil": oil_table(
+                "another asymmetric oil", "pao", {41: 96.4, 97: 15.6}, (16, 858), (7.382, 0.134)
+            )
+            | {
                 "density_slope": {"value": -0.64},
-                "pressure_viscosity": {"law": "gold", "s": 7.382, "t": 0.134},
                 "lubricant_factor": {"value": 0.83},
                 "thermal_conductivity": {"value": "0.152 W/(m*K)"},
             },

@@ -50,7 +50,7 @@ def key_parts(key: str) -> list[str]:
         raise InputError([Problem(one_line(key), "", allowed, "Correct it.")])
     if '"' not in key:
         return key.split(".")
-    return [part.strip('"') for part in re.findall(r'"[^"]*"|[^.]+', key)]
+    return [part.strip('"') for part in re.findall(r'"(?:[^"\\]|\\.)*"|[^.]+', key)]
 
 
 def value_at(tables: Any, path: Sequence[str | int]) -> Any:

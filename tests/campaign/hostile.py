@@ -131,7 +131,7 @@ def _table(frame: pd.DataFrame, rng: random.Random) -> pd.DataFrame:
         lambda: frame.rename(columns={column: rng.choice(NAMES[:3] + NAMES[4:7])}),
         lambda: frame.iloc[:0],
         lambda: pd.concat([frame] * 2000),
-        lambda: frame.assign(**{f"c{n}": 1.0 for n in range(1500)}),
+        lambda: frame.join(pd.DataFrame(1.0, frame.index, [f"c{n}" for n in range(1500)])),
         lambda: frame.assign(**{column: pd.Timestamp("1677-09-22")}),
         lambda: frame.T.reset_index().astype(str).rename(columns=str),
     )

@@ -40,9 +40,9 @@ __all__ = ["FORMS", "drawn", "outcome"]
 Tables = dict[str, Any]
 ROUNDING = 1e-9
 """The same numbers in another order, or after a conversion: relative."""
-AGREEMENT = 1e-6
-"""Of torques and losses that are solved from the other end: relative. Losses may be off by 1e-7
-there, and small torques by more."""
+AGREEMENT = 1e-7
+"""Of torques and losses that are solved from the other end, where another iteration ends at the
+same tolerance: relative."""
 FAULTS = ("differs", "refused in one form", "solved in one form", "exception")
 ATTEMPTS = 300
 STORED = 200
@@ -271,7 +271,7 @@ def in_a_train(case: Any, result: Result, rng: random.Random) -> Any:
         names = {name: f"S.pinion_gear_{name}" for name in result.losses}
     train["sets"] = {"S": own}
     train["operation"] = kept | {"input": "in", "output": "out"}
-    return ep.load_case(train), names, AGREEMENT
+    return ep.load_case(train), names, ROUNDING
 
 
 def reordered(case: Any, result: Result, rng: random.Random) -> Any:
@@ -368,7 +368,7 @@ def _compared(case: Any, form: Form, rng: random.Random) -> tuple[str, str]:
     off = [(abs(one - two) / scale, name) for name, one, two in pairs if scale]
     worst = max(off, default=(0.0, ""))
     if worst[0] <= tolerance:
-        return "same", ""
+        return "same", f"{worst[0]:.1e}"
     if _floats(result) or _floats(again):
         return "two balances, told in a note", ""
     return "differs", f"{worst[1]} by {worst[0]:.1e} of {scale:.6g} W"

@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 import epicyclic as ep
+from epicyclic.plugins.design.search import case_text
 
 pytest.importorskip("nicegui", reason="optional")
 playwright = pytest.importorskip("playwright.sync_api", reason="optional")
@@ -76,7 +77,8 @@ def _busy() -> float:
     return max(1.0, os.getloadavg()[0] / os.cpu_count())
 
 
-GROUPS = {"Gears": "Parts", "Planet bearing": "Parts", "Map": "Studies", "Compare": "Studies"}
+GROUPS = {"Gears": "Parts", "Planet bearing": "Parts", "Map": "Studies", "Compare": "Studies",
+          "Designs": "Studies"}  # fmt: skip
 
 
 def _tab(page, name: str) -> None:
@@ -444,3 +446,51 @@ def test_what_is_shown_at_the_end_belongs_to_the_last_of_many_quick_inputs(open_
     page.wait_for_selector("main > div > .state.idle", state="attached", timeout=SOLVED)
     assert (page.locator(".behind").count() > 0) == (told().count() > 0)
     assert not page.wrong
+
+
+def test_a_click_on_the_front_opens_the_design(open_app, tmp_path):
+    """The search runs in the app; its chart is there again in the tab it was in."""
+    task = {
+        "title": "a small task",
+        "ratio": 2.3,
+        "operation": {"torque": "37 N*m", "speed": "1900 rpm", "oil_inlet_temperature": "61 degC"},
+        "choices": {
+            "arrangements": ["pair"],
+            "module": ["1.5 mm", "1.75 mm"],
+            "pinion_teeth": [21, 23],
+            "profile_shift": [0.2],
+            "width_ratio": [0.7],
+        },
+        "limits": {"pitting": 0.3, "bending": 0.4},
+        "search": {"solved": 6, "polished": 0},
+        "case": {
+            "lubricant": {"oil": "iso-vg-100-mineral"},
+            "numerics": {"mesh_positions": 6, "contact_segments": 6},
+        },
+    }
+    (tmp_path / "task.toml").write_text(case_text(task))
+    page = open_app("talbot-2012")
+    _solved(page)
+    _tab(page, "Designs")
+    page.locator("main input[type=file]").set_input_files(tmp_path / "task.toml")
+    points = page.locator("main .js-plotly-plot .points path.point")
+    points.last.wait_for(timeout=SOLVED)
+    box = points.last.bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.wait_for_function(
+        "document.querySelector('.bar .title').textContent.startsWith('a small task: pair ')"
+    )
+    page.get_by_label("torque", exact=True).wait_for()
+    assert page.get_by_label("torque", exact=True).input_value() == "37"
+    _tab(page, "Designs")
+    points.last.wait_for(timeout=SOLVED)
+
+
+def test_a_task_of_designs_that_names_files_is_refused(open_app, tmp_path):
+    page = open_app("talbot-2012")
+    _solved(page)
+    _tab(page, "Designs")
+    text = 'ratio = 3\n[case.models]\noil_model = "measured.toml"\n'
+    (tmp_path / "task.toml").write_text(text)
+    page.locator("main input[type=file]").set_input_files(tmp_path / "task.toml")
+    page.get_by_text("names a file, which the app does not open").wait_for()

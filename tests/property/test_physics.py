@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import epicyclic as ep
+from asymmetric import oil_table
 from epicyclic import library
 from epicyclic.units import Length
 
@@ -45,16 +46,9 @@ TORQUE = quantity(st.one_of(st.just(0.0), signed(log_uniform(1e-9, 1e6))), "N*m"
 SPEED = quantity(st.one_of(st.just(0.0), signed(log_uniform(1e-2, 3e4))), "rpm")
 TEMPERATURE = quantity(st.floats(-40.0, 200.0), "degC")
 ROUGHNESS = quantity(log_uniform(0.005, 100.0), "um")
-THICKEST_OIL = {
-    "name": "like ISO VG 1000",
-    "kind": "mineral",
-    "kinematic_viscosity": [
-        {"temperature": "40 degC", "value": "1000 mm^2/s"},
-        {"temperature": "100 degC", "value": "52 mm^2/s"},
-    ],
-    "density": [{"temperature": "15 degC", "value": "920 kg/m^3"}],
-    "pressure_viscosity": {"law": "gold", "s": 9.904, "t": 0.139},
-}
+THICKEST_OIL = oil_table(
+    "like ISO VG 1000", "mineral", {40: 1000, 100: 52}, (15, 920), (9.904, 0.139)
+)
 MODELS = {
     "lubricant.oil": st.sampled_from([*library.names("oils"), THICKEST_OIL]),
     "models.friction": st.sampled_from(FRICTION),

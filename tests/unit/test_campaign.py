@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +20,16 @@ from epicyclic.plugins.contact_solver.campaign import (
 from epicyclic.study.sweeps.runner import fingerprint
 
 ATF = "atf-talbot-2012"
+CHANGES = {
+    "settings lubricant eyring_stress": ([], "5 MPb", "9" * 400),
+    "settings lubricant oil density": ({}, "870 kg/m^3", 870),
+    "settings surface1 colour": ("red",),
+    "designs 0 axes radius": ({}, [], [True, 5.0], [5.0, 1e300], ["5 mm"], [float("nan")]),
+    "designs 0 axes hertz_pressure": ([0.5, [1.0]], [1.0] * 1_000_000),
+    "designs 0 size": (0, -3, 8.5, 10**9, True, "8"),
+    "designs 0 seed": ("1", None, 1.5),
+    "designs 0": (None, []),
+}
 
 
 def test_tables_have_the_published_numbers_of_contacts():
@@ -170,6 +181,23 @@ def test_a_table_without_any_solution_says_so(tmp_path):
     folder.table.write_text("number,part,status,message\n0,gear,failed,x\n1,gear,failed,x\n")
     with pytest.raises(InputError, match="no simulation with a solution"):
         folder.read()
+
+
+@pytest.mark.parametrize("place", CHANGES)
+def test_a_plan_of_what_cannot_be_simulated_is_refused_when_it_is_opened(tmp_path, place):
+    CampaignFolder(tmp_path, make_campaign(ATF, size=8)).prepare()
+    file = tmp_path / "campaign.json"
+    sound = file.read_text()
+    assert open_folder(tmp_path).campaign.size == 8
+    *path, last = (int(it) if it.isdigit() else it for it in place.split())
+    for value in CHANGES[place]:
+        plan = table = json.loads(sound)
+        for key in path:
+            table = table[key]
+        table[last] = value
+        file.write_text(json.dumps(plan))
+        with pytest.raises(InputError):
+            open_folder(tmp_path)
 
 
 def test_a_folder_keeps_one_campaign(tmp_path):

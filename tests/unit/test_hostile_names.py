@@ -14,6 +14,7 @@ from rich.text import Text
 
 import epicyclic as ep
 from epicyclic.cli.main import main
+from epicyclic.show.template import case_text
 from epicyclic.show.terminal import plain_table, terminal
 from trains import simple
 
@@ -162,6 +163,15 @@ def test_unusual_names_are_kept_in_a_result_file(tmp_path, place):
     case = with_name(place, name.replace("/", "") if place != "state" else name)
     ep.save_result(case, tmp_path / "r.nc")
     assert ep.open_result(tmp_path / "r.nc").result.to_dict() == ep.solve(case).to_dict()
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("name", ['a"b', "a\\b", 'a\\"]', "a  b", "ü" * 90, "a#b = [1]", "a'' 'b"])
+def test_unusual_names_are_kept_in_a_case_file(tmp_path, place, name):
+    case = with_name(place, name)
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(case.given(), []), encoding="utf-8")
+    assert ep.load_case(path).inputs() == case.inputs()
 
 
 def test_a_run_shows_a_name_that_looks_like_markup(tmp_path, monkeypatch, capsys):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
+
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import epicyclic as ep
 
@@ -27,6 +30,65 @@ def test_a_path_or_a_name_is_solved(tmp_path, case):
     assert ep.solve(case.given()).total == wanted
     with pytest.raises(ep.InputError, match=r"none\.toml"):
         ep.solve("none.toml")
+
+
+CYCLE = {"speed [rpm]": [900.0], "torque [N*m]": [40.0], "share": [1.0]}
+OF_A_CASE = {
+    "compare_cases": lambda case: ep.compare_cases(case, case),
+    "compare_measured": lambda case: ep.compare_measured(case, "none.csv"),
+    "duty_cycle": lambda case: ep.duty_cycle(case, CYCLE),
+    "loss_map": lambda case: ep.loss_map(case, ["900 rpm"], ["40 N*m"]),
+    "pocketing_table": lambda case: ep.pocketing_table(case, ["900 rpm"]),
+    "save_result": lambda case: ep.save_result(case, "none.nc"),
+    "solve_for": lambda case: ep.solve_for(case, "oil_flow", "110 degC"),
+    "warm_up": lambda case: ep.warm_up(case, "2 h"),
+    "with_temperature_state": lambda case: ep.with_temperature_state(
+        xr.Dataset(coords={"temperature": [20, 60]}, attrs={"case": "{}"}), case
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        name
+        for name in sorted(ep._HOME | ep._OF_PLUG_INS)
+        if inspect.isfunction(getattr(ep, name))
+        and "Case" in str(inspect.signature(getattr(ep, name))).partition("->")[0]
+    ],
+)
+def test_what_takes_a_case_takes_a_name_or_a_file(name):
+    with pytest.raises(ep.InputError, match=r"none\.toml"):
+        OF_A_CASE.get(name, getattr(ep, name))("none.toml")
+
+
+@pytest.mark.parametrize("source", [None, 5, [], b"talbot-2012", object()])
+def test_what_is_no_case_is_refused(source):
+    with pytest.raises(ep.InputError):
+        ep.solve(source)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"operation.torque": "1 N*m", "operation.torque [kN*m]": 2},
+        {"operation.speed [rpm]": 3, "operation.speed [rad/s]": 4},
+        {"operation.torque [N*m]": 10**400},
+    ],
+)
+def test_changes_that_say_two_things_or_no_number_are_refused(case, changes):
+    with pytest.raises(ep.InputError, match=r"changed already|not a number"):
+        case.updated(changes)
+
+
+def test_numbers_of_a_study_are_checked(case):
+    for key, call in {
+        "seed": lambda: ep.uncertainty(case, seed=-1),
+        "jobs": lambda: ep.uncertainty(case, jobs=-1),
+        "samples": lambda: ep.duty_cycle(case, CYCLE, samples=-1),
+    }.items():
+        with pytest.raises(ep.InputError, match=f"{key} = -1: must be"):
+            call()
 
 
 def test_a_key_is_read_as_it_is_stated(case):

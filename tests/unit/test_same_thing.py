@@ -13,12 +13,14 @@ import asymmetric
 import epicyclic as ep
 import listed_trains
 import trains
+from epicyclic.machine.pocket_flow import flow_family
 from epicyclic.show.template import case_text
 from epicyclic.study.bands.plan import known_values, look_nearby
 from epicyclic.study.bands.study import quick_band
 from epicyclic.study.friction import compare_friction, recommended
 from epicyclic.study.heat import beyond_range
 from epicyclic.study.maps.cycle import open_cycle
+from epicyclic.study.solve import build_computed
 
 SAME = 1e-9
 COARSE = {"pocket_slices": 8, "pocket_steps": 12, "mesh_positions": 8, "contact_segments": 6}
@@ -58,6 +60,30 @@ def test_backlash_that_rounding_leaves_decides_nothing(changes, near, pocketing)
     assert expected.losses["mesh_pocketing"] > 10
     assert found.total == pytest.approx(expected.total, rel=near)
     assert found.meshes["mesh"].backlash == expected.meshes["mesh"].backlash == 0
+
+
+def flows(case):
+    (duty,) = build_computed(case).mean_duties().values()
+    return flow_family(duty)
+
+
+@pytest.mark.parametrize("key", ["tip_diameter", "root_diameter", "tooth_thickness"])
+@pytest.mark.parametrize("nudge", [1 - 4e-16, 1 + 4e-16, 1 - 1e-12, 1 + 1e-12])
+def test_gears_that_differ_by_rounding_are_equal(key, nudge):
+    """Which gear the time steps follow hangs on sizes, not on how they were rounded."""
+    sizes = {"teeth": 27, "tip_diameter": 57.2, "root_diameter": 48.1, "tooth_thickness": 2.9}
+    texts = {name: it if name == "teeth" else f"{it} mm" for name, it in sizes.items()}
+    changes = {f"{gear}.{name}": it for gear in ("pinion", "gear") for name, it in texts.items()}
+    changes |= {f"{gear}.thickness_diameter": "53 mm" for gear in ("pinion", "gear")}
+    case = ep.load_case("talbot-2012-pair", changes | {"gears.center_distance": "53.7 mm"})
+    found = {}
+    for speed in ("700 rpm", "-700 rpm"):
+        for gear in ("pinion", "gear"):
+            other = {f"{gear}.{key}": f"{sizes[key] * nudge!r} mm", "operation.speed": speed}
+            family = flows(case.updated(other))
+            tip1, tip2 = family.mesh.gear1.tip_radius, family.mesh.gear2.tip_radius
+            found[speed, gear] = family.drives1, tip1 == pytest.approx(tip2, rel=1e-9)
+    assert len(set(found.values())) == 1
 
 
 def test_whether_a_void_is_below_no_pressure_does_not_hang_on_rounding():
@@ -338,6 +364,16 @@ def test_shares_that_do_not_sum_to_one_are_told_with_their_factor(shares, told):
     assert found.title.partition("; ")[2] == told
     (piece,) = found.pieces()
     assert piece.duration == pytest.approx(3600 * np.array(shares) / sum(shares), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["share", "duration [s]"])
+@pytest.mark.parametrize(
+    "values", [[3e-320, 1e-320], [2e-200, 0.0], [7e150, 1.0], [9e307, 1.7e308]]
+)
+def test_weights_over_which_no_number_is_finite_are_refused(name, values):
+    cycle = {"speed [rpm]": [900, 1700], "torque [N*m]": [40, -70], name: values}
+    with pytest.raises(ep.InputError, match="next to nothing, or beyond all bounds"):
+        open_cycle(cycle)
 
 
 def test_the_result_of_a_cycle_tells_the_factor_of_its_shares():

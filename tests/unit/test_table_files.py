@@ -7,6 +7,8 @@ import io
 import numpy as np
 import openpyxl
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 import epicyclic as ep
@@ -272,3 +274,37 @@ def test_a_table_may_be_long(tmp_path):
     cycle = open_cycle(tmp_path / "long.csv")
     assert cycle.rows == rows
     assert values(cycle)[2] == rows - 1
+
+
+MOMENTS = pd.to_datetime(["2024-05-02 10:00:01.5", "2024-05-02 10:00:08.75"])
+KINDS = {
+    "ns": pa.array(MOMENTS, pa.timestamp("ns")),
+    "far": pa.array([10**12, 10**12 + 7], pa.timestamp("s")),  # beyond the year 9999
+    "span": pa.array([1500, 8750], pa.duration("ms")),
+    "longest": pa.array([-(2**62), 2**62], pa.duration("us")),
+    "day": pa.array([19_000, 19_001], pa.date32()),
+    "of day": pa.array([1500, 8750], pa.time32("ms")),
+    "lists": pa.array([[1], [2, 3]]),
+    "tables": pa.array([{"a": 1}, {"a": 2}]),
+}
+
+
+@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("column", ["time [s]", "speed [rpm]", "state", "logger"])
+def test_columns_of_any_kind_are_read_or_refused(tmp_path, name, column):
+    """Loggers write moments in nanoseconds, more than a number holds; no speed is a date."""
+    columns = {"time [s]": [0.0, 7.25], "speed [rpm]": [420, 890], "torque [N*m]": [310, 28.5]}
+    path = tmp_path / "cycle.parquet"
+    table = {key: pa.array(it) for key, it in columns.items()} | {column: KINDS[name]}
+    try:
+        pq.write_table(pa.table(table), path)
+    except pa.ArrowInvalid:
+        pytest.skip("a moment that Parquet cannot hold")
+    of_time = name not in ("day", "lists", "tables")
+    if column == "speed [rpm]" or (column == "time [s]" and not of_time):
+        with pytest.raises(ep.InputError, match="must be a finite number"):
+            open_cycle(path)
+        return
+    found = open_cycle(path)
+    if column == "time [s]" and name in ("ns", "span", "of day"):
+        assert values(found)[2] == pytest.approx(7.25, rel=1e-6)

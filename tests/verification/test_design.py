@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import copy
+import inspect
+import io
+import json
 import math
 import time
 
 import numpy as np
+import pandas as pd
 import pytest
+from scipy.optimize import linprog
 
+from asymmetric import gear_pair
 from epicyclic.case.case import read_case
 from epicyclic.errors import InputError
+from epicyclic.plugins.design import candidates as enumerating
 from epicyclic.plugins.design import search as searching
-from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances
+from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances, sizes
+from epicyclic.plugins.design.front import front_of, stored
 from epicyclic.plugins.design.relief import Relief, relief_front
-from epicyclic.plugins.design.search import design, non_dominated, screen, search
+from epicyclic.plugins.design.rotor import rotor_dynamics, rotor_text
+from epicyclic.plugins.design.search import case_text, design, dominated, screen, search
 from epicyclic.plugins.design.task import read_task
 from epicyclic.study.load import load_case
+from epicyclic.study.meshes import mesh_details
+from epicyclic.study.sweeps.run import write_netcdf
 from epicyclic.study.sweeps.runner import Runner
 
 ROUNDING = 1e-6  # Case files have nine digits, face widths six.
@@ -45,6 +56,20 @@ def task_of(*arrangements, ratio=4.1, **choices):
             "numerics": {"mesh_positions": 6, "contact_segments": 6},
         },
     }
+
+
+def test_help_shows_a_whole_task_and_what_lacks_one_names_it(tmp_path):
+    from epicyclic.plugins.design.commands import design as command
+
+    shown = inspect.cleandoc(command.help).split("\b\n")[1]
+    path = tmp_path / "task.toml"
+    path.write_text(shown)
+    assert read_task(path).choices.module == (0.0015, 0.002)
+    for text in ("", "# nothing", "ratio = 4.2"):
+        path.write_text(text)
+        with pytest.raises(InputError, match="'epicyclic design --help' shows") as caught:
+            read_task(path)
+        assert "init" not in str(caught.value)
 
 
 RATIOS = {"pair": 3.1, "planetary": 4.1, "stepped": 12.3, "wolfrom": 40.0, "two-stage": 17.3}
@@ -99,6 +124,38 @@ def test_every_candidate_has_one_fate_and_they_sum_up():
 
 
 @pytest.mark.parametrize(
+    "name",
+    ["planetary", *(pytest.param(it, marks=pytest.mark.slow) for it in RATIOS if it[0] in "sw")],
+)
+def test_backlash_is_how_far_the_output_turns_with_the_input_held(name):
+    """Against the largest rotation that keeps every mesh within its play, by linear programming."""
+    task = read_task(task_of(name, ratio=RATIOS[name]))
+    found = screen(task)
+    number = found.table.index[found.table.fate == ""][-1]
+    (gearing,) = found.case(number).gearings.values()
+    columns = {"planet": 0, "output_ring": 1, "carrier": 2}  # all else is held
+    rows, plays = [], []
+    for mesh in gearing.geometries:
+        first, second = mesh.gear1, mesh.gear2
+        row = np.zeros(3)
+        for gear, side in ((first, 1), (second, -1 if mesh.internal else 1)):
+            body = gearing.bodies[gear.name]
+            row[0] += side * gear.base_radius * (body in gearing.planets)
+            if body not in gearing.planets:
+                row[2] -= side * gear.base_radius  # against the carrier
+                if gear.name == "output_ring":
+                    row[1] += side * gear.base_radius
+        rows.append(row)
+        plays.append(mesh.normal_backlash / math.cos(first.rack.base_helix_angle) / 2)
+    output = np.zeros(3)
+    output[columns["output_ring" if name == "wolfrom" else "carrier"]] = -1.0
+    most = linprog(
+        output, np.vstack([rows, np.negative(rows)]), [*plays, *plays], bounds=(None, None)
+    )
+    assert 2 * -most.fun == pytest.approx(found.table.loc[number, "backlash"], rel=1e-5)
+
+
+@pytest.mark.parametrize(
     ("limits", "key"),
     [
         ({"diameter": "37 mm"}, "limits.diameter"),
@@ -107,33 +164,171 @@ def test_every_candidate_has_one_fate_and_they_sum_up():
         ({"pitting": 60}, "limits.pitting"),
         ({"bending": 90}, "limits.bending"),
         ({"contact_ratio": 8}, "limits.contact_ratio"),
+        ({"backlash": "0.7 arcmin"}, "limits.backlash"),
     ],
 )
-def test_an_impossible_task_names_the_limit_and_by_how_much(limits, key):
+def test_an_impossible_task_names_the_limit_and_by_how_much(limits, key, monkeypatch):
     raw = task_of("planetary")
     raw["limits"] |= limits
     with pytest.raises(InputError) as error:
         design(raw)
     (problem,) = error.value.problems
     assert problem.key == key
-    assert "% by the nearest of" in problem.allowed
+    assert "%: the nearest of" in problem.allowed
+    strong = {"pitting": 1e3, "bending": 1e3}
+    monkeypatch.setattr(searching, "evaluate", lambda *it: made_up(*it) | strong)
+    relaxed = problem.remedy.removeprefix("Relax it to ").split(", or")[0]
+    name = key.removeprefix("limits.")
+    raw["limits"][name] = relaxed if " " in relaxed else float(relaxed)
+    assert design(raw, jobs=1).fronts
+
+
+def test_of_many_combinations_the_stated_number_is_drawn(monkeypatch):
+    raw = task_of("planetary", "pair")
+    whole = screen(read_task(raw))
+    assert whole.combinations == len(whole.table)
+    raw["search"] |= {"most_candidates": 37, "seed": 5}
+    one, two = (screen(read_task(raw)) for _ in range(2))
+    assert one.combinations == len(whole.table)
+    assert len(one.table) == 37
+    assert one.table.equals(two.table)
+    known = set(map(tuple, whole.table.astype(str).to_numpy()))
+    drawn = set(map(tuple, one.table.astype(str).to_numpy()))
+    assert len(drawn) == 37
+    assert drawn <= known
+    monkeypatch.setattr(enumerating, "MOST_TEETH", 5)
+    with pytest.raises(InputError, match="combinations of teeth"):
+        screen(read_task(raw))
 
 
 def test_all_problems_of_a_task_are_told_at_once():
     raw = task_of("planetary")
     raw["choices"]["pinion_teeth"] = [30, 20]
-    raw["choices"]["module"] = []
     raw["case"]["sun"] = {"teeth": 3}
     del raw["case"]["lubricant"]
     with pytest.raises(InputError) as error:
         read_task(raw)
     keys = {problem.key for problem in error.value.problems}
-    assert keys == {"choices.pinion_teeth", "choices.module", "case.sun", "case.lubricant"}
+    assert keys == {"choices.pinion_teeth", "case.sun", "case.lubricant"}
 
 
-def test_non_dominated_rows():
+def test_no_choice_may_be_empty_or_out_of_range():
+    raw = task_of("planetary")
+    raw["cycle"] = [raw["operation"] | {"torque": "17 N*m"}]
+    wrong = {"arrangements": [], "module": [], "distance_shift": [], "planets": [0, 3]}
+    raw["choices"] |= wrong | {"width_ratio": [0.6, -0.5]}
+    raw["search"]["objectives"] = []
+    with pytest.raises(InputError) as error:
+        read_task(raw)
+    keys = {problem.key.split("[")[0] for problem in error.value.problems}
+    assert {f"choices.{name}" for name in (*wrong, "width_ratio")} | {"search.objectives"} == {
+        key.removesuffix(".0").removesuffix(".1") for key in keys
+    }
+
+
+def test_tables_that_all_cases_share_are_checked_before_anything_is_solved():
+    raw = task_of("planetary")
+    raw["case"] |= {"lubricant": {"oil": "nonsense"}, "numerics": {"mesh_positions": 1}}
+    with pytest.raises(InputError) as error:
+        screen(read_task(raw))
+    keys = {problem.key for problem in error.value.problems}
+    assert keys == {"case.lubricant.oil", "case.numerics.mesh_positions"}
+
+
+def test_files_of_a_task_are_beside_it(tmp_path):
+    raw = task_of("pair")
+    raw["case"]["models"] = {"friction": "mixed-ehl", "oil_model": "measured.nc"}
+    (tmp_path / "task.toml").write_text(case_text(raw))
+    read = read_task(tmp_path / "task.toml")
+    assert read.case["models"] == {
+        "friction": "mixed-ehl", "oil_model": str(tmp_path / "measured.nc")
+    }  # fmt: skip
+
+
+def test_dominated_rows():
     values = np.array([[1.0, 5.0], [2.0, 3.0], [2.5, 3.0], [4.0, 1.0], [4.0, 1.0], [5.0, 2.0]])
-    assert non_dominated(values).tolist() == [True, True, False, True, True, False]
+    assert dominated(values, values).tolist() == [False, False, True, False, False, True]
+
+
+def made_up(task, row):
+    """A loss that falls with size and profile shift, without solving; all safeties are met."""
+    size = 1e3 * row["module"] * row["width_ratio"] * row.get("pinion", row.get("sun"))
+    loss = 31.0 + 5200.0 / size - 47.0 * row["shift"]
+    return {"loss": loss, "pitting": 7.1, "bending": 8.3}
+
+
+def test_a_search_ends_when_all_are_solved(monkeypatch):
+    monkeypatch.setattr(searching, "evaluate", made_up)
+    raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 18], module=["2 mm"])
+    raw["search"] |= {"solved": 1000, "objectives": ["loss", "transmission_error"]}
+    raw["limits"] = {"pitting": 0.05, "bending": 0.05}
+    monkeypatch.setattr(
+        searching, "evaluate", lambda *it: made_up(*it) | {"transmission_error": it[1]["pinion"]}
+    )
+    found = search(read_task(raw), raw, Runner(1))
+    assert not found.fates.keys() & {"", "not solved"}
+
+
+def test_a_polished_design_meets_the_limits_and_the_front_is_told_anew(monkeypatch):
+    monkeypatch.setattr(searching, "evaluate", made_up)
+    raw = task_of("pair", ratio=3.1)
+    raw["limits"] |= {"pitting": 0.05, "bending": 0.05, "tip_thickness": 0.61}
+    raw["search"] |= {"solved": 40, "polished": 1}
+    task = read_task(raw)
+    found = search(task, raw, Runner(1))
+    (number,) = found.table.index[found.table.polished_shift.notna()]
+    own = sizes(task, found.table.loc[[number]].dropna(axis=1))
+    assert min(it[0] for it in own.margins.values()) >= 1 - 1e-9
+    assert found.table.loc[number, "mass"] == pytest.approx(own.mass[0], rel=1e-12)
+    assert found.table.loc[number, "shift"] > found.table.loc[number, "polished_shift"]
+    values = found.table.loc[found.fronts, ["loss", "mass"]].to_numpy()
+    assert not dominated(values, values).any()
+
+
+def test_what_only_solved_designs_tell_is_counted_apart_from_bounds(monkeypatch):
+    """Coarse gears lose less than fine ones, which are lighter and solved first, let expect."""
+
+    def over_bound(row):
+        return 1.01 if row["module"] > 1.8e-3 else 1.4
+
+    def coarse_loses_less(task, row):
+        bound = float(sizes(task, pd.DataFrame([dict(row)])).loss[0])
+        return made_up(task, row) | {"loss": over_bound(row) * bound}
+
+    raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 50], helix_angle=["0 deg"])
+    raw["choices"]["profile_shift"] = [0.1]
+    raw["limits"] |= {"pitting": 0.05, "bending": 0.05}
+    raw["search"] |= {"solved": 40, "batch": 8}
+    monkeypatch.setattr(searching, "evaluate", coarse_loses_less)
+    found = search(read_task(raw), raw, Runner(1))
+    losses = found.table.bound * found.table.apply(over_bound, axis=1)
+    values = np.column_stack([losses, found.table.mass])
+    passing = (found.bounds >= 1 - 1e-9).all(axis=1)
+    beaten = dominated(values, values[passing])
+    assert {searching.BEATEN, searching.LIKELY, "not solved"} <= found.fates.keys()
+    assert beaten[found.table.fate == searching.BEATEN].all()
+    assert not beaten[found.table.fate == searching.LIKELY].all()
+
+
+@pytest.mark.slow
+def test_a_stored_search_has_its_front_and_the_cases_of_its_points(monkeypatch, tmp_path):
+    monkeypatch.setattr(searching, "evaluate", made_up)
+    raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 19])
+    raw["limits"] |= {"pitting": 0.05, "bending": 0.05}
+    raw["search"] |= {"solved": 8, "batch": 8}
+    found = search(read_task(raw), raw, Runner(1))
+    path = tmp_path / "candidates.nc"
+    write_netcdf(found.dataset(), path)
+    again = stored(path)
+    assert (again.fronts, again.chosen) == (found.fronts, sorted(found.chosen))
+    front = front_of(again)
+    shown = {number for trace in front.chart.plot["data"] for number in trace["customdata"]}
+    assert shown == set(front.cases) == set(found.table.index[found.table.loss.notna()])
+    number = found.chosen[0]
+    assert front.cases[number] == case_text(case_tables(found.task, found.table.loc[number]))
+    write_netcdf(found.dataset().drop_vars("bound"), path)
+    with pytest.raises(InputError, match="no dataset of designs"):
+        stored(path)
 
 
 @pytest.mark.slow
@@ -261,3 +456,29 @@ def test_tolerance_gives_a_band_around_every_variant():
     half = (data.loss_high - data.loss_low).to_numpy() / 2
     assert half == pytest.approx(np.abs((shifted.loss - data.loss).to_numpy()), rel=1e-6)
     assert math.isclose(float((data.loss_high + data.loss_low)[0]), 2 * float(data.loss[0]))
+
+
+@pytest.mark.slow
+def test_harmonics_for_rotor_dynamics_give_back_stiffness_and_transmission_error():
+    case = load_case(gear_pair(), {"numerics.mesh_positions": 40, "numerics.contact_segments": 6})
+    found = rotor_dynamics(case)
+    (own,) = found["meshes"].values()
+    course = mesh_details(case)["mesh"]
+    width = case.gearings[""].geometries[0].face_width
+    known = {
+        "stiffness_{}_N_per_m": 1e9 * width * course.mesh_stiffness.to_numpy(),
+        "transmission_error_{}_m": 1e-6 * course.transmission_error.to_numpy(),
+    }
+    turned = own["teeth"][0] * np.radians(course.roll_angle.to_numpy())
+    for name, values in known.items():
+        amplitudes = np.array(own[name.format("amplitude")])
+        phases = np.radians(own[name[: name.index("{")] + "phase_deg"])
+        waves = np.cos(np.outer(turned, np.arange(1, len(phases) + 1)) + phases)
+        rebuilt = own[name.format("mean")] + waves @ amplitudes
+        assert np.ptp(rebuilt - values) < 0.12 * np.ptp(values)
+        assert own[name.format("mean")] == pytest.approx(course.weight.to_numpy() @ values)
+    assert own["frequency_Hz"] == pytest.approx(case.operation.speed / (2 * math.pi) * 19)
+    table = pd.read_csv(io.StringIO(rotor_text(found, ".csv")))
+    rows = table[table.quantity == "stiffness_amplitude_N_per_m"]
+    assert rows.value.astype(float).tolist() == own["stiffness_amplitude_N_per_m"]
+    assert json.loads(rotor_text(found, ".json")) == found

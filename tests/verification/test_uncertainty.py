@@ -271,6 +271,35 @@ def test_a_paired_difference_is_known_better_than_an_unpaired_one(case):
     assert not same["difference"].sel(result="total").any()
 
 
+@pytest.mark.slow
+def test_a_cycle_is_compared_with_the_same_draw_at_all_its_points(case):
+    other = case.updated({"gear.roughness": "0.31 um", "gears.center_distance": "108.03 mm"})
+    times = 3.0, 1.7
+    changes = (
+        {"operation.torque": "41 N*m", "operation.speed": "2100 rpm"},
+        {"operation.torque": "-13 N*m", "operation.oil_inlet_temperature": "47 degC"},
+    )
+    alone = [
+        ep.compare_cases(case.updated(it), other.updated(it), samples=16, jobs=1) for it in changes
+    ]
+    whole = ep.compare_cases(
+        case, other, samples=16, jobs=1, points=[*zip(times, changes, strict=True)]
+    )
+    weights = np.array(times) / sum(times)
+    for name in ("first", "second", "difference"):
+        apart = np.array([it[name].sel(result="total") for it in alone])
+        assert float(whole[name].sel(result="total")) == pytest.approx(weights @ apart, rel=1e-12)
+    spreads = np.array([it.standard_uncertainty.sel(result="total") for it in alone])
+    known = float(whole.standard_uncertainty.sel(result="total"))
+    assert np.hypot.reduce(weights * spreads) < known <= weights @ spreads * (1 + 1e-9)
+    lost, power = (
+        weights @ [getattr(ep.solve(case.updated(it)), name) for it in changes]
+        for name in ("total", "input_power")
+    )
+    efficiency = float(whole["first"].sel(result="efficiency"))
+    assert efficiency == pytest.approx(1 - lost / power, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("value", "whole"),
     [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from epicyclic.case.keys import owner_without_keys
@@ -28,8 +29,13 @@ def with_changes(kind: type[Table], tables: dict[str, Any], changes: Mapping[str
     """`tables` with some dotted keys changed, and without those that these exclude."""
     problems: list[Problem] = []
     stated = []
+    seen = set()
     for key, value in changes.items():
         own, unit = split_key(str(key))
+        if own in seen:
+            allowed = f"{own} is changed already, in another unit."
+            problems.append(Problem(str(key), written(value), allowed, "Give it once."))
+        seen.add(own)
         try:
             new = plain(with_unit_of_key(value, unit))
             tables = _changed(kind, tables, own, new)
@@ -58,8 +64,8 @@ def _excluded(
 ) -> Iterator[tuple[str, ...]]:
     """Keys of `tables` that cannot stand beside the one at `path`, which is complete by itself."""
     for depth, name in enumerate(path):
-        owner = locate(kind, path[: depth + 1]).owner
-        if owner is None or not issubclass(owner, Table):
+        owner = _owner(kind, tuple(path[: depth + 1]))
+        if owner is None:
             continue
         given = value_at(tables, path[:depth]) or {}
         for group in (*owner.EXACTLY_ONE, *owner.AT_MOST_ONE, *owner.REPLACING):
@@ -69,6 +75,13 @@ def _excluded(
                 yield from ((*path[:depth], key) for key in others if key in given)
     if tuple(path[-2:]) == ("lubrication", "oil_volume") and value_at(tables, _SUMP) is not None:
         yield _SUMP
+
+
+@lru_cache(maxsize=256)
+def _owner(kind: type[Table], path: tuple[str, ...]) -> type[Table] | None:
+    """The table that holds a key."""
+    owner = locate(kind, path).owner
+    return owner if owner is not None and issubclass(owner, Table) else None
 
 
 def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:

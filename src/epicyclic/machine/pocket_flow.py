@@ -106,9 +106,14 @@ def flow_family(duty: MeshDuty) -> FlowFamily:
         duty.gears.tools,
         duty.drives1,
     )
-    # time steps follow a tooth of gear 1 of the pockets
-    one, two = ((it.teeth, it.tip_radius, it.root_radius) for it in (mesh.gear1, mesh.gear2))
-    if settings.any_order and not mesh.internal and one > two:
+    # time steps follow a tooth of gear 1 of the pockets; of equal gears it is the one that drives
+    one, two = (
+        (it.teeth, it.tip_radius, it.root_radius, it.thickness_half_angle)
+        for it in (mesh.gear1, mesh.gear2)
+    )
+    sizes = ((a, b) for a, b in zip(one, two, strict=True) if not math.isclose(a, b))
+    larger = next((a > b for a, b in sizes), not drives1)
+    if settings.any_order and not mesh.internal and larger:
         mesh = replace(mesh, gear1=mesh.gear2, gear2=mesh.gear1)
         tools, drives1 = tools[::-1], not drives1
     return FlowFamily(

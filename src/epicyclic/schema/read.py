@@ -53,7 +53,12 @@ def with_unit_of_key(value: Any, unit: str) -> Any:
     if isinstance(value, np.ndarray | list | tuple):
         return [with_unit_of_key(item, unit) for item in value]
     is_number = isinstance(value, numbers.Real) and not isinstance(value, bool | np.bool)
-    return f"{float(value)!r} {unit}" if is_number and unit not in ("", "1") else value
+    if not is_number or unit in ("", "1"):
+        return value
+    try:
+        return f"{float(value)!r} {unit}"
+    except OverflowError:  # a whole number of hundreds of digits
+        return f"inf {unit}"
 
 
 def control_problems(tables: Any, path: tuple[str | int, ...] = ()) -> Iterator[Problem]:
@@ -170,7 +175,10 @@ class _BadLine(NamedTuple):
     reason: str
 
 
-def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
+def read_file(
+    path: Path,
+    start: str = "'epicyclic init' writes one to start from.",  # Where a whole file is found.
+) -> tuple[dict[str, Any], list[Problem]]:
     """The tables of a TOML file, and the problems of its lines.
 
     A value that only lacks its quotes is read as if it had them, so that the rest of the file can
@@ -180,7 +188,7 @@ def read_file(path: Path) -> tuple[dict[str, Any], list[Problem]]:
     try:
         tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE))
         if not tables and not bad_lines:
-            refuse("is empty.", "Fill it; 'epicyclic init' writes one to start from.")
+            refuse("is empty.", f"Fill it; {start}")
         return _take_marks(plain(tables), bad_lines)
     except InputError as error:
         raise InputError(error.problems, one_line(str(path), _LONGEST_PATH)) from None

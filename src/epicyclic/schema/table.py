@@ -25,6 +25,8 @@ class Table(BaseModel):
 
     ``STAND_INS`` are keys on which no check across tables depends. If such a key cannot be used,
     the checks go on with the value given here (None: with the default).
+
+    ``SHOWN_BY`` is the command that shows the keys of a whole file.
     """
 
     model_config = ConfigDict(
@@ -38,6 +40,7 @@ class Table(BaseModel):
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = ()
     REPLACING: ClassVar[tuple[tuple[str, ...], ...]] = ()
     STAND_INS: ClassVar[dict[str, object]] = {}
+    SHOWN_BY: ClassVar[str] = "'epicyclic init'"
 
     def __repr_args__(self) -> Iterable[tuple[str, Any]]:
         """Keys with their values as a file has them, with units."""

@@ -22,6 +22,7 @@ from epicyclic.schema.fields import (
     choices_of,
     describe,
     dict_value,
+    is_array,
     locate,
     quantity_of,
     table_of,
@@ -45,7 +46,7 @@ _REMEDIES = {
 }
 
 
-def translate(table: type[BaseModel], detail: ErrorDetails) -> Problem:
+def translate(table: type[Table], detail: ErrorDetails) -> Problem:
     """What pydantic found wrong in a case of kind `table`, as a problem of the user's.
 
     Unknown keys are left to `unknown_key`.
@@ -53,7 +54,7 @@ def translate(table: type[BaseModel], detail: ErrorDetails) -> Problem:
     place = locate(table, detail["loc"])
     kind = detail["type"]
     if kind == "missing":
-        return _missing(place)
+        return _missing(place, table.SHOWN_BY)
     key, given = dotted(place.path), written(detail["input"])
     context = detail.get("ctx", {})
     if kind in _OWN:
@@ -90,11 +91,11 @@ def unknown_key(
     return Problem(dotted(place.path), written(value), "is not a known key.", remedy)
 
 
-def _missing(place: Place) -> Problem:
+def _missing(place: Place, shown_by: str) -> Problem:
     key, name = dotted(place.path), place.path[-1]
     if table_of(place.annotation) is not None and len(place.path) == 1:
         return Problem(
-            key, "", f"the table [{key}] is missing.", "Add it; 'epicyclic init' shows its keys."
+            key, "", f"the table [{key}] is missing.", f"Add it; {shown_by} shows its keys."
         )
     allowed = describe(place.annotation, place.metadata)
     owner = dotted(place.path[:-1])
@@ -203,7 +204,7 @@ def validate(
         problems += [unknown_key(place, value_at(raw, place.path), tables) for place in unknown]
         raw = _mend_names(raw, unknown)
         case, details = _try(kind, raw)
-    alternatives = _check_alternatives(kind, raw)
+    alternatives = _check_alternatives(kind, {k: v for k, v in raw.items() if k not in sound})
     problems += alternatives + [translate(kind, detail) for detail in details]
     if case is not None and not problems:
         given = {name: getattr(case, name) for name in tables_of(kind)}
@@ -272,9 +273,11 @@ def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]
     """One of each group of alternatives must be given, and that one whole."""
     problems = []
     for name, table in tables_of(kind).items():
-        given = {name: raw.get(name)}
+        if name not in raw:
+            continue
+        given = {name: raw[name]}
         has_names = dict_value(kind.model_fields[name].annotation) is not None  # [states.NAME]
-        if has_names and isinstance(raw.get(name), dict):
+        if has_names and isinstance(raw[name], dict):
             given = {f"{name}.{dotted([key])}": item for key, item in raw[name].items()}
         for key, item in given.items():
             if isinstance(item, dict):
@@ -321,7 +324,8 @@ def _sound_sections(
     """The tables that are sound, or can be made so by stand-ins for their `bad` keys."""
     sound: dict[str, Table] = {}
     for name, table in tables_of(kind).items():
-        if dict_value(kind.model_fields[name].annotation) is not None:
+        annotation = kind.model_fields[name].annotation
+        if dict_value(annotation) is not None or is_array(annotation):
             continue
         if name not in raw:
             default = kind.model_fields[name].default

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import date, time
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from epicyclic.case.gear_tables import SharedGears
 from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.tables.uncertainty import DistributionTable
 from epicyclic.case.train_tables import ListedSet, PlanetarySet
-from epicyclic.messages import dotted, key_parts
+from epicyclic.messages import key_parts
 from epicyclic.schema.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 
 _EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
@@ -235,6 +235,11 @@ def toml_key(name: str) -> str:
     return name if bare else json.dumps(name, ensure_ascii=False)
 
 
+def toml_keys(names: Sequence[str]) -> str:
+    """A key within tables, whole: where a message would show a part of a name, it is another."""
+    return ".".join(map(toml_key, names))
+
+
 def toml_value(value: Any) -> str:
     """`value` as TOML writes it on one line; text, numbers and booleans are those of JSON."""
     if isinstance(value, Mapping):
@@ -289,24 +294,26 @@ class _TrainWriter(_Writer):
         """A table of the user's names, one line each."""
         lines = ["", f"[{key}]".ljust(COMMENT_COLUMN) + f"# {self.about.get(key, _LISTS[key])}"]
         for name, value in self.tables.get(key, {}).items():
-            lines.append(self._line(f"{toml_key(name)} = {toml_value(value)}", dotted([key, name])))
+            lines.append(
+                self._line(f"{toml_key(name)} = {toml_value(value)}", toml_keys([key, name]))
+            )
         for name in self._told(key):
             if name not in self.tables.get(key, {}):
-                lines.append(self._line(f"# {toml_key(name)} = ...", dotted([key, name])))
+                lines.append(self._line(f"# {toml_key(name)} = ...", toml_keys([key, name])))
         return lines
 
     def states(self) -> list[str]:
         """What brakes and clutches do, state by state."""
         lines = []
         for name, state in self.tables.get("states", {}).items():
-            key = dotted(["states", name])
+            key = toml_keys(["states", name])
             lines += ["", self._line(f"[{key}]", key)]
             lines += [f"{toml_key(inner)} = {toml_value(value)}" for inner, value in state.items()]
         return lines
 
     def one_set(self, name: str) -> list[str]:
         """The tables of a set."""
-        place = dotted(["sets", name])
+        place = toml_keys(["sets", name])
         values = self.tables["sets"][name]
         form = form_of_set(values)[0] or PlanetarySet
         fields = {key: field for key, field in form.model_fields.items() if _is_table(field)}
@@ -332,14 +339,14 @@ class _TrainWriter(_Writer):
             line
             for name, gear in gears.items()
             if name not in SharedGears.model_fields
-            for line in self.table_lines(f"{place}.{dotted([name])}", one, gear)
+            for line in self.table_lines(f"{place}.{toml_keys([name])}", one, gear)
         ]
 
     def parts(self, kind: str) -> Iterator[str]:
         """Bearings and the like."""
         given = self.tables.get(kind, {})
         for name in dict.fromkeys([*given, *self._told(kind)]):
-            key = dotted([kind, name])
+            key = toml_keys([kind, name])
             mark = "" if name in given else "# "
             yield ""
             yield self._line(f"{mark}[{key}]", key)

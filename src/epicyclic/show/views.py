@@ -6,12 +6,12 @@ Matplotlib.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Self, cast
 
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
@@ -20,7 +20,7 @@ from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.result import result as plain
 from epicyclic.study import heat
 from epicyclic.study import solve as study
-from epicyclic.study.load import load_case
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import operating_line
 
 if TYPE_CHECKING:
@@ -165,10 +165,8 @@ def _record_of(result: plain.Result) -> ResultRecord:
     return record(cast(Case, result.case), result=result)
 
 
-def solve(
-    case: Case | str | Path | Mapping[str, Any], *, flow_tables: FlowTables | None = None
-) -> Result:
-    """The losses of a case.
+def solve(case: CaseSource, *, flow_tables: FlowTables | None = None) -> Result:
+    """Compute the losses of a case.
 
     Parameters
     ----------
@@ -181,27 +179,25 @@ def solve(
     Returns
     -------
     Result
-        Its status is ``unphysical`` if a loss is below zero, energy does not balance, or teeth or
-        rollers carry or resist with more than any can; the first of its warnings says why.
+        Its status is ``unphysical`` if a loss is negative, the energy does not balance, or loads or
+        resistances exceed any physical limit; the first of its warnings says why.
 
     Raises
     ------
     ConvergenceError
         If an iteration ends without a solution, or a loss is not a finite number.
     """
-    if isinstance(case, str | Path | Mapping):
-        case = load_case(case)
-    return Result.of(study.solve(case, flow_tables=flow_tables))
+    return Result.of(study.solve(as_case(case), flow_tables=flow_tables))
 
 
 def solve_for(
-    case: Case,
+    case: CaseSource,
     quantity: str,
     temperature: str | float,
     *,
     progress: Callable[[int, int], object] | None = None,
 ) -> heat.Found:
-    """The cooling, flow or power with which the oil has a temperature.
+    """The cooling power, oil flow or input power that gives an oil temperature.
 
     Parameters
     ----------
@@ -212,7 +208,7 @@ def solve_for(
     temperature : str or float
         Temperature of the oil in the gearbox: text with a unit, or in kelvin.
     progress : callable, optional
-        Called with the number of settled states found, and of those expected.
+        Called with the numbers of steady states found and expected.
 
     Returns
     -------
@@ -232,5 +228,5 @@ def solve_for(
     >>> round(found.result.heat.oil - 273.15, 4)
     110.0
     """
-    found = heat.solve_for(case, quantity, temperature, progress=progress)
+    found = heat.solve_for(as_case(case), quantity, temperature, progress=progress)
     return replace(found, result=Result.of(found.result))

@@ -16,6 +16,7 @@ from epicyclic.machine.heat import COLDEST, HOTTEST
 from epicyclic.messages import refused, written
 from epicyclic.result.result import HeatBalance, Result
 from epicyclic.schema.fields import quantity_of
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import solve
 from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
 
@@ -33,13 +34,13 @@ MOST_STEPS, STEP = 6, 4.0
 # --- what a result says about its temperatures ----------------------------------------------------
 
 
-def heat_balance(case: Case) -> HeatBalance:
-    """Temperatures of all parts of a gearbox, and the paths of its heat.
+def heat_balance(case: CaseSource) -> HeatBalance:
+    """Temperatures of all parts of a gearbox, and the heat paths.
 
     Parameters
     ----------
     case : PlanetaryCase or GearPairCase
-        Whatever its ``models.temperatures`` is, the network of all its parts is solved.
+        The network of all parts is solved, whatever its ``models.temperatures`` is.
 
     Returns
     -------
@@ -48,9 +49,9 @@ def heat_balance(case: Case) -> HeatBalance:
     Raises
     ------
     InputError
-        If the case has no oil, or its heat no way out.
+        If the case has no oil, or the heat has no path out.
     ConvergenceError
-        If it runs away: losses and heat find no balance.
+        In case of thermal runaway: losses and heat flows do not balance.
 
     Examples
     --------
@@ -62,7 +63,7 @@ def heat_balance(case: Case) -> HeatBalance:
     >>> heat.temperatures["pinion"] > heat.oil > heat.given["oil_inlet"]
     True
     """
-    found = solve(with_network(case)).heat
+    found = solve(with_network(as_case(case))).heat
     assert found is not None
     return found
 

@@ -25,6 +25,8 @@ class ForeignCase(Protocol):
 
 
 CaseReader = Callable[[str | Path], ForeignCase]
+CaseSource = Case | str | Path | Mapping[str, Any]
+"""A case, or what `load_case` reads."""
 
 
 def reader_of(path: str | Path) -> CaseReader | None:
@@ -45,7 +47,7 @@ def load_case(
         A TOML file, a REXS file (``.rexs``, ``.rexsj``, ``.rexsz``), the name of a built-in case
         (``"talbot-2012"``, ``"talbot-2012-n6-40C"``), or the tables of a case.
     changes : mapping of str to object, optional
-        Keys to change, as in `PlanetaryCase.updated`; with a REXS file, those that it lacks too.
+        Keys to change, as in `PlanetaryCase.updated`; also keys missing in a REXS file.
 
     Returns
     -------
@@ -54,8 +56,13 @@ def load_case(
     Raises
     ------
     InputError
-        With every problem found, not only the first.
+        With all problems found.
     """
     if isinstance(source, str | Path) and (reader := reader_of(source)) is not None:
         return reader(source).case(changes)
     return read_case(source, changes)
+
+
+def as_case(source: CaseSource) -> Case:
+    """The case that a function was given, or that `load_case` reads there."""
+    return source if isinstance(source, Case) else load_case(source)

@@ -25,6 +25,7 @@ from epicyclic.losses.pocket_tables import (
 from epicyclic.machine.pocket_flow import POCKETING_SOURCE, flow_request, pocketing_method
 from epicyclic.oil.oil import MixtureState
 from epicyclic.result.result import origin
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES
 from epicyclic.study.pockets import mesh_duties
 from epicyclic.study.sweeps.run import SweepPlan, make_plan
@@ -41,7 +42,7 @@ _DRIVERS = (1, 2)
 
 
 def pocketing_table(
-    case: Case,
+    case: CaseSource,
     speeds: Iterable[Any],
     temperatures: Iterable[Any] | None = None,
     *,
@@ -82,7 +83,7 @@ def pocketing_table(
         interpolation.
     """
     runner = Runner(jobs, dask, shard, journal, progress)
-    plan = make_table_plan(case, speeds, temperatures)
+    plan = make_table_plan(as_case(case), speeds, temperatures)
     return table_dataset(plan, runner.run(plan))
 
 

@@ -28,6 +28,7 @@ from epicyclic.machine.element import Fluids, joined_key
 from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.pocket_flow import flow_family, oil_in_mesh, pocket_notes, solve_pockets
 from epicyclic.result.result import of_gear
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.meshes import Variable, variable
 from epicyclic.study.solve import build_computed
 from epicyclic.units import (
@@ -54,7 +55,9 @@ _LIFE = ("tooth", "roll")
 _AXIS = "axis"
 
 
-def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[str, xr.Dataset]:
+def pocket_details(
+    case: CaseSource, meshes: Collection[str] | None = None
+) -> dict[str, xr.Dataset]:
     """Shape, pressure, flow and power of the pockets of every mesh of a case.
 
     Parameters
@@ -83,6 +86,7 @@ def pocket_details(case: Case, meshes: Collection[str] | None = None) -> dict[st
     ConvergenceError
         If the flow is not found.
     """
+    case = as_case(case)
     built = build_computed(case)
     fluids = built.fluids if built.thermal is None else built.loaded_state().fluids
     found = {}

@@ -17,6 +17,7 @@ from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
 from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
 from epicyclic.result.physical import judged
 from epicyclic.result.result import Result
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES
 
 # The sets of a case whose losses are computed.
@@ -119,12 +120,12 @@ def flows_around(
     return found
 
 
-def mesh_contacts(case: Case) -> dict[str, MeshContact]:
+def mesh_contacts(case: CaseSource) -> dict[str, MeshContact]:
     """Conditions along the contact lines of every mesh of a case; empty without load or motion.
 
     Of a planetary set both meshes of the most loaded planet.
     """
-    built = build_computed(case)
+    built = build_computed(as_case(case))
     state = built.loaded_state()
     contacts = {
         key: load_mesh(duty, state.fluids.at(key), state.fluids.oil)
@@ -133,12 +134,12 @@ def mesh_contacts(case: Case) -> dict[str, MeshContact]:
     return {key: contact for key, contact in contacts.items() if contact is not None}
 
 
-def loaded_meshes(case: Case) -> dict[str, LoadedMesh]:
+def loaded_meshes(case: CaseSource) -> dict[str, LoadedMesh]:
     """Every mesh of a case under load, with elastic teeth whatever ``models.load_distribution`` is.
 
     Line loads, load of each pair of teeth, contact pattern, transmission error and stiffness over
     the mesh period; of a planetary set for the most loaded planet. Empty without load.
     """
-    built = build_computed(case)
+    built = build_computed(as_case(case))
     duties = built.loaded_duties(built.loaded_state())
     return {key: elastic_loads(duty) for key, duty in duties.items() if duty.torque1 != 0}

@@ -629,14 +629,11 @@ def _decimal_mark(
 
 
 def plain_numbers(source: Source, header: str, column: pa.Array) -> pa.Array:
-    """Cells of a column as plain numbers where they are any, times of day and date in seconds."""
+    """Cells of a column as plain numbers where they are any, times of day in seconds."""
     import pyarrow as pa
     import pyarrow.compute as pc
 
     kind = column.type
-    if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
-        whole = column.cast(pa.timestamp("ns") if pa.types.is_timestamp(kind) else kind)
-        return pc.divide(pc.cast(whole.cast(pa.int64()), pa.float64()), 1e9)
     if not pa.types.is_string(kind):
         return column
     if source.moments and header == _TIME_OF_DATES:
@@ -716,7 +713,9 @@ def _of_parquet(path: Path, name: str, form: TableForm) -> Source:
                 done = 0
                 wanted = list(dict.fromkeys(own[header] for header in chosen))
                 for batch in file.iter_batches(_BATCH_ROWS, columns=wanted):
-                    columns = {header: batch.column(own[header]) for header in chosen}
+                    columns = {
+                        header: _cells(header, batch.column(own[header])) for header in chosen
+                    }
                     yield Piece(np.arange(done, done + batch.num_rows) + 1, columns)
                     done += batch.num_rows
         except (pa.ArrowException, OSError) as error:
@@ -724,6 +723,31 @@ def _of_parquet(path: Path, name: str, form: TableForm) -> Source:
             raise InputError([Problem("", "", allowed, "Write it again.")], name) from None
 
     return _within(Source(name, tuple(headers), batches, "row"), form)
+
+
+_PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+
+
+def _cells(header: str, column: pa.Array) -> pa.Array:
+    """A column of numbers or texts; dates of a column of time in seconds, all others as text."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    kind = column.type
+    if pa.types.is_dictionary(kind) and not pa.types.is_string(kind.value_type):
+        return _cells(header, column.dictionary_decode())
+    if pa.types.is_nested(kind):
+        return pa.array([str(kind)] * len(column))
+    if not pa.types.is_temporal(kind):
+        return column
+    if header.startswith(("time", "duration")) and hasattr(kind, "unit"):
+        counts = column.cast(pa.int32() if kind.bit_width == 32 else pa.int64())
+        # to a part in 2^53
+        return pc.divide(counts.cast(pa.float64(), safe=False), _PER_SECOND[kind.unit])
+    texts = column.cast(pa.string())
+    if pa.types.is_duration(kind):  # else a bare number
+        return pc.binary_join_element_wise(texts, kind.unit, " ")
+    return texts
 
 
 def _of_frame(table: Any, form: TableForm) -> Source:
@@ -750,7 +774,7 @@ def _of_frame(table: Any, form: TableForm) -> Source:
             yield Piece(
                 lines,
                 {
-                    header: columns[headers.index(header)].slice(start, _BATCH_ROWS)
+                    header: _cells(header, columns[headers.index(header)].slice(start, _BATCH_ROWS))
                     for header in chosen
                 },
             )

@@ -27,6 +27,7 @@ from epicyclic.messages import did_you_mean, refused, written
 from epicyclic.oil.oil import mixture_state
 from epicyclic.result.result import origin
 from epicyclic.schema.read import plain
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.meshes import variable
 from epicyclic.study.pockets import mesh_duties
 from epicyclic.study.sweeps.runner import HERE, Plan, Progress, Row, Rows, Runner
@@ -448,7 +449,7 @@ def _geometry(point: PocketVariant) -> tuple[Any, ...]:
 
 
 def pocketing_study(
-    case: Case,
+    case: CaseSource,
     what: Iterable[str] = tuple(STUDIES),
     *,
     mesh: str | None = None,
@@ -490,7 +491,7 @@ def pocketing_study(
         If a study, mesh or value cannot be, or the journal is that of another study.
     """
     runner = Runner(jobs, dask, shard, journal, progress)
-    plan = make_study(case, what, mesh=mesh, ranges=ranges or {}, levels=levels or {})
+    plan = make_study(as_case(case), what, mesh=mesh, ranges=ranges or {}, levels=levels or {})
     return study_datasets(plan, runner.run(plan))
 
 

@@ -444,15 +444,19 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else toml_value(value)
 
 
-def _elsewhere(tables: Any, path: tuple[str, ...] = ()) -> Iterator[Problem]:
+def _elsewhere(
+    tables: Any,
+    may_be: Callable[[object], bool] | None = None,  # Default: names without a folder.
+    path: tuple[str, ...] = (),
+) -> Iterator[Problem]:
     """Keys that name files elsewhere than beside the case: pages do not open those."""
     if isinstance(tables, Mapping):
         for name, value in tables.items():
-            yield from _elsewhere(value, (*path, *key_parts(name)))
+            yield from _elsewhere(value, may_be, (*path, *key_parts(name)))
     elif isinstance(tables, list | tuple):
         for item in tables:
-            yield from _elsewhere(item, path)
-    elif path and path[-1] in FILE_KEYS and not _is_name(tables):
+            yield from _elsewhere(item, may_be, path)
+    elif path and path[-1] in FILE_KEYS and not (may_be or _is_name)(tables):
         allowed = "must be the name of a file beside the case, because the app opens no others."
         remedy = "Upload the file together with the case, and give its name."
         yield Problem(dotted(path), written(tables), allowed, remedy)
@@ -516,6 +520,21 @@ def received(
     desk = opened(str(folder / cases[0]), cases[0])
     raise_any(_elsewhere(desk.tables), desk.source)
     return desk
+
+
+def received_task(name: str, content: bytes, folder: Path) -> Path:
+    """An uploaded task of designs, or its dataset; `InputError` if it names files."""
+    path = folder / Path(name).name
+    _keep(folder, path.name, content)
+    if path.suffix.lower() == ".toml":
+        tables, problems = read_file(path)
+        told = "names a file, which the app does not open for a search."
+        named = [
+            Problem(it.key, it.value, told, "Search with 'epicyclic design'.")
+            for it in _elsewhere(tables, lambda file: False)
+        ]
+        raise_any([*problems, *named], path.name)
+    return path
 
 
 def _keep(folder: Path, name: str, content: bytes) -> None:

@@ -31,6 +31,7 @@ from epicyclic.plugins.app.fields import Form
 from epicyclic.plugins.app.views import (
     Chapters,
     CompareView,
+    DesignView,
     Do,
     MapView,
     View,
@@ -320,6 +321,7 @@ class Page:
                     views: dict[str, View] = {
                         "map": MapView(lambda: self.desk, shelf.maps),
                         "compare": CompareView(lambda: self.desk, self._do, self._choose),
+                        "designs": DesignView(shelf.folder, shelf.maps, self._open_design),
                     }
                     self._chapters = Chapters(
                         shelf, self._do, views, self._slow.want, self._show_figures
@@ -345,6 +347,11 @@ class Page:
         self._build_form()
         with self._results:
             ui.timer(0, self._changed, once=True)
+
+    def _open_design(self, desk: Desk) -> None:
+        """Show what follows from a design, in place of the front that it was chosen from."""
+        self._shelf.chapter = ""
+        self._open(desk)
 
     async def _do(self, *work: Any) -> Any:
         return await self._shelf.slow.do(*work, progress=self._doing.progress)

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import json
+import tempfile
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from html import escape
-from typing import Any, Protocol, cast
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from nicegui import background_tasks, events, ui
 from nicegui.element import Element
 
 from epicyclic.errors import EpicyclicError
 from epicyclic.plugins.app import worker as tasks
-from epicyclic.plugins.app.case_form import Desk, Shelf, number_in
+from epicyclic.plugins.app.case_form import Desk, Shelf, number_in, received, received_task
 from epicyclic.plugins.app.worker import IN_PAGE, MESH, Answer, Doing, Ended, Latest, Study, Worker
 from epicyclic.show.html import items_html
 from epicyclic.show.page import Drawing, Gallery, Item, KeyFigure, Listing, Row, Section, Table
 from epicyclic.study.maps.formats import formats
 from epicyclic.study.operating import OPERATING, OperatingValue
+
+if TYPE_CHECKING:
+    from epicyclic.plugins.design.front import Front
 
 # Chapters of a report on the page: tables at once, figures as they are drawn, each to save.
 
@@ -140,7 +145,9 @@ class Place:
                     self.pictures.append(ui.html("", sanitize=False).classes("still"))
                 else:
                     bars = drawing.plot["layout"].get("yaxis", {}).get("ticktext", ())
+                    named = [it for it in drawing.plot["data"] if it.get("showlegend") is not False]
                     height = max(_HEIGHT, _REST + _BAR * len(bars))
+                    height += _ENTRY * max(0, len(named) - _IN_ROWS)
                     chart = ui.plotly({}).classes("still chart").style(f"height: {height}rem")
                     self.pictures.append(chart)
 
@@ -150,6 +157,7 @@ class Place:
 
 
 _HEIGHT, _REST, _BAR = 20.0, 7.0, 1.5  # Of a chart at least; beside its bars; of a bar. [rem]
+_ENTRY, _IN_ROWS = 1.2, 4  # Of an entry of the legend [rem], beyond those that have room.
 _BUTTONS = ["select2d", "lasso2d", "zoomIn2d", "zoomOut2d", "autoScale2d", "toImage"]
 _LEGEND = {"orientation": "h", "yanchor": "top", "y": -0.2, "xanchor": "left", "x": 0}
 
@@ -370,7 +378,7 @@ class TurningView:
 
 
 MAP_STEPS = {"speed": 9, "torque": 13}
-_TOLD = "Keep the case, change it, and come back. Both are shown here side by side."
+_TOLD = "Keep the current case, then change it: both are shown here side by side."
 
 
 class MapView:
@@ -526,7 +534,7 @@ class CompareView:
 
     async def show(self) -> None:
         """Buttons that set the other case, and both side by side."""
-        with ui.row():
+        with ui.row().classes("values"):
             ui.button("Keep the current case for comparison", on_click=self._keep).props(
                 "outline no-caps dense"
             )
@@ -603,6 +611,93 @@ class CompareView:
                 sheet.item(table)
 
 
+class DesignView:
+    """The front of a search for designs; a click on a point opens that design.
+
+    Parameters
+    ----------
+    folder : Path
+        For uploaded files.
+    worker : Worker
+        Searches.
+    then : callable
+        Opens a desk.
+    """
+
+    title = "Designs"
+
+    def __init__(self, folder: Path, worker: Worker, then: Callable[[Desk], None]) -> None:
+        self._folder, self._worker, self._then = folder, worker, then
+        self._front: Front | None = None
+
+    async def show(self) -> None:
+        """Where a file is dropped, and the front of the last one."""
+        ui.label(_DESIGNS).classes("lead")
+        ui.upload(
+            label="Drop a task or candidates.nc here, or choose it",
+            max_file_size=LARGEST_DATASET,
+            auto_upload=True,
+            on_upload=self._take,
+            on_rejected=lambda: self._fail(f"Files of up to {LARGEST_DATASET // 10**6} MB."),
+        ).props("flat bordered accept=.toml,.nc").classes("upload")
+        self._doing = Doing(self._worker.end)
+        self._failed = ui.label().classes("problem")
+        self._failed.set_visibility(False)
+        self._body = ui.element("div")
+        self._fill()
+
+    def age(self) -> None:
+        """Nothing here is of the case of the form."""
+
+    async def follow(self) -> None:
+        """Nothing here is of the case of the form."""
+
+    async def _take(self, event: events.UploadEventArguments) -> None:
+        self._fail("")
+        own = Path(tempfile.mkdtemp(dir=self._folder))
+        try:
+            path = received_task(event.file.name, await event.file.read(), own)
+            with self._doing.shown("designs"):
+                progress = self._doing.progress
+                self._front = await self._worker.do(tasks.designs, path, progress=progress)
+        except (Ended, EpicyclicError) as error:
+            self._fail(str(error))
+        self._fill()
+
+    def _fail(self, text: str) -> None:
+        if not self._failed.is_deleted:
+            self._failed.set_text(text)
+            self._failed.set_visibility(bool(text))
+
+    def _fill(self) -> None:
+        front = self._front
+        if front is None or self._body.is_deleted:
+            return
+        self._body.clear()
+        with self._body:
+            ui.label(front.title).classes("heading")
+            chart = ui.plotly(_chart(front.chart)).classes("still chart").mark("front")
+            chart.style(f"height: {_FRONT_HEIGHT}rem").on("plotly_click", self._open)
+            for table in front.tables:
+                ui.html(_html(table), sanitize=False).classes("text")
+
+    def _open(self, event: events.GenericEventArguments) -> None:
+        number = event.args["points"][0].get("customdata")
+        text = self._front.cases.get(number) if self._front is not None else None
+        if text is not None:
+            own = Path(tempfile.mkdtemp(dir=self._folder))
+            self._then(received([(f"design-{number}.toml", text.encode())], own))
+
+
+_FRONT_HEIGHT = 30  # Of its chart. [rem]
+LARGEST_DATASET = 10_000_000  # Of an uploaded file. [bytes]
+_DESIGNS = (
+    "Gear sets of a given ratio that no other one beats. Give a task of 'epicyclic design', whose "
+    "search begins at once, or the candidates.nc that it has written. A click on a point opens "
+    "that design."
+)
+
+
 # The tabs of the page: chapters of the result, and views that stand beside them.
 
 
@@ -625,7 +720,7 @@ GROUPS = {
     "Result": (),
     "Trust": ("uncertainty", "validity", "methods"),
     "Parts": ("gears", "load", "friction", "bearing", "pockets", "temperatures", "oil"),
-    "Studies": ("map", "compare"),
+    "Studies": ("map", "compare", "designs"),
     "Case": ("inputs", "versions"),
 }
 """Groups of tabs; what none of them names is in the first."""

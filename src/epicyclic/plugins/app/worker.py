@@ -17,7 +17,7 @@ from dataclasses import asdict, dataclass, field
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nicegui import ui
 
@@ -49,6 +49,9 @@ from epicyclic.study.maps.formats import formats, write_map
 from epicyclic.study.operating import AXES, operating_line
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.run import parse_vary
+
+if TYPE_CHECKING:
+    from epicyclic.plugins.design.front import Front
 
 # Work that follows what changes faster than it can be done.
 
@@ -346,8 +349,9 @@ def answered(study: Study, only: str, progress: Progress) -> Answer:
     found = _stored(study, progress)
     drawings = _Drawings(found)
     if not isinstance(found, ResultRecord):
-        figures, sections = map_key_figures(found), map_sections(found, drawings)
-        return Answer(figures, sections, frozenset(drawings.wide), {})
+        # the explorer of a report needs its script
+        sections = [it for it in map_sections(found, drawings) if not it.needs_script]
+        return Answer(map_key_figures(found), sections, frozenset(drawings.wide), {})
     with contact_progress(progress):
         if only in ("", BANDS):
             _known[study] = next(map(known_of, found.group("uncertainty").values()), None)
@@ -437,6 +441,13 @@ def _turning(
     key = what.removeprefix(MESH)
     view, mesh = found.group("views")[key], found.group("meshes")[key]
     return turning_mesh(view, sets[set_of(key)], mesh, *words, phase)
+
+
+def designs(path: Path, progress: Progress) -> Front:
+    """The front of a search for designs."""
+    from epicyclic.plugins.design.front import found_in  # only this view needs it
+
+    return found_in(path, progress)
 
 
 def saved(study: Study, name: str, original: str | None, progress: Progress) -> tuple[str, bytes]:

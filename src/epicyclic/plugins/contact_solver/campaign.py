@@ -102,6 +102,14 @@ class Design:
             "seed": self.seed,
         }
 
+    def check_types(self) -> None:
+        """Raise `TypeError` if anything is not of its type, or there are too many points."""
+        numbers = [self.seed, *(value for _, values in self.axes for value in values)]
+        whole = self.size is None or type(self.size) is int
+        finite = all(type(it) in (int, float) and math.isfinite(it) for it in numbers)
+        if not whole or not finite or not 0 < self.count <= MOST_CONTACTS:
+            raise TypeError("not a design")
+
     def check(self) -> None:
         """Raise `InputError` for every axis that leaves what the solver is tested for."""
         problems = []
@@ -263,7 +271,10 @@ class Campaign(Plan):
 
     @classmethod
     def again(cls, content: Mapping[str, Any], source: str = "") -> Campaign:
-        """The campaign that `describe` described."""
+        """The campaign that `describe` described.
+
+        Raises `TypeError` or `InputError` for what cannot be simulated.
+        """
         designs = tuple(
             Design(
                 item["part"],
@@ -274,7 +285,14 @@ class Campaign(Plan):
             for item in content["designs"]
         )
         settings = json.dumps(content["settings"], sort_keys=True)
-        return cls(settings, designs, content["seed"], content["version"])
+        campaign = cls(settings, designs, content["seed"], content["version"])
+        first = 0
+        for design in designs:
+            design.check_types()
+            design.check()
+            campaign.case(first)
+            first += design.count
+        return campaign
 
     @property
     def batch(self) -> int:
@@ -466,7 +484,7 @@ def oil_tables(oil: str | Path | Mapping[str, Any]) -> Any:
         remedy = did_you_mean(str(oil), library.names("oils")) or "See 'epicyclic oils'."
         problem = Problem("OIL", str(oil), "is neither a .toml file nor a built-in oil.", remedy)
         raise InputError([problem], "the command")
-    tables, problems = read_file(path)
+    tables, problems = read_file(path, "'epicyclic oils' shows the properties of others.")
     raise_any(problems, str(path))
     return {"name": path.stem} | tables
 
@@ -636,13 +654,18 @@ def open_folder(path: Path) -> CampaignFolder:
 
     Raises `InputError` if it holds none, or one of another version of these files.
     """
-    data = _read_json(path / "campaign.json")
+    file = path / "campaign.json"
+    data = _read_json(file)
     try:
-        if data["schema"] != SCHEMA:
-            raise _folder_error(path, f"has files of version {data['schema']}, not {SCHEMA}.")
-        return CampaignFolder(path, Campaign.again(data))
-    except (KeyError, TypeError, AttributeError):
-        raise _folder_error(path / "campaign.json", "is not a plan of a campaign.") from None
+        version = data["schema"]
+        campaign = Campaign.again(data) if version == SCHEMA else None
+    except InputError as error:
+        raise InputError(error.problems, str(file)) from None
+    except (KeyError, TypeError, AttributeError, ValueError, OverflowError):
+        raise _folder_error(file, "is not a plan of a campaign.") from None
+    if campaign is None:
+        raise _folder_error(path, f"has files of version {version}, not {SCHEMA}.")
+    return CampaignFolder(path, campaign)
 
 
 def column_of(name: str) -> str:

@@ -254,7 +254,7 @@ def load_contact_case(
         name, tables = "the command", plain(source)
     else:
         name = str(source)
-        tables, problems = read_file(Path(source))
+        tables, problems = read_file(Path(source), "'epicyclic contact --help' names its tables.")
         tables = _beside(tables, Path(source).parent)
     tables = {"contact": {}, "lubricant": {}} | tables  # so that what they lack is told
     for key, value in (changes or {}).items():

@@ -7,8 +7,10 @@ strengths are bounds: load factors are 1 but for K_A, and limits are higher than
 from __future__ import annotations
 
 import math
+import random
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, cast
 
 import numpy as np
@@ -21,7 +23,7 @@ from epicyclic.gears.gear import BasicRack
 from epicyclic.gears.mesh import closing_number, profile_shift_sum
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design.strength import Material, material_of
-from epicyclic.plugins.design.task import Task
+from epicyclic.plugins.design.task import DutyPoint, Task
 
 FloatArray = NDArray[np.float64]
 Gears = dict[str, FloatArray]
@@ -213,41 +215,62 @@ LAYOUTS: dict[str, Layout] = {
 SHARED = ("planets", "module", "helix", "shift", "distance_shift", "width_ratio", "module2")
 
 
-def enumerate_all(task: Task) -> pd.DataFrame:
-    """Every candidate of a task, one a row: arrangement, teeth by gear, and what is shared."""
-    parts = [_of_arrangement(task, name) for name in dict.fromkeys(task.choices.arrangements)]
-    table = pd.concat(parts, ignore_index=True)
-    if table.empty:
-        raise InputError(
-            [
-                Problem(
-                    "choices.pinion_teeth",
-                    ", ".join(map(str, task.choices.pinion_teeth)),
-                    f"allow no gears of the ratio {task.ratio:g}.",
-                    "Allow more teeth or other arrangements.",
-                )
-            ],
-            task.title,
-        )
-    return table
+MOST_TEETH = 1_000_000  # Combinations of teeth of an arrangement.
 
 
-def _of_arrangement(task: Task, name: str) -> pd.DataFrame:
-    layout, choices = LAYOUTS[name], task.choices
-    teeth = np.array([*layout.teeth(task)], dtype=float).reshape(-1, len(layout.gears))
-    planets = (1,) if name == "pair" else choices.planets
-    later = choices.module if layout.stages == 2 else (math.nan,)
-    axes = (
-        planets, choices.module, choices.helix_angle, choices.profile_shift,
-        choices.distance_shift, choices.width_ratio, later,
-    )  # fmt: skip
-    places = np.indices((len(teeth), *map(len, axes))).reshape(len(axes) + 1, -1)
-    columns = {gear: teeth[places[0], place] for place, gear in enumerate(layout.gears)}
-    columns |= {
-        key: np.array(values, dtype=float)[places[place]]
-        for place, (key, values) in enumerate(zip(SHARED, axes, strict=True), start=1)
-    }
-    return pd.DataFrame({"arrangement": name, **columns})
+def enumerate_all(task: Task) -> tuple[pd.DataFrame, int]:
+    """Candidates of a task, one a row: arrangement, teeth by gear, and what is shared.
+
+    And how many combinations there are: of more than `Search.most_candidates` that many are drawn.
+    """
+    choices = [_Choices(task, name) for name in dict.fromkeys(task.choices.arrangements)]
+    ends = np.cumsum([it.size for it in choices])
+    total, most = int(ends[-1]), task.search.most_candidates
+    if not total:
+        stated = ", ".join(map(str, task.choices.pinion_teeth))
+        told = f"allow no gears of the ratio {task.ratio:g}."
+        remedy = "Allow more teeth or other arrangements."
+        raise InputError([Problem("choices.pinion_teeth", stated, told, remedy)], task.title)
+    numbers = np.arange(total)
+    if total > most:
+        numbers = np.sort(random.Random(task.search.seed).sample(range(total), most))
+    parts = [
+        it.rows(numbers[(numbers >= end - it.size) & (numbers < end)] - (end - it.size))
+        for it, end in zip(choices, ends, strict=True)
+    ]
+    return pd.concat([it for it in parts if len(it)], ignore_index=True), total
+
+
+class _Choices:
+    """All combinations of an arrangement, made when they are asked for."""
+
+    def __init__(self, task: Task, name: str) -> None:
+        self.name, self.layout, choices = name, LAYOUTS[name], task.choices
+        found = [*islice(self.layout.teeth(task), MOST_TEETH + 1)]
+        if len(found) > MOST_TEETH:
+            stated = ", ".join(map(str, choices.pinion_teeth))
+            told = f"allow more than {MOST_TEETH:,} combinations of teeth, arrangement {name}."
+            problem = Problem("choices.pinion_teeth", stated, told, "Narrow it, as in [17, 35].")
+            raise InputError([problem], task.title)
+        self.teeth = np.array(found, dtype=float).reshape(-1, len(self.layout.gears))
+        planets = (1,) if name == "pair" else choices.planets
+        later = choices.module if self.layout.stages == 2 else (math.nan,)
+        self.axes = (
+            planets, choices.module, choices.helix_angle, choices.profile_shift,
+            choices.distance_shift, choices.width_ratio, later,
+        )  # fmt: skip
+        self.shape = (len(self.teeth), *map(len, self.axes))
+        self.size = math.prod(self.shape)
+
+    def rows(self, numbers: NDArray[np.int64]) -> pd.DataFrame:
+        """Some of them."""
+        first, *places = np.unravel_index(numbers, self.shape) if self.size else [numbers] * 8
+        columns = {gear: self.teeth[first, at] for at, gear in enumerate(self.layout.gears)}
+        columns |= {
+            key: np.array(values, dtype=float)[place]
+            for place, key, values in zip(places, SHARED, self.axes, strict=True)
+        }
+        return pd.DataFrame({"arrangement": self.name, **columns})
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,6 +281,7 @@ class Sizes:
     diameter: FloatArray
     width: FloatArray
     mass: FloatArray
+    backlash: FloatArray  # Play of the output with the input held. [rad]
     margins: dict[str, FloatArray]  # By the limit: what is over what must be, 1 or more is met.
     loss: FloatArray  # Less than the load-dependent loss over the cycle can be. [W]
 
@@ -317,7 +341,7 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
         error = np.abs(np.abs(ratio) / task.ratio - 1)
         allowed = max(task.limits.ratio_error, 1e-9)
         least("ratio_error", np.where(error <= allowed, 1.0, allowed / np.maximum(error, 1e-12)))
-        diameter, width, mass = (np.zeros(len(table)) for _ in range(3))
+        diameter, width, mass, backlash = (np.zeros(len(table)) for _ in range(4))
         loss = np.zeros(len(table))
         powers = sum(point.share * point.torque * point.speed for point in task.points)
         power = abs(powers) / sum(point.share for point in task.points)
@@ -368,6 +392,9 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             # bounds of loss and strength
             carried = mesh.torque(z) * np.ones(len(table))
             turning = mesh.speed(z) * np.ones(len(table))
+            # virtual work: the play of a mesh moves the output as its force loads it
+            play = task.choices.backlash / np.cos(base_helix)
+            backlash += np.abs(carried / (z1 * bases * ratio)) * play
             factor = math.pi * (z2 + sign * z1) / (z1 * z2 * np.cos(base_helix))
             factor = np.abs(factor) * (1 - alpha + eps1**2 + eps2**2)
             loss += BOUND_FRICTION * power * np.abs(carried * turning) * np.maximum(factor, 0)
@@ -425,14 +452,14 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
         steps = ("sun", "sun2") if layout.stages == 2 else ("wide", "narrow")
         width = sum((faces[it] for it in steps if it in faces), np.zeros(len(table)))
         width = np.where(width == 0, faces[counted[0]], width)
-        for key, found in (("diameter", diameter), ("width", width), ("mass", mass)):
+        known = {"diameter": diameter, "width": width, "mass": mass, "backlash": backlash}
+        for key, found in known.items():
             limit = getattr(task.limits, key)
             if limit is not None:
                 least(key, limit / found)
         least("assembly", _assembly(layout, z, planets))
-    return Sizes(
-        ratio, diameter, width, mass, {k: np.nan_to_num(v) for k, v in margins.items()}, loss
-    )
+    met = {key: np.nan_to_num(values) for key, values in margins.items()}
+    return Sizes(ratio, **known, margins=met, loss=loss)
 
 
 def _assembly(layout: Layout, z: Gears, planets: FloatArray) -> FloatArray:
@@ -478,25 +505,29 @@ def _mm(value: float) -> str:
     return f"{1e3 * value:.6g} mm"
 
 
+def operation(point: DutyPoint) -> dict[str, str]:
+    """What a case states of an operating point."""
+    return {
+        "torque": f"{point.torque:.9g} N*m",
+        "speed": f"{point.speed * 30 / math.pi:.9g} rpm",
+        "oil_inlet_temperature": f"{point.oil_inlet_temperature - 273.15:.6g} degC",
+    }
+
+
 def case_tables(task: Task, row: Row, point: int = -1) -> dict[str, Any]:
     """The tables of a candidate's case, at the operating point or at one of the cycle."""
     name = str(row["arrangement"])
-    where = task.operation if point < 0 else task.points[point]
-    operation = {
-        "torque": f"{where.torque:.9g} N*m",
-        "speed": f"{where.speed * 30 / math.pi:.9g} rpm",
-        "oil_inlet_temperature": f"{where.oil_inlet_temperature - 273.15:.6g} degC",
-    }
+    at = operation(task.operation if point < 0 else task.points[point])
     common = {"numerics": COARSE} | dict(task.case)
     title = {"title": f"{task.title or 'design'}: {name} {teeth_text(row)}"}
     if name == "pair":
         own = _set_tables(task, row, "1", ("pinion", "gear"))
-        return title | {"kind": "gear_pair", "operation": operation} | own | common
+        return title | {"kind": "gear_pair", "operation": at} | own | common
     if name == "planetary":
         own = _set_tables(task, row, "1", ("sun", "planet", "ring"))
         ends = {"input": "sun", "fixed": "ring"}
-        return title | {"kind": "planetary", "operation": ends | operation} | own | common
-    train = title | {"kind": "train", "operation": {"input": "in", "output": "out"} | operation}
+        return title | {"kind": "planetary", "operation": ends | at} | own | common
+    train = title | {"kind": "train", "operation": {"input": "in", "output": "out"} | at}
     if name == "two-stage":
         sets = {
             "A": _set_tables(task, row, "1", ("sun", "planet", "ring")),

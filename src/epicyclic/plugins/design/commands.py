@@ -12,6 +12,7 @@ import click
 
 from epicyclic.cli.common import (
     case_argument,
+    check_ending,
     draw,
     echo,
     journal_option,
@@ -25,7 +26,7 @@ from epicyclic.cli.common import (
     show,
     tell,
 )
-from epicyclic.files import make_folder
+from epicyclic.files import make_folder, write_file
 
 if TYPE_CHECKING:
     from epicyclic.study.sweeps.runner import Runner
@@ -35,7 +36,17 @@ if TYPE_CHECKING:
 @case_argument
 @set_option
 @json_option
-def strength(case: str, changes: tuple[str, ...], json_file: str | None) -> None:
+@click.option(
+    "--rotor-dynamics",
+    "rotor",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Write inertias, and mean and harmonics of mesh stiffness and transmission error, to a "
+    ".json or .csv file.",
+)
+def strength(
+    case: str, changes: tuple[str, ...], json_file: str | None, rotor: Path | None
+) -> None:
     """Show safeties against damage, bearing lives and masses of a case.
 
     Pitting and bending after ISO 6336-2, -3, loads after -1 with K_Hbeta from the computed load
@@ -49,14 +60,19 @@ def strength(case: str, changes: tuple[str, ...], json_file: str | None) -> None
     epicyclic strength talbot-2012 --set "strength.life=500 h"
     epicyclic strength talbot-2012 --set "strength.gears.ring.material=nitrided-mq" --json -
     """
+    from epicyclic.plugins.design import rotor as dynamics
     from epicyclic.plugins.design.mass import as_list, parts
     from epicyclic.plugins.design.strength import as_dict
     from epicyclic.plugins.design.strength import strength as rate
     from epicyclic.plugins.design.tables import mass_table, tables_of
     from epicyclic.show.terminal import as_on_page, titled
 
+    if rotor is not None:
+        check_ending("--rotor-dynamics", rotor, dynamics.ENDINGS)
     loaded = load_with(case, changes)
     found = rate(loaded)
+    if rotor is not None:
+        write_file(rotor, dynamics.rotor_text(dynamics.rotor_dynamics(loaded), rotor.suffix))
     show(
         lambda: titled(
             loaded.title or loaded.kind,
@@ -79,7 +95,7 @@ def strength(case: str, changes: tuple[str, ...], json_file: str | None) -> None
     type=int,
     default=64,
     show_default=True,
-    help="Paired draws, a power of 2, that tell how probably a design is better; 0: none.",
+    help="Paired samples, a power of 2, for the probability that a design is better; 0: none.",
 )
 @journal_option
 @json_option
@@ -96,11 +112,24 @@ def design(
     """Search for gear sets that meet a TASK: loss against mass, size and transmission error.
 
     TASK is a TOML file with ratio, torque, cycle, limits and choices. All combinations of teeth,
-    module, helix angle, profile shift, width, planets and arrangement are counted; what cannot be
-    is rejected with its reason, the others are solved in the order of what they can reach at best.
-    The best ones are written as cases that 'epicyclic run' accepts.
+    module, helix angle, profile shift, width, planets and arrangement are counted. Impossible ones
+    are rejected with the reason, the others are solved, the most promising ones first. The best
+    ones are written as cases that 'epicyclic run' accepts.
 
-    With --journal an interrupted search goes on where it stopped.
+    With --journal an interrupted search continues where it stopped.
+
+    \b
+    ratio = 4.2
+    [operation]  # where the safeties hold; [[cycle]]: where the loss is averaged
+    torque = "180 N*m"
+    speed = "6000 rpm"
+    oil_inlet_temperature = "80 degC"
+    [choices]
+    module = ["1.5 mm", "2 mm"]
+    [limits]
+    diameter = "260 mm"
+    [case.lubricant]
+    oil = "atf-dexron-vi"
 
     \b
     epicyclic design axle.toml -o axle
@@ -108,25 +137,29 @@ def design(
     """
     from epicyclic.plugins.design import report
     from epicyclic.plugins.design.search import odds, screen, search
-    from epicyclic.plugins.design.task import read_task
-    from epicyclic.schema.read import read_file
+    from epicyclic.plugins.design.task import read_task, task_tables
+    from epicyclic.show.terminal import as_on_page
     from epicyclic.study.bands.plan import check_samples
 
     if draws:
         check_samples(draws)
     read = read_task(task)
-    raw, _ = read_file(task)
+    raw, _ = task_tables(task)
     if output is not None:
         make_folder(output)
     if only_screen:
         found = screen(read)
         found.table.loc[found.table["fate"] == "", "fate"] = "passes the screens"
-        show(lambda: report.fates_table(found), lambda: report.as_json(found, ()), json_file)
+        show(
+            lambda: as_on_page(report.fates_table(found)),
+            lambda: report.as_json(found, ()),
+            json_file,
+        )
         return
     if journal is not None:
         make_folder(journal, "--journal")
     found = search(read, raw, replace(runner, journal=journal), tell=tell)
-    sentences = tuple(odds(found, draws, runner.jobs)) if draws else ()
+    sentences = tuple(odds(found, draws, runner)) if draws else ()
     if output is not None:
         for name in report.write_all(found, sentences, output):
             echo(f"Wrote {name}.")
@@ -154,7 +187,7 @@ def design(
 @click.option(
     "--tolerance",
     metavar="LENGTH",
-    help='Of every amount, 95 % either way, as in "3 um": gives the bands.',
+    help='Tolerance of every varied amount (95 %), as in "3 um"; adds bands.',
 )
 @click.option(
     "--objective",
@@ -181,9 +214,9 @@ def relief(
     journal: Path | None,
     runner: Runner,
 ) -> None:
-    """Show loss against transmission error, pressure and flash over micro-geometry.
+    """Show how micro-geometry trades loss against transmission error, pressure and flash.
 
-    All combinations of the values are solved; those that no other one beats are marked.
+    All combinations of the values are solved; the Pareto-optimal ones are marked.
 
     \b
     epicyclic relief talbot-2012 --set "sun.micro_geometry.tip_relief_roll_length=2 mm"

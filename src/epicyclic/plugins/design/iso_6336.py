@@ -196,6 +196,11 @@ class Excitation:
     form_deviation: float  # f_f_alpha less running-in. [m]
     tip_relief: float  # C_a, of either gear the smaller one. [m]
 
+    def transverse_share(self, load: float, contact_ratio_factor: float) -> float:
+        """K_Halpha, at most that of all load on one pair of teeth. ISO 6336-1. [1]"""
+        most = self.total_contact_ratio / (self.contact_ratio * contact_ratio_factor**2)
+        return max(1.0, min(self.transverse_factor(load), most))
+
     def transverse_factor(self, load: float) -> float:
         """K_Halpha at F_tH over the face width [N/m], at least 1. ISO 6336-1, Eq. 73, 74. [1]"""
         open_ = 0.4 * self.stiffness * self.pitch_deviation / load
@@ -225,7 +230,8 @@ class Excitation:
         below = 0.32 * pitch + c2 * form + c3 * relief
         main = 1 + 0.32 * pitch + c2 * form + c4 * relief
         above = 0.47 * pitch + c6 * form + c7
-        if resonance <= 0.85:
+        lightly = min(load / 100e3, 1.0)  # below 100 N/mm the resonance is wider
+        if resonance <= 0.5 + 0.35 * math.sqrt(lightly):
             return 1 + resonance * below
         if resonance <= 1.15:
             return main

@@ -215,11 +215,28 @@ def integral_scuffing_temperature(
     Examples
     --------
     >>> round(integral_scuffing_temperature(14, 220e-6, 1.0) - 273.15, 2)
-    455.18
+    455.17
     """
     torque = SCUFFING_TORQUES[stage] * lubricant_factor
     flash = 0.2 * torque * math.pow(100 / (viscosity40 * 1e6), 0.02)
     return ZERO_CELSIUS + 80 + 0.23 * torque + 1.5 * structure * flash
+
+
+def integral_temperature(bulk: float, mean_flash: float) -> float:
+    """theta_int with C2 = 1.5. ISO/TS 6336-21, second hand. [K]
+
+    Examples
+    --------
+    >>> bulk = integral_bulk(80 + 273.15, 16.25, 1.0)
+    >>> round(integral_temperature(bulk, 16.25) - 273.15, 2)
+    115.75
+    """
+    return bulk + 1.5 * mean_flash
+
+
+def integral_bulk(oil: float, mean_flash: float, factor: float) -> float:
+    """Bulk temperature of the integral method, C1 = 0.7; `factor` is X_S X_mp. [K]"""
+    return oil + 0.7 * factor * mean_flash
 
 
 def flash_safety(scuffing: float, contact: float, oil: float) -> float:

@@ -39,7 +39,7 @@ def hollow_disc(radius: float, bore: float, width: float, density: float) -> tup
 
     >>> mass, inertia = hollow_disc(0.3501850 / 2, 0.17910 / 2, 0.360, 7830.0)
     >>> round(mass, 1), round(inertia, 2)
-    (200.4, 3.88)
+    (200.5, 3.88)
     """
     mass = math.pi * (radius**2 - bore**2) * width * density
     return mass, mass * (radius**2 + bore**2) / 2

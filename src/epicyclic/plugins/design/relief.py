@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
 from epicyclic.machine.gear_mesh import MeshFigures
-from epicyclic.plugins.design.search import non_dominated
+from epicyclic.plugins.design.search import dominated
 from epicyclic.study.sweeps.run import PointList
 from epicyclic.study.sweeps.runner import Rows, Runner
 
@@ -110,7 +110,7 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
         first = next(iter(rows.failures), "nothing was solved")
         raise InputError([Problem("--vary", "", f"leads to no result: {first}", "Narrow it.")])
     front = np.zeros(len(variants), dtype=bool)
-    front[solved] = non_dominated(nominal[solved])
+    front[solved] = ~dominated(nominal[solved], nominal[solved])
     data: dict[str, Any] = {
         key: ("variant", [variant[key] for variant in variants]) for key in relief.vary
     }

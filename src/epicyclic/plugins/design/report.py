@@ -23,7 +23,9 @@ from epicyclic.study.sweeps.run import csv_safe, write_netcdf
 from epicyclic.units import Length
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
+    from matplotlib.axes import Axes
     from rich.console import RenderableType
 
 SHOWN = {
@@ -32,23 +34,28 @@ SHOWN = {
     "pressure": ("pressure [GPa]", 1.0), "flash": ("flash temperature [K]", 1.0),
 }  # fmt: skip
 
+FRONT = "not beaten"
 
-def fates_table(found: Found) -> RenderableType:
+
+def fates_table(found: Found) -> Table:
     """How many candidates ended how."""
-    rows = tuple((Cell(fate), number(count, "")) for fate, count in found.fates.items())
-    total = (Cell("candidates"), number(len(found.table), "", 7))
-    table = Table(
+    rows = tuple(
+        (Cell(fate), number(count, "", text=f"{count:,}")) for fate, count in found.fates.items()
+    )
+    is_drawn = found.combinations > len(found.table)
+    total = (Cell("candidates"), number(len(found.table), "", text=f"{len(found.table):,}"))
+    return Table(
         ("what became of them", "number"),
         (*rows, total),
         f"Candidates of {found.task.title or 'the task'}",
         frozenset({len(rows)}),
+        note=f"Drawn from {found.combinations:,} combinations." * is_drawn,
     )
-    return as_on_page(table)
 
 
 def tables(found: Found, sentences: Sequence[str]) -> RenderableType:
     """Counts, the front, and the odds."""
-    parts: list[RenderableType] = [fates_table(found), as_on_page(front_table(found))]
+    parts: list[RenderableType] = [*map(as_on_page, (fates_table(found), front_table(found)))]
     if sentences:
         parts.append(as_on_page(Listing(tuple(sentences), "Odds")))
     return spaced(*parts)
@@ -78,7 +85,7 @@ def front_table(found: Found) -> Table:
         *(SHOWN[it][0] for it in objectives), *(it.replace("_", " ") for it in safeties),
     )  # fmt: skip
     note = "* chosen and written. Mass is that of the gears as discs."
-    return Table(head, tuple(rows), "Designs that no other one beats", note=note)
+    return Table(head, tuple(rows), "Pareto-optimal designs", note=note)
 
 
 def as_json(found: Found, sentences: Sequence[str]) -> str:
@@ -86,6 +93,7 @@ def as_json(found: Found, sentences: Sequence[str]) -> str:
     front = json.loads(found.table.loc[found.fronts].to_json(orient="index"))
     content = {
         "title": found.task.title,
+        "combinations": found.combinations,
         "candidates": len(found.table),
         "fates": found.fates,
         "front": {
@@ -129,25 +137,33 @@ def write_all(found: Found, sentences: Sequence[str], folder: Path) -> Iterator[
 
 def front_figure(found: Found) -> Figure:
     """The first two objectives of all solved designs, those of the front marked."""
-    one, two = (*found.task.search.objectives, "mass", "loss")[:2]
-    table = found.table[found.table["loss"].notna()]
-    title = found.task.title or "Designs"
-    with styled_figure(1, 1, title) as (figure, axes):
-        ax = axes[0, 0]
-        front = table.loc[found.fronts].sort_values(one)
-        met = table[table["fate"].isin(["front", "dominated"])]
-        for name, rows, style in (
-            ("miss a limit", table.drop(met.index), {"marker": "x", "alpha": 0.4}),
-            ("meet all limits", met, {"marker": "o", "alpha": 0.5}),
-        ):
-            ax.scatter(SHOWN[one][1] * rows[one], SHOWN[two][1] * rows[two], label=name, **style)
-        ax.plot(SHOWN[one][1] * front[one], SHOWN[two][1] * front[two], "-o", label="not beaten")
-        for place in found.chosen:
-            at = (SHOWN[one][1] * table.loc[place, one], SHOWN[two][1] * table.loc[place, two])
-            ax.annotate(f"{place}", at, textcoords="offset points", xytext=(6, 6))
-        ax.set(xlabel=SHOWN[one][0], ylabel=SHOWN[two][0])
-        ax.legend()
+    with styled_figure(1, 1, found.task.title or "Designs") as (figure, axes):
+        draw_front(found, axes[0, 0])
     return figure
+
+
+def draw_front(found: Found, ax: Axes) -> Axes:
+    """Designs that miss a limit, that meet all, and that no other one beats."""
+    one, two = (*found.task.search.objectives, "mass", "loss")[:2]
+    for (name, rows), marker in zip(front_groups(found).items(), "xoo", strict=True):
+        line, alpha = ("-", 1.0) if name == FRONT else ("none", 0.45)
+        places = SHOWN[one][1] * rows[one], SHOWN[two][1] * rows[two]
+        ax.plot(*places, marker=marker, linestyle=line, alpha=alpha, label=name)
+    for place in found.chosen:
+        row = found.table.loc[place]
+        at = (SHOWN[one][1] * row[one], SHOWN[two][1] * row[two])
+        ax.annotate(f"{place}", at, textcoords="offset points", xytext=(6, 6))
+    ax.set(xlabel=SHOWN[one][0], ylabel=SHOWN[two][0])
+    ax.legend()
+    return ax
+
+
+def front_groups(found: Found) -> dict[str, pd.DataFrame]:
+    """Solved designs as pictures show them, in this order."""
+    table = found.table[found.table["loss"].notna()]
+    met = table["fate"].isin(["front", "dominated"])
+    front = table.loc[found.fronts].sort_values(found.task.search.objectives[0])
+    return {"miss a limit": table[~met], "meet all limits": table[met], FRONT: front}
 
 
 # Relief.

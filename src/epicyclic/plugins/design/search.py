@@ -2,8 +2,9 @@
 
 A candidate is left unsolved only if a solved design beats it even where its loss is the least that
 friction allows. How far losses stay above that least is learned from all solved designs of the same
-arrangement, with a margin, and asked again after every batch. So the front is that of brute force
-as long as `search.solved` is not reached and no candidate loses far less than all solved ones.
+arrangement, with a margin, and asked again after every batch: a guess, so those left out by it are
+counted apart. The front is that of brute force as long as `search.solved` is not reached and no
+candidate loses far less than all solved ones.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -21,11 +22,17 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, read_case
-from epicyclic.errors import InputError, Problem, Status
-from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, enumerate_all, sizes
+from epicyclic.errors import EpicyclicError, InputError, Problem, Status, raise_any
+from epicyclic.plugins.design.candidates import (
+    case_tables,
+    enumerate_all,
+    operation,
+    sizes,
+    teeth_text,
+)
 from epicyclic.plugins.design.strength import strength
-from epicyclic.plugins.design.task import Task, read_task
-from epicyclic.schema.read import read_file
+from epicyclic.plugins.design.task import OF_CASES, Task, read_task, task_tables
+from epicyclic.schema.read import plain
 from epicyclic.study.solve import loaded_meshes, solve
 from epicyclic.study.sweeps.runner import Plan, Row, Rows, Runner, failed_row
 
@@ -34,7 +41,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 SAFETIES = ("pitting", "bending", "micropitting", "scuffing", "bearing_life")
-KNOWN = ("mass", "diameter", "width")  # Objectives that are known without solving.
+KNOWN = ("mass", "diameter", "width", "backlash")  # Without solving.
 SCREENS = {
     "ratio_error": "error of the ratio",
     "assembly": "planets do not fit between the gears at equal angles",
@@ -43,6 +50,7 @@ SCREENS = {
     "diameter": "diameter",
     "width": "width",
     "mass": "mass",
+    "backlash": "backlash of all meshes at the output",
     "contact_ratio": "contact ratio",
     "tip_thickness": "thickness of the tips",
     "pitting": "pitting, bound without solving",
@@ -50,13 +58,20 @@ SCREENS = {
 }
 """What a candidate may be rejected for before it is solved, in the order in which it is asked."""
 UNITS = {
-    "loss": "W", "mass": "kg", "diameter": "m", "width": "m", "transmission_error": "um",
-    "bearing_life": "h",
+    "loss": "W", "mass": "kg", "diameter": "m", "width": "m", "backlash": "rad",
+    "transmission_error": "um", "bearing_life": "h",
 }  # fmt: skip
+SHOWN_LIMITS = {
+    "diameter": (1e3, "mm"), "width": (1e3, "mm"), "mass": (1.0, "kg"),
+    "backlash": (180 / math.pi, "deg"), "bearing_life": (1 / 3600, "h"),
+}  # fmt: skip
+"""What limits are told in."""
+ROUNDED = 5e-4  # Largest error of four digits. [1]
 USUAL_SHARE = 0.6  # Of a computed safety in its bound, before any is solved. [1]
 LOSS_MARGIN = 0.8  # Of the smallest solved loss over its bound, for candidates not solved. [1]
 ENOUGH_SOLVED = 16  # Designs of an arrangement that tell this.
-BEATEN = "beaten by a bound"
+BEATEN = "beaten by a bound"  # Of friction.
+LIKELY = "probably beaten, as losses of solved designs tell"
 POLISH_REACH, POLISH_STEPS = 0.15, 8
 
 
@@ -124,7 +139,7 @@ class Found:
     """The candidates of a task and what became of them.
 
     `table` has a row for each candidate; its column `fate` says why it was rejected, or
-    ``"front"``, ``"dominated"``, ``"beaten by a bound"`` or ``"not solved"``.
+    ``"front"``, ``"dominated"``, `BEATEN`, `LIKELY` or ``"not solved"``.
     """
 
     task: Task
@@ -133,6 +148,8 @@ class Found:
     bounds: pd.DataFrame = field(default_factory=pd.DataFrame)  # `margins` before solving.
     fronts: list[int] = field(default_factory=list)
     chosen: list[int] = field(default_factory=list)
+    combinations: int = 0  # Of which the candidates are all, or drawn.
+    raw: Mapping[str, Any] = field(default_factory=dict)  # The task as its file has it.
 
     @cached_property
     def fates(self) -> dict[str, int]:
@@ -157,19 +174,20 @@ class Found:
             "title": self.task.title,
             "fates": json.dumps(self.fates),
             "objectives": ", ".join(self.task.search.objectives),
+            "combinations": self.combinations,
             "seed": self.task.search.seed,
             "chosen": ", ".join(map(str, self.chosen)),
+            "task": json.dumps(plain(self.raw)),
         }
         return data
 
 
-def non_dominated(values: FloatArray) -> NDArray[np.bool_]:
-    """Which rows no other row beats or equals in all columns and beats in one."""
-    keep = np.ones(len(values), dtype=bool)
-    for place, own in enumerate(values):
-        better = (values <= own).all(axis=1) & (values < own).any(axis=1)
-        keep[place] = not better.any()
-    return keep
+def dominated(values: FloatArray, others: FloatArray) -> NDArray[np.bool_]:
+    """Which rows any of `others` beats or equals in all columns and beats in one."""
+    found = np.zeros(len(values), dtype=bool)
+    for own in others:
+        found |= (own <= values).all(axis=1) & (own < values).any(axis=1)
+    return found
 
 
 def design(
@@ -179,7 +197,7 @@ def design(
     dask: str | None = None,
     journal: str | Path | None = None,
 ) -> Found:
-    """Gear sets that meet a task: those that no other one beats.
+    """Pareto-optimal gear sets that meet a task.
 
     Parameters
     ----------
@@ -189,7 +207,7 @@ def design(
     jobs, dask
         As for `sweep`.
     journal : str or Path, optional
-        Folder that keeps solved designs, from which the same task goes on.
+        Folder for solved designs, from which the same task continues.
 
     Returns
     -------
@@ -203,28 +221,19 @@ def design(
         With all problems of the task, or the limit that no candidate meets, and by how much.
     """
     read = read_task(task)
-    raw = dict(task) if isinstance(task, Mapping) else read_file(Path(task))[0]
+    raw = dict(task) if isinstance(task, Mapping) else task_tables(Path(task))[0]
     return search(read, raw, Runner(jobs, dask, journal=journal))
 
 
 def screen(task: Task) -> Found:
     """All candidates of a task, screened without solving."""
-    table = enumerate_all(task)
-    rng = np.random.default_rng(task.search.seed)
-    most = task.search.most_candidates
-    if len(table) > most:
-        table = table.loc[np.sort(rng.choice(len(table), most, replace=False))]
-        table = table.reset_index(drop=True)
+    table, combinations = enumerate_all(task)
+    _check_tables(task, table.loc[0].dropna().to_dict())
     margins = pd.DataFrame(1.0, index=table.index, columns=[*SCREENS])
     for name in ("ratio", *KNOWN, "bound"):
         table[name] = math.nan
-    for name, own in table.groupby("arrangement"):
-        columns = [*LAYOUTS[str(name)].gears]
-        found = sizes(task, own.dropna(axis=1, how="all")[
-            ["arrangement", *columns, *(it for it in own.columns if it not in columns
-             and own[it].notna().any() and it not in ("arrangement",)
-             and not any(it in layout.gears for layout in LAYOUTS.values()))]
-        ])  # fmt: skip
+    for _, own in table.groupby("arrangement"):
+        found = sizes(task, own.dropna(axis=1, how="all"))
         for key, values in found.margins.items():
             margins.loc[own.index, key] = values
         for key in ("ratio", *KNOWN):
@@ -234,7 +243,22 @@ def screen(task: Task) -> Found:
     for key, text in SCREENS.items():
         fate[(fate == "") & (margins[key] < 1 - 1e-9)] = text
     table["fate"] = fate
-    return Found(task, table, margins, margins.copy())
+    return Found(task, table, margins, margins.copy(), combinations=combinations)
+
+
+def _check_tables(task: Task, row: Mapping[str, Any]) -> None:
+    """Raise what is wrong with the tables that all cases share, as any candidate's case has it."""
+    try:
+        read_case(case_tables(task, row))
+    except InputError as error:
+        raise_any(
+            [
+                replace(it, key=f"case.{it.key}")
+                for it in error.problems
+                if it.key.split(".")[0] in OF_CASES
+            ],
+            task.title or "the task",
+        )
 
 
 def _objectives(found: Found, rows: Any, loss: str) -> FloatArray:
@@ -245,7 +269,7 @@ def _objectives(found: Found, rows: Any, loss: str) -> FloatArray:
             columns.append(np.zeros(len(table)))
         else:
             columns.append(table[loss if name == "loss" else name].to_numpy(dtype=float))
-    return np.array(columns).T.reshape(len(table), -1)
+    return np.column_stack(columns)
 
 
 def search(
@@ -255,6 +279,7 @@ def search(
     *,
     brute: bool = False,  # Solve every candidate that passes the screens.
     tell: Callable[[str], None] = lambda text: None,
+    progress: Callable[[int, int], None] = lambda done, total: None,  # Of the designs to solve.
 ) -> Found:
     """Designs for a task: the non-dominated ones among all that meet the limits.
 
@@ -262,50 +287,65 @@ def search(
     """
     runner = runner or Runner()
     found = screen(task)
+    found.raw = raw
     table = found.table
     for name in ("loss", "transmission_error", *SAFETIES):
         table[name] = math.nan
+    if found.combinations > len(table):
+        tell(f"{len(table):,} candidates are drawn from {found.combinations:,} combinations")
     tell(f"{len(table):,} candidates, {int((table['fate'] == '').sum()):,} pass the screens")
     solved = 0
     limit = len(table) if brute else task.search.solved
-    while solved < limit:
-        table.loc[table["fate"] == BEATEN, "fate"] = ""  # the last batch may have told more
-        left = table.index[table["fate"] == ""]
-        if not brute:
-            left = _not_beaten(found, left)
-        if not len(left):
+    while True:
+        left = table.index[table["fate"] == ""] if brute else _not_beaten(found)
+        if not len(left) or solved >= limit:
             break
         batch = _next(found, left, min(task.search.batch, limit - solved))
         rows = _solve(found, raw, batch, runner)
         _judge(found, batch, rows)
         solved += len(batch)
+        progress(solved, min(limit, solved + len(left) - len(batch)))
         tell(f"{solved} solved, {int((table['fate'] == 'feasible').sum())} meet all limits")
     table.loc[table["fate"] == "", "fate"] = "not solved"
-    good = table.index[table["fate"] == "feasible"]
-    if not len(good):
+    if not (table["fate"] == "feasible").any():
         raise _impossible(found)
-    best = non_dominated(_objectives(found, good, "loss"))
-    table.loc[good, "fate"] = np.where(best, "front", "dominated")
-    found.fronts = [int(it) for it in good[best]]
+    _tell_front(found)
     if task.search.polished and not brute:
-        _polish(found, raw, tell)
+        table["polished_shift"] = math.nan
+        for number in _choose(found)[: task.search.polished]:
+            _polish(found, number, tell)
+        _tell_front(found)  # a polished design may beat others of the front
     found.chosen = _choose(found)
     return found
 
 
-def _not_beaten(found: Found, left: Any) -> Any:
-    """Those of `left` that no feasible design beats at the least loss they can have."""
-    good = found.table.index[found.table["fate"] == "feasible"]
-    if not len(good):
-        return left
-    known, bounds = _objectives(found, good, "loss"), _objectives(found, left, "bound")
+def _tell_front(found: Found) -> None:
+    """Which of the designs that meet all limits no other one beats."""
+    table = found.table
+    good = table.index[table["fate"].isin(["feasible", "front", "dominated"])]
+    values = _objectives(found, good, "loss")
+    beaten = dominated(values, values)
+    table.loc[good, "fate"] = np.where(beaten, "dominated", "front")
+    found.fronts = [int(it) for it in good[~beaten]]
+
+
+def _not_beaten(found: Found) -> Any:
+    """Candidates to solve: no feasible design beats them at the least loss they can have.
+
+    Asked anew of all, as the last batch may have told more.
+    """
+    table = found.table
+    table.loc[table["fate"].isin([BEATEN, LIKELY]), "fate"] = ""
+    left = table.index[table["fate"] == ""]
+    known = _objectives(found, table.index[table["fate"] == "feasible"], "loss")
+    bounds = _objectives(found, left, "bound")
+    learned = bounds.copy()
     if "loss" in found.task.search.objectives:
-        bounds[:, found.task.search.objectives.index("loss")] *= _least_ratios(found, left)
-    beaten = np.zeros(len(left), dtype=bool)
-    for own in known:
-        beaten |= (own <= bounds).all(axis=1) & (own < bounds).any(axis=1)
-    found.table.loc[left[beaten], "fate"] = BEATEN
-    return left[~beaten]
+        learned[:, found.task.search.objectives.index("loss")] *= _least_ratios(found, left)
+    fate = np.where(dominated(learned, known), LIKELY, "").astype(object)
+    fate[dominated(bounds, known)] = BEATEN
+    table.loc[left, "fate"] = fate
+    return left[fate == ""]
 
 
 def _least_ratios(found: Found, rows: Any) -> FloatArray:
@@ -336,7 +376,7 @@ def _next(found: Found, left: Any, count: int) -> list[int]:
     order = np.lexsort((rank, weak))
     few = order[: 40 * count]
     few = few[weak[few] == weak[few[0]]]
-    front = few[non_dominated(bounds[few])]
+    front = few[~dominated(bounds[few], bounds[few])]
     first = set(front.tolist())
     rest = [it for it in order if it not in first]
     return [int(left[it]) for it in [*front, *rest][:count]]
@@ -357,7 +397,7 @@ def _solve(found: Found, raw: Mapping[str, Any], batch: list[int], runner: Runne
 
 def _judge(found: Found, batch: list[int], rows: Rows) -> None:
     """What became of solved candidates."""
-    limits = found.task.limits
+    needed = _needed(found.task)
     for place, number in enumerate(batch):
         if rows.status[place] != "converged":
             text = rows.message[place]
@@ -367,14 +407,12 @@ def _judge(found: Found, batch: list[int], rows: Rows) -> None:
         for name in ("loss", "transmission_error", *SAFETIES):
             value = float(rows.numbers(name)[place])
             found.table.loc[number, name] = value
-            needed = getattr(limits, name, None)
-            if needed is not None and name == "bearing_life":
-                needed = needed / 3600
-            if needed is not None and not math.isnan(value):
+            least = needed.get(name)
+            if least is not None and not math.isnan(value):
                 if name not in found.margins:
                     found.margins[name] = 1.0
-                found.margins.loc[number, name] = value / needed if needed else 1.0
-                if value < needed and fate == "feasible":
+                found.margins.loc[number, name] = value / least if least else 1.0
+                if value < least and fate == "feasible":
                     fate = name.replace("_", " ")
         found.table.loc[number, "fate"] = fate
 
@@ -386,61 +424,90 @@ def _impossible(found: Found) -> InputError:
     usable = margins[~refused] if (~refused).any() else margins
     nearest = usable.min(axis=1).sort_values(ascending=False).index[0]
     missed = usable.loc[nearest]
-    problems = []
-    for key in missed.index[missed < 1 - 1e-9]:
-        text = SCREENS.get(str(key), str(key).replace("_", " "))
-        short = 100 * (1 - missed[key])
-        row = found.table.loc[nearest]
-        problems.append(
-            Problem(
-                f"limits.{key}" if hasattr(found.task.limits, str(key)) else str(key),
-                "",
-                f"({text}) is missed by {short:.3g} % by the nearest of {len(found.table):,} "
-                f"candidates, a {row['arrangement']} with module {1e3 * row['module']:.3g} mm.",
-                "Relax this limit, or allow more choices.",
-            )
-        )
+    row = found.table.loc[nearest]
+    what = (
+        f"the nearest of {len(found.table):,} candidates, "
+        f"{row['arrangement']} {teeth_text(row)} with module {1e3 * row['module']:.3g} mm"
+    )
+    problems = [
+        _missed(found.task, str(key), float(missed[key]), what, bool(np.isnan(row["loss"])))
+        for key in missed.index[missed < 1 - 1e-9]
+    ]
     if not problems:
         fates = "; ".join(f"{count} {fate}" for fate, count in found.fates.items())
         problems = [Problem("search", "", f"found no design: {fates}.", "Raise search.solved.")]
     return InputError(problems, found.task.title or "the task")
 
 
-def _polish(found: Found, raw: Mapping[str, Any], tell: Callable[[str], None]) -> None:
-    """Better profile shifts of the best designs, by a bounded search along x of the sun."""
+def _missed(task: Task, key: str, margin: float, what: str, is_bound: bool) -> Problem:
+    """A limit that even the nearest candidate does not meet, and what it reaches."""
+    if not hasattr(task.limits, key):
+        text = f"lead to no design: {SCREENS[key]}, even of {what}."
+        return Problem("choices", "", text, "Allow other numbers of teeth and planets.")
+    scale, unit = SHOWN_LIMITS.get(key, (1.0, ""))
+    limit = getattr(task.limits, key)
+    is_least = key in (*SAFETIES, "contact_ratio", "tip_thickness")
+    reached = limit * margin if is_least else limit / max(margin, 1e-12)
+    safe = reached * (1 - ROUNDED if is_least else 1 + ROUNDED)
+    stated, known, safe = (f"{scale * it:.4g} {unit}".rstrip() for it in (limit, reached, safe))
+    told = f"is missed by {100 * (1 - margin):.3g} %: {what}, has {known}"
+    if is_bound and key in SAFETIES:
+        told += " at best"
+    return Problem(
+        f"limits.{key}", stated, f"{told}.", f"Relax it to {safe}, or allow more choices."
+    )
+
+
+def _needed(task: Task) -> dict[str, float]:
+    """Safeties that must be, and hours of bearings, as `Strength.least` has them."""
+    stated = {name: getattr(task.limits, name) for name in SAFETIES}
+    found = {name: float(it) for name, it in stated.items() if it is not None}
+    if "bearing_life" in found:
+        found["bearing_life"] /= 3600
+    return found
+
+
+def _polish(found: Found, number: int, tell: Callable[[str], None]) -> None:
+    """A better profile shift of a design, by a bounded search along x of the sun."""
     from scipy.optimize import minimize_scalar
 
-    table, task = found.table, found.task
-    table["polished_shift"] = math.nan
-    for number in _choose(found)[: task.search.polished]:
-        start = float(table.loc[number, "shift"])
-        row = table.loc[number].dropna().to_dict()
-        known = float(table.loc[number, "loss"])
+    start, known = (float(found.table.loc[number, name]) for name in ("shift", "loss"))
+    tried: list[dict[str, float]] = []
 
-        def loss_at(shift: float, row: dict[str, Any] = row, known: float = known) -> float:
-            try:
-                numbers = evaluate(task, row | {"shift": float(shift)})
-            except Exception:  # a shift that cannot be made is a bad one, whatever the reason
-                return 10 * known
-            for name in SAFETIES:
-                needed = getattr(task.limits, name, None)
-                scale = 3600 if name == "bearing_life" else 1
-                if needed is not None and numbers.get(name, math.inf) < needed / scale:
-                    return 10 * known
-            return numbers["loss"]
+    def loss_at(shift: float) -> float:
+        made = _shifted(found, number, float(shift))
+        if made is None:
+            return 10 * known
+        tried.append(made)
+        return made["loss"]
 
-        reach = (start - POLISH_REACH, start + POLISH_REACH)
-        best = minimize_scalar(
-            loss_at,
-            bounds=reach,
-            method="bounded",
-            options={"maxiter": POLISH_STEPS, "xatol": 5e-3},
-        )
-        if best.fun < known:
-            numbers = evaluate(task, row | {"shift": float(best.x)})
-            table.loc[number, "polished_shift"] = start
-            table.loc[number, ["shift", *numbers]] = [float(best.x), *numbers.values()]
-            tell(f"design {number}: x {start:.3g} -> {best.x:.3f} saves {known - best.fun:.3g} W")
+    minimize_scalar(
+        loss_at,
+        bounds=(start - POLISH_REACH, start + POLISH_REACH),
+        method="bounded",
+        options={"maxiter": POLISH_STEPS, "xatol": 5e-3},
+    )
+    best = min(tried, key=lambda it: it["loss"], default={"loss": known})
+    if best["loss"] < known:
+        found.table.loc[number, ["polished_shift", *best]] = [start, *best.values()]
+        saved = known - best["loss"]
+        tell(f"design {number}: x {start:.3g} -> {best['shift']:.3f} saves {saved:.3g} W")
+
+
+def _shifted(found: Found, number: int, shift: float) -> dict[str, float] | None:
+    """A design with another profile shift: what changes; None if it misses a limit."""
+    row = found.table.loc[number].dropna().to_dict() | {"shift": shift}
+    own = sizes(found.task, pd.DataFrame([row]))
+    if min(it[0] for it in own.margins.values()) < 1 - 1e-9:
+        return None
+    try:
+        numbers = evaluate(found.task, row)
+    except EpicyclicError:  # a shift that cannot be made is a bad one
+        return None
+    needed = _needed(found.task)
+    if any(numbers.get(name, math.inf) < least for name, least in needed.items()):
+        return None
+    return {"shift": shift, **{name: float(getattr(own, name)[0]) for name in KNOWN}, **numbers}
 
 
 def _choose(found: Found) -> list[int]:
@@ -456,23 +523,24 @@ def _choose(found: Found) -> list[int]:
     return [rows[it] for it in unique]
 
 
-def odds(found: Found, samples: int, jobs: int | None = None) -> list[str]:
+def odds(found: Found, samples: int, runner: Runner | None = None) -> list[str]:
     """Sentences on how probably the first chosen design loses less than the others, or they less.
 
-    At the point of the cycle through which most energy goes, by paired draws.
+    Over the cycle, by paired draws that are the same at all of its points.
     """
     from epicyclic.study.bands.compare_cases import compare_cases
 
-    points = found.task.points
-    work = [abs(point.share * point.torque * point.speed) for point in points]
-    most = work.index(max(work))
-    where = f"{points[most].torque:.4g} N m and {points[most].speed * 30 / math.pi:.4g} rpm"
+    runner, points = runner or Runner(), found.task.points
+    times = [
+        (point.share, {f"operation.{key}": text for key, text in operation(point).items()})
+        for point in points
+    ]
     first, *others = found.chosen
     lines = []
     for other in others:
         data = compare_cases(
-            found.case(other, most), found.case(first, most),
-            samples=samples, seed=found.task.search.seed, jobs=jobs,
+            found.case(other), found.case(first), samples=samples, seed=found.task.search.seed,
+            points=times, jobs=runner.jobs, dask=runner.dask,
         )  # fmt: skip
         total = data.sel(result="total")
         share, mean = float(total.probability), float(total.difference)
@@ -483,7 +551,7 @@ def odds(found: Found, samples: int, jobs: int | None = None) -> list[str]:
             share, mean, low, high = 1 - share, -mean, -high, -low
         lines.append(
             f"Design {better} loses less than design {worse} in {100 * share:.0f} % of {samples} "
-            f"paired draws at {where}: {-mean:.3g} W on average, {-high:.3g} to {-low:.3g} W."
+            f"paired draws over the cycle: {-mean:.3g} W on average, {-high:.3g} to {-low:.3g} W."
         )
     return lines
 

@@ -20,6 +20,7 @@ from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     bulk_rise_of_flash,
     bulk_rise_of_loss,
+    mates_factor,
 )
 from epicyclic.errors import Problem, raise_any
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
@@ -38,6 +39,7 @@ from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design import lubricated
 from epicyclic.plugins.design.mass import gear_body
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import build_computed
 
 FloatArray = NDArray[np.float64]
@@ -215,7 +217,7 @@ class Strength:
         return found
 
 
-def strength(case: Case) -> Strength:
+def strength(case: CaseSource) -> Strength:
     """Safeties of the gears and lives of the planet bearings of a case.
 
     The names say which standards are followed; none is followed in full, see
@@ -245,6 +247,7 @@ def strength(case: Case) -> Strength:
     >>> [mesh.key for mesh in found.meshes]  # doctest: +SKIP
     ['sun_mesh', 'ring_mesh']
     """
+    case = as_case(case)
     return rated(case, build_computed(case))
 
 
@@ -395,20 +398,14 @@ class _Rating:
         computed = face_load_factor(loads, mesh)
         face = table.face_load_factor or computed
         depth = max(abs(it.tip_radius - it.root_radius) for it in (mesh.gear1, mesh.gear2))
-        transverse = table.transverse_load_factor
-        if transverse is None:
-            most = (mesh.transverse_contact_ratio + mesh.overlap_ratio) / (
-                mesh.transverse_contact_ratio * iso.contact_ratio_factor(mesh) ** 2
-            )
-            found = moved.transverse_factor(load * dynamic * face)
-            transverse = max(1.0, min(found, most))
         return LoadFactors(
             application=table.application_factor,
             sharing=sharing,
             dynamic=dynamic,
             face=face,
             face_computed=computed,
-            transverse=transverse,
+            transverse=table.transverse_load_factor
+            or moved.transverse_share(load * dynamic * face, iso.contact_ratio_factor(mesh)),
             face_bending=iso.face_factor_bending(face, width, depth),
         )
 
@@ -548,7 +545,9 @@ class _Rating:
         viscosity40 = oil_state(self.oil, 40 + lubricated.ZERO_CELSIUS).kinematic_viscosity
         factor = self.oil.lubricant_factor.value
         scuffing = lubricated.scuffing_temperature(stage, oil.dynamic_viscosity, factor)
-        integral = scuffed + 1.5 * along
+        rise = lubrication * mates_factor(mates)
+        warmed = bulk if warm else lubricated.integral_bulk(oil.temperature, along, rise)
+        integral = lubricated.integral_temperature(warmed, along)
         most = lubricated.integral_scuffing_temperature(stage, viscosity40, factor)
         hottest = scuffed + float(flash.max())
         ratio = float(film[thinnest]) / roughness
@@ -674,7 +673,7 @@ def life_modification(kappa: float, load_ratio: float) -> float:
     Examples
     --------
     >>> round(life_modification(1.0, 0.2), 2)
-    1.21
+    0.65
     """
     held = min(max(kappa, 0.1), 4.0)
     scale, exponent = (1.3993, 0.054381) if held < 0.4 else (1.2348, 0.19087)

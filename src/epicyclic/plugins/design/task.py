@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from epicyclic.case.case import FILE_KEYS
 from epicyclic.case.tables.base import ShortLength
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.schema.read import plain, read_file
@@ -16,6 +17,7 @@ from epicyclic.schema.validation import validate
 from epicyclic.units import (
     HelixAngle,
     Length,
+    Mass,
     Number,
     Quantity,
     RotationalSpeed,
@@ -26,6 +28,10 @@ from epicyclic.units import (
 Arrangement = Literal["pair", "planetary", "stepped", "wolfrom", "two-stage"]
 Objective = Literal["loss", "mass", "diameter", "width", "transmission_error"]
 Share = Annotated[Number, Field(gt=0, le=1)]
+Planets = Annotated[int, Field(ge=1, le=30)]
+Shift = Annotated[Number, Field(ge=-2, le=2)]
+WidthRatio = Annotated[Number, Field(gt=0, le=10)]
+Play = Annotated[float, Quantity("an angle", "rad", "deg", low=0.0, high=30.0, open_low=True)]
 Angle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
 
 
@@ -41,18 +47,20 @@ class DutyPoint(Table):
 class Choices(Table):
     """What the search may choose; every combination is a candidate."""
 
-    arrangements: tuple[Arrangement, ...] = option(None, ("planetary",))
-    module: tuple[Length, ...] = Field(description="Normal modules.")
-    helix_angle: tuple[HelixAngle, ...] = option(None, ("0 deg",))
+    arrangements: tuple[Arrangement, ...] = option(None, ("planetary",), min_length=1)
+    module: tuple[Length, ...] = Field(description="Normal modules.", min_length=1)
+    helix_angle: tuple[HelixAngle, ...] = option(None, ("0 deg",), min_length=1)
     pressure_angle: Angle = option("alpha_n.", "20 deg")
     pinion_teeth: tuple[int, int] = option("Fewest and most, of the pinion or the sun.", (17, 35))
-    planets: tuple[int, ...] = option("Numbers of planets.", (3,))
-    profile_shift: tuple[Number, ...] = option("x of the pinion or the sun.", (0.0, 0.3))
-    distance_shift: tuple[Number, ...] = option(
-        "Centre distance beyond that of gears without shift, in modules.", (0.0,)
+    planets: tuple[Planets, ...] = option("Numbers of planets.", (3,), min_length=1)
+    profile_shift: tuple[Shift, ...] = option(
+        "x of the pinion or the sun.", (0.0, 0.3), min_length=1
     )
-    width_ratio: tuple[Number, ...] = option(
-        "Face width over reference diameter of pinion or sun.", (0.8,)
+    distance_shift: tuple[Shift, ...] = option(
+        "Centre distance beyond that of gears without shift, in modules.", (0.0,), min_length=1
+    )
+    width_ratio: tuple[WidthRatio, ...] = option(
+        "Face width over reference diameter of pinion or sun.", (0.8,), min_length=1
     )
     step: int = option("Most teeth between both steps of the planet of a Wolfrom set.", 6, ge=1)
     backlash: ShortLength = option("j_bn of every mesh.", "60 um")
@@ -71,7 +79,8 @@ class Limits(Table):
     ratio_error: Number = option("Relative.", 0.03, ge=0, le=0.5)
     diameter: Length | None = option("Of the gears, outside.")
     width: Length | None = option("Of all face widths side by side.")
-    mass: Annotated[float, Quantity("a mass", "kg", "kg", low=0.0, high=1e7)] | None = None
+    mass: Mass | None = option("Of all gears, as discs.")
+    backlash: Play | None = option("Of all meshes, as play of the output with the input held.")
     contact_ratio: Number = option("Least epsilon_alpha + epsilon_beta.", 1.1, ge=1, le=10)
     tip_thickness: Number = option("Least, in normal modules.", 0.2, ge=0, le=1)
     pitting: Number | None = option("Least S_H.", 1.0, ge=0)
@@ -86,7 +95,7 @@ class Limits(Table):
 class Search(Table):
     """How far the search goes."""
 
-    objectives: tuple[Objective, ...] = option("All to be small.", ("loss", "mass"))
+    objectives: tuple[Objective, ...] = option("All to be small.", ("loss", "mass"), min_length=1)
     solved: int = option("Most designs that are solved with all physics.", 60, ge=1, le=100_000)
     batch: int = option("Solved before the search looks again.", 16, ge=1, le=1000)
     polished: int = option("Designs whose profile shift is polished.", 1, ge=0, le=50)
@@ -97,6 +106,8 @@ class Search(Table):
 
 class Task(Table):
     """A whole task."""
+
+    SHOWN_BY: ClassVar[str] = "'epicyclic design --help'"
 
     title: str = ""
     ratio: Number = Field(gt=1, le=1000, description="Speed of the input over that of the output.")
@@ -125,7 +136,7 @@ def read_task(source: str | Path | Mapping[str, Any]) -> Task:
         raw, name = plain(source), "the given tables"
     else:
         name = str(source)
-        raw, problems = read_file(Path(source))
+        raw, problems = task_tables(Path(source))
     found = validate(Task, raw)
     raise_any([*problems, *found.problems], name)
     task = found.case
@@ -133,6 +144,23 @@ def read_task(source: str | Path | Mapping[str, Any]) -> Task:
         raise InputError([Problem("TASK", name, "is not a task.", "See the page on design.")])
     raise_any(_problems(task), name)
     return task
+
+
+def task_tables(path: Path) -> tuple[dict[str, Any], list[Problem]]:
+    """The tables of a task's file, with the places of the files that they name; and problems."""
+    raw, problems = read_file(path, f"{Task.SHOWN_BY} shows one.")
+    if "case" in raw:
+        raw["case"] = _found_from(path.absolute().parent, raw["case"])
+    return raw, problems
+
+
+def _found_from(folder: Path, value: Any, key: str = "") -> Any:
+    """Tables with files in a folder by their whole path: designs are written elsewhere."""
+    if isinstance(value, Mapping):
+        return {name: _found_from(folder, own, name) for name, own in value.items()}
+    if isinstance(value, list):
+        return [_found_from(folder, own, key) for own in value]
+    return str(folder / value) if key in FILE_KEYS and isinstance(value, str) else value
 
 
 def _problems(task: Task) -> list[Problem]:
@@ -144,9 +172,6 @@ def _problems(task: Task) -> list[Problem]:
         problems.append(
             Problem("choices.pinion_teeth", f"{low}, {high}", allowed, "Give [17, 35].")
         )
-    for name in ("module", "helix_angle", "planets", "profile_shift", "width_ratio"):
-        if not getattr(task.choices, name):
-            problems.append(Problem(f"choices.{name}", "[]", "is empty.", "Give one value."))
     tables = task.case if isinstance(task.case, dict) else {}
     for key in tables.keys() - set(OF_CASES):
         allowed = f"is no table that designs share; these are {', '.join(OF_CASES)}."

@@ -18,15 +18,17 @@ from epicyclic.study.bands.plan import (
     INPUT_POWER,
     SHAFT_POWER,
     Outputs,
+    Point,
     Powers,
     SamplePlan,
     check_samples,
     factors_of,
-    known_values,
     outputs_of,
+    values_at,
     without_table,
 )
 from epicyclic.study.bands.samples import probabilities, quantiles, sample_summary
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.runner import Progress, Runner
 
@@ -39,25 +41,30 @@ PAIRS = 256
 
 
 def compare_cases(
-    first: Case,
-    second: Case,
+    first: CaseSource,
+    second: CaseSource,
     *,
     samples: int = PAIRS,
     seed: int = 1,
+    points: Sequence[tuple[float, Point]] = ((1.0, {}),),
     jobs: int | None = None,
     dask: str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """How much more or less the second case loses, with the inputs that both share drawn once.
+    """Difference of the losses of two cases, with the inputs that both share drawn once.
 
     Two cases share an input whose key, value and distribution are equal in both, and the errors of
-    models if both use the same models. All else is drawn for each on its own.
+    models if both use the same models. All other inputs are drawn separately for each case.
 
     Parameters
     ----------
     first, second : PlanetaryCase, GearPairCase or TrainCase
     samples : int, optional
         Pairs of points, a power of 2.
+    points : sequence of (float, mapping), optional
+        Operating points of a cycle: the time spent there, in any unit, and the keys of the cases
+        that change. Results are then means over time; the efficiency is that of the energies. A
+        draw is the same at all points. Default: the cases as they are.
     seed, jobs, dask, progress
         As for `uncertainty`.
 
@@ -76,23 +83,27 @@ def compare_cases(
     ConvergenceError
         If a case, or hardly any pair of samples, can be solved.
     """
-    check_samples(samples)
-    cases = first, second
-    results = [solve(case) for case in cases]
-    values = [known_values(case, result) for case, result in zip(cases, results, strict=True)]
-    shared = _shared(values, results)
-    others = [it for it in values[1] if it.key not in shared]
-    drawn = probabilities([*values[0], *_renamed(others, shared)], samples, seed)
-    keys = [it.key for it in values[0]] + [f"{OWN}{it.key}" for it in others]
+    check_samples(samples, seed)
+    cases, changes = (as_case(first), as_case(second)), [dict(change) for _, change in points]
+    results = [[solve(case.updated(it) if it else case) for it in changes] for case in cases]
+    values = [values_at(case, own[0], changes) for case, own in zip(cases, results, strict=True)]
+    at_points = zip(*values, *results, strict=True)
+    shared = set.intersection(*(_shared(own[:2], own[2:]) for own in at_points))
+    others = [it for it in values[1][0] if it.key not in shared]
+    drawn = probabilities([*values[0][0], *_renamed(others, shared)], samples, seed)
+    keys = [it.key for it in values[0][0]] + [f"{OWN}{it.key}" for it in others]
     rows = dict(zip(keys, drawn, strict=True))
     runner = Runner(jobs, dask, None, None, progress)
-    evaluated = []
-    for case, result, own, mark in zip(cases, results, values, ("", OWN), strict=True):
-        points = np.array(
-            [quantiles(it, rows[it.key if it.key in shared else f"{mark}{it.key}"]) for it in own]
-        )
-        evaluated.append(_evaluate(case, result, own, points, runner))
-    return _dataset(cases, results, evaluated, sorted(shared))
+    weights = np.array([time for time, _ in points]) / sum(time for time, _ in points)
+    evaluated, nominal = [], []
+    for case, own, known, mark in zip(cases, results, values, ("", OWN), strict=True):
+        found = [
+            [quantiles(it, rows[it.key if it.key in shared else f"{mark}{it.key}"]) for it in at]
+            for at in known
+        ]
+        evaluated.append(_evaluate(case, own[0], known, np.array(found), changes, weights, runner))
+        nominal.append(_nominal(own, evaluated[-1][0].names, weights))
+    return _dataset(cases, nominal, evaluated, sorted(shared))
 
 
 def _shared(values: Sequence[Sequence[UncertainValue]], results: Sequence[Result]) -> set[str]:
@@ -121,37 +132,57 @@ def _renamed(values: Sequence[UncertainValue], shared: set[str]) -> list[Uncerta
 
 
 def _evaluate(
-    case: Case, result: Result, values: Sequence[UncertainValue], points: FloatArray, runner: Runner
+    case: Case,
+    result: Result,
+    values: Sequence[Sequence[UncertainValue]],  # At each operating point.
+    drawn: FloatArray,  # Of these values, operating points first.
+    changes: Sequence[Point],
+    weights: FloatArray,
+    runner: Runner,
 ) -> tuple[Outputs, FloatArray]:
-    inputs = [number for number, it in enumerate(values) if not it.is_model_form]
+    inputs = [number for number, it in enumerate(values[0]) if not it.is_model_form]
     outputs = outputs_of(case, result)
     plan = SamplePlan(
         without_table(case),
         outputs,
-        inputs=tuple(values[number] for number in inputs),
-        count=points.shape[1],
-        drawn=(points[inputs],),
+        inputs=tuple(values[0][number] for number in inputs),
+        count=drawn.shape[-1],
+        drawn=tuple(own[inputs] for own in drawn),
+        points=tuple(changes),
     )
     rows = runner.run(plan)
-    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, len(rows))
-    power, shaft = (rows.numbers(name) for name in (INPUT_POWER, SHAFT_POWER))
-    powers = Powers(power, shaft, losses[: len(outputs.losses)].sum(axis=0))
-    return outputs, outputs.of(losses, powers, factors_of(values, points))
+    shape = len(changes), drawn.shape[-1]
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, *shape)
+    power, shaft = (rows.numbers(name).reshape(shape) for name in (INPUT_POWER, SHAFT_POWER))
+    found, entering = [], []
+    for point in range(len(changes)):
+        own = losses[:, point]
+        powers = Powers(power[point], shaft[point], own[: len(outputs.losses)].sum(axis=0))
+        found.append(outputs.of(own, powers, factors_of(values[point], drawn[point])))
+        entering.append(powers.with_loss(found[-1][-2]))
+    return outputs, _over_time(np.array(found), np.array(entering), weights)
+
+
+def _over_time(results: FloatArray, entering: FloatArray, weights: FloatArray) -> FloatArray:
+    """Means over operating points, which come first; the efficiency is that of the energies."""
+    mean: FloatArray = np.tensordot(weights, results, 1)
+    if len(weights) > 1:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mean[-1] = np.maximum(0.0, 1 - mean[-2] / (weights @ entering))
+    return mean
 
 
 def _dataset(
     cases: Sequence[Case],
-    results: Sequence[Result],
+    nominal: Sequence[FloatArray],  # In the order of the outputs.
     evaluated: Sequence[tuple[Outputs, FloatArray]],
     shared: Sequence[str],
 ) -> xr.Dataset:
     import xarray as xr
 
     names = [name for name in evaluated[0][0].names if name in evaluated[1][0].names]
-    one, two = (
-        np.array([found[outputs.names.index(name)] for name in names])
-        for outputs, found in evaluated
-    )
+    places = [[outputs.names.index(name) for name in names] for outputs, _ in evaluated]
+    one, two = (found[own] for own, (_, found) in zip(places, evaluated, strict=True))
     total = names.index("total")
     sound = np.isfinite(one[total]) & np.isfinite(two[total])
     if sound.sum() < 2:
@@ -178,9 +209,9 @@ def _dataset(
             ]  # fmt: skip
         for key, value in zip(columns, values, strict=True):
             columns[key].append(value)
-    nominal = [[_nominal(result, name) for name in names] for result in results]
+    stated = [found[own] for found, own in zip(nominal, places, strict=True)]
     variables: dict[str, Any] = {key: ("result", values) for key, values in columns.items()}
-    variables |= {"first": ("result", nominal[0]), "second": ("result", nominal[1])}
+    variables |= {"first": ("result", stated[0]), "second": ("result", stated[1])}
     units = ["1" if name == "efficiency" else "W" for name in names]
     used = versions()
     return xr.Dataset(
@@ -198,6 +229,11 @@ def _dataset(
     )
 
 
-def _nominal(result: Result, name: str) -> float:
-    value = result.losses[name] if name in result.losses else getattr(result, name)
-    return float("nan") if value is None else float(value)
+def _nominal(results: Sequence[Result], names: Sequence[str], weights: FloatArray) -> FloatArray:
+    """Losses and sums of the case as it is, in the order of `names`."""
+    found = [
+        [it.losses[name] if name in it.losses else getattr(it, name) for name in names]
+        for it in results
+    ]
+    entering = np.array([it.input_power for it in results])
+    return _over_time(np.array(found, dtype=float), entering, weights)

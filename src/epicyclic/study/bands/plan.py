@@ -327,8 +327,10 @@ class SamplePlan(CasePlan):
         return Row(str(Status.CONVERGED), numbers=numbers)
 
 
-def check_samples(samples: int) -> None:
-    """Raise `InputError` for a number that is no power of 2, or too small or large."""
+def check_samples(samples: int, seed: int = 0) -> None:
+    """Raise `InputError` for a number that is no power of 2, too small or large, and for a seed."""
+    if seed < 0:
+        raise one_problem("seed", str(seed), "must be 0 or more.", "Take 1.", "the command")
     if FEWEST <= samples <= MOST and samples & (samples - 1) == 0:
         return
     nearest = 2 ** round(np.log2(min(max(samples, FEWEST), MOST)))
@@ -408,7 +410,7 @@ def sampled_case(
     active: Sequence[bool] | None = None,
 ) -> SampledCase:
     """Samples of a case with the same probabilities of all inputs at each operating point."""
-    values = _values_at(case, result, points)
+    values = values_at(case, result, points)
     (first, *_) = values
     inputs = [
         number
@@ -448,7 +450,7 @@ def nearby_at(
 ) -> tuple[Nearby, ...]:
     """Losses at operating points, at each with every input off by a standard deviation."""
     outputs = outputs_of(case, result)
-    values = _values_at(case, result, points)
+    values = values_at(case, result, points)
     changes = [
         [{**point, **step} for step in ({}, *steps(own))]
         for point, own in zip(points, values, strict=True)
@@ -468,7 +470,7 @@ def nearby_at(
     return tuple(found)
 
 
-def _values_at(
+def values_at(
     case: Case, result: Result, points: Sequence[Point]
 ) -> list[tuple[UncertainValue, ...]]:
     """What is uncertain at each operating point: everywhere the same keys."""

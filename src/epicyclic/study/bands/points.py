@@ -37,6 +37,7 @@ from epicyclic.study.bands.study import (
     summaries,
     uncertainty_study,
 )
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.compute import MapPlan, changes_at, further_values, stored_plan
 from epicyclic.study.maps.cycle import Cycle, open_cycle
 from epicyclic.study.maps.duty import Sums, add_up, cycle_map, parse_temperatures
@@ -68,7 +69,7 @@ UNITS = {"efficiency": "1", TORQUE_LOSS: NEWTON_METRE.display}
 def map_study(data: xr.Dataset, samples: int | None = None, seed: int = 1) -> MapStudy:
     """What has to be solved for the uncertainty of a loss map; see `uncertainty`."""
     count = SAMPLES if samples is None else samples
-    check_samples(count)
+    check_samples(count, seed)
     grid = stored_plan(data)
     points = [grid.changes(number) for number in range(grid.size)]
     sampled = sampled_case(grid.case, solve(grid.case), count, seed, points)
@@ -252,7 +253,7 @@ def cycle_study(
 ) -> CycleStudy:
     """What has to be solved for the uncertainty of the energy of a cycle; see `uncertainty`."""
     count = CYCLE_SAMPLES if samples is None else samples
-    check_samples(count)
+    check_samples(count, seed)
     problems = []
     if celsius is not None and len(celsius) > 1:
         allowed = "must be a single value for an uncertainty analysis."
@@ -357,7 +358,7 @@ class CycleStudy(Study):
 
 
 def uncertainty(
-    source: Case | xr.Dataset,
+    source: CaseSource | xr.Dataset,
     cycle: Any = None,
     temperature: Iterable[Any] | None = None,
     *,
@@ -369,11 +370,11 @@ def uncertainty(
     journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """How well losses and efficiency are known, and what that depends on.
+    """Uncertainty of losses and efficiency, and its causes.
 
-    Inputs and the errors of models, as [uncertainty] of the case states them or as is assumed,
-    are drawn at scrambled Sobol points, twice, and of a single case with each of them exchanged
-    between the two. Over a map and a cycle they are the same at all operating points.
+    Inputs and errors of models have the distributions of [uncertainty] in the case, or default
+    ones. Two sets of scrambled Sobol points are drawn; for a single case each input is also
+    exchanged between them. Over a map or a cycle the samples are the same at all points.
 
     Parameters
     ----------
@@ -414,8 +415,11 @@ def uncertainty(
     ConvergenceError
         If the case itself, or hardly any sample of it, can be solved.
     """
+    import xarray as xr
+
     runner = Runner(jobs, dask, None, journal, progress)
     study: Study
+    source = source if isinstance(source, xr.Dataset) else as_case(source)
     if cycle is not None:
         checked = open_cycle(cycle)
         celsius = parse_temperatures(checked, temperature)

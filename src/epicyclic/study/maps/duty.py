@@ -15,6 +15,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import did_you_mean, refused, written
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.compute import (
     Deviation,
     MapPlan,
@@ -31,7 +32,16 @@ from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_cas
 from epicyclic.study.operating import STATE
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
 from epicyclic.study.table_file import AS_IT_IS, TableForm
-from epicyclic.units import CELSIUS, KILOJOULE, NEWTON_METRE, RPM, SECOND, Quantity, format_number
+from epicyclic.units import (
+    CELSIUS,
+    KILOJOULE,
+    NEWTON_METRE,
+    RPM,
+    SECOND,
+    Quantity,
+    format_number,
+    percent,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,7 +67,7 @@ SAMPLES = 20  # Points that are solved to measure the error of the interpolation
 
 
 def duty_cycle(
-    map_or_case: xr.Dataset | Case,
+    map_or_case: xr.Dataset | CaseSource,
     cycle: Any,
     temperature: Iterable[Any] | None = None,
     *,
@@ -70,7 +80,7 @@ def duty_cycle(
     journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Energy in, out and lost over a duty cycle, by component.
+    """Input, output and lost energy of a duty cycle, by component.
 
     Parameters
     ----------
@@ -86,8 +96,8 @@ def duty_cycle(
         Oil inlet temperatures as text with units, for a cycle without a column of them. Default:
         that of the case, or of a map that has one.
     clamp : bool
-        True: points outside of the map lose what the point at its border loses. False: they are
-        refused.
+        True: points outside of the map have the torque loss of the nearest point on its
+        boundary. False: they are refused.
     samples : int
         Points of the cycle that are solved directly to measure the error of the interpolation.
     form : TableForm
@@ -119,12 +129,14 @@ def duty_cycle(
         With all problems of the cycle; for points outside of the map and states that it does not
         have; for a map with gaps, further axes of several values, or two driven members.
     """
+    import xarray as xr
+
     runner = Runner(jobs, dask, journal=journal)
     checked = open_cycle(cycle, form=form)
     celsius = parse_temperatures(checked, temperature)
     data = map_or_case
-    if isinstance(data, Case):
-        data = cycle_map(data, checked, celsius, replace(runner, progress=progress))
+    if not isinstance(data, xr.Dataset):
+        data = cycle_map(as_case(data), checked, celsius, replace(runner, progress=progress))
     sums = add_up(data, checked, celsius, clamp=clamp, samples=samples)
     return with_distance(make_duty(data, checked, sums, runner), distance)
 
@@ -239,6 +251,8 @@ def add_up(
     progress: Progress | None = None,
 ) -> Sums:
     """Go through a checked cycle; raises `InputError` if it leaves the map."""
+    if samples < 0:
+        raise one_problem("samples", str(samples), "must be 0 or more.", "Take 20.", "the command")
     lookup = make_lookup(data)
     if len(lookup.states) > 1 or (lookup.states and cycle.states):
         check_states(cycle, lookup.states)
@@ -391,7 +405,7 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
                     name,
                     f"{low} to {high} {unit.display}",
                     allowed,
-                    f"Compute a larger map, or use --clamp; {share:.3g} of the duration is "
+                    f"Compute a larger map, or use --clamp; {percent(share)} of the duration is "
                     "outside.",
                 )
             )

@@ -27,6 +27,7 @@ from epicyclic.messages import refused, written
 from epicyclic.result.result import origin
 from epicyclic.schema.fields import quantity_of
 from epicyclic.study.heat import check_oil
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.compute import held_shaft, map_plan, resolving_zero
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of
@@ -228,26 +229,26 @@ REACHED = 0.9  # Part of the way to the end whose time is told. [1]
 
 
 def warm_up(
-    case: Case,
+    case: CaseSource,
     duration: Any,
     start_temperature: Any = None,
     *,
     cycle: Any = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Temperatures and losses of a gearbox that starts cold.
+    """Temperatures and losses of a gearbox after a cold start.
 
     Parameters
     ----------
     case : PlanetaryCase, GearPairCase or TrainCase
-        Its temperatures follow from the network of heat, whatever ``models.temperatures`` is. It
+        Its temperatures follow from the heat network, whatever ``models.temperatures`` is. It
         must have ``thermal.oil_volume`` and, if it has a housing, ``thermal.housing.mass``.
     duration : str
         As ``"2 h"``.
     start_temperature : str, optional
         Start temperature of all parts, as ``"20 degC"``. Default: ``thermal.ambient_temperature``.
     cycle : str, Path, pandas.DataFrame or mapping, optional
-        As for `duty_cycle`, repeated until the end; a column of temperatures is left alone.
+        As for `duty_cycle`, repeated until the end; a column of temperatures is ignored.
         Default: the operating point of the case.
     progress : callable, optional
         As for `sweep`.
@@ -272,6 +273,7 @@ def warm_up(
     ConvergenceError
         If the gearbox gets so hot that nothing is left to compute.
     """
+    case = as_case(case)
     seconds, start = _parsed(case, duration, start_temperature)
     warm = _with_fixed_jets(case.updated({"models.temperatures": "network"}))
     model = build(warm).thermal

@@ -17,6 +17,7 @@ from epicyclic.case.tables.uncertainty import MODEL_FORM, model_forms
 from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.messages import did_you_mean
 from epicyclic.study.bands.inputs import factors_of_kind
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.measured.comparison import (
     AS_GIVEN,
     CALIBRATED,
@@ -204,7 +205,7 @@ def _tested_problems(case: Case, table: Measurements, load_dependent: str) -> It
 
 
 def compare_measured(
-    case: Case,
+    case: CaseSource,
     measured: str | Path | pd.DataFrame,
     *,
     component: str = "total",
@@ -277,6 +278,7 @@ def compare_measured(
         If the fit does not converge.
     """
     runner = Runner(jobs, dask, journal=journal, progress=progress)
+    case = as_case(case)
     grid = read_grid(measured, form)
     question = ask(case, grid, component, load_dependent, group, rig)
     table = question.table

@@ -26,6 +26,7 @@ from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
 from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
+from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES, STATE_KEY, axis_name
 from epicyclic.study.solve import pocket_flow_numbers, solve
 from epicyclic.study.sweeps.axes import (
@@ -688,7 +689,7 @@ def as_tested(rows: Rows, unloaded: NDArray[np.intp]) -> NDArray[np.float64]:
 
 
 def sweep(
-    case: Case,
+    case: CaseSource,
     vary: Mapping[str, Iterable[Any]] | None = None,
     *,
     together: Iterable[Mapping[str, Iterable[Any]]] = (),
@@ -705,7 +706,7 @@ def sweep(
     Parameters
     ----------
     case : PlanetaryCase or GearPairCase
-        Every key that is not varied stays as it is here.
+        Keys that are not varied have their values from here.
     vary : mapping of str to iterable, optional
         Dotted keys to values, ``{"operation.speed": ["1000 rpm", "2000 rpm"]}``: numbers, text
         with units, choices, names. Numbers of an array have the unit behind the key,
@@ -749,7 +750,7 @@ def sweep(
     """
     runner = Runner(jobs, dask, shard, journal, progress)
     table = points if points is None or isinstance(points, Mapping) else columns_of(points)
-    plan = make_plan(case, vary, together=together, points=table, links=links)
+    plan = make_plan(as_case(case), vary, together=together, points=table, links=links)
     return to_dataset(plan, runner.run(plan))
 
 
