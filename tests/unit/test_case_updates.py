@@ -316,3 +316,15 @@ def test_a_key_replaces_what_it_determines_and_says_so(name, changes, gone):
     assert changed.updated({"title": "another"}).found == changed.found
     stays = {key: former[key.partition(".")[0]][key.partition(".")[2]] for key in gone}
     assert problems_of(read_case(name).updated, changes | stays)
+
+
+def test_what_is_kept_holds_for_another_operation_only():
+    case = read_case("talbot-2012")
+    train = read_case("train-8hp70")
+    hotter = case.updated({"operation.oil_inlet_temperature": "71 degC"})
+    assert hotter._kept is case._kept
+    assert case.updated({"planet.face_width": "24.3 mm"})._kept is not case._kept
+    assert train.updated({"operation.torque": "37 N*m"})._kept is train._kept
+    case.kept(lambda own: own.title)
+    assert len(hotter._kept) == 1
+    assert not pickle.loads(pickle.dumps(hotter))._kept
