@@ -132,8 +132,8 @@ class SetCase:
             found["lubrication"] = table.method
             if table.method == "dip":
                 found["churning"] = table.churning
-        if given := [body for body, bearing in self.bearings.items() if bearing is not None]:
-            found["bearing"] = ", ".join(dict.fromkeys(map(self.bearing_model, given)))
+        if self.bearings:
+            found["bearing"] = ", ".join(dict.fromkeys(map(self.bearing_model, self.bearings)))
             found["bearing_viscous"] = models.bearing_viscous
         return found
 
@@ -329,6 +329,8 @@ def standing_of(case: SetCase) -> dict[str, str]:
     models, form = dict(case.chosen), case.models.fitted_form
     if models["mesh"] == "loss-factor":
         del models["rolling"]
+    if not any(case.bearings.values()):
+        models.pop("bearing", None)
     uses_fits = any("fitted" in models.get(role, "") for role in FITTED_QUANTITIES)
     fitted = case.oil_model if uses_fits else None
     return {
