@@ -132,8 +132,8 @@ class SetCase:
             found["lubrication"] = table.method
             if table.method == "dip":
                 found["churning"] = table.churning
-        if given := [body for body, bearing in self.bearings.items() if bearing is not None]:
-            found["bearing"] = ", ".join(dict.fromkeys(map(self.bearing_model, given)))
+        if self.bearings:
+            found["bearing"] = ", ".join(dict.fromkeys(map(self.bearing_model, self.bearings)))
             found["bearing_viscous"] = models.bearing_viscous
         return found
 
