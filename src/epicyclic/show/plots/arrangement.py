@@ -205,14 +205,14 @@ def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) 
         style: dict[str, Any] = {"facecolor": "0.75", "zorder": 0.5}
         _rectangle(ax, ((low + high) / 2, heights[shaft]), (high - low, -radius, radius), **style)
         ax.plot((low, high), [heights[shaft]] * 2, color="black", lw=0.6, ls="-.")
-    ends = _write_names(ax, spans, heights, ENDS * length)
+    names = _write_names(ax, spans, heights, ENDS * length)
     ax.set_aspect("equal")
     ax.autoscale_view()
     ax.margins(0.05)
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     inch = max((right - left) / PANEL[0], (high - low) / (PANEL[1] - 2 * AROUND))
-    places = [place + letters * inch / SMALL_CHARACTERS for place, letters in ends]
-    ax.set_xlim(min([left, *places]), max([right, *places]))
+    room = [place + letters * inch / SMALL_CHARACTERS for place, letters in names]
+    ax.set_xlim(min([left, *room]), max([right, *room]))
     ax.grid(visible=False)
     told = f"\n(position not given: {', '.join(map(in_words, found.assumed))})"
     ax.set(
