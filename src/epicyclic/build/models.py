@@ -329,8 +329,6 @@ def standing_of(case: SetCase) -> dict[str, str]:
     models, form = dict(case.chosen), case.models.fitted_form
     if models["mesh"] == "loss-factor":
         del models["rolling"]
-    if not any(case.bearings.values()):
-        models.pop("bearing", None)
     uses_fits = any("fitted" in models.get(role, "") for role in FITTED_QUANTITIES)
     fitted = case.oil_model if uses_fits else None
     return {

@@ -298,13 +298,20 @@ def standing_items(result: Result) -> Iterator[Listing]:
     users: dict[tuple[str, str], list[str]] = {}
     for key, phrase in result.standing.items():
         owner, _, role = key.rpartition(".")
-        users.setdefault((role, phrase), []).append(owner)
+        if role != "bearing" or _has_planet_bearing(result, owner):
+            users.setdefault((role, phrase), []).append(owner)
     lines = []
     for (role, phrase), owners in users.items():
         whose = f" of {', '.join(owners)}" if any(owners) else ""
         lines.append(f"{_ROLES[role]}{whose}: {phrase}")
     if lines:
         yield Listing(tuple(lines), "Models and their reliability")
+
+
+def _has_planet_bearing(result: Result, owner: str) -> bool:
+    """True if a set has the loss of a planet bearing."""
+    included = result.losses.keys() - set(result.not_included)
+    return any(set_of(it) == owner and it.endswith("bearing_mechanical") for it in included)
 
 
 # Tables of the result of a train, for pages and terminals.

@@ -209,10 +209,10 @@ def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) 
     ax.set_aspect("equal")
     ax.autoscale_view()
     ax.margins(0.05)
-    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
-    inch = max((right - left) / PANEL[0], (top - bottom) / (PANEL[1] - 2 * AROUND))
-    reach = [place + letters * inch / SMALL_CHARACTERS for place, letters in names]
-    ax.set_xlim(min([left, *reach]), max([right, *reach]))
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    inch = max((right - left) / PANEL[0], (high - low) / (PANEL[1] - 2 * AROUND))
+    room = [place + letters * inch / SMALL_CHARACTERS for place, letters in names]
+    ax.set_xlim(min([left, *room]), max([right, *room]))
     ax.grid(visible=False)
     told = f"\n(position not given: {', '.join(map(in_words, found.assumed))})"
     ax.set(
