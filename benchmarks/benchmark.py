@@ -1,7 +1,7 @@
 """Time what users wait for. Run: python benchmarks/benchmark.py
 
 With the folder of the sources of another version behind it, the same work is timed with both, in
-turns, and only what has a goal.
+turns, and only what has a goal; of maps and bands a tenth, or with --whole all points.
 
 Seconds depend on the machine; the ratio to a reference measured in the same run does not, or much
 less. Whole commands run in processes of their own, the first one with an empty folder
@@ -10,6 +10,7 @@ for compiled code.
 
 from __future__ import annotations
 
+import argparse
 import copy
 import itertools
 import math
@@ -27,8 +28,9 @@ from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
+import netCDF4
 import numpy as np
 import pandas as pd
 
@@ -38,6 +40,7 @@ from epicyclic.show.template import case_text
 from epicyclic.study.sweeps.runner import Runner
 
 REPEATS = 5
+RUN = ("-m", "epicyclic", "run", "talbot-2012")
 MATRIX = {
     "operation.torque": [f"{torque} N*m" for torque in (0, 250, 500, 750, 1000)],
     "operation.speed": [f"{speed} rpm" for speed in (1000, 2000, 3000, 4000)],
@@ -182,13 +185,17 @@ SAMPLED = 256 * (2 + 20)
 """Points that the command solves for 20 inputs."""
 
 
+def twenty_inputs() -> str:
+    """The case file of the test article with 20 uncertain inputs."""
+    cases = resources.files("epicyclic.library") / "cases"
+    return (cases / "talbot-2012.toml").read_text(encoding="utf-8") + FURTHER
+
+
 def uncertainty_seconds() -> float:
     """The uncertainty of the test article with 20 inputs, from the command, on two cores."""
-    cases = resources.files("epicyclic.library") / "cases"
-    text = (cases / "talbot-2012.toml").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         case = Path(folder) / "twenty.toml"
-        case.write_text(text + FURTHER, encoding="utf-8")
+        case.write_text(twenty_inputs(), encoding="utf-8")
         return process_seconds("-m", "epicyclic", "uncertainty", str(case), "--jobs", "2")
 
 
@@ -563,52 +570,84 @@ def show_app(point: float) -> None:
 
 
 POINTS = """
-import itertools, statistics, time
+import statistics, time
 import epicyclic as ep
 case = ep.load_case("talbot-2012").updated(CHANGES)
 cases = [case.updated({KEY: value}) for value in VALUES]
 times = []
 for each in (case, *cases):
-    start = time.perf_counter()
+    start = time.process_time()
     ep.solve(each)
-    times.append(time.perf_counter() - start)
+    times.append(time.process_time() - start)
 print(statistics.median(times[1:]))
 """
-"""Prints the seconds of a solution, the first left out."""
+"""Prints the processor seconds of a solution, the first left out."""
+SWEEP = """
+import time
+import epicyclic as ep
+case = ep.load_case("talbot-2012").updated(CHANGES)
+ep.sweep(case, {KEY: VALUES[:3]}, jobs=1)
+start = time.process_time()
+ep.sweep(case, {KEY: VALUES}, jobs=1)
+print((time.process_time() - start) / len(VALUES))
+"""
+"""Prints the processor seconds of a point of a sweep in one process."""
+SETTLED_MATRIX = f"""
+import time
+import epicyclic as ep
+start = time.perf_counter()
+for name in {GEAR_SETS}:
+    ep.sweep(ep.load_case("talbot-2012-" + name).updated({SETTLED}), {MATRIX})
+print(time.perf_counter() - start)
+"""
 
 
-def points_of(key: str, values: list[str], changes: Mapping[str, str]) -> str:
-    names = f"CHANGES, KEY, VALUES = {dict(changes)!r}, {key!r}, {values!r}"
-    return names + POINTS
+def with_names(snippet: str, key: str, values: list[str], changes: Mapping[str, str]) -> str:
+    return f"CHANGES, KEY, VALUES = {dict(changes)!r}, {key!r}, {values!r}\n" + snippet
 
 
-SHARED_ROWS: dict[str, tuple[str, Callable[[], float]]] = {
-    "map of 8,200 points": ("12 s", map_seconds),
-    "map of nine states, 1,800 points": ("12 s", gearbox_map_seconds),
-    "uncertainty, 20 inputs, 5,632 solutions": ("12 s", uncertainty_seconds),
-}
-"""What the benchmark of this version times in processes of either."""
-SPEEDS = [f"{3000 + i} rpm" for i in range(50)]
+SPEEDS = [f"{3000 + 7 * i} rpm" for i in range(50)]
 WIDTHS = [f"{25 + i / 8} mm" for i in range(12)]
 SNIPPETS = {
-    "warm point": ("1.5 ms", points_of("operation.speed", SPEEDS, {})),
-    "warm point with temperatures": ("", points_of("operation.speed", SPEEDS, SETTLED)),
-    "new geometry": ("60 ms", points_of("planet.face_width", WIDTHS, {})),
+    "warm point in a sweep": ("1.5 ms", with_names(SWEEP, "operation.speed", SPEEDS, {})),
+    "point with temperatures": ("", with_names(POINTS, "operation.speed", SPEEDS[:20], SETTLED)),
+    "new geometry, whole set": ("60 ms", with_names(POINTS, "planet.face_width", WIDTHS, {})),
+    "300 points with temperatures": ("4 s", SETTLED_MATRIX),
 }
 
 
-def compare(other: Path) -> None:
-    """Both versions in turns: seconds of each, and their ratio."""
-    sources = {"this": Path(ep.__file__).parents[1], "other": other}
+class Work(NamedTuple):
+    """A command of many points."""
 
-    def row(what: str, goal: str, seconds: Callable[[], float], repeats: int = REPEATS) -> None:
-        times: dict[str, list[float]] = {name: [] for name in sources}
+    goal: str
+    command: tuple[str, ...]  # ``CASE`` stands for the gearbox.
+    tenth: tuple[str, str]  # An argument, and what takes its place for a tenth of the points.
+
+
+STATES = ("map", "CASE", *GEARBOX_MAP)
+COMMANDS = {
+    "map of 8,200 points": Work("12 s", MAP, ("0:4000:40 rpm", "0:4000:4 rpm")),
+    "map of nine states, 1,800 points": Work("12 s", STATES, ("500:5000:10 rpm", "3000 rpm")),
+    "the same with default torques": Work("12 s", STATES[:-1], ("500:5000:10 rpm", "3000 rpm")),
+    "uncertainty, 20 inputs, 5,632 solutions": Work(
+        "12 s", ("uncertainty", "TWENTY", "--jobs", "2", "--samples", "256"), ("256", "32")
+    ),
+}
+
+
+def compare(other: Path, whole: bool) -> None:
+    """Both versions in turns: seconds of each, and their ratio."""
+    sources = {"other": other, "this": Path(ep.__file__).parents[1]}
+
+    def row(what: str, goal: str, measure: Callable[[], float], unit: str, repeats: int) -> None:
+        found: dict[str, list[float]] = {name: [] for name in sources}
         for _ in range(repeats):
             for name, source in sources.items():
                 os.environ["PYTHONPATH"] = str(source)
-                times[name].append(seconds())
-        this, before = (statistics.median(own) for own in times.values())
-        show(what, f"{before:.4g} s", f"{this:.4g} s", f"{this / before:.2f}", goal)
+                found[name].append(measure())
+        before, this = (statistics.median(own) for own in found.values())
+        ratio = f"{this / before:.2f}" if before else ""
+        show(what, f"{before:.4g} {unit}", f"{this:.4g} {unit}", ratio, goal)
 
     def first() -> float:
         with tempfile.TemporaryDirectory() as empty:
@@ -618,20 +657,54 @@ def compare(other: Path) -> None:
         command = [sys.executable, "-c", snippet]
         return float(subprocess.run(command, check=True, capture_output=True).stdout)
 
-    heading("Both versions in turns", "other", "this", "ratio", "goal")
-    row("first run ever", "30 s", first, 1)
-    row("run, warm", "1.2 s", lambda: process_seconds("-m", "epicyclic", "run", "talbot-2012"))
-    for what, (goal, snippet) in SNIPPETS.items():
-        row(what, goal, partial(printed, snippet))
-    for what, (goal, seconds) in SHARED_ROWS.items():
-        row(what, goal, seconds, 1)
-    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-    show("largest memory of a process", "", f"{peak:.0f} MB", "", "400 MB")
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        (folder / "CASE.toml").write_text(case_text(gearbox(), [], {}), encoding="utf-8")
+        (folder / "TWENTY.toml").write_text(twenty_inputs(), encoding="utf-8")
+
+        def command(work: Work) -> float:
+            """Seconds of the command; its largest memory, and the error that a map states."""
+            argument, shorter = (work.tenth[0],) * 2 if whole else work.tenth
+            given = [shorter if it == argument else it for it in work.command]
+            files = [str(folder / f"{it}.toml") if it.isupper() else it for it in given]
+            files += ["-o", str(folder / "map.nc")] if files[0] == "map" else []
+            start = time.perf_counter()
+            process = subprocess.Popen(
+                [sys.executable, "-m", "epicyclic", *files], stdout=-3, stderr=-3
+            )
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = status
+            assert not status, files
+            seconds, own = time.perf_counter() - start, os.environ["PYTHONPATH"]
+            memory[own] = max(memory.get(own, 0.0), usage.ru_maxrss / 1024)
+            if files[0] == "map":
+                with netCDF4.Dataset(folder / "map.nc") as data:
+                    stated[own] = 100 * float(data.torque_interpolation_error)
+            return seconds
+
+        memory: dict[str, float] = {}
+        stated: dict[str, float] = {}  # by the last of the maps, which is that of the gearbox
+        heading("Both versions in turns", "other", "this", "ratio", "goal")
+        row("first run ever", "30 s", first, "s", 1)
+        row("run, warm", "1.2 s", lambda: process_seconds(*RUN), "s", REPEATS)
+        for what, (goal, snippet) in SNIPPETS.items():
+            row(what, goal, partial(printed, snippet), "s", 1 if snippet is SETTLED_MATRIX else 3)
+        for what, work in COMMANDS.items():
+            part, goal = ("", work.goal) if whole else (", a tenth", f"{work.goal} for all")
+            row(f"{what}{part}", goal, partial(command, work), "s", 1)
+        row("largest memory", "400 MB", lambda: memory[os.environ["PYTHONPATH"]], "MB", 1)
+        row("stated error of the last map", "2 %", lambda: stated[os.environ["PYTHONPATH"]], "%", 1)
 
 
 def main() -> None:
-    if len(sys.argv) > 1:
-        compare(Path(sys.argv[1]).resolve())
+    parser = argparse.ArgumentParser(description="Time what users wait for.")
+    about = "Folder of the sources of another version, to time both in turns."
+    parser.add_argument("sources", nargs="?", type=Path, help=about)
+    about = "With SOURCES: whole maps and bands; else a tenth of their points."
+    parser.add_argument("--whole", action="store_true", help=about)
+    given = parser.parse_args()
+    if given.sources is not None:
+        compare(given.sources.resolve(), given.whole)
         return
     heading("Epicyclic benchmark", "measured", "aim", "ratio", "to")
     point = show_commands()

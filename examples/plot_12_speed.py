@@ -2,15 +2,14 @@
 An e-axle up to 25,000 rpm
 ==========================
 
-Losses without load grow with a power of the speed of two to three, and decide at the speeds of
-electric motors. What they are, and how well they are known, over the speed range of a motor.
+Losses without load grow with the second to third power of the speed and dominate at the speeds of
+electric motors. This study shows them, with their uncertainty, over the speed range of a motor.
 """
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 import epicyclic as ep
-from epicyclic.study.bands.study import quick_dataset
 
 SPEEDS = (5000, 7500, 11200, 16700, 25000)
 GROUPS = {
@@ -22,15 +21,14 @@ GROUPS = {
 }
 
 axle = ep.load_case("train-eaxle")
-bands = [
-    quick_dataset(case, ep.solve(case))
-    for case in (axle.updated({"operation.speed [rpm]": speed}) for speed in SPEEDS)
-]
+cases = [axle.updated({"operation.speed [rpm]": speed}) for speed in SPEEDS]
+bands = [ep.record(it, groups=["uncertainty"]).fields["uncertainty/result"] for it in cases]
 
 # %%
-# What the losses are, and how well they are known
-# ------------------------------------------------
-# The width of each strip is the sum of the 95 % bands of its terms, as if all erred together.
+# The losses and their uncertainty
+# --------------------------------
+# The width of each strip is the sum of the 95 % bands of its terms, as if their errors were fully
+# correlated.
 
 figure, axes = plt.subplots(figsize=(8, 5), layout="constrained")
 for label, ends in GROUPS.items():
@@ -50,9 +48,9 @@ axes.legend()
 # %%
 # How fast they grow
 # ------------------
-# The exponent of the speed between one point and the next. That of the drag lies between the 2.5
-# of a laminar disc and the 3 of form drag, and passes from one to the other without a kink. That
-# of the pockets rises where the flow between the teeth reaches the speed of sound of the mixture.
+# The exponent of the speed between neighbouring points. For drag it rises smoothly from 2.5, that
+# of a laminar disc, to 3, that of form drag. For the pockets it rises where the flow between the
+# teeth approaches the speed of sound of the mixture.
 
 for label, ends in GROUPS.items():
     names = [name for name in bands[0].result.values if str(name).endswith(ends)]

@@ -28,7 +28,7 @@ class Problem:
     value : str
         What was given, as the user wrote it; empty if nothing was.
     allowed : str
-        What is allowed, or why the value cannot be.
+        What is allowed, or why the value is impossible.
     remedy : str
         What to change.
     """
@@ -74,7 +74,7 @@ class InputError(EpicyclicError, ValueError):
     Parameters
     ----------
     problems : iterable of Problem
-        Every mistake found, not only the first.
+        All mistakes found.
     source : str
         The file or built-in case the input came from.
     """
@@ -107,7 +107,7 @@ def raise_any(problems: Iterable[Problem], source: str = "") -> None:
 
 
 class ConvergenceError(EpicyclicError):
-    """An iteration ended without a solution; the message names the next thing to try."""
+    """An iteration ended without a solution; the message says what to try next."""
 
 
 def first_of(items: Sequence[str], most: int = 3) -> str:

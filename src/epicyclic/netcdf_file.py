@@ -45,6 +45,18 @@ Heap", second hand. [bytes]"""
 _HEAP_OBJECT = struct.Struct("<H6xQ")
 """Head of what lies in a heap: number, 0 for the free rest, and size. [bytes]"""
 _HEAP_SIGNATURE, _HEAP_VERSION = b"GCOL", 1
+_OWN_ATTRIBUTES = {
+    "CLASS": ("text", False),
+    "NAME": ("text", False),
+    "DIMENSION_LIST": ("axes", True),
+    "_NCProperties": ("text", False),
+    "_Netcdf4Coordinates": ("integer", True),
+    "_Netcdf4Dimid": ("integer", False),
+    "_Quantize": ("integer", False),
+    "_nc3_strict": ("integer", False),
+}
+"""Attributes that netCDF4 reads as its own, by name or how it begins: what they hold, and whether
+for each axis."""
 _LONGEST_REASON = 120
 _MAKE_AGAIN = "Create it again."
 
@@ -144,6 +156,9 @@ def _check_objects(file: h5py.File) -> None:
         one, depth = left.pop()
         about = h5py.h5o.get_info(one.id)
         attributes += about.num_attrs
+        if attributes > MOST_ATTRIBUTES:
+            _refuse_mass()
+        _check_own_attributes(one)
         if about.addr in seen:
             refuse("contains a group or variable in two places.", _MAKE_AGAIN)
         seen.add(about.addr)
@@ -159,8 +174,33 @@ def _check_objects(file: h5py.File) -> None:
         made = one.id.get_create_plist()
         if made.get_external_count() or made.get_layout() == h5py.h5d.VIRTUAL:
             refuse("points at other files.", _MAKE_AGAIN)
-    if attributes > MOST_ATTRIBUTES:
-        _refuse_mass()
+
+
+def _check_own_attributes(one: h5py.Group | h5py.Dataset) -> None:
+    """Raise `InputError` unless attributes of netCDF4 are what it takes them for, unseen.
+
+    One of another type or size overwrites memory, and ends the process or worse.
+    """
+    import h5py
+
+    kinds = {"integer": h5py.h5t.INTEGER, "text": h5py.h5t.STRING, "axes": h5py.h5t.VLEN}
+    for name in one.attrs:
+        known = "_Quantize" if name.startswith("_Quantize") else name
+        if known not in _OWN_ATTRIBUTES:
+            continue
+        kind, for_each_axis = _OWN_ATTRIBUTES[known]
+        attribute = one.attrs.get_id(name)
+        sound = attribute.get_type().get_class() == kinds[kind]
+        sound &= attribute.get_space().get_simple_extent_npoints() == (
+            one.ndim if for_each_axis and isinstance(one, h5py.Dataset) else 1
+        )
+        if sound and kind == "axes":
+            sound = attribute.get_type().get_super().get_class() == h5py.h5t.REFERENCE
+        if sound and kind == "integer":
+            values = np.asarray(one.attrs[name])
+            sound = bool(((values >= 0) & (values <= MOST_VARIABLES)).all())
+        if not sound:
+            refuse(f"is damaged: its attribute {name} is not one of NetCDF.", _MAKE_AGAIN)
 
 
 def _refuse_mass() -> NoReturn:

@@ -311,7 +311,9 @@ def _parsed_text(quantity: Quantity, text: str) -> float:
     if _MORE_DIGITS.match(match["unit"]):
         raise quantity._error(*_divided(text))
     if not match["unit"]:
-        raise quantity._error("has no unit", f'write "{text} {quantity.display}"')
+        form = f'write "{text} {quantity.display}"'
+        fits = quantity._is_allowed(float(match["number"]))
+        raise quantity._error("has no unit", form if fits else quantity._form())
     return quantity._checked(quantity._converted(float(match["number"]), match["unit"]))
 
 
@@ -344,13 +346,16 @@ class Quantity:
     def _checked(self, value: float) -> float:
         """`value`, in SI, if it is within the bounds."""
         shown = self.to_display(value)
-        # comparisons written so that NaN fails them
-        low_ok = self.low is None or (shown > self.low if self.open_low else shown >= self.low)
-        high_ok = self.high is None or shown <= self.high
-        if not (low_ok and high_ok and math.isfinite(shown)):
+        if not self._is_allowed(shown):
             remedy = range_remedy(shown, self.low, self.high, self.display, open_low=self.open_low)
             raise self._error("is out of range", remedy)
         return value
+
+    def _is_allowed(self, shown: float) -> bool:
+        """True for a number in the display unit within the bounds."""
+        # comparisons written so that NaN fails them
+        low_ok = self.low is None or (shown > self.low if self.open_low else shown >= self.low)
+        return low_ok and (self.high is None or shown <= self.high) and math.isfinite(shown)
 
     def scale_from(self, unit: str) -> tuple[float, float]:
         """What arrays of numbers in `unit` are multiplied by, and what is added, for display.
@@ -402,10 +407,7 @@ class Quantity:
 
     def scale_and_offset(self) -> tuple[float, float]:
         """What arrays of SI values are multiplied by, and what is added, for the display unit."""
-        if not self.si:
-            return 1.0, 0.0
-        zero = self.to_display(0.0)
-        return self.to_display(1.0) - zero, zero
+        return _rounded_scale(self) if self.si else (1.0, 0.0)
 
     def text(self, value: float, digits: int = 6) -> str:
         """SI `value` as text in the display unit, ``"139.23 mm"``."""
@@ -424,8 +426,8 @@ class Quantity:
         return describe_range(self.noun, self.low, self.high, self.display, open_low=self.open_low)
 
     def _form(self, number: float | None = None) -> str:
-        """How to write it; with the user's `number` if that is short enough to repeat."""
-        if number is None or not math.isfinite(_as_float(number)):
+        """How to write it; with the user's `number` if it is allowed and short enough."""
+        if number is None or not self._is_allowed(_as_float(number)):
             return f"give a number with its unit, {self.display}"
         text = format_number(number, 12) if isinstance(number, float) else str(number)
         return f'give it in {self.display}, such as "{text} {self.display}"'
@@ -478,6 +480,12 @@ def _scale(si: str, display: str) -> tuple[float, float]:
         return 1 / size, 0.0
     zero, one = (float(registry().Quantity(it, si).to(display).magnitude) for it in (0.0, 1.0))
     return one - zero, zero
+
+
+@cache
+def _rounded_scale(unit: Quantity) -> tuple[float, float]:
+    zero = unit.to_display(0.0)
+    return unit.to_display(1.0) - zero, zero
 
 
 # Kinds of values that are only shown; a case does not read them, so that they have no bounds.

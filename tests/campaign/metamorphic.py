@@ -40,9 +40,9 @@ __all__ = ["FORMS", "drawn", "outcome"]
 Tables = dict[str, Any]
 ROUNDING = 1e-9
 """The same numbers in another order, or after a conversion: relative."""
-AGREEMENT = 1e-6
-"""Of torques and losses that are solved from the other end: relative. Losses may be off by 1e-7
-there, and small torques by more."""
+AGREEMENT = 1e-7
+"""Of torques and losses that are solved from the other end, where another iteration ends at the
+same tolerance: relative."""
 FAULTS = ("differs", "refused in one form", "solved in one form", "exception")
 ATTEMPTS = 300
 STORED = 200
@@ -271,7 +271,7 @@ def in_a_train(case: Any, result: Result, rng: random.Random) -> Any:
         names = {name: f"S.pinion_gear_{name}" for name in result.losses}
     train["sets"] = {"S": own}
     train["operation"] = kept | {"input": "in", "output": "out"}
-    return ep.load_case(train), names, AGREEMENT
+    return ep.load_case(train), names, ROUNDING
 
 
 def reordered(case: Any, result: Result, rng: random.Random) -> Any:

@@ -58,7 +58,7 @@ def test_the_widest_output_follows_the_terminal(started, monkeypatch):
 
 
 def test_warnings_come_by_the_watts_that_they_concern(epicyclic):
-    text = epicyclic("run", "train-eaxle").stdout.partition("Warnings, 3 of ")[2]
+    text = epicyclic("run", "train-eaxle").stdout.partition("Warnings (3 of ")[2]
     watts = [float(found) for found in re.findall(r"([\d.]+) W\b", text)]
     assert len(watts) == 3
     assert watts == sorted(watts, reverse=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from epicyclic.build import models
@@ -11,6 +12,7 @@ from epicyclic.case.tables import uncertainty
 from epicyclic.gears.flanks import FlankDeviations
 from epicyclic.gears.gearing import Gearing
 from epicyclic.losses.windage import LAMINAR_RIMS
+from epicyclic.machine import planets
 from epicyclic.study.bands import inputs
 
 BOUNDARY = uncertainty.DistributionTable(uniform=(0.08, 0.13))
@@ -57,3 +59,14 @@ def former_face_width(monkeypatch):
         made(self, *args, **others)
 
     monkeypatch.setattr(FlankDeviations, "__init__", as_then)
+
+
+@pytest.fixture(autouse=True)
+def former_rollers(monkeypatch):
+    """The force of rotation on rollers that carry no load did not count.
+
+    It adds 0.5 % to the loss of the planet bearings of talbot-2012 at 4000 rpm, 5 % at 12,000 rpm.
+    """
+    monkeypatch.setattr(
+        planets, "centrifugal_forces", lambda _, azimuth, *others: np.zeros_like(azimuth)
+    )

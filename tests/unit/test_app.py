@@ -540,7 +540,7 @@ def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(s
         user.find("Studies").click()
         await user.should_see("Compare", retries=50)
         user.find("Compare").click()
-        await user.should_see("Keep the case, change it", retries=50)
+        await user.should_see("Keep the current case, then change it", retries=50)
         user.find("Command").click()
         await user.should_see("epicyclic run talbot-2012-pair", retries=50)
 

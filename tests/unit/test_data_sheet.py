@@ -42,7 +42,7 @@ def test_a_printed_pair_is_shown_as_printed():
         "tip diameter d_a": "22.000",
         "root diameter d_f": "17.500",
         "normal thickness s_n": "1.571",
-        "thickness of the tips s_a": "0.695",
+        "tip thickness s_a": "0.695",
         "measuring ball D_M": "1.700",
         "dimension over balls M_d": "22.294",
     }

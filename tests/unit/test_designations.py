@@ -156,7 +156,10 @@ def test_spherical_planet_bearing_aligns_itself():
     keys = {"designation": "NU 1005", "rollers_per_row": 11, "rows": 2}
     cylindrical, spherical = (
         ep.solve(_planets(**keys, type=kind, palmgren_coefficient=0.0004)
-                 .updated({"models.bearing": "palmgren", "gears.helix_angle": "11 deg"}))
+                 .updated({
+                     "models.bearing": "palmgren", "gears.helix_angle": "11 deg",
+                     "planet.mass": "0 kg",  # unloaded rollers, which are others, lose nothing
+                 }))
         for kind in ("cylindrical", "spherical")
     )  # fmt: skip
     # the couple of helical meshes loads other rollers, and Palmgren's loss is that of the force

@@ -292,3 +292,30 @@ def test_a_text_of_a_false_length_takes_no_more_memory(tmp_path):
     with pytest.raises(ep.InputError, match="is damaged"):
         read_groups(path)
     assert peak_memory() - before < MOST_MEMORY
+
+
+OWN = {
+    "DIMENSION_LIST": (True, 7, [1, 2, 3], "x", h5py.Empty("f")),
+    "NAME": (np.arange(3000), np.array([b"a"] * 40), 3),
+    "CLASS": (5, np.array([b"DIMENSION_SCALE"] * 2)),
+    "_Netcdf4Dimid": (2**40, -1, np.arange(3000), "x"),
+    "_Netcdf4Coordinates": (np.arange(3000), 2**31, -2, 0.5),
+    "_Quantize_": (np.arange(3000), "x"),
+    "_nc3_strict": (np.arange(3000), 1.5),
+}
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_attributes_that_the_library_believes_are_checked_unread(tmp_path, name):
+    """Where they are of another type or size, it overwrites memory, and ends the process."""
+    for number, value in enumerate(OWN[name]):
+        path = tmp_path / f"{number}.nc"
+        xr.Dataset({"loss": ("speed", [1.5, 2.5])}, {"speed": [3.0, 4.0]}).to_netcdf(path)
+        assert set(read_groups(path)[""]) == {"loss"}
+        path = path.rename(tmp_path / f"{number}-changed.nc")
+        with h5py.File(path, "a") as data:
+            place = data["loss" if name in ("DIMENSION_LIST", "_Netcdf4Coordinates") else "speed"]
+            place.attrs.pop(name, None)
+            place.attrs[name] = value
+        with pytest.raises(ep.InputError, match=f"attribute {name} is not one of NetCDF"):
+            read_groups(path)

@@ -14,9 +14,16 @@ from epicyclic.build.gear_sets import roller_bearing
 from epicyclic.build.machine import build
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss
-from epicyclic.losses.planet_bearing import mixed_ehl_rolling_loss, palmgren_loss, roller_loads
+from epicyclic.losses.planet_bearing import (
+    centrifugal_forces,
+    mixed_ehl_rolling_loss,
+    palmgren_loss,
+    pressed_alone,
+    roller_loads,
+)
+from epicyclic.losses.shaft_bearing import minimum_load, thermal_speed_rating
 from epicyclic.machine.gear_mesh import MeshDuty
-from epicyclic.machine.planets import PlanetContact, planet_load
+from epicyclic.machine.planets import PlanetContact, planet_load, rated
 
 BEARING_SPEED = 4000 * 125 / 198 * 73 / 26 * math.pi / 30  # at 4000 rpm of the sun, rad/s
 
@@ -296,3 +303,98 @@ def test_palmgren_model_of_the_set(article):
     force = 2 * 333 / (92.13e-3 * 73 / 99)
     expected = 3 * 0.0003 * force * 0.030008 * BEARING_SPEED
     assert result.losses["planet_bearing_mechanical"] == pytest.approx(expected, rel=1e-10)
+
+
+# --- force of rotation on rollers -----------------------------------------------------------------
+
+
+def test_force_of_rotation_on_a_roller(article):
+    # from where a roller is at three times: it turns with the carrier, and with its cage around the
+    # pin, at half the speed at which it rolls on the bore of the planet
+    bearing, _ = bearing_and_loads(article)
+    pin, carrier, speed, outward, step = 0.092, 310.0, -520.0, 0.7, 1e-5
+    around = bearing.pitch_diameter / 2
+    cage = speed * bearing.outer_diameter / 2 / (2 * around)
+    mass = 7850 * math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
+
+    def place(t, azimuth):  # outward is 0 in this frame
+        return pin * np.exp(1j * carrier * t) + around * np.exp(
+            1j * ((carrier + cage) * t + azimuth - outward)
+        )
+
+    for azimuth in (0.0, 1.1, 3.9):
+        before, now, after = (place(k * step, azimuth) for k in (-1, 0, 1))
+        acceleration = (before - 2 * now + after) / step**2
+        expected = -mass * (acceleration * np.exp(-1j * (azimuth - outward))).real
+        (found,) = centrifugal_forces(
+            bearing, np.array([azimuth]), 7850.0, pin, carrier, speed, outward
+        )
+        # the small clearance is in the pitch circle
+        assert found == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_needle_at_92_mm_and_4000_rpm_is_pulled_with_15_newtons(article):
+    needle = replace(bearing_and_loads(article)[0], roller_diameter=4e-3, roller_length=9.5e-3)
+    carrier = 4000 * math.pi / 30
+    still = -2 * carrier / (1 + needle.roller_diameter / needle.pitch_diameter)
+    (force,) = centrifugal_forces(needle, np.zeros(1), 7850.0, 0.092, carrier, still, 0.0)
+    assert force == pytest.approx(15.2, abs=0.1)  # 0.94 g in print
+
+
+def test_unloaded_rollers_roll_under_the_force_of_rotation(talbot):
+    def lost(**changes):
+        return ep.solve(talbot.updated(changes)).losses["planet_bearing_mechanical"]
+
+    fast = {"operation.speed": "11000 rpm", "planet.mass": "0.51 kg"}
+    light = {"planet_bearing.material": talbot.planet_bearing.material.model_copy(
+        update={"density": 1e-6}
+    )}  # fmt: skip
+    heavy = lost(**fast)
+    assert heavy > 1.02 * lost(**fast, **light)
+    assert lost(**fast | {"planet.mass": "0 kg"}) < heavy
+
+
+def test_rollers_that_carry_are_not_pressed_twice(article):
+    bearing, loads = bearing_and_loads(article)
+    forces = np.linspace(-3.0, 4.0, bearing.rollers_per_row)
+    alone = pressed_alone(loads, forces, bearing.roller_length)
+    idle = loads.intensity.sum(axis=2) == 0
+    assert idle.any()
+    carried = alone.intensity[:, :, 0] * bearing.roller_length
+    assert carried == pytest.approx(np.where(idle, np.abs(forces), 0.0))
+
+
+# --- least load and speed -------------------------------------------------------------------------
+
+
+def test_least_load_and_speed_follow_from_the_rollers(article):
+    bearing, _ = bearing_and_loads(article)
+    least, fastest = minimum_load(rated(bearing), 0.0, 0.0), thermal_speed_rating(rated(bearing))
+    # ISO 281 by hand: 2 rows of 16 rollers 4.015 x 9.52 mm on a pitch circle of 30.0 mm
+    gamma = 4.015 / 30.008
+    f_c = 172.6 * (1 + (1.04 * ((1 - gamma) / (1 + gamma)) ** (143 / 108)) ** 4.5) ** (-2 / 9)
+    f_c *= gamma ** (2 / 9) * (1 - gamma) ** (29 / 27) / (1 + gamma) ** 0.25
+    rating = 1.1 * f_c * (2 * 9.52) ** (7 / 9) * 16**0.75 * 4.015 ** (29 / 27)
+    assert least == pytest.approx(0.02 * rating, rel=1e-3)
+    # heat of 16 mW/mm2 on the seats at the reference speed (J35)
+    static = 44 * (1 - gamma) * 2 * 16 * 9.52 * 4.015
+    rpm = fastest * 30 / math.pi
+    moment = 5e-7 * (12 * rpm) ** (2 / 3) * 30.008**3 + 0.0005 * 0.05 * static * 30.008
+    seats = math.pi * 2 * 30.008 * 2 * 9.52
+    assert moment * fastest == pytest.approx(16 * seats, rel=1e-3)
+
+
+def test_loads_and_speeds_beyond_them_are_told(talbot):
+    def told(**changes):
+        notes = [it for it in ep.solve(talbot.updated(changes)).warnings if "by its rollers" in it]
+        return [it.split(": the load")[0].split(" against")[0] for it in notes]
+
+    quick = {
+        "losses.sun_mesh_pocketing.include": False,
+        "losses.ring_mesh_pocketing.include": False,
+    }
+    assert told(**quick) == []
+    light = {"operation.torque": "7 N*m", "operation.speed": "900 rpm"}
+    assert told(**quick, **light) == ["planet bearing"]
+    (fast,) = told(**quick, **{"operation.torque": "900 N*m", "operation.speed": "6100 rpm"})
+    assert fast.endswith("rpm")

@@ -366,6 +366,16 @@ def test_shares_that_do_not_sum_to_one_are_told_with_their_factor(shares, told):
     assert piece.duration == pytest.approx(3600 * np.array(shares) / sum(shares), rel=1e-12)
 
 
+@pytest.mark.parametrize("name", ["share", "duration [s]"])
+@pytest.mark.parametrize(
+    "values", [[3e-320, 1e-320], [2e-200, 0.0], [7e150, 1.0], [9e307, 1.7e308]]
+)
+def test_weights_over_which_no_number_is_finite_are_refused(name, values):
+    cycle = {"speed [rpm]": [900, 1700], "torque [N*m]": [40, -70], name: values}
+    with pytest.raises(ep.InputError, match="next to nothing, or beyond all bounds"):
+        open_cycle(cycle)
+
+
 def test_the_result_of_a_cycle_tells_the_factor_of_its_shares():
     cycle = {"share": [0.2, 0.3, 0.4], "speed [rpm]": [310, 500, 970], "torque [N*m]": [2, 3, 5]}
     case = ep.load_case(trains.simple(20, 70, "ring", ("sun", "carrier"), efficiency=0.98))

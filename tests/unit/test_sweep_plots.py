@@ -43,15 +43,15 @@ def test_a_stored_sweep_has_its_own_plots(data, tmp_path):
     figure = figure_of(stored, "lines")
     assert [ax.get_ylabel() for ax in figure.axes] == ["total loss, W", "efficiency, %"]
     caption = " ".join(figure.get_supxlabel().split())
-    assert "operation.speed 2000 to 7000 rpm" in caption
-    assert "models.friction schlenk, constant" in caption
-    assert "varied speed, varied torque" in caption
+    assert "torque 37 to 91 N·m; speed 2000 to 7000 rpm" in caption
+    assert "friction schlenk, constant; " in caption
+    assert caption.endswith("; oil at 90 °C")
 
 
 def test_lines_are_over_the_key_with_most_values(data):
     ax = plot_sweep_lines(data, "total", Figure().subplots())
-    assert ax.get_xlabel() == "operation.speed, rpm"
-    assert ax.get_title(loc="center") == "Total loss, models.friction schlenk"
+    assert ax.get_xlabel() == "speed, rpm"
+    assert ax.get_title(loc="center") == "Total loss, friction schlenk"
     first = data["total"].sel(models_friction="schlenk")
     for line, torque in zip(ax.lines, (37.0, 91.0), strict=True):
         np.testing.assert_array_equal(line.get_ydata(), first.sel(torque=torque))
@@ -60,7 +60,7 @@ def test_lines_are_over_the_key_with_most_values(data):
 
 def test_a_field_is_over_two_keys_of_numbers(data):
     ax = plot_sweep_field(data, "efficiency", Figure().subplots())
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("operation.speed, rpm", "operation.torque, N·m")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("speed, rpm", "torque, N·m")
     (field,) = (one for one in ax.collections if isinstance(one, QuadMesh))
     wanted = 100 * data["efficiency"].sel(models_friction="schlenk")
     wanted = wanted.transpose("operation.torque", "operation.speed")

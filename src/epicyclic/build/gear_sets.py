@@ -235,6 +235,8 @@ def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
         own = planet_pin(case, bearing, planet)
     elif bearing is not None:
         own = planet_bearing(case, bearing, planet)
+        if stated and sum(stated) == 0:  # neither has it the mass of its rollers
+            own = replace(own, roller_density=0.0)
     no_bearing = f"bearing of {planet}" if gearing.listed else "[planet_bearing]"
     return Planet(
         key=f"{planet}_bearing",

@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 from epicyclic.build.elements import axial_preload, build_element, catalogue_bearing
@@ -23,6 +24,7 @@ from epicyclic.case.tables.operation import (
 )
 from epicyclic.contact.temperatures import LUBRICATION_FACTORS
 from epicyclic.gears.gear import CARRIER, HOUSING
+from epicyclic.gears.sizing import Found
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import Flags, ValidityFlag
 from epicyclic.machine.convection import (
@@ -458,22 +460,37 @@ def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator
 
 def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
     """A train in the state and at the operating point of the case."""
-    shape = case.shape
-    cases = set_cases(case)
-    elements = [*_sets(case, cases, flow_tables), *_parts(case, shape.names)]
-    sets = {element.key: element for element in elements if isinstance(element, GearSet)}
+    operation = case.operation
+    machine, cases, layout = case.kept(_train_parts, operation.state, operation.input, flow_tables)
     return Built(
-        machine=replace(
-            shape.machine(case.state),
-            elements=tuple(elements),
-            layouts=tuple(shaft_layouts(case, sets)),
-        ),
+        machine=machine,
         operation=operation_of(case),
-        known_fluids=fluids_of(case) if case.computed else None,
-        sets=sets,
+        known_fluids=_fluids(case) if case.computed else None,
+        sets={element.key: element for element in machine.elements if isinstance(element, GearSet)},
         set_cases=cases,
-        layout=_layout(case, elements),
+        layout=layout,
     )
+
+
+def _train_parts(
+    case: TrainCase, state: str | None, driven: str, flow_tables: FlowTables
+) -> tuple[Machine, Mapping[str, SetCase], Layout]:
+    """What a train consists of in the `state` of the case, `driven` where that says."""
+    cases = set_cases(case)
+    elements = [*_sets(case, cases, flow_tables), *_parts(case, case.shape.names)]
+    sets = {element.key: element for element in elements if isinstance(element, GearSet)}
+    layouts = tuple(shaft_layouts(case, sets))
+    machine = replace(case.shape.machine(case.state), elements=tuple(elements), layouts=layouts)
+    return machine, cases, _layout(case, elements)
+
+
+def _fluids(case: Case) -> Fluids:
+    return case.kept(_fluids_at_inlet, case.operation.oil_inlet_temperature)
+
+
+def _fluids_at_inlet(case: Case, temperature: float) -> Fluids:
+    """Those at the `temperature` of the case."""
+    return fluids_of(case)
 
 
 def train_layout(case: TrainCase) -> Layout:
@@ -572,13 +589,16 @@ def pin_figures(own: GearSet) -> list[tuple[str, type[Any]]]:
 # From any case to the machine that it describes.
 
 
+NO_TABLES: FlowTables = MappingProxyType({})
+
+
 def build(
     case: Case,
     # Tables of flows through pockets that the points of a sweep share.
     flow_tables: FlowTables | None = None,
 ) -> Built:
     """The machine of a case, driven as the case says."""
-    tables = flow_tables or {}
+    tables = flow_tables or NO_TABLES
     built = build_train(case, tables) if isinstance(case, TrainCase) else _single(case, tables)
     model = thermal_model(case, built.set_cases, built.machine)
     if model is None:
@@ -589,41 +609,45 @@ def build(
 
 def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
     """A set or pair by itself."""
+    operation = operation_of(case)
+    ends = operation.input, operation.output
+    machine, cases, layout = case.kept(_single_parts, ends, case.found, tables)
+    element = machine.elements[0]
+    assert isinstance(element, GearSet)
+    return Built(machine, operation, _fluids(case), {"": element}, cases, layout)
+
+
+def _single_parts(
+    case: PlanetaryCase | GearPairCase,
+    ends: tuple[str, str],  # Its input and its output.
+    found: tuple[Found, ...],  # As of the case.
+    tables: FlowTables,
+) -> tuple[Machine, Mapping[str, SetCase], Layout]:
+    """What a set or pair by itself consists of."""
     cases = set_cases(case)
     own = cases[""]
     gearing = own.gearing
-    operation = operation_of(case)
     members = gearing.members
-    others = [member for member in members if member not in (operation.input, operation.output)]
+    others = [member for member in members if member not in ends]
     bodies = {body: body for body in (*members, *gearing.planets)}
-    element = gear_set("", own, bodies, (operation.input, operation.output, *others), tables)
+    element = gear_set("", own, bodies, (*ends, *others), tables)
     parts: list[Element] = []
     if isinstance(case, PlanetaryCase) and case.seals:
         parts = list(_parts(case, {member: member for member in members}))
     rows = tuple(mesh_rows("", gearing, bodies))
     own_bearing = element.planets[0].bearing if element.planets else None
-    return Built(
-        machine=Machine(tuple(bodies), rows, (element, *parts)),
-        operation=operation,
-        known_fluids=fluids_of(case),
-        sets={"": element},
-        set_cases=cases,
-        layout=Layout(
-            (*element.choices, *(f"{part.key}.{term}" for part in parts for term in part.terms)),
-            members,
-            tuple(mesh.key for mesh in gearing.meshes),
-            tuple(f"{planet}_bearing" for planet in gearing.planets),
-            parts=(
-                *(pin_figures(element) if isinstance(own_bearing, PlanetPin) else ()),
-                *(
-                    (f"{part.key}.{item}", kind)
-                    for part in parts
-                    for item, kind in part.figure_types
-                ),
-            ),
-            shares=bool(gearing.planets),
+    layout = Layout(
+        (*element.choices, *(f"{part.key}.{term}" for part in parts for term in part.terms)),
+        members,
+        tuple(mesh.key for mesh in gearing.meshes),
+        tuple(f"{planet}_bearing" for planet in gearing.planets),
+        parts=(
+            *(pin_figures(element) if isinstance(own_bearing, PlanetPin) else ()),
+            *((f"{part.key}.{item}", kind) for part in parts for item, kind in part.figure_types),
         ),
+        shares=bool(gearing.planets),
     )
+    return Machine(tuple(bodies), rows, (element, *parts)), cases, layout
 
 
 def operation_of(case: Case) -> Operation:

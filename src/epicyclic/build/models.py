@@ -76,7 +76,7 @@ GENERAL = {
 """What ``auto`` stands for with the preset ``general``."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SetCase:
     """A gear set with its tables, and those of the case that it is part of.
 
@@ -132,8 +132,8 @@ class SetCase:
             found["lubrication"] = table.method
             if table.method == "dip":
                 found["churning"] = table.churning
-        if self.bearings:
-            found["bearing"] = ", ".join(dict.fromkeys(map(self.bearing_model, self.bearings)))
+        if given := [body for body, bearing in self.bearings.items() if bearing is not None]:
+            found["bearing"] = ", ".join(dict.fromkeys(map(self.bearing_model, given)))
             found["bearing_viscous"] = models.bearing_viscous
         return found
 

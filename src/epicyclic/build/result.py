@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import cached_property, lru_cache, partial
 from itertools import chain
 from typing import Any, cast
 
@@ -90,11 +91,9 @@ def case_notes(
     turning: Collection[str],  # Central gears that turn.
 ) -> tuple[str, ...]:
     """What a user must know about a set: its oil, its load, its flows, its planets."""
+    before, behind = _notes_of_tables(case)
     notes = (
-        *map(Note, fluid_notes(case)),
-        *map(Note, lubrication_notes(case)),
-        *load_notes(case),
-        *backlash_notes(case.gearing),
+        *before,
         *(
             f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
             f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed the "
@@ -109,8 +108,7 @@ def case_notes(
     sharing = case.sharing if found.shares else None
     return (
         *notes,
-        *map(Note, case.found),
-        *map(Note, _arrangement_notes(case)),
+        *behind,
         *(() if sharing is None else _share_notes(sharing, found.shares)),
         *(
             Note(
@@ -121,6 +119,14 @@ def case_notes(
             if name in turning and rim_thickness(table) is None
         ),
     )
+
+
+@lru_cache(maxsize=16)
+def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What is known before anything is solved: what comes before the other notes, and behind."""
+    before: list[str] = list(map(Note, (*fluid_notes(case), *lubrication_notes(case))))
+    before += [*load_notes(case), *backlash_notes(case.gearing)]
+    return tuple(before), (*map(Note, case.found), *map(Note, _arrangement_notes(case)))
 
 
 def fluid_notes(case: SetCase) -> tuple[str, ...]:
@@ -399,7 +405,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
             for key, own in built.set_cases.items()
             for name, model in own.chosen.items()
         },
-        standing=dict(_standing(built, supplies, solution.state)),
+        standing=_WhenRead(partial(_standing, built, supplies, solution.state)),
         flags=(*flags, *_flags(solution)),
         notes=(
             *general_notes(terms, flow.input_power, flow.efficiency),
@@ -423,6 +429,29 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         heat=_heat(case, built, settled),
         lubrication=supplies,
     )
+
+
+class _WhenRead(Mapping[str, str]):
+    """Texts that are made when somebody reads them, which sweeps do not."""
+
+    def __init__(self, make: Callable[[], Iterator[tuple[str, str]]]) -> None:
+        self._make = make
+
+    @cached_property
+    def _made(self) -> dict[str, str]:
+        return dict(self._make())
+
+    def __getitem__(self, key: str) -> str:
+        return self._made[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._made)
+
+    def __len__(self) -> int:
+        return len(self._made)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (self._made,)
 
 
 def _heat(case: Case, built: Built, settled: Settled) -> HeatBalance | None:
@@ -552,8 +581,8 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     if held:
         yield (
             f"{', '.join(in_words(key) for key in held)}: the teeth do not roll on each other, so "
-            "their torques are those without friction. Friction at rest holds other ones too, up "
-            "to what the given efficiency leaves in either direction."
+            "their torques are those without friction. Static friction can also hold other "
+            "torques, within the limits set by the given efficiency in both directions."
         )
     if settled.change > AGREEMENT:
         yield (

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeVar, cast
 
 from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
@@ -40,8 +40,8 @@ from epicyclic.case.tables.elements import (
     Carrier,
     ElementTable,
     ElementTables,
-    PlainPins,
     PlanetBearing,
+    PlanetPin,
     SealTable,
     ThrustBearing,
     between,
@@ -128,6 +128,19 @@ _BESIDE_GEARS = {
 """Tables on which gears, their bearings and how they share the load do not depend."""
 
 
+_OPERATED, _FILES = {"operation", "title"}, set(FILE_KEYS)
+Kept = TypeVar("Kept")
+
+
+class _Kept(dict[Any, tuple[Any, Any]]):
+    """Answers that copies and workers find again."""
+
+    files: bool | None = None  # Whether tables name files, whose content may change.
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _Kept, ()
+
+
 class CaseTable(Table):
     if TYPE_CHECKING:  # every kind has them, each in its place
         lubrication: LubricationTable | None
@@ -143,6 +156,8 @@ class CaseTable(Table):
     _gearings: dict[str, Gearing] = PrivateAttr(default_factory=dict)
     _sound: Mapping[str, Table] = PrivateAttr(default_factory=dict)
     """What became of each of `_tables` by itself: those that stay need not be read again."""
+    _kept: _Kept = PrivateAttr(default_factory=_Kept)
+    """Last answers of `kept`, shared by cases that differ in [operation] and title only."""
 
     @property
     def found(self) -> tuple[Found, ...]:
@@ -192,6 +207,30 @@ class CaseTable(Table):
         made._replaced = (*stands, *changed.replaced)
         return made
 
+    def kept(self, find: Callable[..., Kept], *arguments: Any) -> Kept:
+        """`find(case, *arguments)`, which looks at nothing of [operation] but the arguments.
+
+        Points of a sweep find it once for all torques, speeds and temperatures.
+        """
+        last = self._kept.get(find)
+        if last is None or last[0] != arguments:
+            self._kept[find] = last = arguments, find(self, *arguments)
+        return cast(Kept, last[1])
+
+    def _share(self, before: CaseTable | None) -> bool:
+        """True if only [operation] and title differ from `before`: both then keep the same."""
+        if before is None or not before._tables:
+            return False
+        one, two = self._tables, before._tables
+        if any(one.get(key) is not two.get(key) for key in (one.keys() | two.keys()) - _OPERATED):
+            return False
+        if before._kept.files is None:
+            leaves = (key.rpartition(".")[2] for key, _ in flattened(two))
+            before._kept.files = not _FILES.isdisjoint(leaves)
+        if not before._kept.files:
+            self._kept = before._kept
+        return not before._kept.files
+
     def _unchanged(self, tables: Mapping[str, Any]) -> dict[str, Table]:
         """Those of its own tables that `tables`, made from them by changes, still have."""
         own = self._tables
@@ -239,6 +278,7 @@ class CaseTable(Table):
         sound = None if validation.problems else validation.case
         made = cls._made(sound, tables, source, list(dict.fromkeys(found)))
         made._found, made._sound = told, valid.sections
+        made._share(before)
         if gearing is not None:
             made._gearings = {"": gearing}
         return made
@@ -560,6 +600,16 @@ class TrainCase(_TrainHead):
             raise one_problem("sets", f"{len(named)} sets", allowed, remedy, source)
         sound = {} if before is None else before._unchanged(tables)
         whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound)
+        if isinstance(before, TrainCase) and whole.case is not None and not problems:
+            own = {key: getattr(before, key) for key in cls.model_fields}
+            own |= {key: getattr(whole.case, key) for key in _OPERATED}
+            train = cls.model_construct(**own)
+            train._tables, train._found, train._sound = tables, before._found, whole.sections
+            same_members = _joined_members(tables) == _joined_members(before._tables)
+            if train._share(before) and same_members:
+                train._shape = before._shape
+                wrong = [*operation_problems(train, True), *bearing_force_problems(train, True)]
+                return cls._made(cast(Self, train), tables, source, wrong)
         found = [*problems]
         known = {problem.key for problem in problems}
         found += [problem for problem in whole.problems if problem.key not in known]
@@ -885,7 +935,7 @@ class _SetTables(CaseTable):
         return self._gearings
 
 
-class PlanetaryCase(_SetTables, PlainPins):
+class PlanetaryCase(_SetTables):
     """A planetary gear set with its oil, surroundings and operating point."""
 
     kind: Literal["planetary"]
@@ -898,6 +948,7 @@ class PlanetaryCase(_SetTables, PlainPins):
     sun_mesh: SetMesh = SetMesh()
     ring_mesh: SetMesh = SetMesh()
     planet_bearing: PlanetBearing | None = None
+    planet_pin: PlanetPin | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from epicyclic.case.keys import owner_without_keys
@@ -58,8 +59,8 @@ def _excluded(
 ) -> Iterator[tuple[str, ...]]:
     """Keys of `tables` that cannot stand beside the one at `path`, which is complete by itself."""
     for depth, name in enumerate(path):
-        owner = locate(kind, path[: depth + 1]).owner
-        if owner is None or not issubclass(owner, Table):
+        owner = _owner(kind, tuple(path[: depth + 1]))
+        if owner is None:
             continue
         given = value_at(tables, path[:depth]) or {}
         for group in (*owner.EXACTLY_ONE, *owner.AT_MOST_ONE, *owner.REPLACING):
@@ -69,6 +70,13 @@ def _excluded(
                 yield from ((*path[:depth], key) for key in others if key in given)
     if tuple(path[-2:]) == ("lubrication", "oil_volume") and value_at(tables, _SUMP) is not None:
         yield _SUMP
+
+
+@lru_cache(maxsize=256)
+def _owner(kind: type[Table], path: tuple[str, ...]) -> type[Table] | None:
+    """The table that holds a key."""
+    owner = locate(kind, path).owner
+    return owner if owner is not None and issubclass(owner, Table) else None
 
 
 def _changed(kind: type[Table], tables: dict[str, Any], key: str, value: Any) -> dict[str, Any]:

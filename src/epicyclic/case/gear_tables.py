@@ -62,7 +62,7 @@ class SharedGears(Table):
 
 
 class Gears(SharedGears):
-    """What all gears share."""
+    """Values common to all gears."""
 
     EXACTLY_ONE = (
         ("normal_module", "transverse_module"),
@@ -311,7 +311,7 @@ class MeshTable(Table):
 
 
 class SetMesh(MeshTable):
-    """A mesh whose gears or centre distance may be found from it."""
+    """Misalignment and backlash of a mesh."""
 
     normal_backlash: ShortLength | None = option(
         "j_bn, used to find a profile shift or centre distance that is left out. Default: "

@@ -20,13 +20,7 @@ from epicyclic.case.gear_tables import (
     internal_if_negative,
     with_positive_teeth,
 )
-from epicyclic.case.tables.elements import (
-    Carrier,
-    PlainPins,
-    PlanetBearing,
-    PlanetPin,
-    ThrustBearing,
-)
+from epicyclic.case.tables.elements import Carrier, PlanetBearing, PlanetPin, ThrustBearing
 from epicyclic.case.tables.models import (
     GearPairLosses,
     GearPairModels,
@@ -96,7 +90,7 @@ class GivenListedGear(GivenGear):
     planet: bool | None = _PLANET
 
 
-class PlanetarySet(PlainPins):
+class PlanetarySet(Table):
     """A planetary set whose losses are computed: the tables of a planetary case."""
 
     gears: Gears
@@ -106,6 +100,7 @@ class PlanetarySet(PlainPins):
     sun_mesh: SetMesh = SetMesh()
     ring_mesh: SetMesh = SetMesh()
     planet_bearing: PlanetBearing | None = None
+    planet_pin: PlanetPin | None = None
     load_sharing: LoadSharing = LoadSharing()
     carrier: Carrier | None = None
     thrust_bearing: ThrustBearing | None = None

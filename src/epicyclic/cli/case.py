@@ -215,7 +215,7 @@ def heat(
 ) -> None:
     """Show the temperatures of all parts and the heat paths.
 
-    Uses the network of all parts for any models.temperatures. The heat needs a path out:
+    Uses the heat network, whatever models.temperatures is. The heat needs a path out:
     thermal.oil_flow, [thermal.housing] or thermal.cooler_conductance.
 
     \b

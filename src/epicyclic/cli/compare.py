@@ -61,13 +61,13 @@ if TYPE_CHECKING:
     metavar="COLUMN=VALUE",
     default="",
     help="Rows of a back-to-back rig with two equal sets; half of their loss, that of the reaction "
-    "set, is taken off the other rows.",
+    "set, is subtracted from the other rows.",
 )
 @click.option(
     "--unloaded",
     is_flag=True,
-    help="Take the measured loss without torque, at the same speed and temperature, off each loss "
-    "under load.",
+    help="Subtract the measured loss without torque, at the same speed and temperature, from each "
+    "loss under load.",
 )
 @click.option(
     "--torque-uncertainty",

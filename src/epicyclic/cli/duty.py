@@ -58,7 +58,7 @@ _JSON = ".json"
     type=click.Path(path_type=Path),
     help="Keep the map computed for a CASE in a .nc file.",
 )
-@click.option("--distance", metavar="VALUE", help='What a vehicle covers, "23.27 km": gives Wh/km.')
+@click.option("--distance", metavar="VALUE", help='Distance driven, as in "23.27 km"; adds Wh/km.')
 @table_options
 @output_option("Write .nc or .csv.", "FILE")
 @json_option

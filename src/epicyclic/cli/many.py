@@ -213,7 +213,7 @@ def loss_map(
     that at the input member; the file states the signs. A train has a map of each of its states.
     An interrupted map continues where it stopped, as a sweep does.
 
-    FILE.nc is a map that is stored already: it is only written in another format.
+    FILE.nc is a stored map, which is converted to another format.
     """
     from epicyclic.show.record import is_stored
 

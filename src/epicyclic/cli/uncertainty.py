@@ -72,10 +72,10 @@ def uncertainty(
 ) -> None:
     """Show the uncertainty of losses and efficiency, and the inputs and models that cause it.
 
-    It is that of a CASE, of a loss MAP in a .nc file, of a map that is computed first (with --speed
-    and --torque), or of the energy that a duty CYCLE loses. The distributions of inputs are those
-    of [uncertainty] in the case, or estimates; an input has the same error at all points of a map
-    or cycle. With -o, an interrupted computation continues where it stopped.
+    Covers a CASE, a loss MAP in a .nc file, a map that is computed first (with --speed and
+    --torque), or the energy lost over a duty CYCLE. The distributions of inputs are those of
+    [uncertainty] in the case, or estimates; an input has the same error at all points of a map or
+    cycle. With -o, an interrupted computation continues where it stopped.
     """
     from epicyclic.files import check_place
     from epicyclic.show.terminal import terminal

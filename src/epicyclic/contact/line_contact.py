@@ -114,7 +114,7 @@ class LineContacts:
         ratio: FloatArray = np.abs(self.sliding_speed) / np.maximum(self.rolling_speed, LEAST_SPEED)
         return ratio
 
-    @property
+    @cached_property
     def surface_speeds(self) -> tuple[FloatArray, FloatArray]:
         """u_1 and u_2 across the contact. [m/s]"""
         half = self.sliding_speed / 2

@@ -380,7 +380,7 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
     allowed = f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
     allowed += f"centre distance of {millimetres(mesh.center_distance)} (negative backlash)."
     remedy = f"Without backlash {fits} fits{_distance(gearing, mesh, distance_key)}; "
-    remedy += f"{less:.4f} less of one x gives {micrometres(usual)}, recommended in ISO/TR "
+    remedy += f"reducing one x by {less:.4f} gives {micrometres(usual)} of backlash, as in ISO/TR "
     remedy += f"10064-2.{_other_sign(gearing, mesh)}"
     return [Problem(", ".join(keys), "", allowed, remedy)]
 

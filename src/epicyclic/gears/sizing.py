@@ -222,7 +222,7 @@ class _Solver:
             raise _no_distance(without)
         free = [name for name in self.thinned if name not in self.shifts]
         if free:
-            allowed = "is missing, and so is that of every mate."
+            allowed = "is missing, and so is that of every mating gear."
             remedy = "Add one of them, or tooth_thickness with thickness_diameter: the others "
             remedy += "follow from the centre distance."
             raise one_problem(", ".join(map(self._shift_key, free)), "", allowed, remedy)
@@ -376,7 +376,7 @@ def _no_distance(meshes: Sequence[_Sized]) -> InputError:
     place = ".".join(meshes[0].place)
     pairs = " or ".join(" and ".join(mesh.gears) for mesh in meshes)
     table, _, key = place.rpartition(".")
-    allowed = "is missing, and no mesh gives it: that needs the tooth thickness of both gears, "
-    allowed += f"{pairs}."
+    allowed = "is missing and cannot be computed from a mesh without the tooth thickness of both "
+    allowed += f"gears, {pairs}."
     remedy = f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.'
     return one_problem(place, "", allowed, remedy)

@@ -7,7 +7,7 @@ first roller stands under the load, as in Talbot (2012), Fig. 3.1.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
@@ -425,6 +425,32 @@ def _contacts(
         races=radii,
         speed=rolling,
     )
+
+
+def centrifugal_forces(
+    bearing: RollerBearing,
+    azimuth: FloatArray,  # Of rollers, from the load. [rad]
+    density: float,  # Of a roller. [kg/m^3]
+    pin_radius: float,  # From the axis of the set to that of the pin. [m]
+    carrier: float,  # Speed of the carrier. [rad/s]
+    speed: float,  # Speed of the planet against the carrier. [rad/s]
+    outward: float,  # Azimuth that points away from the axis of the set. [rad]
+) -> FloatArray:
+    """Force of each roller away from the pin; a negative one presses it on the pin. [N]
+
+    Theory (B20). Rollers turn around the pin with their cage, and with the carrier.
+    """
+    mass = density * math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
+    cage = carrier + speed / 2 * (1 + bearing.roller_diameter / bearing.pitch_diameter)
+    orbit = pin_radius * carrier**2 * np.cos(outward - azimuth)
+    forces: FloatArray = mass * (orbit + bearing.pitch_diameter / 2 * cage**2)
+    return forces
+
+
+def pressed_alone(loads: RollerLoads, forces: FloatArray, length: float) -> RollerLoads:
+    """Rollers without load, each pressed on one race by its `forces` over its `length`."""
+    idle = loads.intensity.sum(axis=2) == 0
+    return replace(loads, intensity=np.where(idle, np.abs(forces) / length, 0.0)[:, :, None])
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from epicyclic.units import WATT, Quantity, format_number, known_text, percent
 
 FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
+Item = TypeVar("Item")
 
 SMALLEST_SHOWN_SHARE = 0.01
 SMALLEST_APART = 0.01
@@ -180,20 +181,24 @@ class ValidityFlag:
     could_be: float = 0.0
 
 
-class Flags:
-    """Flags that are looked for when somebody reads them.
+class Sought(Generic[Item]):
+    """What is looked for when somebody reads it.
 
     Most answers of an element are steps on the way to the last one, of which alone anybody does.
     """
 
     __slots__ = ("_looks",)
 
-    def __init__(self, *looks: Callable[[], Iterable[ValidityFlag]]) -> None:
+    def __init__(self, *looks: Callable[[], Iterable[Item]]) -> None:
         self._looks = looks
 
-    def __iter__(self) -> Iterator[ValidityFlag]:
+    def __iter__(self) -> Iterator[Item]:
         for look in self._looks:
             yield from look()
+
+
+class Flags(Sought[ValidityFlag]):
+    __slots__ = ()
 
     def __add__(self, other: Flags | tuple[ValidityFlag, ...]) -> Flags:
         return Flags(self.__iter__, other.__iter__)
@@ -391,7 +396,8 @@ def _flag(
 def _holds(item: Range, values: FloatArray | float) -> bool:
     """True if all values that are numbers lie in the range."""
     low, high = item.bounds
-    return not np.any((values < low) | (values > high))
+    outside = (values < low) | (values > high)
+    return not (outside.any() if isinstance(outside, np.ndarray) else outside)
 
 
 FITTED_QUANTITIES = {

@@ -422,6 +422,20 @@ THERMAL_DENSITY, THERMAL_AREA, THERMAL_EXPONENT = 0.016e6, 0.05, -0.34
 FASTEST = 1e12  # Beyond the rating of any bearing, however small. [rad/s]
 
 
+def thermal_excess(bearing: CatalogueBearing, speed: float) -> float:
+    """Own heat of a bearing in an oil bath less what its seats take up at 70 degC. [W]
+
+    Theory (J35). NaN without width or static load rating.
+    """
+    diameter = bearing.pitch_diameter
+    area = math.pi * 2 * diameter * bearing.width
+    heat = THERMAL_DENSITY * area * max(1.0, area / THERMAL_AREA) ** THERMAL_EXPONENT
+    viscous, mechanical = THERMAL_FACTORS[bearing.type, bearing.cage]
+    own = bearing_viscous_loss(viscous, THERMAL_VISCOSITY, speed, diameter)
+    load = THERMAL_LOAD * bearing.static_load_rating
+    return float(own + mechanical * load * diameter * speed - heat)
+
+
 @lru_cache(maxsize=256)
 def thermal_speed_rating(bearing: CatalogueBearing) -> float:
     """Speed at which a bearing in an oil bath heats itself from 20 to 70 degC. [rad/s]
@@ -436,19 +450,9 @@ def thermal_speed_rating(bearing: CatalogueBearing) -> float:
     """
     from scipy.optimize import brentq
 
-    diameter = bearing.pitch_diameter
-    area = math.pi * 2 * diameter * bearing.width
-    load = THERMAL_LOAD * bearing.static_load_rating
-    if math.isnan(area * load):
+    if math.isnan(thermal_excess(bearing, 0.0)):
         return math.nan
-    heat = THERMAL_DENSITY * area * max(1.0, area / THERMAL_AREA) ** THERMAL_EXPONENT
-    viscous, mechanical = THERMAL_FACTORS[bearing.type, bearing.cage]
-
-    def excess(speed: float) -> float:
-        own = bearing_viscous_loss(viscous, THERMAL_VISCOSITY, speed, diameter)
-        return float(own + mechanical * load * diameter * speed - heat)
-
-    return float(brentq(excess, 0.0, FASTEST))
+    return float(brentq(lambda speed: thermal_excess(bearing, speed), 0.0, FASTEST))
 
 
 def load_flags(
@@ -939,7 +943,7 @@ def rolling_force(speed_number: float, material_number: float, load_number: floa
 def raceways(
     model: TaperedModel | CylindricalModel, bearing: CatalogueBearing, axis: float
 ) -> tuple[float, float]:
-    """Radii of both raceways where rollers touch, whose axis has the angle `axis`. (J21) [m]"""
+    """Radii of both raceways at rollers whose axis has the angle `axis`. Theory (J21). [m]"""
     offset = model.roller_diameter / bearing.pitch_diameter * math.cos(axis)
     inner, outer = ((1 + side * offset) * bearing.pitch_diameter / 2 for side in (-1, 1))
     return inner, outer
@@ -983,7 +987,7 @@ def cylindrical_rolling(
     speed: float,  # Speed of one ring against the other. [rad/s]
     oil: OilState,
 ) -> float:
-    """Rolling moment of cylindrical rollers, half of which carry, in all positions. (J36) [N m]"""
+    """Rolling moment of rollers, half of which carry, over all positions. Theory (J36). [N m]"""
     shares = roller_loads(math.inf, POSITIONS)
     held = sum(
         share * math.cos(2 * math.pi * place / POSITIONS) for place, share in enumerate(shares)

@@ -241,7 +241,7 @@ def balance(
     # torques that balance: of the output, and of all bodies of given speed but the input
     held = [body for body in operation.speeds if body not in (operation.input, operation.output)]
     unknown = [body for body in (operation.output, *held) if body in place]
-    columns = np.zeros((len(bodies), len(machine.rows) + len(machine.couplings) + len(unknown)))
+    rows: list[list[float]] = []  # the transposed system
     scale: list[float] = []
     # each mesh with the term of its driven gear reduced
     lossy = [
@@ -251,41 +251,41 @@ def balance(
         for row in machine.rows
     ]
     stiff = [coupling.terms() for coupling in machine.couplings]
-    for number, terms in enumerate((*lossy, *stiff)):
-        column: dict[str, float] = {}
+    for terms in (*lossy, *stiff):
+        column = [0.0] * len(bodies)
         for body, coefficient in terms:
             if body != HOUSING:
-                column[body] = column.get(body, 0.0) + coefficient
-        length = math.hypot(*column.values()) or 1.0
-        for body, coefficient in column.items():
-            columns[place[body], number] = coefficient / length
+                column[place[body]] += coefficient
+        length = math.hypot(*column) or 1.0
+        rows.append([coefficient / length for coefficient in column])
         scale.append(length)
-    for number, body in enumerate(unknown, len(scale)):
-        columns[place[body], number] = 1.0
+    rows += [[float(other == body) for other in bodies] for body in unknown]
+    columns = np.array(rows).reshape(len(rows), len(bodies)).T
     known = _known_torques(machine, operation, speeds, frictions)
     found, unique = _least(columns, -known)
-    size = max(float(np.abs(known).max(initial=0.0)), float(np.abs(found).max(initial=0.0)))
-    found[np.abs(found) <= ROUNDING * size] = 0.0
-    left = columns @ found + known
-    lambdas = found[: len(scale)] / np.array(scale)
+    values = found.tolist()
+    size = max(map(abs, (*known.tolist(), *values)), default=0.0)
+    values = [0.0 if abs(value) <= ROUNDING * size else value for value in values]
+    left = columns @ np.array(values) + known
+    lambdas = [value / length for value, length in zip(values, scale, strict=False)]
     outside = dict.fromkeys(bodies, 0.0) | dict(operation.torques)
     outside[operation.input] = operation.torque
-    outside |= dict(zip(unknown, map(float, found[len(scale) :]), strict=True))
+    outside |= dict(zip(unknown, values[len(scale) :], strict=True))
     meshes = {
-        row.key: -float(lambdas[number]) * row.teeth[0] for number, row in enumerate(machine.rows)
+        row.key: -value * row.teeth[0] for row, value in zip(machine.rows, lambdas, strict=False)
     }
     return Balance(
         torques=outside,
         meshes=meshes,
         couplings={
-            coupling.key: -float(lambdas[len(machine.rows) + number])
+            coupling.key: -lambdas[len(machine.rows) + number]
             for number, coupling in enumerate(machine.couplings)
         },
         powers={
             row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier])
             for row in machine.rows
         },
-        residual=float(np.abs(left).max(initial=0.0)) / size if size else 0.0,
+        residual=max(map(abs, left.tolist()), default=0.0) / size if size else 0.0,
         unique=unique,
     )
 
@@ -294,8 +294,8 @@ def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     """The smallest solution of a linear system, and whether it is the only one."""
     if matrix.shape[0] == matrix.shape[1]:
         only = solution_of(matrix, known)
-        size = float(np.abs(known).max(initial=0.0))
-        if only is not None and float(np.abs(only).max(initial=0.0)) <= LARGEST_FACTOR * size:
+        size = max(map(abs, known.tolist()), default=0.0)
+        if only is not None and max(map(abs, only.tolist()), default=0.0) <= LARGEST_FACTOR * size:
             return only, True
     least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR_BALANCE)
     found = np.asarray(least, float)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, ValidityFlag, check_ranges
+from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, Sought, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.oil.oil import (
     MixtureState,
@@ -264,7 +264,7 @@ class ElementResult:
     # Labelled numbers for the user, by what they describe: ``"sun_mesh"``.
     figures: Mapping[str, DataclassInstance] = field(default_factory=dict[str, Any])
     flags: SomeFlags = ()  # Models used outside their ranges.
-    notes: tuple[str, ...] = ()  # What else the user must know.
+    notes: tuple[str, ...] | Sought[str] = ()  # What else the user must know.
 
 
 class Element(Protocol):

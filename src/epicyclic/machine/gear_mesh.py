@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -34,7 +35,7 @@ from epicyclic.losses.mesh import (
     ohlendorf_loss_factor,
 )
 from epicyclic.losses.pocket_tables import FLOW_NUMBERS, FlowFigures
-from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE
+from epicyclic.losses.ranges import SMALLEST_SHOWN_SHARE, Sought
 from epicyclic.losses.rolling import CONTAINED, RollingModel
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
@@ -290,26 +291,36 @@ def solve_mesh(
     }
     elastic = None if loads is None else loads.elastic
     figures = partial(_mesh_figures, duty, contact, loss, elastic, flow.figures)
-    least = SMALLEST_SHOWN_SHARE * sum(term.watts for term in losses.values())
-    notes = pocket_notes(duty, flow.figures, fluids, count, least)
-    if duty.gears.models.by_loss_factor:
-        notes += tuple(map(Note, loss_factor_notes(duty.gears.mesh)))
-    elif rolling is not CONTAINED and friction.name in CONTAINS_ROLLING:
-        notes += (
-            f"The rolling loss of the {duty.gears.mesh.name}, "
-            f"{WATT.text(count * loss.rolling, 3)}, counts twice: the friction {friction.name} was "
-            "fitted to the whole load-dependent loss of gear tests. models.rolling = auto adds "
-            "none to it.",
-        )
-    notes += friction.remarks
     return MeshResult(
         losses=losses,
         figures=Figures({duty.gears.key: figures}),
         flags=loss.flags,
-        notes=notes,
+        notes=Sought(partial(_mesh_notes, duty, flow, fluids, count, losses, friction)),
         elastic=elastic,
         friction=friction,
     )
+
+
+def _mesh_notes(
+    duty: MeshDuty,
+    flow: MeshFlow,
+    fluids: Fluids,
+    count: int,
+    losses: Mapping[str, Loss],
+    friction: FrictionModel,
+) -> tuple[str, ...]:
+    least = SMALLEST_SHOWN_SHARE * sum(term.watts for term in losses.values())
+    notes = pocket_notes(duty, flow.figures, fluids, count, least)
+    if duty.gears.models.by_loss_factor:
+        notes += tuple(map(Note, loss_factor_notes(duty.gears.mesh)))
+    elif duty.gears.models.rolling is not CONTAINED and friction.name in CONTAINS_ROLLING:
+        notes += (
+            f"The rolling loss of the {duty.gears.mesh.name}, "
+            f"{WATT.text(losses[f'{duty.gears.key}_rolling'].watts, 3)}, counts twice: the "
+            f"friction {friction.name} was fitted to the whole load-dependent loss of gear tests. "
+            "models.rolling = auto adds none to it.",
+        )
+    return notes + friction.remarks
 
 
 def _pocketing(settings: PocketSettings, flow: MeshFlow, count: int) -> Loss:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -12,7 +12,7 @@ from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
 from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.pocket_tables import KnownFlows
-from epicyclic.losses.ranges import Flags, ModelUse, ValidityFlag
+from epicyclic.losses.ranges import Flags, ModelUse, Sought, ValidityFlag
 from epicyclic.machine.disc import Disc, ThrustBearing, disc_loss, thrust_loss
 from epicyclic.machine.element import (
     LOAD_INDEPENDENT,
@@ -36,6 +36,7 @@ from epicyclic.machine.planets import (
     missing_bearing,
     planet_load,
     planet_shares,
+    radial_force,
     solve_bearing,
     solve_pin,
     tilt_planet,
@@ -114,6 +115,10 @@ class Planet:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
         return [contact.duty for contact in contacts], load
 
+    def force(self, duties: Mapping[str, MeshDuty], carrier_speed: float) -> float:
+        """The load on its bearing if it does not tilt. [N]"""
+        return abs(radial_force(self._contacts(duties), self.centrifugal(carrier_speed)))
+
     def centrifugal(self, carrier_speed: float) -> float:
         """Its centrifugal force. [N]"""
         return self.mass * self.pin_radius * carrier_speed**2
@@ -144,8 +149,8 @@ class Planet:
     def _roller_note(self, where: str, pull: float, force: float) -> Note:
         return Note(
             f"{where}: the carrier presses each roller outward with {NEWTON.text(pull, 3)}, beside "
-            f"{NEWTON.text(force, 3)} on the bearing. Unloaded rollers roll under this force and "
-            "press on their cage, which the loss leaves out."
+            f"{NEWTON.text(force, 3)} on the bearing. Unloaded rollers roll under this force, "
+            "which the loss contains, and press on their cage, which it leaves out."
         )
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
@@ -290,7 +295,7 @@ class GearSet:
         duties = {duty.gears.key: duty for duty in self.duties(state, torques, 1 / self.count)}
         speed = state.speeds[self.carrier]
         bearings = {
-            planet.key: self.count * planet.pin_radius * planet.load(duties, speed)[1].force
+            planet.key: self.count * planet.pin_radius * planet.force(duties, speed)
             for planet in self.planets
             if planet.bearing is not None
         }
@@ -428,20 +433,20 @@ class GearSet:
         duties = {duty.gears.key: duty for duty in self.duties(state, torques, share)}
         bearings = []
         rollers: dict[tuple[str, float], RollerLoads | None] = {}
-        notes: tuple[str, ...] = ()
+        notes: list[Callable[[], Iterable[str]]] = []
         carrier = state.speeds[self.carrier]
         for planet in self.planets:
             tilted, load = planet.load(duties, carrier)
             duties |= {duty.gears.key: duty for duty in tilted}
             if planet.bearing is not None:
-                notes += planet.notes(carrier, load)
+                notes.append(partial(planet.notes, carrier, load))
             speed = state.speeds[planet.body] - carrier
             oil = state.fluids.at(joined_key(self.key, planet.key))
             if planet.bearing is None:
                 bearings.append(missing_bearing(planet.key, planet.no_bearing))
             elif isinstance(planet.bearing, PlanetPin):
                 bearings.append(solve_pin(planet.key, planet.bearing, load, planets, oil, speed))
-                notes += bearings[-1].notes
+                notes.append(bearings[-1].notes.__iter__)
             else:
                 bearing = solve_bearing(
                     planet.key,
@@ -451,9 +456,11 @@ class GearSet:
                     oil,
                     speed,
                     last_rollers.get((planet.key, share)),
-                    planet.pin_radius * carrier**2,
+                    planet.pin_radius,
+                    carrier,
+                    loaded=any(duty.torque1 for duty in tilted),
                 )
-                notes += bearing.notes
+                notes.append(bearing.notes.__iter__)
                 rollers[planet.key, share] = bearing.loads
                 bearings.append(bearing)
         meshes = [
@@ -467,7 +474,6 @@ class GearSet:
             )
             for duty in duties.values()
         ]
-        notes += tuple(note for mesh in meshes for note in mesh.notes)
         losses: dict[str, Loss] = {}
         flags = Flags()
         for planet, bearing in zip(self.planets, bearings, strict=True):
@@ -484,7 +490,7 @@ class GearSet:
             losses=losses,
             figures=Figures(figures),
             flags=flags,
-            notes=notes,
+            notes=Sought(*notes, *(mesh.notes.__iter__ for mesh in meshes)),
             meshes=dict(zip(duties, meshes, strict=True)),
             rollers=rollers,
         )

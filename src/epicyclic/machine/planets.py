@@ -6,7 +6,7 @@ import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from epicyclic.contact.planet_sharing import (
     solve_branch_forces,
 )
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
+from epicyclic.losses.designations import DesignatedBearing
 from epicyclic.losses.drag import (
     VISCOUS_METHOD,
     VISCOUS_SOURCE,
@@ -37,10 +38,12 @@ from epicyclic.losses.planet_bearing import (
     RollerBearing,
     RollerLoads,
     Rubbing,
+    centrifugal_forces,
     fitted_rolling_loss,
     mixed_ehl_rolling_loss,
     palmgren_flags,
     palmgren_loss,
+    pressed_alone,
     radial_stiffness,
     roller_loads,
     roller_loads_next_to,
@@ -49,6 +52,12 @@ from epicyclic.losses.planet_bearing import (
 )
 from epicyclic.losses.ranges import Flags
 from epicyclic.losses.rolling import FittedRolling
+from epicyclic.losses.shaft_bearing import (
+    CatalogueBearing,
+    minimum_load,
+    thermal_excess,
+    thermal_speed_rating,
+)
 from epicyclic.machine.convection import oil_heat_capacity, roller_conductance
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
@@ -559,30 +568,35 @@ def solve_bearing(
     oil: OilState,
     speed: float,  # Speed of the planet against the carrier. [rad/s]
     last: RollerLoads | None = None,  # The rollers under nearly this load, which saves work.
-    acceleration: float = 0.0,  # Of the planet around the axis of the set. [m/s^2]
+    pin_radius: float = 0.0,  # From the axis of the set to that of the planet. [m]
+    carrier: float = 0.0,  # Speed of the carrier. [rad/s]
+    loaded: bool = True,  # False if no mesh carries torque.
 ) -> BearingResult:
     """Losses of `count` planet bearings under the same load."""
-    bearing = own.bearing
+    bearing, where = own.bearing, key.replace("_", " ")
     if own.aligns_itself:
         load = PlanetLoad(load.force, 0.0, 0.0, load.outward)
     if last is None:
         loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     else:
         loads = roller_loads_next_to(last, bearing, load.force, load.moment_x, load.moment_y)
-    if isinstance(own.model, FittedRolling):
-        beyond = _palmgren(own, loads, load, speed) if own.palmgren_beyond else None
-        loss = fitted_rolling_loss(bearing, loads, speed, oil, own.model, beyond)
-    elif own.model in ("mixed-ehl", FULL_COMPLEMENT):
-        loss = mixed_ehl_rolling_loss(bearing, loads, speed, oil, oil_held=own.oil_held)
-    else:
-        loss = _palmgren(own, loads, load, speed)
+    loss = _by_load(own, loads, load.force, speed, oil)
     notes: tuple[str, ...] = ()
     if own.model == FULL_COMPLEMENT:
         volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
-        pull = own.roller_density * volume * acceleration
+        pull = own.roller_density * volume * pin_radius * carrier**2
         rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
         loss = replace(loss, loss=loss.loss + rubbed.between + rubbed.skewed)
-        notes = (_rubbing_note(key.replace("_", " "), rubbed),)
+        notes = (_rubbing_note(where, rubbed),)
+    forces = centrifugal_forces(
+        bearing, loads.azimuth, own.roller_density, pin_radius, carrier, speed, load.outward
+    )
+    alone = pressed_alone(loads, forces, bearing.roller_length)
+    held = float(alone.intensity.sum()) * bearing.roller_length
+    if held:  # on one race each, by slices as long as the roller
+        idle = _by_load(own, alone, held / bearing.slices, speed, oil).loss * bearing.slices / 2
+        loss = replace(loss, loss=loss.loss + idle)
+    notes += _limit_notes(where, bearing, load.force if loaded else math.inf, speed, loss.loss)
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
     )
@@ -595,7 +609,7 @@ def solve_bearing(
             ),
         },
         Figures({key: figures}),
-        loss.flags + viscous_flags(key.replace("_", " "), speed, bearing.pitch_diameter),
+        loss.flags + viscous_flags(where, speed, bearing.pitch_diameter),
         notes,
         loads=loads,
     )
@@ -611,11 +625,65 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
     )
 
 
-def _palmgren(
-    own: PlanetBearing, loads: RollerLoads, load: PlanetLoad, speed: float
+@lru_cache(maxsize=64)
+def rated(bearing: RollerBearing) -> CatalogueBearing:
+    """A planet bearing between pin and race of the planet with the ratings of its rollers.
+
+    Theory (J27), (J28).
+    """
+    sizes = bearing.inner_diameter, bearing.outer_diameter, 2 * bearing.half_width
+    rollers = DesignatedBearing(
+        "",
+        "needle",
+        *sizes,
+        rows=bearing.rows,
+        pitch_diameter=bearing.pitch_diameter,
+        element_diameter=bearing.roller_diameter,
+        element_length=bearing.roller_length,
+        elements=bearing.rollers_per_row,
+    )
+    ratings = rollers.dynamic_load_rating, rollers.static_load_rating
+    return CatalogueBearing("needle", *sizes, "caged", *ratings)
+
+
+def _limit_notes(
+    where: str, bearing: RollerBearing, force: float, speed: float, watts: float
+) -> tuple[Note, ...]:
+    known, notes = rated(bearing), []
+    least = minimum_load(known, 0.0, 0.0)
+    if speed and force < least:
+        text = (
+            f"{where}: the load of {NEWTON.text(force, 3)} is below the minimum load of "
+            f"{NEWTON.text(least, 3)}, 0.02 C by its rollers (SKF, second hand). They may slip; "
+            "the loss is that of the actual load without slip."
+        )
+        notes.append(Note(text, watts))
+    if thermal_excess(known, abs(speed)) > 0:
+        rating = thermal_speed_rating(known)
+        text = (
+            f"{where}: {RPM.text(abs(speed), 4)} against the carrier exceed the thermal reference "
+            f"speed of {RPM.text(rating, 2)}, an estimate after ISO 15312 by its rollers. Above it "
+            "the bearing needs oil that cools it; check the limiting speed of rollers and cage."
+        )
+        notes.append(Note(text, watts))
+    return tuple(notes)
+
+
+def _by_load(
+    own: PlanetBearing, loads: RollerLoads, force: float, speed: float, oil: OilState
 ) -> BearingLoss:
+    """Loss that grows with the load, after the model of the bearing; `force` for Palmgren."""
+    if isinstance(own.model, FittedRolling):
+        beyond = _palmgren(own, loads, force, speed) if own.palmgren_beyond else None
+        return fitted_rolling_loss(own.bearing, loads, speed, oil, own.model, beyond)
+    if own.model in ("mixed-ehl", FULL_COMPLEMENT):
+        return mixed_ehl_rolling_loss(own.bearing, loads, speed, oil, oil_held=own.oil_held)
+    return _palmgren(own, loads, force, speed)
+
+
+def _palmgren(own: PlanetBearing, loads: RollerLoads, force: float, speed: float) -> BearingLoss:
     bearing = own.bearing
-    watts = palmgren_loss(own.palmgren_coefficient, load.force, bearing.pitch_diameter, speed)
+    watts = palmgren_loss(own.palmgren_coefficient, force, bearing.pitch_diameter, speed)
     return BearingLoss(watts, Flags(partial(palmgren_flags, bearing, loads, speed)))
 
 

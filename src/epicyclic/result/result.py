@@ -349,7 +349,7 @@ class Stated(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Result:
-    """The losses of one case, where they arise, and how they were found.
+    """The losses of one case, their places and the methods used.
 
     Attributes
     ----------
@@ -370,8 +370,8 @@ class Result:
     models : mapping of str to str
         The models used, defaults resolved.
     standing : mapping of str to str
-        The models of friction, rolling loss and planet bearings, and how well each is known to be
-        right, ``"schlenk: fitted to gear tests ..."``, by their keys.
+        The models of friction, rolling loss and planet bearings, and the reliability of each,
+        ``"schlenk: fitted to gear tests ..."``, by their keys.
     flags : tuple of ValidityFlag
         Models used outside their ranges.
     notes : tuple of str

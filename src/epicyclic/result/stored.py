@@ -108,12 +108,12 @@ def read_result(
     found["lubrication"] = _supplies(data.get("lubrication", {}), reader)
     if not reader.problems:
         if wrong := check_inputs(found["inputs"]):
-            reader.refuse("inputs", f"Value error, {wrong}")
+            reader.refuse("inputs", wrong)
         if "epicyclic" not in found["versions"]:
-            reader.refuse("versions", "Value error, must name the version of epicyclic")
+            reader.refuse("versions", "must name the version of epicyclic")
     if not reader.problems:
         for place, wrong in _contradictions(found, data):
-            reader.refuse(place, f"Value error, {wrong}")
+            reader.refuse(place, wrong)
     return (None if reader.problems else _made(found, data)), reader.problems
 
 

@@ -204,7 +204,7 @@ def validate(
         problems += [unknown_key(place, value_at(raw, place.path), tables) for place in unknown]
         raw = _mend_names(raw, unknown)
         case, details = _try(kind, raw)
-    alternatives = _check_alternatives(kind, raw)
+    alternatives = _check_alternatives(kind, {k: v for k, v in raw.items() if k not in sound})
     problems += alternatives + [translate(kind, detail) for detail in details]
     if case is not None and not problems:
         given = {name: getattr(case, name) for name in tables_of(kind)}
@@ -273,9 +273,11 @@ def _check_alternatives(kind: type[Table], raw: dict[str, Any]) -> list[Problem]
     """One of each group of alternatives must be given, and that one whole."""
     problems = []
     for name, table in tables_of(kind).items():
-        given = {name: raw.get(name)}
+        if name not in raw:
+            continue
+        given = {name: raw[name]}
         has_names = dict_value(kind.model_fields[name].annotation) is not None  # [states.NAME]
-        if has_names and isinstance(raw.get(name), dict):
+        if has_names and isinstance(raw[name], dict):
             given = {f"{name}.{dotted([key])}": item for key, item in raw[name].items()}
         for key, item in given.items():
             if isinstance(item, dict):

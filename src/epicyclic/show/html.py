@@ -52,7 +52,7 @@ def report_html(
     *,
     size: tuple[float, float] | None = None,
 ) -> str:
-    """The report of a result, of a loss map or a sweep, or of how well one is known.
+    """The report of a result, a loss map, a sweep or an uncertainty analysis.
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ def report_html(
     Returns
     -------
     str
-        HTML. The same for the same content, whether computed or read from a file. Of a sweep of
-        very many points pictures and explorer have some, and say so.
+        HTML, identical for the same content, whether computed or read from a file. For a sweep
+        of very many points, pictures and explorer show a part of them and say so.
     """
     tell = progress or (lambda done, total: None)
     if not isinstance(stored, ResultRecord) and is_sweep(stored):

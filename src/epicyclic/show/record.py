@@ -56,9 +56,8 @@ class ResultRecord:
     fields : mapping of str to xarray.Dataset
         By path: ``"meshes/sun_mesh"`` as `mesh_details` returns it, ``"gears/sun"``,
         ``"views/sun_mesh"``, ``"bearings/planet_bearing"``, ``"pockets/sun_mesh"`` as
-        `pocket_details` returns it, without outlines, ``"uncertainty/result"``, how well losses
-        are known. Of a train with the set:
-        ``"meshes/P1.sun_mesh"``.
+        `pocket_details` returns it, without outlines, ``"uncertainty/result"``, the uncertainty
+        of the losses. In a train with the set: ``"meshes/P1.sun_mesh"``.
     """
 
     result: Result
@@ -455,7 +454,7 @@ FORMAT_VERSION = 1
 
 
 def save_result(result: ResultRecord | CaseSource, path: str | Path) -> None:
-    """Write a result with everything that reports and plots show, whole or not at all.
+    """Write a result with everything that reports and plots show, completely or not at all.
 
     Parameters
     ----------
@@ -467,7 +466,7 @@ def save_result(result: ResultRecord | CaseSource, path: str | Path) -> None:
     Raises
     ------
     InputError
-        If there is no place for the file.
+        If the file cannot be written there.
     """
     import xarray as xr
 
@@ -523,7 +522,7 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
     Raises
     ------
     InputError
-        If it is no such file, is damaged, or holds too much.
+        If it is not such a file, is damaged, or is too large.
     """
     source = Path(path)
     try:
@@ -596,7 +595,7 @@ def _read_json(stated: Mapping[str, Any], name: str, problems: list[Problem]) ->
     try:
         found = from_json(str(stated[name]))
     except ValueError as error:  # also if it is nested too deep
-        problems.append(_problem(name, f"Value error, {error}"))
+        problems.append(_problem(name, str(error)))
         return None
     if isinstance(found, dict):
         return found
@@ -615,9 +614,9 @@ def _attribute_problems(stated: Mapping[str, Any], *more: str) -> Iterator[Probl
     versions = _read_json(stated, "versions", problems)
     yield from problems
     if case is not None and (wrong := _wrong_inputs(case)):
-        yield _problem("case", f"Value error, {wrong}")
+        yield _problem("case", wrong)
     if versions is not None and not isinstance(versions.get("epicyclic"), str):
-        yield _problem("versions", "Value error, must name the version of epicyclic")
+        yield _problem("versions", "must name the version of epicyclic")
 
 
 def _wrong_inputs(inputs: Mapping[str, Any]) -> str:

@@ -122,7 +122,7 @@ def losses_table(result: Result, *, most: int | None = None) -> Table:
     With `most`, the largest ones in so many rows with as many digits as are known: all drags
     together, and smaller losses as others.
     """
-    unit, size, decimals = (WATT.display, 1.0, 1) if most is None else _known_unit(result)
+    unit, size, decimals = _known_unit(result, in_watts=most is None)
     losses, groups, left_out = result.losses, result.groups, result.not_included
     shown_from, least = -math.inf, 0.5 * size / 10**decimals
     if most is not None:
@@ -159,8 +159,13 @@ def losses_table(result: Result, *, most: int | None = None) -> Table:
     return Table(head, tuple(rows), "Losses" if most is None else "", frozenset(strong))
 
 
-def _known_unit(result: Result) -> tuple[str, float, int]:
-    """Unit of losses in print, its size, and the decimals that are known of them."""
+def _known_unit(result: Result, *, in_watts: bool) -> tuple[str, float, int]:
+    """Unit of losses in print, its size, and the decimals that are known of them.
+
+    In watts, where all losses are listed, small ones have one decimal or more.
+    """
+    if in_watts:
+        return WATT.display, 1.0, max(1, decimals_of(result.total))
     unit, size = power_unit(result.total)
     return unit, size, decimals_of(result.total / size)
 
@@ -335,9 +340,9 @@ def sums_table(result: Result, train: Train, *, most: int | None = None) -> Tabl
     """
     losses = {name: it for name, it in result.losses.items() if name not in result.not_included}
     sums = loss_sums(losses, result.inputs)
-    unit, size, decimals = WATT.display, 1.0, 1
+    unit, size, decimals = _known_unit(result, in_watts=most is None)
     if most is not None:
-        sums, (unit, size, decimals) = _largest(sums, most), _known_unit(result)
+        sums = _largest(sums, most)
 
     def known(watts: float) -> Cell:
         return number(watts, "", text=f"{watts / size:z.{decimals}f}")
@@ -406,8 +411,7 @@ def shafts_table(result: Result) -> Table:
     heads = (f"speed, {speed}", f"torque, {torque[0]}", f"power, {power[0]}")
     note = (
         "Speeds are positive in one common sense of rotation; torque and power are external and "
-        "positive where power enters; what a shaft transmits comes from sets, clutches and "
-        "outside."
+        "positive where power enters; the transmitted torque includes those of sets and clutches."
     )
     head = ("", *heads, f"transmits, {torque[0]}", "")
     return Table(head, tuple(rows), "Shafts", note=note)
@@ -445,9 +449,13 @@ def terms_table(result: Result, train: Train) -> Iterator[Table]:
     """Every single loss; nothing if the meshes have said all."""
     if all(name in train.rolling for name in result.losses):
         return
-    groups = result.groups
+    groups, (_, _, decimals) = result.groups, _known_unit(result, in_watts=True)
     rows = tuple(
-        (Cell(in_words(name)), *share_row(result, watts, f"losses.{name}"), Cell(groups[name]))
+        (
+            Cell(in_words(name)),
+            *share_row(result, watts, f"losses.{name}", decimals),
+            Cell(groups[name]),
+        )
         for name, watts in result.losses.items()
         if name not in result.not_included
     )
@@ -530,8 +538,8 @@ def _temperatures(heat: HeatBalance) -> Table:
             )
         )
     note = (
-        "Temperatures of gears are those of their bodies. A part that is not listed is as warm "
-        "as the oil, which absorbs its heat."
+        "Gear temperatures are bulk temperatures. Parts that are not listed have the temperature "
+        "of the oil, which absorbs their heat."
     )
     head = ("", unit_text(CELSIUS.display), "above the oil, K", "heat of losses, W")
     return Table(head, tuple(rows), "Temperatures", note=note)
@@ -578,7 +586,7 @@ def heat_path_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
     for path in heat.ways:
         methods.setdefault(path.method, set()).add(path.source or "given")
     return (
-        Table(("", "from", "to", "W", "W/K", "method"), rows, "Paths of the heat", note=_SIGN),
+        Table(("", "from", "to", "W", "W/K", "method"), rows, "Heat paths", note=_SIGN),
         Listing(
             tuple(f"{method}: {'; '.join(sorted(found))}" for method, found in methods.items()),
             "Sources of the conductances",
@@ -635,10 +643,10 @@ def _flank_text(result: Result, warm: Result | str) -> str:
     node = hottest(warm.heat)
     kelvin = warm.heat.temperatures[node]
     return (
-        f"With models.temperatures = flank the {in_words(node)} would be at "
+        f"With models.temperatures = flank the hottest gear, {in_words(node)}, would be at "
         f"{CELSIUS.to_display(kelvin):.0f} {unit_text(CELSIUS.display)}, "
-        f"{kelvin - warm.heat.oil:.0f} K above the oil; the total would be "
-        f"{warm.total:.0f} W ({percent(warm.total / result.total - 1, signed=True)})."
+        f"{kelvin - warm.heat.oil:.0f} K above the oil; the total loss would be "
+        f"{known_text(warm.total)} ({percent(warm.total / result.total - 1, signed=True)})."
     )
 
 
@@ -692,24 +700,25 @@ def side_by_side(
 
 def _losses(first: Result, second: Result, names: tuple[str, str]) -> Table:
     found = first.losses, second.losses
-    rows = [_difference(name, *(one.get(name) for one in found)) for name in found[0] | found[1]]
-    rows.append(_difference("total", first.total, second.total))
+    digits = max(_known_unit(one, in_watts=True)[2] for one in (first, second))
+    pairs = {name: (found[0].get(name), found[1].get(name)) for name in found[0] | found[1]}
+    pairs["total"] = first.total, second.total
+    rows = [_difference(in_words(name), *pair, digits) for name, pair in pairs.items()]
     strong = frozenset({len(rows) - 1})
     return Table(("", *names, "difference", ""), tuple(rows), "Losses in W", strong)
 
 
-def _difference(name: str, first: float | None, second: float | None) -> tuple[Cell, ...]:
-    label = name.replace("_", " ")
-    values = (tenths(first), tenths(second))
+def _difference(
+    label: str, first: float | None, second: float | None, digits: int
+) -> tuple[Cell, ...]:
+    values = tuple(
+        number(it, "", text="" if it is None else f"{it:z.{digits}f}") for it in (first, second)
+    )
     if first is None or second is None:
         return (Cell(label), *values, Cell(MISSING), Cell(MISSING))
     share = percent((second - first) / first, signed=True) if first else ""
-    return (
-        Cell(label),
-        *values,
-        number(second - first, "", text=f"{second - first:+z.1f}"),
-        aligned(share),
-    )
+    change = number(second - first, "", text=f"{second - first:+z.{digits}f}")
+    return Cell(label), *values, change, aligned(share)
 
 
 def details(case: Case, result: Result | None = None) -> Iterator[Table | Listing]:

@@ -457,7 +457,7 @@ def _error_text(data: xr.Dataset, lost: float) -> str:
         f"Interpolation adds {shown(error, 3)}{scatter} kJ{part}; largest deviation of a point "
         f"{'-' if math.isnan(largest) else percent(largest, 2)}. By: "
         f"{data.attrs['interpolation_error_method']}.\nOutside of the map: "
-        f"{float(data['share_outside']):.3g} of the duration, {data.attrs['points_outside']}."
+        f"{percent(float(data['share_outside']))} of the duration, {data.attrs['points_outside']}."
     )
 
 

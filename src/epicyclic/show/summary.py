@@ -105,7 +105,7 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
     if outside >= _BROAD:
         yield (
             f"{percent(min(outside, 1.0), 0)} of the loss is computed outside the ranges of its "
-            "models: take it as an estimate."
+            "models and is only an estimate."
         )
     if known is None or not known.width:
         return
@@ -113,7 +113,7 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
         f"{in_few_words(called(known, driver))} {percent(share, 0)}"
         for driver, share in known.drivers[:MOST_DRIVERS]
     )
-    yield f"The band is due to: {drivers}."
+    yield f"Main causes of the band: {drivers}."
     yield from filter(is_on_first_screen, known.remarks)
 
 
@@ -137,7 +137,7 @@ def _outside(result: Result) -> float:
 
 
 def _notes(result: Result) -> Iterator[tuple[float, str]]:
-    """Notes in short with the watts concerned; what is said of several sets stands once."""
+    """Notes in short with the affected watts; what is said of several sets stands once."""
     stages = {in_words(key.rpartition(".")[0]) for key in result.losses}
     owners: dict[str, list[str]] = {}
     watts: dict[str, float] = {}
@@ -166,7 +166,7 @@ def first_warnings(result: Result) -> Listing:
     heavy.sort(key=lambda pair: -pair[0])
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))
     count = len(result.warnings)
-    return Listing(shown, f"Warnings, {len(shown)} of {count} by the watts concerned")
+    return Listing(shown, f"Warnings ({len(shown)} of {count}, largest effect first)")
 
 
 def summary_section(result: Result, known: Known | None, drawings: Drawings) -> Section:

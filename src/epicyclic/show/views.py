@@ -166,7 +166,7 @@ def _record_of(result: plain.Result) -> ResultRecord:
 
 
 def solve(case: CaseSource, *, flow_tables: FlowTables | None = None) -> Result:
-    """The losses of a case.
+    """Compute the losses of a case.
 
     Parameters
     ----------
@@ -179,8 +179,8 @@ def solve(case: CaseSource, *, flow_tables: FlowTables | None = None) -> Result:
     Returns
     -------
     Result
-        Its status is ``unphysical`` if a loss is below zero, energy does not balance, or teeth or
-        rollers carry or resist with more than any can; the first of its warnings says why.
+        Its status is ``unphysical`` if a loss is negative, the energy does not balance, or loads or
+        resistances exceed any physical limit; the first of its warnings says why.
 
     Raises
     ------
@@ -197,7 +197,7 @@ def solve_for(
     *,
     progress: Callable[[int, int], object] | None = None,
 ) -> heat.Found:
-    """The cooling, flow or power with which the oil has a temperature.
+    """The cooling power, oil flow or input power that gives an oil temperature.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def solve_for(
     temperature : str or float
         Temperature of the oil in the gearbox: text with a unit, or in kelvin.
     progress : callable, optional
-        Called with the number of settled states found, and of those expected.
+        Called with the numbers of steady states found and expected.
 
     Returns
     -------

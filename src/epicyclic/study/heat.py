@@ -35,12 +35,12 @@ MOST_STEPS, STEP = 6, 4.0
 
 
 def heat_balance(case: CaseSource) -> HeatBalance:
-    """Temperatures of all parts of a gearbox, and the paths of its heat.
+    """Temperatures of all parts of a gearbox, and the heat paths.
 
     Parameters
     ----------
     case : PlanetaryCase or GearPairCase
-        Whatever its ``models.temperatures`` is, the network of all its parts is solved.
+        The network of all parts is solved, whatever its ``models.temperatures`` is.
 
     Returns
     -------
@@ -49,9 +49,9 @@ def heat_balance(case: CaseSource) -> HeatBalance:
     Raises
     ------
     InputError
-        If the case has no oil, or its heat no way out.
+        If the case has no oil, or the heat has no path out.
     ConvergenceError
-        If it runs away: losses and heat find no balance.
+        In case of thermal runaway: losses and heat flows do not balance.
 
     Examples
     --------

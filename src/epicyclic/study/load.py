@@ -47,7 +47,7 @@ def load_case(
         A TOML file, a REXS file (``.rexs``, ``.rexsj``, ``.rexsz``), the name of a built-in case
         (``"talbot-2012"``, ``"talbot-2012-n6-40C"``), or the tables of a case.
     changes : mapping of str to object, optional
-        Keys to change, as in `PlanetaryCase.updated`; with a REXS file, those that it lacks too.
+        Keys to change, as in `PlanetaryCase.updated`; also keys missing in a REXS file.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def load_case(
     Raises
     ------
     InputError
-        With every problem found, not only the first.
+        With all problems found.
     """
     if isinstance(source, str | Path) and (reader := reader_of(source)) is not None:
         return reader(source).case(changes)

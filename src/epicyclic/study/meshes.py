@@ -70,8 +70,8 @@ _DIMENSIONS = ("mesh_position", "contact_line", "segment")
 def mesh_details(case: CaseSource) -> dict[str, xr.Dataset]:
     """Load, pressure, sliding and friction at every point of every loaded mesh of a case.
 
-    Of a planetary set both meshes of the most loaded planet; of a train every set whose losses are
-    computed, but for those without load.
+    For a planetary set both meshes of the most loaded planet; for a train every loaded set with
+    computed losses.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def mesh_details(case: CaseSource) -> dict[str, xr.Dataset]:
     InputError
         If the case has no torque, or is a train of given efficiencies.
     ConvergenceError
-        If the load on the teeth is not found.
+        If the load on the teeth cannot be determined.
     """
     case = as_case(case)
     if case.operation.torque == 0:
@@ -156,8 +156,8 @@ def _other_programs(mesh: Mesh, loads: LineLoads) -> Iterator[str]:
     if loads.elastic is not None:
         yield (
             "The stiffness is the theoretical one of the teeth. ISO 6336-1 multiplies it by C_M "
-            "= 0.8 and by a factor of the gear blank: programs that follow it state 0.7 to 0.8 "
-            "of this."
+            "= 0.8 and by a factor of the gear blank: programs that follow it report 0.7 to 0.8 "
+            "of this value."
         )
     yield (
         "The film thickness is that of smooth contacts with oil at the temperature of the case. "

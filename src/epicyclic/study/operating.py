@@ -47,12 +47,11 @@ def axis_name(key: str) -> str:
 
 
 def operating_line(operation: Mapping[str, Any]) -> str:
-    """The operating point, the table ``operation`` of a case, in one line."""
-    torque = operation["torque"]
-    if not torque.startswith("varied"):
-        torque = torque_text(NEWTON_METRE.parse(torque))
-    words = [f"{operation['speed']}, {torque}"]
-    if "output" in operation:
+    """The operating point, the table ``operation`` of a case, in one line; without varied keys."""
+    words = [operation["speed"]] if "speed" in operation else []
+    if "torque" in operation:
+        words.append(torque_text(NEWTON_METRE.parse(operation["torque"])))
+    if {"input", "output"} <= operation.keys():
         words.insert(0, f"{operation['input']} to {operation['output']}")
     elif "input" in operation:
         words.insert(0, f"input {operation['input']}")

@@ -128,12 +128,6 @@ class PlanetPin(Table):
     material: NamedMaterial = option("Material of the pin.", "steel")
 
 
-class PlainPins(Table):
-    """What has planets that may turn on plain pins."""
-
-    planet_pin: PlanetPin | None = None
-
-
 class Carrier(Table):
     """The planet carrier, for its drag: a closed disc, or plates with planets between them."""
 

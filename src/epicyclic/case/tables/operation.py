@@ -379,7 +379,7 @@ def check_lubrication(table: LubricationTable) -> list[Problem]:
     problems = []
     for key in sorted(given - _EVERY - set(_KEYS[method])):
         users = [f'"{name}"' for name, keys in _KEYS.items() if key in keys]
-        allowed = f'has no effect with method = "{method}", but with {" or ".join(users)}.'
+        allowed = f'has no effect with method = "{method}"; it belongs to {" or ".join(users)}.'
         problems.append(Problem(f"lubrication.{key}", "", allowed, "Remove it, or change method."))
     reason = "has no effect without oil_flow, the flow of the jets."
     remedy = 'Give that, as oil_flow = "2 l/min", or remove this key.'

@@ -230,7 +230,8 @@ def _number(stated: str | float) -> float:
 def _impossible(parameter: Parameter, kind: Kind, spread: tuple[float, ...]) -> Problem | None:
     name, unit = _name(parameter.key), f" {parameter.unit}".rstrip()
     if kind == "normal" and spread[0] <= 0:
-        return Problem(name, "", "must have a standard uncertainty above 0.", "Or exact = true.")
+        remedy = "Give a larger one, or exact = true."
+        return Problem(name, "", "must have a standard uncertainty above 0.", remedy)
     if kind == "lognormal" and parameter.start <= 0:
         allowed = f"applies to values above 0, not {parameter.start:g}{unit}."
         return Problem(name, "", allowed, "Use normal or uniform.")

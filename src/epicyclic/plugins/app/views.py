@@ -145,7 +145,9 @@ class Place:
                     self.pictures.append(ui.html("", sanitize=False).classes("still"))
                 else:
                     bars = drawing.plot["layout"].get("yaxis", {}).get("ticktext", ())
+                    named = [it for it in drawing.plot["data"] if it.get("showlegend") is not False]
                     height = max(_HEIGHT, _REST + _BAR * len(bars))
+                    height += _ENTRY * max(0, len(named) - _IN_ROWS)
                     chart = ui.plotly({}).classes("still chart").style(f"height: {height}rem")
                     self.pictures.append(chart)
 
@@ -155,6 +157,7 @@ class Place:
 
 
 _HEIGHT, _REST, _BAR = 20.0, 7.0, 1.5  # Of a chart at least; beside its bars; of a bar. [rem]
+_ENTRY, _IN_ROWS = 1.2, 4  # Of an entry of the legend [rem], beyond those that have room.
 _BUTTONS = ["select2d", "lasso2d", "zoomIn2d", "zoomOut2d", "autoScale2d", "toImage"]
 _LEGEND = {"orientation": "h", "yanchor": "top", "y": -0.2, "xanchor": "left", "x": 0}
 
@@ -375,7 +378,7 @@ class TurningView:
 
 
 MAP_STEPS = {"speed": 9, "torque": 13}
-_TOLD = "Keep the case, change it, and come back. Both are shown here side by side."
+_TOLD = "Keep the current case, then change it: both are shown here side by side."
 
 
 class MapView:
@@ -531,7 +534,7 @@ class CompareView:
 
     async def show(self) -> None:
         """Buttons that set the other case, and both side by side."""
-        with ui.row():
+        with ui.row().classes("values"):
             ui.button("Keep the current case for comparison", on_click=self._keep).props(
                 "outline no-caps dense"
             )

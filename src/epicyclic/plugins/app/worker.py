@@ -349,8 +349,9 @@ def answered(study: Study, only: str, progress: Progress) -> Answer:
     found = _stored(study, progress)
     drawings = _Drawings(found)
     if not isinstance(found, ResultRecord):
-        figures, sections = map_key_figures(found), map_sections(found, drawings)
-        return Answer(figures, sections, frozenset(drawings.wide), {})
+        # the explorer of a report needs its script
+        sections = [it for it in map_sections(found, drawings) if not it.needs_script]
+        return Answer(map_key_figures(found), sections, frozenset(drawings.wide), {})
     with contact_progress(progress):
         if only in ("", BANDS):
             _known[study] = next(map(known_of, found.group("uncertainty").values()), None)

@@ -95,7 +95,7 @@ def strength(
     type=int,
     default=64,
     show_default=True,
-    help="Paired draws, a power of 2, that tell how probably a design is better; 0: none.",
+    help="Paired samples, a power of 2, for the probability that a design is better; 0: none.",
 )
 @journal_option
 @json_option
@@ -112,11 +112,11 @@ def design(
     """Search for gear sets that meet a TASK: loss against mass, size and transmission error.
 
     TASK is a TOML file with ratio, torque, cycle, limits and choices. All combinations of teeth,
-    module, helix angle, profile shift, width, planets and arrangement are counted; what cannot be
-    is rejected with its reason, the others are solved in the order of what they can reach at best.
-    The best ones are written as cases that 'epicyclic run' accepts.
+    module, helix angle, profile shift, width, planets and arrangement are counted. Impossible ones
+    are rejected with the reason, the others are solved, the most promising ones first. The best
+    ones are written as cases that 'epicyclic run' accepts.
 
-    With --journal an interrupted search goes on where it stopped.
+    With --journal an interrupted search continues where it stopped.
 
     \b
     ratio = 4.2
@@ -187,7 +187,7 @@ def design(
 @click.option(
     "--tolerance",
     metavar="LENGTH",
-    help='Of every amount, 95 % either way, as in "3 um": gives the bands.',
+    help='Tolerance of every varied amount (95 %), as in "3 um"; adds bands.',
 )
 @click.option(
     "--objective",
@@ -214,9 +214,9 @@ def relief(
     journal: Path | None,
     runner: Runner,
 ) -> None:
-    """Show loss against transmission error, pressure and flash over micro-geometry.
+    """Show how micro-geometry trades loss against transmission error, pressure and flash.
 
-    All combinations of the values are solved; those that no other one beats are marked.
+    All combinations of the values are solved; the Pareto-optimal ones are marked.
 
     \b
     epicyclic relief talbot-2012 --set "sun.micro_geometry.tip_relief_roll_length=2 mm"

@@ -85,7 +85,7 @@ def front_table(found: Found) -> Table:
         *(SHOWN[it][0] for it in objectives), *(it.replace("_", " ") for it in safeties),
     )  # fmt: skip
     note = "* chosen and written. Mass is that of the gears as discs."
-    return Table(head, tuple(rows), "Designs that no other one beats", note=note)
+    return Table(head, tuple(rows), "Pareto-optimal designs", note=note)
 
 
 def as_json(found: Found, sentences: Sequence[str]) -> str:

@@ -200,7 +200,7 @@ def design(
     dask: str | None = None,
     journal: str | Path | None = None,
 ) -> Found:
-    """Gear sets that meet a task: those that no other one beats.
+    """Pareto-optimal gear sets that meet a task.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def design(
     jobs, dask
         As for `sweep`.
     journal : str or Path, optional
-        Folder that keeps solved designs, from which the same task goes on.
+        Folder for solved designs, from which the same task continues.
 
     Returns
     -------

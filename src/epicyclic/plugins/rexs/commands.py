@@ -127,7 +127,7 @@ def export(
 ) -> None:
     """Compute a CASE and write its results into a copy of the REXS file ORIGINAL.
 
-    All that ORIGINAL holds stays as it is. Without it a new file describes the gear set; if CASE
+    Everything else in ORIGINAL is unchanged. Without it a new file describes the gear set; if CASE
     is a REXS file, it is the original.
     """
     from epicyclic.plugins.rexs.exporting import rexs_bytes

@@ -700,7 +700,7 @@ def write_rexs(
     original: str | Path | None = None,
     component: int | None = None,
 ) -> None:
-    """Write results to a REXS file, whole or not at all.
+    """Write results to a REXS file, completely or not at all.
 
     Parameters
     ----------
@@ -710,8 +710,8 @@ def write_rexs(
     result : Result
         From `solve`.
     original : str or Path, optional
-        The file that the gear set or train came from. All that it holds stays as it is; results
-        are added. Without it, a new file of version 2.0.0 describes the gears of the result.
+        The file that the gear set or train came from. Everything in it is kept, and results are
+        added. Without it, a new file of version 2.0.0 describes the gears of the result.
     component : int, optional
         Id of the stage in the original, if it has several.
 

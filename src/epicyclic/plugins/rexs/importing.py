@@ -30,7 +30,7 @@ from epicyclic.show.template import case_text
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RexsImport:
-    """What a REXS file says of one gear set or of a train, and what it lacks.
+    """The data of one gear set or of a train in a REXS file, and the data missing there.
 
     Attributes
     ----------

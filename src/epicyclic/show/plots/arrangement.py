@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.drawing import fills_of, plot_gear_set
+from epicyclic.show.plots.style import AROUND, PANEL, SMALL_CHARACTERS
 from epicyclic.units import MILLIMETRE
 
 Floats = NDArray[np.float64]
@@ -148,7 +149,7 @@ def _along(
 
 def plot_from_the_end(found: Arrangement, ax: Axes) -> Axes:
     """All gears at their places, seen along the axes."""
-    plot_gear_set(found.gears, ax)
+    plot_gear_set(found.gears, ax, hidden=False)
     ax.set_title("Arrangement, seen along the shafts")
     return ax
 
@@ -204,12 +205,16 @@ def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) 
         style: dict[str, Any] = {"facecolor": "0.75", "zorder": 0.5}
         _rectangle(ax, ((low + high) / 2, heights[shaft]), (high - low, -radius, radius), **style)
         ax.plot((low, high), [heights[shaft]] * 2, color="black", lw=0.6, ls="-.")
-    _write_names(ax, spans, heights, ENDS * length)
+    names = _write_names(ax, spans, heights, ENDS * length)
     ax.set_aspect("equal")
     ax.autoscale_view()
     ax.margins(0.05)
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    inch = max((right - left) / PANEL[0], (top - bottom) / (PANEL[1] - 2 * AROUND))
+    reach = [place + letters * inch / SMALL_CHARACTERS for place, letters in names]
+    ax.set_xlim(min([left, *reach]), max([right, *reach]))
     ax.grid(visible=False)
-    told = f"; place along the shaft not given: {', '.join(map(in_words, found.assumed))}"
+    told = f"\n(position not given: {', '.join(map(in_words, found.assumed))})"
     ax.set(
         title="Arrangement, seen from the side",
         xlabel=f"along the shafts, mm{told if found.assumed else ''}",
@@ -234,9 +239,13 @@ def _rectangle(
 
 def _write_names(
     ax: Axes, spans: Mapping[str, list[float]], heights: Mapping[str, float], gap: float
-) -> None:
-    """Names at the ends of the shafts; of those on one axis left and right in turn."""
+) -> list[tuple[float, int]]:
+    """Names at the ends of the shafts; of those on one axis left and right in turn.
+
+    Returns where each begins, and its letters, negative towards the left.
+    """
     taken: dict[float, int] = {}
+    ends = []
     for shaft, own in spans.items():
         if shaft == HOUSING or shaft not in heights or not own:
             continue
@@ -245,4 +254,13 @@ def _write_names(
         taken[height] = taken.get(height, 0) + 1
         place = min(own) - 1.5 * gap if is_left else max(own) + 1.5 * gap
         side = "right" if is_left else "left"
-        ax.text(place, height, in_words(shaft), ha=side, va="center", fontsize="small")
+        style: dict[str, Any] = {
+            "facecolor": "white",
+            "edgecolor": "none",
+            "alpha": 0.8,
+            "pad": 0.5,
+        }
+        text = ax.text(place, height, in_words(shaft), ha=side, va="center", fontsize="small")
+        text.set_bbox(style)
+        ends.append((place, -len(shaft) if is_left else len(shaft)))
+    return ends

@@ -401,10 +401,18 @@ def figure_of(
     inches = WIDTH, WIDTH * SLIDE[1] / SLIDE[0] if len(panels) == 1 else ROW * rows
     if plot.is_wide:
         inches = (plot.size[0] * columns, plot.size[1] * rows)
+    letters = max(1.0, inches[0] / WIDTH)  # those of a wide drawing have the size that it needs
     if size is not None:
         inches = in_inches(size)
     with styled_figure(
-        rows, columns, title, projection=plot.projection, size=inches, dpi=dpi, caption=point
+        rows,
+        columns,
+        title,
+        projection=plot.projection,
+        size=inches,
+        dpi=dpi,
+        caption=point,
+        letters=letters,
     ) as (figure, axes):
         spare = axes.ravel()[len(panels) :]
         for panel, ax in zip(panels, axes.ravel(), strict=False):

@@ -46,6 +46,8 @@ SAME_LEVEL = 3  # Digits of a millimetre to which levels are the same.
 def plot_gear_set(
     gears: Mapping[str, xr.Dataset],  # As `epicyclic.study.shapes.gear_shapes` returns them.
     ax: Axes,
+    *,
+    hidden: bool = True,  # Whether to name the gears behind which others are hidden.
 ) -> Axes:
     """All gears at their places, to scale, seen along the axis."""
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
@@ -53,7 +55,8 @@ def plot_gear_set(
     order = sorted(gears.items(), key=_is_behind)
     for row, (name, gear) in enumerate(order):
         label = f"{in_words(name)}, {int(gear.attrs['teeth'])} teeth"
-        if hider := next((one for one, front in order[row + 1 :] if _hides(front, gear)), ""):
+        front = order[row + 1 :] if hidden else ()
+        if hider := next((one for one, it in front if _hides(it, gear)), ""):
             label += f", behind {in_words(hider)}"
         outline = _whole_outline(gear, SKIPPED_POINTS)
         inside = bool(gear.attrs["internal"])

@@ -99,7 +99,7 @@ def _draw(ax: Axes, parts: Mapping[str, Mapping[str, float]], starts: FloatArray
 
 def _finish(ax: Axes, names: Sequence[str], watts: Iterable[float]) -> None:
     ax.set_yticks(range(len(names)), names)
-    ax.invert_yaxis()
+    ax.set_ylim(len(names) - 0.4, -0.6)  # with room for losses of nothing too
     ax.grid(visible=False, axis="y")
     ax.set_xlim(0, ROOM * max(watts, default=0.0) or 1.0)
     legend_below(ax, ncols=2)

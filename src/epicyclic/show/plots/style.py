@@ -55,6 +55,7 @@ LEGEND_ROW, LEGEND_REST = 0.2, 0.45
 STYLE: Any = {
     "text.parse_math": False,  # names of users may have dollar signs
     "axes.prop_cycle": rcsetup.cycler("color", COLOURS),
+    "axes.axisbelow": True,  # no lines across bars
     "axes.grid": True,
     "grid.alpha": 0.3,
     "axes.spines.top": False,
@@ -79,6 +80,7 @@ def styled_figure(
     size: tuple[float, float] | None = None,
     dpi: float | None = None,  # Pixels an inch; default: `DPI`.
     caption: str = "",  # Below all, as the operating point; none if empty.
+    letters: float = 1.0,  # Size of title and caption over the usual one.
 ) -> Iterator[tuple[Figure, Any]]:
     """A figure and its array of Axes, drawn in the style of the package."""
     with mpl.rc_context(STYLE):
@@ -86,9 +88,10 @@ def styled_figure(
         figure = Figure(figsize=size, dpi=dpi or DPI, layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, subplot_kw={"projection": projection})
         if title:
-            figure.suptitle(title, x=0.01, ha="left", fontsize=TITLE_POINTS, fontweight="bold")
+            points = letters * TITLE_POINTS
+            figure.suptitle(title, x=0.01, ha="left", fontsize=points, fontweight="bold")
         if caption:
-            caption_below(figure, caption)
+            caption_below(figure, caption, letters * SMALL_POINTS)
         yield figure, axes
         _break_labels(figure, rows)
         if any(ax.get_aspect() != "auto" for ax in figure.axes):
@@ -103,14 +106,14 @@ def _break_labels(figure: Figure, rows: int) -> None:
         label.set_text(textwrap.fill(label.get_text(), max(SHORTEST, int(room * CHARACTERS))))
 
 
-def caption_below(figure: Figure, caption: str) -> None:
+def caption_below(figure: Figure, caption: str, points: float = SMALL_POINTS) -> None:
     """What a figure is of, as the operating point, in small letters below all."""
     width = float(figure.get_size_inches()[0])
     figure.supxlabel(
-        textwrap.fill(caption, max(1, int(width * CHARACTER_POINTS / SMALL_POINTS))),
+        textwrap.fill(caption, max(1, int(width * CHARACTER_POINTS / points))),
         x=0.01,
         ha="left",
-        fontsize=SMALL_POINTS,
+        fontsize=points,
         color="0.3",
     )
 

@@ -30,6 +30,7 @@ from epicyclic.show.plots.style import (
     title_of,
     write_beside,
 )
+from epicyclic.study.bands.advice import in_few_words
 from epicyclic.study.operating import operating_line
 from epicyclic.study.sweeps.run import is_sweep
 from epicyclic.units import format_number, unit_text
@@ -115,11 +116,11 @@ def sweep_line(data: xr.Dataset) -> str:
     operation = dict(json.loads(data.attrs["case"])["operation"])
     spans = []
     for key in map(str, [*data["total"].dims, *_with_dimensions(data)]):
-        spans.append(f"{key} {_span(data[key])}")
+        spans.append(f"{in_few_words(key)} {_span(data[key])}")
         table, _, name = key.partition(".")
-        if table == "operation" and name in operation:
-            operation[name] = f"varied {name.rpartition('_')[2]}"
-    return f"{'; '.join(spans)}; else {operating_line(operation)}"
+        if table == "operation":
+            operation.pop(name, None)
+    return "; ".join(filter(None, [*spans, operating_line(operation)]))
 
 
 def _with_dimensions(data: xr.Dataset) -> list[str]:
@@ -215,8 +216,8 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
 
 
 def _wrapped(label: str) -> str:
-    """A label on short lines, the key in words."""
-    return textwrap.fill(label.replace(".", " ").replace("_", " "), LABEL_WIDTH)
+    """A label on short lines."""
+    return textwrap.fill(label, LABEL_WIDTH)
 
 
 def _column(values: xr.DataArray) -> tuple[FloatArray, list[tuple[float, str]]]:
@@ -250,7 +251,7 @@ def _at_first(data: xr.Dataset, kept: list[str]) -> xr.Dataset:
 
 def _titled(values: xr.DataArray, part: xr.Dataset, ax: Axes) -> str:
     """What is shown, and the values of the dimensions that are not."""
-    held = [f"{key} {_value(part[key])}" for key in _held(part)]
+    held = [f"{in_few_words(key)} {_value(part[key])}" for key in _held(part)]
     width = int(TITLE_CHARACTERS * room_of(ax))
     return textwrap.fill(", ".join([title_of(values), *held]), width, break_long_words=False)
 
@@ -273,9 +274,9 @@ def _unit(values: xr.DataArray) -> str:
 
 
 def _axis_label(data: xr.Dataset, dim: str) -> str:
-    """``"operation.speed, rpm"``."""
-    unit = _unit(data[dim])
-    return f"{dim}, {unit}" if unit else dim
+    """``"speed, rpm"``."""
+    unit, name = _unit(data[dim]), in_few_words(dim)
+    return f"{name}, {unit}" if unit else name
 
 
 def _value(value: xr.DataArray) -> str:

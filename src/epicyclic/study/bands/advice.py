@@ -76,6 +76,7 @@ def known_of(data: xr.Dataset) -> Known:
 # What limits the trust in a result, and what would raise it most.
 
 _KEY = re.compile(r"[\w.-]+\.[\w.-]+")
+_OF_ALL = ("sets", "gears", "operation", "models")  # Tables that the name of a key needs not.
 LEAST = 0.02
 """Share in the variance of the total from which a value is said to limit the trust. [1]"""
 CONCERNED = 0.05  # Part of the total loss from which a warning matters. [1]
@@ -142,7 +143,8 @@ def in_few_words(name: str) -> str:
     if not _KEY.fullmatch(name):
         return name
     *owners, last = name.replace("_", " ").split(".")
-    return f"{last} of {' '.join(one for one in owners if one not in ('sets', 'gears'))}"
+    owner = " ".join(one for one in owners if one not in _OF_ALL)
+    return f"{last} of {owner}" if owner else last
 
 
 def _left(known: Known, name: str, uncertainty: float) -> float:

@@ -51,10 +51,10 @@ def compare_cases(
     dask: str | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """How much more or less the second case loses, with the inputs that both share drawn once.
+    """Difference of the losses of two cases, with the inputs that both share drawn once.
 
     Two cases share an input whose key, value and distribution are equal in both, and the errors of
-    models if both use the same models. All else is drawn for each on its own.
+    models if both use the same models. All other inputs are drawn separately for each case.
 
     Parameters
     ----------
@@ -151,8 +151,8 @@ def _evaluate(
         points=tuple(changes),
     )
     rows = runner.run(plan)
-    shape = (len(changes), -1)
-    losses = np.array([rows.numbers(name).reshape(shape) for name in outputs.numbers])
+    shape = len(changes), drawn.shape[-1]
+    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, *shape)
     power, shaft = (rows.numbers(name).reshape(shape) for name in (INPUT_POWER, SHAFT_POWER))
     found, entering = [], []
     for point in range(len(changes)):

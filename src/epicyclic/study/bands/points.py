@@ -370,11 +370,11 @@ def uncertainty(
     journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """How well losses and efficiency are known, and what that depends on.
+    """Uncertainty of losses and efficiency, and its causes.
 
-    Inputs and the errors of models, as [uncertainty] of the case states them or as is assumed,
-    are drawn at scrambled Sobol points, twice, and of a single case with each of them exchanged
-    between the two. Over a map and a cycle they are the same at all operating points.
+    Inputs and errors of models have the distributions of [uncertainty] in the case, or default
+    ones. Two sets of scrambled Sobol points are drawn; for a single case each input is also
+    exchanged between them. Over a map or a cycle the samples are the same at all points.
 
     Parameters
     ----------

@@ -163,8 +163,9 @@ RATIO = 2.0
 that rises. [1]"""
 CROWD = 10
 """Torques between zero and the smallest of an even spacing, which is 1000 times the least."""
-CHECKED_NEAR_ZERO, CHECKED_BEYOND = 4, 4
-"""Intervals on each side of zero, and of all others, in whose middle a map is checked."""
+CHECKED_NEAR_ZERO, CHECKED_WHERE_BENT, CHECKED_BEYOND = 4, 4, 4
+"""Intervals on each side of zero, where the loss bends most, and of all others, in whose middle a
+map is checked."""
 CLOSER_TO_ZERO = (1 / 8, 1 / 32)
 """Where it is checked too in the first interval on each side, from its end at zero. [1]"""
 
@@ -181,15 +182,19 @@ def resolving_zero(
     --------
     >>> resolving_zero([0.0, 40.0, 80.0], crowd=4)
     [0.0, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0]
+    >>> resolving_zero([-40.0, -5.0, 30.0], crowd=1)
+    [-40.0, -20.0, -10.0, -5.0, -2.5, 0.0, 15.0, 30.0]
     """
     given = np.unique(np.array(list(torques), dtype=float))
     if not given.size or given[0] > 0 or given[-1] < 0:
         return list(map(float, given))
-    ends = [
-        side[np.abs(side).argmin()] for side in (given[given < 0], given[given > 0]) if side.size
-    ]
-    steps = RATIO ** -np.arange(1.0, crowd + 1)
-    found = np.concatenate([given, [0.0], *(end * steps for end in ends)])
+    found = [*given, 0.0]
+    for sign in (-1.0, 1.0):
+        end, second = [*np.sort(sign * given[sign * given > 0])[:2], 0.0, 0.0][:2]
+        found += [sign * end * RATIO**-step for step in range(1, crowd + 1)]
+        # an even spacing that misses zero leaves a wide gap behind the first torque
+        steps = math.floor(math.log(second / end, RATIO) + 0.5) if second else 0
+        found += [sign * second * RATIO**-step for step in range(1, steps)]
     return list(map(float, np.unique(found) + 0.0))  # no -0.0
 
 
@@ -220,7 +225,7 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     first = {name: 0 for name in data["total"].dims if name not in ("speed", "torque")}
     speed = float(speeds[speeds.size // 2])
     line = data.sel(speed=speed).isel(first)
-    middles = _checked(torques)
+    middles = _checked(torques, line["total"].values)
     changes = further_values(line) | {OPERATING["speed"].key: OPERATING["speed"].text(speed)}
     if "temperature" in first:
         oil = OPERATING["temperature"]
@@ -248,8 +253,9 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     }
 
 
-def _checked(torques: FloatArray) -> FloatArray:
-    """Middles of the intervals next to zero and of some others, and more of the first on each side.
+def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
+    """Middles of the intervals next to zero, of those at whose ends the loss bends most, and of
+    some others; and more of the first on each side.
 
     There the error is largest near the end at zero.
     """
@@ -257,7 +263,11 @@ def _checked(torques: FloatArray) -> FloatArray:
     middles = (low + high) / 2
     order = np.argsort(np.abs(middles), kind="stable")
     sides = [order[middles[order] < 0], order[middles[order] >= 0]]
-    near = np.concatenate([side[:CHECKED_NEAR_ZERO] for side in sides])
+    bends = np.abs(np.diff(np.diff(total) / (high - low), prepend=np.nan, append=np.nan))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = (high - low) * np.fmax(bends[:-1], bends[1:]) / np.minimum(total[:-1], total[1:])
+    bent = np.argsort(-np.nan_to_num(off))[:CHECKED_WHERE_BENT]
+    near = np.concatenate([side[:CHECKED_NEAR_ZERO] for side in sides] + [bent])
     others = np.setdiff1d(np.arange(middles.size), near)
     places = np.linspace(0, others.size - 1, min(CHECKED_BEYOND, others.size)).astype(int)
     first = np.concatenate([side[:1] for side in sides])
@@ -358,8 +368,8 @@ def loss_map(
         States of a train. Default: all in which it can run; the attribute ``states_left_out``
         names the others.
     resolve_zero : bool
-        True to add torques that crowd at zero, where losses rise steeply, if zero is among the
-        torques or between them.
+        True to add torques close to zero, where losses rise steeply, if zero is among the torques
+        or between them.
     jobs, dask, shard, journal, progress
         As for `sweep`.
 
@@ -630,7 +640,7 @@ SURROUNDINGS = "surroundings_temperature"
 
 
 def with_temperature_state(data: xr.Dataset, case: CaseSource) -> xr.Dataset:
-    """A map with what makes its temperature follow from the losses, for an FMU.
+    """Add the heat balance to a map, so that an FMU computes its temperature from the losses.
 
     Parameters
     ----------
@@ -638,13 +648,13 @@ def with_temperature_state(data: xr.Dataset, case: CaseSource) -> xr.Dataset:
         From `loss_map`, with all parts at the temperature of the oil, over two temperatures or
         more.
     case : PlanetaryCase, GearPairCase or TrainCase
-        Whose network of heat, settled at its operating point, gives the conductance.
+        Its heat network, in the steady state at its operating point, gives the conductance.
 
     Raises
     ------
     InputError
-        If the map has no axis of temperatures or was made at settled ones, or if what the case
-        stores is not known.
+        If the map has no temperature axis or has steady-state temperatures, or if the heat capacity
+        of the case is unknown.
     """
     check_axis(data.sizes.get("temperature", 0))
     if map_inputs(data).get("models", {}).get("temperatures") == "network":

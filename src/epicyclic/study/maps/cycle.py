@@ -266,6 +266,10 @@ def _texts(column: Any) -> tuple[NDArray[np.intp], list[str]]:
     return codes, [*texts, ""]
 
 
+_LEAST_SUM, _LARGEST_SUM = 1e-100, 1e100
+"""Of shares or durations: numbers over these are finite, and energies too. [1], [s]"""
+
+
 @dataclass(slots=True)
 class _Fault:
     """Rows with one kind of mistake: how many, and the first."""
@@ -336,7 +340,8 @@ class _Checks:
             if sound.size:
                 self.low[name] = min(self.low.get(name, np.inf), float(sound.min()))
                 self.high[name] = max(self.high.get(name, -np.inf), float(sound.max()))
-                self.sums[name] = self.sums.get(name, 0.0) + float(sound.sum())
+                with np.errstate(over="ignore"):  # `problems` tells of sums beyond all bounds
+                    self.sums[name] = self.sums.get(name, 0.0) + float(sound.sum())
         self.rows += len(lines)
 
     def _note(
@@ -370,6 +375,14 @@ class _Checks:
             allowed = f"There are {self.rows} rows; a cycle needs {least} or more."
             found.append(Problem("", "", allowed, "Give more rows."))
         for name in (DURATION, SHARE):
-            if self.rows and name in self.columns and not self.sums.get(name, 0.0) > 0:
-                found.append(Problem(name, "", "is zero in all rows.", "Give positive values."))
+            whole = self.sums.get(name, 0.0)
+            if not self.rows or name not in self.columns or _LEAST_SUM <= whole <= _LARGEST_SUM:
+                continue
+            allowed, given = "is zero in all rows.", ""
+            if whole:
+                given, allowed = (
+                    f"{whole:.3g} together",
+                    "is next to nothing, or beyond all bounds.",
+                )
+            found.append(Problem(name, given, allowed, "Give positive values."))
         return found

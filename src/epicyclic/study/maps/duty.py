@@ -32,7 +32,16 @@ from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_cas
 from epicyclic.study.operating import STATE
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
 from epicyclic.study.table_file import AS_IT_IS, TableForm
-from epicyclic.units import CELSIUS, KILOJOULE, NEWTON_METRE, RPM, SECOND, Quantity, format_number
+from epicyclic.units import (
+    CELSIUS,
+    KILOJOULE,
+    NEWTON_METRE,
+    RPM,
+    SECOND,
+    Quantity,
+    format_number,
+    percent,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,7 +80,7 @@ def duty_cycle(
     journal: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Energy in, out and lost over a duty cycle, by component.
+    """Input, output and lost energy of a duty cycle, by component.
 
     Parameters
     ----------
@@ -87,8 +96,8 @@ def duty_cycle(
         Oil inlet temperatures as text with units, for a cycle without a column of them. Default:
         that of the case, or of a map that has one.
     clamp : bool
-        True: points outside of the map lose what the point at its border loses. False: they are
-        refused.
+        True: points outside of the map have the torque loss of the nearest point on its
+        boundary. False: they are refused.
     samples : int
         Points of the cycle that are solved directly to measure the error of the interpolation.
     form : TableForm
@@ -394,7 +403,7 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
                     name,
                     f"{low} to {high} {unit.display}",
                     allowed,
-                    f"Compute a larger map, or use --clamp; {share:.3g} of the duration is "
+                    f"Compute a larger map, or use --clamp; {percent(share)} of the duration is "
                     "outside.",
                 )
             )

@@ -52,7 +52,7 @@ def formats() -> Mapping[str, Format]:
 
 
 def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> None:
-    """Write a loss map to a file, whole or not at all.
+    """Write a loss map to a file, completely or not at all.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
     Raises
     ------
     InputError
-        If there is no such format, it cannot hold the map, or there is no place for the file.
+        If there is no such format, it cannot hold the map, or the file cannot be written there.
     """
     target = Path(path)
     tables.check_map(data)

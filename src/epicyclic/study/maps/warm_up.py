@@ -236,19 +236,19 @@ def warm_up(
     cycle: Any = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Temperatures and losses of a gearbox that starts cold.
+    """Temperatures and losses of a gearbox after a cold start.
 
     Parameters
     ----------
     case : PlanetaryCase, GearPairCase or TrainCase
-        Its temperatures follow from the network of heat, whatever ``models.temperatures`` is. It
+        Its temperatures follow from the heat network, whatever ``models.temperatures`` is. It
         must have ``thermal.oil_volume`` and, if it has a housing, ``thermal.housing.mass``.
     duration : str
         As ``"2 h"``.
     start_temperature : str, optional
         Start temperature of all parts, as ``"20 degC"``. Default: ``thermal.ambient_temperature``.
     cycle : str, Path, pandas.DataFrame or mapping, optional
-        As for `duty_cycle`, repeated until the end; a column of temperatures is left alone.
+        As for `duty_cycle`, repeated until the end; a column of temperatures is ignored.
         Default: the operating point of the case.
     progress : callable, optional
         As for `sweep`.

@@ -241,9 +241,9 @@ class MeasuredComparison:
     calibrated : ndarray, shape (n,), or None
         With the fitted values. [W]
     held_out : ndarray of bool, shape (n,)
-        Points that the fit did not see.
+        Points excluded from the fit.
     load_dependent : {"computed", "as-tested"}
-        What computed load-dependent losses are.
+        Definition of the computed load-dependent losses.
     group : str
         Column by whose values the errors are given.
     errors : tuple of ErrorFigures

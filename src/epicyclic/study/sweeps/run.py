@@ -706,7 +706,7 @@ def sweep(
     Parameters
     ----------
     case : PlanetaryCase or GearPairCase
-        Every key that is not varied stays as it is here.
+        Keys that are not varied have their values from here.
     vary : mapping of str to iterable, optional
         Dotted keys to values, ``{"operation.speed": ["1000 rpm", "2000 rpm"]}``: numbers, text
         with units, choices, names. Numbers of an array have the unit behind the key,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
@@ -190,15 +191,17 @@ class Journal:
         try:
             with self.path.open("ab", buffering=0) as file:  # one write: workers share the file
                 whole = file.write(line) == len(line)
-            reason = "the disk is full"
+            full, reason = True, "the disk is full"
         except OSError as error:
+            full = error.errno in (errno.ENOSPC, errno.EDQUOT)
             whole, reason = False, str(error.strerror)
         if not whole:
             raise one_problem(
                 "journal",
                 str(self.path),
                 f"cannot be written: {reason}.",
-                "Finished points are kept; free some space and give the same command again.",
+                f"Finished points are kept; {'free some space' if full else 'let it be written'} "
+                "and give the same command again.",
                 "the sweep",
             )
 
