@@ -62,6 +62,35 @@ def test_what_takes_a_case_takes_a_name_or_a_file(name):
         OF_A_CASE.get(name, getattr(ep, name))("none.toml")
 
 
+@pytest.mark.parametrize("source", [None, 5, [], b"talbot-2012", object()])
+def test_what_is_no_case_is_refused(source):
+    with pytest.raises(ep.InputError):
+        ep.solve(source)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"operation.torque": "1 N*m", "operation.torque [kN*m]": 2},
+        {"operation.speed [rpm]": 3, "operation.speed [rad/s]": 4},
+        {"operation.torque [N*m]": 10**400},
+    ],
+)
+def test_changes_that_say_two_things_or_no_number_are_refused(case, changes):
+    with pytest.raises(ep.InputError, match=r"changed already|not a number"):
+        case.updated(changes)
+
+
+def test_numbers_of_a_study_are_checked(case):
+    for key, call in {
+        "seed": lambda: ep.uncertainty(case, seed=-1),
+        "jobs": lambda: ep.uncertainty(case, jobs=-1),
+        "samples": lambda: ep.duty_cycle(case, CYCLE, samples=-1),
+    }.items():
+        with pytest.raises(ep.InputError, match=f"{key} = -1: must be"):
+            call()
+
+
 def test_a_key_is_read_as_it_is_stated(case):
     changes = {"operation.speed [rpm]": 1730, "operation.torque [kN*m]": np.float64(0.27)}
     other = case.updated(changes | {"operation.oil_inlet_temperature [degF]": 149})

@@ -163,3 +163,13 @@ def test_sets_of_given_efficiency_are_assembled_too(planet, key, advice):
     (problem,) = problems(train, {})
     assert problem.key == f"sets.S.{key}"
     assert problem.remedy.startswith(advice)
+
+
+@pytest.mark.parametrize("pressure", ["0.7 bar", "0.01 bar", "3 Pa"])
+def test_the_pressure_of_voids_that_a_remedy_names_is_taken(pressure):
+    changes = {"surroundings.pressure": pressure, "models.pocket_void_pressure": "0.9 bar"}
+    with pytest.raises(InputError) as caught:
+        load_case("talbot-2012-pair", changes)
+    (problem,) = caught.value.problems
+    taken = re.fullmatch(r"Take (.+)\.", problem.remedy)[1]
+    assert load_case("talbot-2012-pair", changes | {problem.key: taken})

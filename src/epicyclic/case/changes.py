@@ -29,8 +29,13 @@ def with_changes(kind: type[Table], tables: dict[str, Any], changes: Mapping[str
     """`tables` with some dotted keys changed, and without those that these exclude."""
     problems: list[Problem] = []
     stated = []
+    seen = set()
     for key, value in changes.items():
         own, unit = split_key(str(key))
+        if own in seen:
+            allowed = f"{own} is changed already, in another unit."
+            problems.append(Problem(str(key), written(value), allowed, "Give it once."))
+        seen.add(own)
         try:
             new = plain(with_unit_of_key(value, unit))
             tables = _changed(kind, tables, own, new)

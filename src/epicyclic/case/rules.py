@@ -396,7 +396,8 @@ def _check_void(models: GearPairModels, surroundings: Surroundings) -> Iterator[
     if models.pocket_void_pressure >= surroundings.pressure:
         shown = BAR.text(models.pocket_void_pressure)
         allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
-        yield Problem("models.pocket_void_pressure", shown, allowed, "Take 0.01 bar.")
+        usual = "0.01 bar" if surroundings.pressure > BAR.parse("0.01 bar") else "0 bar"
+        yield Problem("models.pocket_void_pressure", shown, allowed, f"Take {usual}.")
 
 
 def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:

@@ -231,7 +231,9 @@ class PlanetContact:
         t, r = self.outward
         # not -0.0, which prints oddly
         outward = (0.0 - t, r)
-        return replace(self, outward=outward, sense=-self.sense, position=0.0 - self.position)
+        return PlanetContact(
+            self.duty, self.member, outward, -self.sense, self.hand, 0.0 - self.position
+        )
 
     @property
     def face_sense(self) -> int:
@@ -279,14 +281,14 @@ def planet_load(
         radius = mesh.operating_radius1 if contact.member == 1 else mesh.operating_radius2
         couple = contact.axial_force * radius  # operating radius of the planet in this mesh
         moment += couple * complex(*contact.outward)
-    force = _radial_force(contacts, centrifugal)
+    force = radial_force(contacts, centrifugal)
     turned = moment * cmath.rect(1.0, -cmath.phase(force))
     # the bore of a pushed planet meets its pin on the other side: those rollers carry
     outward = math.pi / 2 - cmath.phase(-force)
     return PlanetLoad(abs(force), turned.real, turned.imag, outward)
 
 
-def _radial_force(contacts: Contacts, centrifugal: float) -> complex:
+def radial_force(contacts: Contacts, centrifugal: float) -> complex:
     """Force of all meshes and of rotation on the planet, t + i r. [N]"""
     forces = (contact.duty.force * contact.direction for contact in contacts)
     return sum(forces, complex(0.0, centrifugal))
@@ -322,7 +324,7 @@ def tilt_planet(
     if np.abs(found.fun).max() <= TILT_TOLERANCE:
         tilt = found.x * scale
         return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
-    axes = np.array(_axes(_radial_force(contacts, centrifugal)))
+    axes = np.array(_axes(radial_force(contacts, centrifugal)))
     excess = _excess(contacts, bearing, centrifugal)
     reach = (bearing.diametral_clearance + bearing.crown_drop) / bearing.half_width + SMALL_TILT
     tilts = _tilt_by_newton(excess, reach)
@@ -340,7 +342,7 @@ def _excess(
     In the planes of the axis and the radial force, and at right angles to it; both rise with the
     tilt in that plane.
     """
-    force = _radial_force(contacts, centrifugal)
+    force = radial_force(contacts, centrifugal)
     axes = np.array(_axes(force))
     size = abs(force)
 
@@ -475,7 +477,7 @@ def _tilt_under(
 ) -> FloatArray:
     """Tilt of the planet under `load`, in t and r. [rad]"""
     loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
-    along, across = _axes(_radial_force(contacts, centrifugal))
+    along, across = _axes(radial_force(contacts, centrifugal))
     tilt: FloatArray = loads.displacement[2] * along + loads.displacement[3] * across
     return tilt
 

@@ -53,7 +53,12 @@ def with_unit_of_key(value: Any, unit: str) -> Any:
     if isinstance(value, np.ndarray | list | tuple):
         return [with_unit_of_key(item, unit) for item in value]
     is_number = isinstance(value, numbers.Real) and not isinstance(value, bool | np.bool)
-    return f"{float(value)!r} {unit}" if is_number and unit not in ("", "1") else value
+    if not is_number or unit in ("", "1"):
+        return value
+    try:
+        return f"{float(value)!r} {unit}"
+    except OverflowError:  # a whole number of hundreds of digits
+        return f"inf {unit}"
 
 
 def control_problems(tables: Any, path: tuple[str | int, ...] = ()) -> Iterator[Problem]:

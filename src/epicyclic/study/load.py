@@ -65,4 +65,4 @@ def load_case(
 
 def as_case(source: CaseSource) -> Case:
     """The case that a function was given, or that `load_case` reads there."""
-    return load_case(source) if isinstance(source, str | Path | Mapping) else source
+    return source if isinstance(source, Case) else load_case(source)

@@ -83,7 +83,7 @@ def compare_cases(
     ConvergenceError
         If a case, or hardly any pair of samples, can be solved.
     """
-    check_samples(samples)
+    check_samples(samples, seed)
     cases, changes = (as_case(first), as_case(second)), [dict(change) for _, change in points]
     results = [[solve(case.updated(it) if it else case) for it in changes] for case in cases]
     values = [values_at(case, own[0], changes) for case, own in zip(cases, results, strict=True)]

@@ -327,8 +327,10 @@ class SamplePlan(CasePlan):
         return Row(str(Status.CONVERGED), numbers=numbers)
 
 
-def check_samples(samples: int) -> None:
-    """Raise `InputError` for a number that is no power of 2, or too small or large."""
+def check_samples(samples: int, seed: int = 0) -> None:
+    """Raise `InputError` for a number that is no power of 2, too small or large, and for a seed."""
+    if seed < 0:
+        raise one_problem("seed", str(seed), "must be 0 or more.", "Take 1.", "the command")
     if FEWEST <= samples <= MOST and samples & (samples - 1) == 0:
         return
     nearest = 2 ** round(np.log2(min(max(samples, FEWEST), MOST)))

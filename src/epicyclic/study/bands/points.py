@@ -69,7 +69,7 @@ UNITS = {"efficiency": "1", TORQUE_LOSS: NEWTON_METRE.display}
 def map_study(data: xr.Dataset, samples: int | None = None, seed: int = 1) -> MapStudy:
     """What has to be solved for the uncertainty of a loss map; see `uncertainty`."""
     count = SAMPLES if samples is None else samples
-    check_samples(count)
+    check_samples(count, seed)
     grid = stored_plan(data)
     points = [grid.changes(number) for number in range(grid.size)]
     sampled = sampled_case(grid.case, solve(grid.case), count, seed, points)
@@ -253,7 +253,7 @@ def cycle_study(
 ) -> CycleStudy:
     """What has to be solved for the uncertainty of the energy of a cycle; see `uncertainty`."""
     count = CYCLE_SAMPLES if samples is None else samples
-    check_samples(count)
+    check_samples(count, seed)
     problems = []
     if celsius is not None and len(celsius) > 1:
         allowed = "must be a single value for an uncertainty analysis."

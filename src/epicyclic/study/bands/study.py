@@ -112,7 +112,7 @@ class CaseStudy(Study):
 def uncertainty_study(case: Case, samples: int | None = None, seed: int = 1) -> CaseStudy:
     """What has to be solved for the uncertainty of a case; see `uncertainty`."""
     samples = SAMPLES if samples is None else samples
-    check_samples(samples)
+    check_samples(samples, seed)
     result = solve(case)
     nearby = look_nearby(case, result)
     sampled = sampled_case(case, result, samples, seed, active=nearby.active)

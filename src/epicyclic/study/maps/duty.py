@@ -251,6 +251,8 @@ def add_up(
     progress: Progress | None = None,
 ) -> Sums:
     """Go through a checked cycle; raises `InputError` if it leaves the map."""
+    if samples < 0:
+        raise one_problem("samples", str(samples), "must be 0 or more.", "Take 20.", "the command")
     lookup = make_lookup(data)
     if len(lookup.states) > 1 or (lookup.states and cycle.states):
         check_states(cycle, lookup.states)

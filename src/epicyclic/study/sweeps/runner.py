@@ -374,6 +374,10 @@ class Runner:
     def __post_init__(self) -> None:
         if self.shard is not None and not 1 <= self.shard[0] <= self.shard[1]:
             raise _no_shard("/".join(map(str, self.shard)))
+        if self.jobs is not None and self.jobs < 1:
+            raise one_problem(
+                "jobs", str(self.jobs), "must be 1 or more.", "Give more, or None.", "the command"
+            )
 
     def check(self) -> None:
         """Raise `InputError` if there is no such cluster: before anything is written."""
