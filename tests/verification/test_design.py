@@ -229,10 +229,36 @@ def test_no_choice_may_be_empty_or_out_of_range():
 def test_tables_that_all_cases_share_are_checked_before_anything_is_solved():
     raw = task_of("planetary")
     raw["case"] |= {"lubricant": {"oil": "nonsense"}, "numerics": {"mesh_positions": 1}}
+    raw["case"] |= {"strength": {"gears": 3}, "models": 7}
     with pytest.raises(InputError) as error:
         screen(read_task(raw))
     keys = {problem.key for problem in error.value.problems}
-    assert keys == {"case.lubricant.oil", "case.numerics.mesh_positions"}
+    assert keys == {
+        "case.lubricant.oil", "case.numerics.mesh_positions", "case.strength.gears", "case.models"
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "named"),
+    [
+        ("planetary", {"sun", "ring"}),
+        ("pair", set()),
+        ("stepped", {"S.sun", "S.ring"}),
+        ("two-stage", {"A.sun", "B.sun", "A.ring", "B.ring"}),
+    ],
+)
+def test_materials_of_gears_reach_every_arrangement(name, named):
+    raw = task_of(name, ratio=RATIOS[name])
+    stated = {"sun": {"material": "nitrided-mq"}, "ring": {"material": "nitrided-mq"}}
+    raw["case"]["strength"]["gears"] = stated
+    raw["choices"]["arrangements"] = [name, "planetary", "pair"]
+    task = read_task(raw)
+    found = screen(task)
+    row = found.table[found.table.arrangement == name].iloc[0].dropna().to_dict()
+    assert set(case_tables(task, row)["strength"]["gears"]) == named
+    raw["case"]["strength"]["gears"] = {"sum": {"material": "nitrided-mq"}}
+    with pytest.raises(InputError, match="is no gear of the arrangements"):
+        screen(read_task(raw))
 
 
 def test_files_of_a_task_are_beside_it(tmp_path):

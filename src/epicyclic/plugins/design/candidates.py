@@ -518,7 +518,7 @@ def case_tables(task: Task, row: Row, point: int = -1) -> dict[str, Any]:
     """The tables of a candidate's case, at the operating point or at one of the cycle."""
     name = str(row["arrangement"])
     at = operation(task.operation if point < 0 else task.points[point])
-    common = {"numerics": COARSE} | dict(task.case)
+    common = {"numerics": COARSE} | dict(task.case) | _strength_tables(task, name)
     title = {"title": f"{task.title or 'design'}: {name} {teeth_text(row)}"}
     if name == "pair":
         own = _set_tables(task, row, "1", ("pinion", "gear"))
@@ -544,6 +544,24 @@ def case_tables(task: Task, row: Row, point: int = -1) -> dict[str, Any]:
     held, out = ("ring", "carrier") if name == "stepped" else ("fixed_ring", "output_ring")
     shafts = {"in": ["S.sun"], "out": [f"S.{out}"], "housing": [f"S.{held}"]}
     return train | {"sets": {"S": own}, "shafts": shafts} | common
+
+
+def _strength_tables(task: Task, name: str) -> dict[str, Any]:
+    """[strength] with the gears of this arrangement by the names that its case gives them."""
+    stated = stated_gears(task)
+    if not stated:
+        return {}
+    sets = {"two-stage": ("A.", "B."), "stepped": ("S.",), "wolfrom": ("S.",)}.get(name, ("",))
+    own = {gear.removesuffix("2") for gear in LAYOUTS[name].gears}
+    gears = {f"{one}{gear}": table for gear, table in stated.items() if gear in own for one in sets}
+    return {"strength": task.case["strength"] | {"gears": gears}}
+
+
+def stated_gears(task: Task) -> Mapping[str, Any]:
+    """What [strength] of all cases says of gears; nothing if that is no table."""
+    strength = task.case.get("strength")
+    gears = strength.get("gears") if isinstance(strength, Mapping) else None
+    return gears if isinstance(gears, Mapping) else {}
 
 
 def teeth_text(row: Row) -> str:

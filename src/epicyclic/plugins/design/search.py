@@ -23,11 +23,14 @@ from numpy.typing import NDArray
 
 from epicyclic.case.case import Case, read_case
 from epicyclic.errors import EpicyclicError, InputError, Problem, Status, raise_any
+from epicyclic.messages import did_you_mean
 from epicyclic.plugins.design.candidates import (
+    LAYOUTS,
     case_tables,
     enumerate_all,
     operation,
     sizes,
+    stated_gears,
     teeth_text,
 )
 from epicyclic.plugins.design.strength import strength
@@ -248,6 +251,19 @@ def screen(task: Task) -> Found:
 
 def _check_tables(task: Task, row: Mapping[str, Any]) -> None:
     """Raise what is wrong with the tables that all cases share, as any candidate's case has it."""
+    gears = {
+        gear.removesuffix("2") for name in task.choices.arrangements for gear in LAYOUTS[name].gears
+    }
+    raise_any(
+        [
+            Problem(
+                f"case.strength.gears.{name}", "", "is no gear of the arrangements.",
+                did_you_mean(name, gears) or f"Name one of {', '.join(sorted(gears))}.",
+            )
+            for name in stated_gears(task) if name not in gears
+        ],
+        task.title or "the task",
+    )  # fmt: skip
     try:
         read_case(case_tables(task, row))
     except InputError as error:
