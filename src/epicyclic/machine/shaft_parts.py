@@ -19,6 +19,7 @@ from epicyclic.losses.shaft_bearing import (
     SkfModel,
     friction_load,
     minimum_load,
+    thermal_excess,
     thermal_speed_rating,
 )
 from epicyclic.machine.element import (
@@ -358,8 +359,9 @@ class ShaftBearing:
                 "slip; the loss is that of the actual load without slip."
             )
             notes.append(Note(text, watts))
-        rating = self.reference_speed or thermal_speed_rating(self.bearing)
-        if abs(speed) > rating:
+        stated = self.reference_speed
+        if abs(speed) > stated if stated else thermal_excess(self.bearing, abs(speed)) > 0:
+            rating = stated or thermal_speed_rating(self.bearing)
             whose = "" if self.reference_speed else ", an estimate after ISO 15312"
             text = (
                 f"{self.key}: {RPM.text(abs(speed), 4)} exceed the thermal reference speed of "
