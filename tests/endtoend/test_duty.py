@@ -215,7 +215,7 @@ def test_points_outside_are_refused_or_taken_at_the_border(data):
     with pytest.raises(ep.InputError, match="0 to 4000 rpm") as error:
         ep.duty_cycle(data, cycle, ["90 degC"])
     assert len(error.value.problems) == 1
-    assert "0.25 of the duration" in str(error.value)
+    assert "25.0 % of the duration" in str(error.value)
     result = ep.duty_cycle(data, cycle, ["90 degC"], clamp=True, samples=1).isel(temperature=0)
     assert float(result["share_outside"]) == 0.25
     border = float(data["torque_loss"].sel(speed=4000, torque=100, temperature=90))

@@ -519,7 +519,7 @@ def test_a_chapter_is_shown_before_the_others_are_known(simulate, chapter, tab, 
     async def script(user):
         await user.should_see("Studies", retries=200)
         found = [[one.props["label"] for one in tabs] for tabs in user.find(ui.tabs).elements]
-        assert [tab, "Map", "Compare"] in found
+        assert [tab, "Map", "Compare", "Designs"] in found
         await user.should_see(shown, retries=200)
 
     simulate(desk, script, chapter=chapter, slow=_Held)

@@ -135,7 +135,7 @@ def test_what_is_found_reads_again_as_the_same_case():
         (
             {"gears": {"center_distance": None}, "planet": {X: None}},
             "gears.center_distance",
-            "no mesh gives it",
+            "cannot be computed from a mesh",
         ),
         (
             {"sun": {X: None}, "planet": {X: None}, "ring": {X: None}},

@@ -167,7 +167,7 @@ def test_remarks_compare_with_warm_flanks_and_without_holding():
     hottest = max(warm.heat.temperatures.values())
     (first,) = remarks(case, cold)
     assert f"at {CELSIUS.to_display(hottest):.0f} °C" in first
-    assert f"the total would be {warm.total:.0f} W" in first
+    assert f"the total loss would be {warm.total:.0f} W" in first
     hot = case.updated({"operation.oil_inlet_temperature": "110 degC"})
     free = solve(hot.updated({"models.oil_beyond_range": "extrapolated"}))
     result = solve(hot)

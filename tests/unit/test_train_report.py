@@ -201,7 +201,7 @@ def test_a_stored_train_with_unknown_shafts_is_refused(gearbox):
 
     content = json.loads(gearbox.result.to_json())
     content["clutches"] = {"input+nowhere": 1.0}
-    assert read_result(content)[1] == [("", "Value error, members lacks nowhere")]
+    assert read_result(content)[1] == [("", "members lacks nowhere")]
 
 
 def test_figures_of_a_part_of_no_known_kind_are_refused(axle):
