@@ -230,7 +230,7 @@ class Excitation:
         below = 0.32 * pitch + c2 * form + c3 * relief
         main = 1 + 0.32 * pitch + c2 * form + c4 * relief
         above = 0.47 * pitch + c6 * form + c7
-        lightly = min(load / 100e3, 1.0)  # below 100 N/mm the resonance is wider
+        lightly = min(load / 100e3, 1.0)  # N_S of ISO 6336-1 below 100 N/mm, second hand
         if resonance <= 0.5 + 0.35 * math.sqrt(lightly):
             return 1 + resonance * below
         if resonance <= 1.15:
