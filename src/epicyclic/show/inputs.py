@@ -57,8 +57,11 @@ def input_tables(
     if inputs["kind"] != "train":
         return [table for table in _set_tables(source, (), inputs) if table.rows]
     tables = []
+    computed = any("numerics" in own for own in inputs["sets"].values())
     for name, table in inputs.items():
         if name in NOT_SHOWN or not table or ("lubricant" not in inputs and name in _OF_LOSSES):
+            continue
+        if name == "numerics" and not computed:
             continue
         if name == "sets":
             for key, own in table.items():
