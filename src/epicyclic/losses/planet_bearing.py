@@ -448,9 +448,10 @@ def centrifugal_forces(
 
 
 def pressed_alone(loads: RollerLoads, forces: FloatArray, length: float) -> RollerLoads:
-    """Rollers without load, each pressed on one race by its `forces` over its `length`."""
-    idle = loads.intensity.sum(axis=2) == 0
-    return replace(loads, intensity=np.where(idle, np.abs(forces) / length, 0.0)[:, :, None])
+    """Rollers pressed on one race over their `length`, by what of `forces` exceeds their load."""
+    carried = loads.intensity.mean(axis=2) * length
+    alone = np.maximum(np.abs(forces) - carried, 0.0) / length
+    return replace(loads, intensity=alone[:, :, None])
 
 
 @dataclass(frozen=True, slots=True)

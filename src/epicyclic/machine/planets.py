@@ -595,8 +595,9 @@ def solve_bearing(
     )
     alone = pressed_alone(loads, forces, bearing.roller_length)
     held = float(alone.intensity.sum()) * bearing.roller_length
-    if held:  # on one race each, by slices as long as the roller
-        idle = _by_load(own, alone, held / bearing.slices, speed, oil).loss * bearing.slices / 2
+    if held:  # on one race each, by slices as long as the roller; Palmgren's f1 is of loaded ones
+        fitted = replace(own, palmgren_beyond=False)
+        idle = _by_load(fitted, alone, held / bearing.slices, speed, oil).loss * bearing.slices / 2
         loss = replace(loss, loss=loss.loss + idle)
     notes += _limit_notes(where, bearing, load.force if loaded else math.inf, speed, loss.loss)
     viscous_loss = bearing_viscous_loss(
