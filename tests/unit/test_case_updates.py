@@ -12,7 +12,8 @@ import pytest
 from pydantic import ValidationError
 
 from epicyclic import library
-from epicyclic.case.case import PlanetaryCase, read_case
+from epicyclic.build.machine import build
+from epicyclic.case.case import Design, PlanetaryCase, read_case
 from epicyclic.errors import InputError
 from epicyclic.messages import written
 from epicyclic.units import registry
@@ -318,13 +319,24 @@ def test_a_key_replaces_what_it_determines_and_says_so(name, changes, gone):
     assert problems_of(read_case(name).updated, changes | stays)
 
 
-def test_what_is_kept_holds_for_another_operation_only():
+def test_cases_have_their_design_in_common_if_only_their_operation_differs():
     case = read_case("talbot-2012")
     train = read_case("train-8hp70")
     hotter = case.updated({"operation.oil_inlet_temperature": "71 degC"})
-    assert hotter._kept is case._kept
-    assert case.updated({"planet.face_width": "24.3 mm"})._kept is not case._kept
-    assert train.updated({"operation.torque": "37 N*m"})._kept is train._kept
-    case.kept(lambda own: own.title)
-    assert len(hotter._kept) == 1
-    assert not pickle.loads(pickle.dumps(hotter))._kept
+    assert hotter.design is case.design
+    assert case.updated({"planet.face_width": "24.3 mm"}).design is not case.design
+    assert train.updated({"operation.torque": "37 N*m"}).design is train.design
+    assert pickle.loads(pickle.dumps(hotter)).design is not case.design
+    assert not case.design.names_files
+    assert Design({"models": {"oil_model": "mine.nc"}}).names_files  # whose content may change
+
+
+def test_machines_of_one_design_have_their_parts_in_common():
+    train, case = read_case("train-8hp70"), read_case("talbot-2012")
+    machine = build(train).machine
+    assert build(train.updated({"operation.speed": "1370 rpm"})).machine is machine
+    assert build(train.updated({"operation.state": "3"})).machine is not machine
+    assert build(case.updated({"operation.torque": "211 N*m"})).fluids is build(case).fluids
+    hotter = build(case.updated({"operation.oil_inlet_temperature": "71 degC"}))
+    assert hotter.machine is build(case).machine
+    assert hotter.fluids.oil.temperature == pytest.approx(344.15)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Any
 
@@ -24,7 +24,6 @@ from epicyclic.case.tables.operation import (
 )
 from epicyclic.contact.temperatures import LUBRICATION_FACTORS
 from epicyclic.gears.gear import CARRIER, HOUSING
-from epicyclic.gears.sizing import Found
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import Flags, ValidityFlag
 from epicyclic.machine.convection import (
@@ -458,39 +457,14 @@ def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator
 # A train of gear sets as a machine.
 
 
-def build_train(case: TrainCase, flow_tables: FlowTables) -> Built:
-    """A train in the state and at the operating point of the case."""
-    operation = case.operation
-    machine, cases, layout = case.kept(_train_parts, operation.state, operation.input, flow_tables)
-    return Built(
-        machine=machine,
-        operation=operation_of(case),
-        known_fluids=_fluids(case) if case.computed else None,
-        sets={element.key: element for element in machine.elements if isinstance(element, GearSet)},
-        set_cases=cases,
-        layout=layout,
-    )
-
-
-def _train_parts(
-    case: TrainCase, state: str | None, driven: str, flow_tables: FlowTables
-) -> tuple[Machine, Mapping[str, SetCase], Layout]:
-    """What a train consists of in the `state` of the case, `driven` where that says."""
+def _train_parts(case: TrainCase, flow_tables: FlowTables) -> _Consists:
+    """What a train consists of in the state of the case."""
     cases = set_cases(case)
     elements = [*_sets(case, cases, flow_tables), *_parts(case, case.shape.names)]
     sets = {element.key: element for element in elements if isinstance(element, GearSet)}
     layouts = tuple(shaft_layouts(case, sets))
     machine = replace(case.shape.machine(case.state), elements=tuple(elements), layouts=layouts)
     return machine, cases, _layout(case, elements)
-
-
-def _fluids(case: Case) -> Fluids:
-    return case.kept(_fluids_at_inlet, case.operation.oil_inlet_temperature)
-
-
-def _fluids_at_inlet(case: Case, temperature: float) -> Fluids:
-    """Those at the `temperature` of the case."""
-    return fluids_of(case)
 
 
 def train_layout(case: TrainCase) -> Layout:
@@ -590,6 +564,17 @@ def pin_figures(own: GearSet) -> list[tuple[str, type[Any]]]:
 
 
 NO_TABLES: FlowTables = MappingProxyType({})
+MOST_DESIGNS = 8  # Of which the parts and fluids are kept for the next points of a sweep.
+_Consists = tuple[Machine, Mapping[str, SetCase], Layout]
+
+
+@dataclass(frozen=True)
+class _Design:
+    """A case in place of all that need the same parts, or the same fluids."""
+
+    case: Case = field(compare=False)
+    flow_tables: FlowTables = field(compare=False)
+    key: tuple[Hashable, ...]  # Its design, and what else it depends on.
 
 
 def build(
@@ -598,32 +583,43 @@ def build(
     flow_tables: FlowTables | None = None,
 ) -> Built:
     """The machine of a case, driven as the case says."""
-    tables = flow_tables or NO_TABLES
-    built = build_train(case, tables) if isinstance(case, TrainCase) else _single(case, tables)
-    model = thermal_model(case, built.set_cases, built.machine)
-    if model is None:
-        return built
-    layout = replace(built.layout, nodes=tuple(model.start))
-    return replace(built, thermal=model, layout=layout)
+    tables, operation = flow_tables or NO_TABLES, operation_of(case)
+    ends = getattr(case.operation, "state", None), operation.input, operation.output
+    key = (case.design, case.found, id(tables), *ends)
+    machine, cases, layout = _consists(_Design(case, tables, key))
+    model = thermal_model(case, cases, machine)
+    known = None
+    if case.computed:
+        temperature = case.operation.oil_inlet_temperature
+        known = _fluids(_Design(case, NO_TABLES, (case.design, temperature)))
+    return Built(
+        machine=machine,
+        operation=operation,
+        known_fluids=known,
+        sets={element.key: element for element in machine.elements if isinstance(element, GearSet)},
+        set_cases=cases,
+        layout=layout if model is None else replace(layout, nodes=tuple(model.start)),
+        thermal=model,
+    )
 
 
-def _single(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> Built:
-    """A set or pair by itself."""
+@lru_cache(maxsize=MOST_DESIGNS)
+def _consists(design: _Design) -> _Consists:
+    case, tables = design.case, design.flow_tables
+    if isinstance(case, TrainCase):
+        return _train_parts(case, tables)
+    return _single_parts(case, tables)
+
+
+@lru_cache(maxsize=MOST_DESIGNS)
+def _fluids(design: _Design) -> Fluids:
+    return fluids_of(design.case)
+
+
+def _single_parts(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> _Consists:
+    """What a set or pair by itself consists of."""
     operation = operation_of(case)
     ends = operation.input, operation.output
-    machine, cases, layout = case.kept(_single_parts, ends, case.found, tables)
-    element = machine.elements[0]
-    assert isinstance(element, GearSet)
-    return Built(machine, operation, _fluids(case), {"": element}, cases, layout)
-
-
-def _single_parts(
-    case: PlanetaryCase | GearPairCase,
-    ends: tuple[str, str],  # Its input and its output.
-    found: tuple[Found, ...],  # As of the case.
-    tables: FlowTables,
-) -> tuple[Machine, Mapping[str, SetCase], Layout]:
-    """What a set or pair by itself consists of."""
     cases = set_cases(case)
     own = cases[""]
     gearing = own.gearing

@@ -5,10 +5,10 @@ from __future__ import annotations
 import cmath
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeVar, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, cast
 
 from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
@@ -128,17 +128,20 @@ _BESIDE_GEARS = {
 """Tables on which gears, their bearings and how they share the load do not depend."""
 
 
-_OPERATED, _FILES = {"operation", "title"}, set(FILE_KEYS)
-Kept = TypeVar("Kept")
+_OPERATED = {"operation", "title"}
 
 
-class _Kept(dict[Any, tuple[Any, Any]]):
-    """Answers that copies and workers find again."""
+@dataclass(frozen=True, eq=False)
+class Design:
+    """What cases have in common that differ in [operation] and title only; it equals itself."""
 
-    files: bool | None = None  # Whether tables name files, whose content may change.
+    tables: Mapping[str, Any]  # Of the first of them.
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _Kept, ()
+    @cached_property
+    def names_files(self) -> bool:
+        """True if it is of one case only, because the content of files may change."""
+        leaves = (key.rpartition(".")[2] for key, _ in flattened(self.tables))
+        return not set(FILE_KEYS).isdisjoint(leaves)
 
 
 class CaseTable(Table):
@@ -156,8 +159,7 @@ class CaseTable(Table):
     _gearings: dict[str, Gearing] = PrivateAttr(default_factory=dict)
     _sound: Mapping[str, Table] = PrivateAttr(default_factory=dict)
     """What became of each of `_tables` by itself: those that stay need not be read again."""
-    _kept: _Kept = PrivateAttr(default_factory=_Kept)
-    """Last answers of `kept`, shared by cases that differ in [operation] and title only."""
+    _design: Design = PrivateAttr(default_factory=lambda: Design({}))
 
     @property
     def found(self) -> tuple[Found, ...]:
@@ -207,29 +209,17 @@ class CaseTable(Table):
         made._replaced = (*stands, *changed.replaced)
         return made
 
-    def kept(self, find: Callable[..., Kept], *arguments: Any) -> Kept:
-        """`find(case, *arguments)`, which looks at nothing of [operation] but the arguments.
+    @property
+    def design(self) -> Design:
+        """All that it states but [operation] and title."""
+        return self._design
 
-        Points of a sweep find it once for all torques, speeds and temperatures.
-        """
-        last = self._kept.get(find)
-        if last is None or last[0] != arguments:
-            self._kept[find] = last = arguments, find(self, *arguments)
-        return cast(Kept, last[1])
-
-    def _share(self, before: CaseTable | None) -> bool:
-        """True if only [operation] and title differ from `before`: both then keep the same."""
-        if before is None or not before._tables:
-            return False
-        one, two = self._tables, before._tables
-        if any(one.get(key) is not two.get(key) for key in (one.keys() | two.keys()) - _OPERATED):
-            return False
-        if before._kept.files is None:
-            leaves = (key.rpartition(".")[2] for key, _ in flattened(two))
-            before._kept.files = not _FILES.isdisjoint(leaves)
-        if not before._kept.files:
-            self._kept = before._kept
-        return not before._kept.files
+    def _only_operated(self, tables: Mapping[str, Any]) -> bool:
+        """True if `tables`, made from its own by changes, are of the same design."""
+        own = self._tables
+        others = (tables.keys() | own.keys()) - _OPERATED
+        alike = bool(own) and all(tables.get(key) is own.get(key) for key in others)
+        return alike and not self._design.names_files
 
     def _unchanged(self, tables: Mapping[str, Any]) -> dict[str, Table]:
         """Those of its own tables that `tables`, made from them by changes, still have."""
@@ -276,20 +266,28 @@ class CaseTable(Table):
             validation.case._source = source
             found += _part_problems(validation.case, {name: name for name in _SHAFTS}, {})
         sound = None if validation.problems else validation.case
-        made = cls._made(sound, tables, source, list(dict.fromkeys(found)))
+        design = None
+        if before is not None and before._only_operated(tables):
+            design = before._design
+        made = cls._made(sound, tables, source, list(dict.fromkeys(found)), design)
         made._found, made._sound = told, valid.sections
-        made._share(before)
         if gearing is not None:
             made._gearings = {"": gearing}
         return made
 
     @classmethod
     def _made(
-        cls, case: Self | None, tables: dict[str, Any], source: str, problems: list[Problem]
+        cls,
+        case: Self | None,
+        tables: dict[str, Any],
+        source: str,
+        problems: list[Problem],
+        design: Design | None = None,  # That of a former case, if it is the same.
     ) -> Self:
         """The case with what it was made from; an error with all problems, if there are any."""
         if case is not None:
             case._tables, case._source = tables, source
+            case._design = Design(tables) if design is None else design
         if case is not None and getattr(case, "uncertainty", {}):
             problems = [*problems, *stated_values(case)[1]]
         if case is None or problems:
@@ -600,16 +598,19 @@ class TrainCase(_TrainHead):
             raise one_problem("sets", f"{len(named)} sets", allowed, remedy, source)
         sound = {} if before is None else before._unchanged(tables)
         whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound)
-        if isinstance(before, TrainCase) and whole.case is not None and not problems:
+        if (
+            isinstance(before, TrainCase)
+            and whole.case is not None
+            and not problems
+            and before._only_operated(tables)
+            and _joined_members(tables) == _joined_members(before._tables)
+        ):
             own = {key: getattr(before, key) for key in cls.model_fields}
             own |= {key: getattr(whole.case, key) for key in _OPERATED}
             train = cls.model_construct(**own)
-            train._tables, train._found, train._sound = tables, before._found, whole.sections
-            same_members = _joined_members(tables) == _joined_members(before._tables)
-            if train._share(before) and same_members:
-                train._shape = before._shape
-                wrong = [*operation_problems(train, True), *bearing_force_problems(train, True)]
-                return cls._made(cast(Self, train), tables, source, wrong)
+            train._found, train._sound, train._shape = before._found, whole.sections, before._shape
+            wrong = [*operation_problems(train, True), *bearing_force_problems(train, True)]
+            return cls._made(cast(Self, train), tables, source, wrong, before._design)
         found = [*problems]
         known = {problem.key for problem in problems}
         found += [problem for problem in whole.problems if problem.key not in known]
