@@ -378,6 +378,8 @@ def fitted_rolling_loss(
     oil: OilState,
     model: FittedRolling,
     beyond: BearingLoss | None = None,  # That of Palmgren, which takes over beyond the simulations.
+    *,
+    alone: bool = False,  # True of rollers under less than any simulated load: (R5) is theirs.
 ) -> BearingLoss:
     """Rolling loss of the contacts of all rollers with both races, fitted to simulated ones. [W]
 
@@ -394,7 +396,9 @@ def fitted_rolling_loss(
         return BearingLoss(
             total, Flags(partial(check_contacts, use, model.ranges, contacts, local))
         )
-    within = float((weight_of_fit(model.model, model.quantity, contacts) * local).sum())
+    domain = model.model.fits[model.quantity].domain
+    weighed = contacts.held({"hertz_pressure": domain["hertz_pressure"]}) if alone else contacts
+    within = float((weight_of_fit(model.model, model.quantity, weighed) * local).sum())
     use = ModelUse("bearing", FITTED_OR_PALMGREN, "planet bearing", instead="palmgren")
     flags = Flags(partial(check_contacts, use, model.ranges, contacts, local))
     if within == total:

@@ -595,9 +595,9 @@ def solve_bearing(
     )
     alone = pressed_alone(loads, forces, bearing.roller_length)
     held = float(alone.intensity.sum()) * bearing.roller_length
-    if held:  # on one race each, by slices as long as the roller; Palmgren's f1 is of loaded ones
-        fitted = replace(own, palmgren_beyond=False)
-        idle = _by_load(fitted, alone, held / bearing.slices, speed, oil).loss * bearing.slices / 2
+    if held:  # on one race each, by slices as long as the roller
+        found = _by_load(own, alone, held / bearing.slices, speed, oil, alone=True)
+        idle = found.loss * bearing.slices / 2
         loss = replace(loss, loss=loss.loss + idle)
     notes += _limit_notes(where, bearing, load.force if loaded else math.inf, speed, loss.loss)
     viscous_loss = bearing_viscous_loss(
@@ -673,12 +673,18 @@ def _limit_notes(
 
 
 def _by_load(
-    own: PlanetBearing, loads: RollerLoads, force: float, speed: float, oil: OilState
+    own: PlanetBearing,
+    loads: RollerLoads,
+    force: float,  # For Palmgren. [N]
+    speed: float,
+    oil: OilState,
+    *,
+    alone: bool = False,  # As of `fitted_rolling_loss`.
 ) -> BearingLoss:
-    """Loss that grows with the load, after the model of the bearing; `force` for Palmgren."""
+    """Loss that grows with the load, after the model of the bearing."""
     if isinstance(own.model, FittedRolling):
         beyond = _palmgren(own, loads, force, speed) if own.palmgren_beyond else None
-        return fitted_rolling_loss(own.bearing, loads, speed, oil, own.model, beyond)
+        return fitted_rolling_loss(own.bearing, loads, speed, oil, own.model, beyond, alone=alone)
     if own.model in ("mixed-ehl", FULL_COMPLEMENT):
         return mixed_ehl_rolling_loss(own.bearing, loads, speed, oil, oil_held=own.oil_held)
     return _palmgren(own, loads, force, speed)
