@@ -293,11 +293,19 @@ class PalmgrenModel:
         return load_flags(ModelUse("bearing", self.name, where), AXIAL_RATIO, bearing, load, speed)
 
 
+class _WithoutCoefficient:
+    __slots__ = ()
+
+    def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
+        """NaN: the model has no f1."""
+        return math.nan
+
+
 # --- table of the user ----------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
-class TableModel:
+class TableModel(_WithoutCoefficient):
     """Friction of a bearing from a table over speed, temperature or radial force."""
 
     table: LossTable
@@ -309,10 +317,6 @@ class TableModel:
     def depends_on_load(self) -> bool:
         """True if the table has the radial force as an axis."""
         return "radial_force" in self.table.names
-
-    def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
-        """NaN: a table has no f1."""
-        return math.nan
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -532,8 +536,20 @@ class SkfMoments:
     drag: float  # M_drag. [N m]
 
 
+class _SlidesAsSkf(_WithoutCoefficient):
+    __slots__ = ()
+
+    name: ClassVar[str]
+
+    def flags(
+        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
+    ) -> tuple[ValidityFlag, ...]:
+        """Flags on speed, static load and, of cylindrical rollers, axial force."""
+        return load_flags(ModelUse("bearing", self.name, where), _AXIAL_RATIO, bearing, load, speed)
+
+
 @dataclass(frozen=True, slots=True)
-class SkfModel:
+class SkfModel(_SlidesAsSkf):
     """SKF's friction model of 2018."""
 
     constants: SkfConstants
@@ -549,6 +565,13 @@ class SkfModel:
     terms: ClassVar = ("mechanical", "drag")
     depends_on_load: ClassVar = True
 
+    def reduction_factors(
+        self, bearing: CatalogueBearing, speed: float, viscosity: float
+    ) -> tuple[float, float]:
+        """`skf_reduction_factors`; a bearing under oil does not starve."""
+        hot, dry = skf_reduction_factors(bearing, self.constants, self.starvation, speed, viscosity)
+        return hot, 1.0 if self.oil_level >= SUBMERGED * bearing.pitch_diameter else dry
+
     @property
     def drag_is_estimated(self) -> bool:
         """True if there is an oil bath and `drag_variable` is not given."""
@@ -558,10 +581,6 @@ class SkfModel:
     def source(self) -> str:
         """Where the model is printed, and whether the constants are second hand."""
         return SKF_SOURCE if self.constants.is_read else f"{SKF_SOURCE}, constants second hand"
-
-    def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
-        """NaN: the model has no f1."""
-        return math.nan
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -573,14 +592,6 @@ class SkfModel:
         return (
             FrictionPart("mechanical", True, by_load, "rolling and sliding, SKF 2018", self.source),
             FrictionPart("drag", False, others, "drag in the oil and seals, SKF 2018", self.source),
-        )
-
-    def flags(
-        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
-    ) -> tuple[ValidityFlag, ...]:
-        """Flags on speed, static load and, of cylindrical rollers, axial force."""
-        return load_flags(
-            ModelUse("bearing", "skf-2018", where), _AXIAL_RATIO, bearing, load, speed
         )
 
 
@@ -748,9 +759,7 @@ def skf_moments(
     """Friction moments of SKF's model of 2018. Theory (J8), (J9)."""
     rolling, sliding = skf_load_variables(model.constants, bearing, load)
     rpm, pitch, nu = _printed(bearing, speed, viscosity)
-    hot, dry = skf_reduction_factors(bearing, model.constants, model.starvation, speed, viscosity)
-    if model.oil_level >= SUBMERGED * bearing.pitch_diameter:
-        dry = 1.0
+    hot, dry = model.reduction_factors(bearing, speed, viscosity)
     # phi_bl, the share of boundary lubrication in the sliding friction: (J9)
     boundary = math.exp(-2.6e-8 * math.pow(rpm * nu, 1.4) * pitch)
     mu_bl = STARTING_FRICTION if speed == 0 else BOUNDARY_FRICTION
@@ -811,7 +820,7 @@ class TaperedMoments:
 
 
 @dataclass(frozen=True, slots=True)
-class TaperedModel:
+class TaperedModel(_WithoutCoefficient):
     """Rolling and rib friction after Zhou and Hoeprich."""
 
     rollers: int
@@ -824,10 +833,6 @@ class TaperedModel:
     name: ClassVar = "zhou-hoeprich"
     terms: ClassVar = ("mechanical", "drag")
     depends_on_load: ClassVar = True
-
-    def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
-        """NaN: the model has no f1."""
-        return math.nan
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -855,7 +860,7 @@ class TaperedModel:
 
 
 @dataclass(frozen=True, slots=True)
-class CylindricalModel:
+class CylindricalModel(_SlidesAsSkf):
     """Rolling of cylindrical rollers after Zhou and Hoeprich, their sliding after SKF."""
 
     rollers: int
@@ -867,10 +872,6 @@ class CylindricalModel:
     name: ClassVar = "zhou-hoeprich"
     terms: ClassVar = ("mechanical", "viscous")
     depends_on_load: ClassVar = True
-
-    def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
-        """NaN: the model has no f1."""
-        return math.nan
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -893,12 +894,6 @@ class CylindricalModel:
                 "viscous", False, idle + moments.seal * abs(speed), VISCOUS_METHOD, VISCOUS_SOURCE
             ),
         )
-
-    def flags(
-        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
-    ) -> tuple[ValidityFlag, ...]:
-        """Flags on speed, static load and axial force."""
-        return load_flags(ModelUse("bearing", self.name, where), _AXIAL_RATIO, bearing, load, speed)
 
 
 BearingModel = PalmgrenModel | SkfModel | TaperedModel | CylindricalModel | TableModel
@@ -972,11 +967,7 @@ def rolling_moment(
             heat = inlet_film_factor(thermal, hertz_pressure(w, R, _STEEL) / _STEEL, 0.0)
             force = rolling_force(U, G, W) * heat * R / oil.pressure_viscosity
             rolling += force * model.roller_length * reach
-    _, starved = skf_reduction_factors(
-        bearing, model.skf.constants, model.skf.starvation, speed, oil.kinematic_viscosity
-    )
-    if model.skf.oil_level >= SUBMERGED * bearing.pitch_diameter:
-        starved = 1.0
+    _, starved = model.skf.reduction_factors(bearing, speed, oil.kinematic_viscosity)
     return rolling * starved * model.rollers / len(loads)
 
 
@@ -1004,10 +995,10 @@ def tapered_moments(
     oil: OilState,  # In the bearing.
 ) -> TaperedMoments:
     """Friction moments of a tapered roller bearing. Theory (J21), (J24), (J26)."""
-    thrust = max(load.axial, load.radial / (2 * bearing.axial_factor))
+    thrust = max(load.axial, load.radial * bearing.thrust_ratio)
     if thrust == 0:
         return TaperedMoments(0.0, 0.0, math.inf)
-    alpha = math.atan(0.4 / bearing.axial_factor)
+    alpha = bearing.contact_angle
     size = model.roller_diameter / bearing.pitch_diameter
     half = math.atan(size * math.sin(alpha) / (1 + size * math.cos(alpha)))
     axis = alpha - half
