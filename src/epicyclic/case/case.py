@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from html import escape
@@ -17,15 +17,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic import library
 from epicyclic.case.changes import Changes, with_changes
 from epicyclic.case.expand import expand, gearing_of
-from epicyclic.case.gear_tables import (
-    Gears,
-    GearTable,
-    PairGear,
-    Planet,
-    Ring,
-    SetMesh,
-    SharedGears,
-)
+from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
 from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.case.rules import (
     bearing_force_problems,
@@ -70,19 +62,17 @@ from epicyclic.case.tables.operation import (
 from epicyclic.case.tables.strength import STRENGTH, StrengthTable
 from epicyclic.case.tables.uncertainty import UNCERTAINTY, DistributionTable, stated_values
 from epicyclic.case.train_tables import (
+    GIVEN,
     ComputedSet,
     GivenListedSet,
-    GivenPair,
-    GivenPlanetarySet,
-    ListedGear,
     ListedMesh,
     ListedSet,
     PairSet,
-    PlanetarySet,
     Position,
     SetTable,
     StateTable,
     TrainOperation,
+    form_of_set,
 )
 from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.assembly import place_problems, rack_problems, set_problems
@@ -456,7 +446,6 @@ def _position(kind: type[Table], problem: Problem) -> int:
 
 _SHARED = ("models", "numerics", "friction_table", "lubrication")
 """Tables of a train that its computed sets take over where they have none of their own."""
-_GIVEN = ("efficiency", "mesh_efficiency")
 
 
 class _TrainTables(CaseTable):
@@ -744,7 +733,7 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         near = [text for key in raw if (text := did_you_mean(key, names))]
         remedy = "Give sun and ring, or pinion and gear, or gears and meshes."
         return _ReadSet(None, [Problem("", "", "has no gears.", (*near, remedy)[0])])
-    if not any(key in raw for key in _GIVEN):
+    if not any(key in raw for key in GIVEN):
         raw = {key: value for key, value in given.shared.items() if key in form.model_fields} | raw
     if "models" in raw and form is PairSet:
         own = GearPairModels.model_fields
@@ -761,70 +750,11 @@ def _read_set_cached(given: _Given) -> _ReadSet:
             as_given(problem, raw)
             for problem in cross_check(checked, tables, given.folder, gearing)
         ]
-    if all(key in raw for key in _GIVEN):
+    if all(key in raw for key in GIVEN):
         allowed = "conflicts with mesh_efficiency."
         remedy = "Give one of them: that of the set from sun to ring, or that of each mesh."
         problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
     return _ReadSet(read.case, list(dict.fromkeys(problems)), told)
-
-
-def form_of_set(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
-    """The form of a set, None if it has no gears yet, and its tables in that form."""
-    given = any(key in raw for key in _GIVEN)
-    gears = raw.get("gears")
-    listed = isinstance(gears, dict) and any(isinstance(item, dict) for item in gears.values())
-    if "meshes" in raw or listed:
-        return (GivenListedSet if given else ListedSet), all_gears_to_members(raw, given=given)
-    if "pinion" in raw or "gear" in raw:
-        return (GivenPair, _teeth_only(raw)) if given else (PairSet, raw)
-    if {"sun", "ring", "planet"} & raw.keys():
-        return (GivenPlanetarySet, _teeth_only(raw)) if given else (PlanetarySet, raw)
-    return None, raw
-
-
-def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
-    """The tables of a listed set with those of its gears apart from what all gears share."""
-    gears = raw.get("gears", {})
-    if not isinstance(gears, dict):
-        return raw
-    shared = {key: item for key, item in gears.items() if key in SharedGears.model_fields}
-    members = {key: item for key, item in gears.items() if key not in shared}
-    split = {key: value for key, value in raw.items() if key != "gears"} | {"members": members}
-    if given:
-        known = GivenListedSet.model_fields.keys() | {"members"}
-        idle = ListedGear.model_fields.keys() - {"teeth", "internal", "body", "planet"}
-        split["members"] = {
-            name: _without_keys(gear, idle) if isinstance(gear, dict) else gear
-            for name, gear in members.items()
-        }
-        if isinstance(split.get("mesh"), dict):
-            computed = ListedMesh.model_fields.keys()
-            split["mesh"] = {
-                name: _without_keys(mesh, computed) if isinstance(mesh, dict) else mesh
-                for name, mesh in split["mesh"].items()
-                if not isinstance(mesh, dict) or mesh.keys() - computed
-            }
-        return _without_keys(split, ListedSet.model_fields.keys() - known)
-    return split | {"gears": shared}
-
-
-def _without_keys(table: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
-    return {key: value for key, value in table.items() if key not in keys}
-
-
-def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a set without those that do not matter with a given efficiency."""
-    computed = PlanetarySet.model_fields.keys() | PairSet.model_fields.keys()
-    kept = _without_keys(raw, computed - {"sun", "ring", "planet", "pinion", "gear", *_GIVEN})
-    form = GivenPair if "pinion" in raw or "gear" in raw else GivenPlanetarySet
-    for name in ("sun", "ring", "planet", "pinion", "gear"):
-        table = kept.get(name)
-        if isinstance(table, dict) and name in form.model_fields:
-            annotation = form.model_fields[name].annotation
-            assert annotation is not None
-            idle = ListedGear.model_fields.keys() - {*annotation.model_fields, "internal"}
-            kept[name] = _without_keys(table, idle)
-    return kept
 
 
 def _with_gears(problem: Problem) -> Problem:

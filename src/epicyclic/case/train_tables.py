@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, model_validator
@@ -254,6 +255,69 @@ class GivenListedSet(_Listed):
 
 ComputedSet = PlanetarySet | PairSet | ListedSet
 SetTable = PlanetarySet | PairSet | ListedSet | GivenPlanetarySet | GivenPair | GivenListedSet
+
+
+GIVEN = ("efficiency", "mesh_efficiency")
+"""Keys with which no loss of a set is computed."""
+
+
+def form_of_set(raw: dict[str, Any]) -> tuple[type[Table] | None, dict[str, Any]]:
+    """The form of a set, None if it has no gears yet, and its tables in that form."""
+    given = any(key in raw for key in GIVEN)
+    gears = raw.get("gears")
+    listed = isinstance(gears, dict) and any(isinstance(item, dict) for item in gears.values())
+    if "meshes" in raw or listed:
+        return (GivenListedSet if given else ListedSet), all_gears_to_members(raw, given=given)
+    if "pinion" in raw or "gear" in raw:
+        return (GivenPair, _teeth_only(raw)) if given else (PairSet, raw)
+    if {"sun", "ring", "planet"} & raw.keys():
+        return (GivenPlanetarySet, _teeth_only(raw)) if given else (PlanetarySet, raw)
+    return None, raw
+
+
+def all_gears_to_members(raw: dict[str, Any], *, given: bool) -> dict[str, Any]:
+    """The tables of a listed set with those of its gears apart from what all gears share."""
+    gears = raw.get("gears", {})
+    if not isinstance(gears, dict):
+        return raw
+    shared = {key: item for key, item in gears.items() if key in SharedGears.model_fields}
+    members = {key: item for key, item in gears.items() if key not in shared}
+    split = {key: value for key, value in raw.items() if key != "gears"} | {"members": members}
+    if given:
+        known = GivenListedSet.model_fields.keys() | {"members"}
+        idle = ListedGear.model_fields.keys() - {"teeth", "internal", "body", "planet"}
+        split["members"] = {
+            name: _without_keys(gear, idle) if isinstance(gear, dict) else gear
+            for name, gear in members.items()
+        }
+        if isinstance(split.get("mesh"), dict):
+            computed = ListedMesh.model_fields.keys()
+            split["mesh"] = {
+                name: _without_keys(mesh, computed) if isinstance(mesh, dict) else mesh
+                for name, mesh in split["mesh"].items()
+                if not isinstance(mesh, dict) or mesh.keys() - computed
+            }
+        return _without_keys(split, ListedSet.model_fields.keys() - known)
+    return split | {"gears": shared}
+
+
+def _without_keys(table: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key not in keys}
+
+
+def _teeth_only(raw: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a set without those that do not matter with a given efficiency."""
+    computed = PlanetarySet.model_fields.keys() | PairSet.model_fields.keys()
+    kept = _without_keys(raw, computed - {"sun", "ring", "planet", "pinion", "gear", *GIVEN})
+    form = GivenPair if "pinion" in raw or "gear" in raw else GivenPlanetarySet
+    for name in ("sun", "ring", "planet", "pinion", "gear"):
+        table = kept.get(name)
+        if isinstance(table, dict) and name in form.model_fields:
+            annotation = form.model_fields[name].annotation
+            assert annotation is not None
+            idle = ListedGear.model_fields.keys() - {*annotation.model_fields, "internal"}
+            kept[name] = _without_keys(table, idle)
+    return kept
 
 
 class StateTable(Table):

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from epicyclic.case.case import KINDS, form_of_set
+from epicyclic.case.case import KINDS
 from epicyclic.case.tables.elements import ElementTables
+from epicyclic.case.train_tables import form_of_set
 from epicyclic.schema.fields import Place, dict_value, locate, quantity_of
 from epicyclic.show.page import Cell, Table
 from epicyclic.units import format_number, unit_text

@@ -13,11 +13,11 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from epicyclic import library
-from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase, form_of_set, read_case
+from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase, read_case
 from epicyclic.case.gear_tables import SharedGears
 from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.tables.uncertainty import DistributionTable
-from epicyclic.case.train_tables import ListedSet, PlanetarySet
+from epicyclic.case.train_tables import ListedSet, PlanetarySet, form_of_set
 from epicyclic.messages import key_parts
 from epicyclic.schema.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 

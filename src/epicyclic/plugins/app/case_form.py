@@ -17,8 +17,8 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from epicyclic import library
-from epicyclic.case.case import FILE_KEYS, KINDS, Case, build_case, changed_tables, form_of_set
-from epicyclic.case.train_tables import PlanetarySet
+from epicyclic.case.case import FILE_KEYS, KINDS, Case, build_case, changed_tables
+from epicyclic.case.train_tables import PlanetarySet, form_of_set
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.messages import dotted, key_parts, value_at, written
 from epicyclic.plugins.app.worker import Worker
