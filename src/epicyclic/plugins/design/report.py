@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import whole_file, write_file
-from epicyclic.plugins.design.candidates import teeth_text
-from epicyclic.plugins.design.search import SAFETIES, Found, write_case
+from epicyclic.plugins.design.candidates import case_tables, teeth_text
+from epicyclic.plugins.design.search import SAFETIES, Found, case_text
 from epicyclic.plugins.design.tables import mass_table, strength_tables
 from epicyclic.show.page import Cell, Listing, Table, number
 from epicyclic.show.plots.style import styled_figure
@@ -117,11 +117,13 @@ def write_all(found: Found, sentences: Sequence[str], folder: Path) -> Iterator[
         write_netcdf(found.dataset(), temporary)
     yield path
     path = folder / "front.png"
-    write_file(path, picture_bytes(front_figure(found), path))
+    with styled_figure(1, 1, found.task.title or "Designs") as (figure, axes):
+        draw_front(found, axes[0, 0])
+    write_file(path, picture_bytes(figure, path))
     yield path
     for place in found.chosen:
         path = folder / f"design-{place}.toml"
-        write_case(found, place, path)
+        write_file(path, case_text(case_tables(found.task, found.table.loc[place])))
         yield path
         case = found.case(place)
         sheet = Console(file=io.StringIO(), width=100, highlight=False, emoji=False)
@@ -135,15 +137,8 @@ def write_all(found: Found, sentences: Sequence[str], folder: Path) -> Iterator[
         yield path
 
 
-def front_figure(found: Found) -> Figure:
-    """The first two objectives of all solved designs, those of the front marked."""
-    with styled_figure(1, 1, found.task.title or "Designs") as (figure, axes):
-        draw_front(found, axes[0, 0])
-    return figure
-
-
 def draw_front(found: Found, ax: Axes) -> Axes:
-    """Designs that miss a limit, that meet all, and that no other one beats."""
+    """The first two objectives of all solved designs, those of the front marked."""
     one, two = (*found.task.search.objectives, "mass", "loss")[:2]
     for (name, rows), marker in zip(front_groups(found).items(), "xoo", strict=True):
         line, alpha = ("-", 1.0) if name == FRONT else ("none", 0.45)
