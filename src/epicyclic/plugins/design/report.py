@@ -14,7 +14,14 @@ from matplotlib.figure import Figure
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import whole_file, write_file
 from epicyclic.plugins.design.candidates import case_tables, teeth_text
-from epicyclic.plugins.design.search import SAFETIES, Found, case_text
+from epicyclic.plugins.design.search import (
+    ENOUGH_SOLVED,
+    LIKELY,
+    LOSS_MARGIN,
+    SAFETIES,
+    Found,
+    case_text,
+)
 from epicyclic.plugins.design.tables import mass_table, strength_tables
 from epicyclic.show.page import Cell, Listing, Table, number
 from epicyclic.show.plots.style import styled_figure
@@ -42,14 +49,21 @@ def fates_table(found: Found) -> Table:
     rows = tuple(
         (Cell(fate), number(count, "", text=f"{count:,}")) for fate, count in found.fates.items()
     )
-    is_drawn = found.combinations > len(found.table)
+    notes = []
+    if found.combinations > len(found.table):
+        notes.append(f"Drawn from {found.combinations:,} combinations.")
+    if LIKELY in found.fates:
+        notes.append(
+            f"Probably beaten: a solved design is better even if they lose only {LOSS_MARGIN:.0%} "
+            f"of what {ENOUGH_SOLVED} or more solved designs of their arrangement let expect."
+        )
     total = (Cell("candidates"), number(len(found.table), "", text=f"{len(found.table):,}"))
     return Table(
         ("what became of them", "number"),
         (*rows, total),
         f"Candidates of {found.task.title or 'the task'}",
         frozenset({len(rows)}),
-        note=f"Drawn from {found.combinations:,} combinations." * is_drawn,
+        note=" ".join(notes),
     )
 
 
