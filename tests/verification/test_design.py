@@ -353,7 +353,7 @@ def test_what_only_solved_designs_tell_is_counted_apart_from_bounds(monkeypatch)
 
 @pytest.mark.slow
 def test_a_stored_search_has_its_front_and_the_cases_of_its_points(monkeypatch, tmp_path):
-    monkeypatch.setattr(searching, "evaluate", made_up)
+    monkeypatch.setattr(searching, "evaluate", lambda *it: made_up(*it) | {"bearing_life": 317.0})
     raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 19])
     raw["limits"] |= {"pitting": 0.05, "bending": 0.05}
     raw["search"] |= {"solved": 8, "batch": 8}
@@ -366,6 +366,7 @@ def test_a_stored_search_has_its_front_and_the_cases_of_its_points(monkeypatch, 
     shown = {number for trace in front.chart.plot["data"] for number in trace["customdata"]}
     assert shown == set(front.cases) == set(found.table.index[found.table.loss.notna()])
     number = found.chosen[0]
+    assert "bearing life [h]" in front.tables[1].head
     assert front.cases[number] == case_text(case_tables(found.task, found.table.loc[number]))
     write_netcdf(found.dataset().drop_vars("bound"), path)
     with pytest.raises(InputError, match="no dataset of designs"):

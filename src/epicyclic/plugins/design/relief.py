@@ -140,24 +140,18 @@ def _points(
     relief: Relief, variants: Sequence[Mapping[str, str]]
 ) -> tuple[list[dict[str, Any]], list[tuple[int, int]]]:
     """Points to solve, and for each its variant and which amount is off; -1 for none."""
-    from epicyclic.schema.fields import find_field, quantity_of
-
     points: list[dict[str, Any]] = []
     owners: list[tuple[int, int]] = []
+    varied = _amounts(relief) if relief.tolerance else []
     for number, variant in enumerate(variants):
+        case = relief.case.updated(dict(variant)) if varied else relief.case
         for load in relief.loads:
             points.append({**variant, **load})
             owners.append((number, -1))
-            if not relief.tolerance:
-                continue
-            for place, key in enumerate(_amounts(relief)):
-                found = find_field(type(relief.case), key)
-                quantity = None if found is None else quantity_of(*found)
-                amount = relief.case.updated(dict(variant))[key]
-                off = f"{(amount + relief.tolerance) * 1e6:.9g} um"
-                if quantity is not None and amount is not None:
-                    points.append({**variant, **load, key: off})
-                    owners.append((number, place))
+            for place, key in enumerate(varied):
+                off = f"{(case[key] + relief.tolerance) * 1e6:.9g} um"
+                points.append({**variant, **load, key: off})
+                owners.append((number, place))
     return points, owners
 
 

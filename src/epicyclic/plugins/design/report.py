@@ -39,6 +39,7 @@ SHOWN = {
     "loss": ("loss [W]", 1.0), "mass": ("mass [kg]", 1.0), "diameter": ("diameter [mm]", 1e3),
     "width": ("width [mm]", 1e3), "transmission_error": ("transmission error [um]", 1.0),
     "pressure": ("pressure [GPa]", 1.0), "flash": ("flash temperature [K]", 1.0),
+    "bearing_life": ("bearing life [h]", 1.0),
 }  # fmt: skip
 
 FRONT = "not beaten"
@@ -96,7 +97,7 @@ def front_table(found: Found) -> Table:
         )
     head = (
         "design", "gears", "planets", "m_n [mm]", "helix [°]",
-        *(SHOWN[it][0] for it in objectives), *(it.replace("_", " ") for it in safeties),
+        *(SHOWN[it][0] for it in objectives), *(SHOWN.get(it, (it,))[0] for it in safeties),
     )  # fmt: skip
     note = "* chosen and written. Mass is that of the gears as discs."
     return Table(head, tuple(rows), "Pareto-optimal designs", note=note)
