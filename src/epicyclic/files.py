@@ -183,6 +183,17 @@ def make_folder(path: Path, option: str = OPTION) -> None:
         raise _error(path, option, allowed, "Name another folder.") from None
 
 
+def check_folder(path: Path, option: str = OPTION) -> None:
+    """Raise `InputError` unless there is a folder to write to or it can be made; it is not kept."""
+    new = [it for it in (path, *path.parents) if not os.path.lexists(it)]
+    make_folder(path, option)
+    is_open = os.access(path, os.W_OK)
+    for folder in new:
+        folder.rmdir()
+    if not is_open:
+        raise _error(path, option, "is without write permission.", "Name another folder.")
+
+
 @contextmanager
 def whole_file(path: Path, option: str = OPTION) -> Iterator[Path]:
     """A file to be written in a private folder; it replaces `path` if nothing goes wrong.

@@ -117,6 +117,16 @@ def test_nothing_comes_from_elsewhere_and_the_page_is_soon_there(open_app):
     assert not page.wrong
 
 
+def test_a_chart_that_is_gone_need_not_be_resized(open_app):
+    page = open_app("talbot-2012")
+    page.goto(page.address)
+    page.wait_for_selector("aside .group")
+    resize = "({Plotly}) => { Plotly.Plots.resize(document.createElement('div')); }"
+    page.evaluate(f"import('nicegui-plotly').then({resize})")
+    page.wait_for_timeout(500)
+    assert not page.wrong
+
+
 def test_a_stranger_gets_no_page(open_app, browser):
     page = open_app("talbot-2012-pair")
     stranger = browser.new_context().new_page()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import inspect
 import io
@@ -20,6 +21,7 @@ from epicyclic.errors import InputError
 from epicyclic.plugins.design import candidates as enumerating
 from epicyclic.plugins.design import search as searching
 from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances, sizes
+from epicyclic.plugins.design.commands import design as command
 from epicyclic.plugins.design.front import front_of, stored
 from epicyclic.plugins.design.relief import Relief, relief_front
 from epicyclic.plugins.design.rotor import rotor_dynamics, rotor_text
@@ -59,8 +61,6 @@ def task_of(*arrangements, ratio=4.1, **choices):
 
 
 def test_help_shows_a_whole_task_and_what_lacks_one_names_it(tmp_path):
-    from epicyclic.plugins.design.commands import design as command
-
     shown = inspect.cleandoc(command.help).split("\b\n")[1]
     path = tmp_path / "task.toml"
     path.write_text(shown)
@@ -181,6 +181,21 @@ def test_an_impossible_task_names_the_limit_and_by_how_much(limits, key, monkeyp
     name = key.removeprefix("limits.")
     raw["limits"][name] = relaxed if " " in relaxed else float(relaxed)
     assert design(raw, jobs=1).fronts
+
+
+def test_a_folder_is_made_only_for_designs_that_were_found(tmp_path):
+    raw = task_of("pair", ratio=3.1)
+    raw["limits"]["diameter"] = "23 mm"
+    path, folder = tmp_path / "task.toml", tmp_path / "new" / "designs"
+    path.write_text(case_text(raw))
+    for options in ([], ["--screen"], ["--journal", str(folder)]):
+        with contextlib.suppress(InputError):
+            command.main([str(path), "-o", str(folder), *options], standalone_mode=False)
+        assert sorted(tmp_path.iterdir()) == [path]
+    for option in ("-o", "--journal"):
+        with pytest.raises(InputError) as caught:
+            command.main([str(path), option, str(path / "x")], standalone_mode=False)
+        assert [it.key for it in caught.value.problems] == [option]
 
 
 def test_of_many_combinations_the_stated_number_is_drawn(monkeypatch):
@@ -338,7 +353,7 @@ def test_what_only_solved_designs_tell_is_counted_apart_from_bounds(monkeypatch)
 
 @pytest.mark.slow
 def test_a_stored_search_has_its_front_and_the_cases_of_its_points(monkeypatch, tmp_path):
-    monkeypatch.setattr(searching, "evaluate", made_up)
+    monkeypatch.setattr(searching, "evaluate", lambda *it: made_up(*it) | {"bearing_life": 317.0})
     raw = task_of("pair", ratio=3.1, pinion_teeth=[18, 19])
     raw["limits"] |= {"pitting": 0.05, "bending": 0.05}
     raw["search"] |= {"solved": 8, "batch": 8}
@@ -351,6 +366,7 @@ def test_a_stored_search_has_its_front_and_the_cases_of_its_points(monkeypatch, 
     shown = {number for trace in front.chart.plot["data"] for number in trace["customdata"]}
     assert shown == set(front.cases) == set(found.table.index[found.table.loss.notna()])
     number = found.chosen[0]
+    assert "bearing life [h]" in front.tables[1].head
     assert front.cases[number] == case_text(case_tables(found.task, found.table.loc[number]))
     write_netcdf(found.dataset().drop_vars("bound"), path)
     with pytest.raises(InputError, match="no dataset of designs"):

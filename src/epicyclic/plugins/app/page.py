@@ -271,10 +271,16 @@ _VERBS = {"run": (), "check": (), "report": ("-o", "report.html")}
 """Commands that do what the page does, and what they need more."""
 
 
+# NiceGUI also resizes a chart that was removed while its script was loading.
+_GONE = """addEventListener("unhandledrejection", (event) => {
+  if (String(event.reason).includes("displayed plot div")) event.preventDefault();
+});"""
+
+
 def add_assets() -> None:
     """What the page needs before it is connected."""
     ui.add_css(_asset("app.css"))
-    ui.add_body_html(f"<script>{_asset('turning.js')}</script>")
+    ui.add_body_html(f"<script>{_asset('turning.js')}{_GONE}</script>")
 
 
 class Page:

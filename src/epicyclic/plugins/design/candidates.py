@@ -37,7 +37,7 @@ LEAST_HELIX = 0.75  # Y_beta. [1]
 TIP_ROOM = 0.35  # Roll length between base circle of a planet and tip of its ring. [modules]
 COARSE = {"mesh_positions": 12, "contact_segments": 12, "bearing_slices": 10}
 """Numerics of designs, unless the task states others."""
-STEEL = 206e9 / (1 - 0.3**2)
+STEEL, DENSITY = 206e9 / (1 - 0.3**2), 7850.0  # [Pa], [kg/m^3]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,6 @@ class Layout:
     meshes: tuple[MeshOf, ...]
     ratio: Callable[[Gears], FloatArray]
     teeth: Callable[[Task], Iterator[tuple[int, ...]]]  # In the order of `gears`.
-    stages: int = 1
 
 
 def _simple(z: Gears, one: str = "") -> FloatArray:
@@ -79,15 +78,9 @@ def _planetary_meshes(one: str, torque: Callable[[Gears], FloatArray]) -> tuple[
     stage = one or "1"
     return (
         MeshOf(f"sun{one}", f"planet{one}", False, stage, torque, speed),
-        MeshOf(
-            f"planet{one}",
-            f"ring{one}",
-            True,
-            stage,
-            lambda z: torque(z) * planet(z),
-            lambda z: speed(z) / planet(z),
-        ),
-    )
+        MeshOf(f"planet{one}", f"ring{one}", True, stage,
+               lambda z: torque(z) * planet(z), lambda z: speed(z) / planet(z)),
+    )  # fmt: skip
 
 
 def _teeth_of_set(low: int, high: int, ratio: float) -> Iterator[tuple[int, int, int]]:
@@ -104,10 +97,6 @@ def _pair_teeth(task: Task) -> Iterator[tuple[int, ...]]:
         wanted = round(task.ratio * pinion)
         for gear in range(max(low, wanted - 1), wanted + 2):
             yield pinion, gear
-
-
-def _planetary_teeth(task: Task) -> Iterator[tuple[int, ...]]:
-    yield from _teeth_of_set(*task.choices.pinion_teeth, task.ratio)
 
 
 def _stepped_teeth(task: Task) -> Iterator[tuple[int, ...]]:
@@ -176,7 +165,7 @@ LAYOUTS: dict[str, Layout] = {
         ("sun", "planet", "ring"),
         _planetary_meshes("", _whole),
         _simple,
-        _planetary_teeth,
+        lambda task: _teeth_of_set(*task.choices.pinion_teeth, task.ratio),
     ),
     "stepped": Layout(
         ("sun", "wide", "narrow", "ring"),
@@ -208,7 +197,6 @@ LAYOUTS: dict[str, Layout] = {
         (*_planetary_meshes("", _whole), *_planetary_meshes("2", _simple)),
         lambda z: _simple(z) * _simple(z, "2"),
         _two_stage_teeth,
-        stages=2,
     ),
 }  # fmt: skip
 """By the names of `choices.arrangements`."""
@@ -254,7 +242,7 @@ class _Choices:
             raise InputError([problem], task.title)
         self.teeth = np.array(found, dtype=float).reshape(-1, len(self.layout.gears))
         planets = (1,) if name == "pair" else choices.planets
-        later = choices.module if self.layout.stages == 2 else (math.nan,)
+        later = choices.module if "sun2" in self.layout.gears else (math.nan,)
         self.axes = (
             planets, choices.module, choices.helix_angle, choices.profile_shift,
             choices.distance_shift, choices.width_ratio, later,
@@ -286,22 +274,6 @@ class Sizes:
     loss: FloatArray  # Less than the load-dependent loss over the cycle can be. [W]
 
 
-def inverse_involute(value: FloatArray) -> FloatArray:
-    """Of arrays, by Newton's method from above."""
-    angle = np.minimum(np.cbrt(3 * value), np.arctan(value + math.pi / 2))
-    for _ in range(12):
-        tangent = np.tan(angle)
-        angle = angle - (tangent - angle - value) / tangent**2
-    return angle
-
-
-def lives_at(cycles: FloatArray, knees: tuple[tuple[float, float], ...]) -> FloatArray:
-    """`iso_6336.life_factor` of arrays. [1]"""
-    at, factors = np.log(np.array(knees)).T
-    found: FloatArray = np.exp(np.interp(np.log(np.maximum(cycles, 1.0)), at, factors))
-    return found
-
-
 def ring_tip(usual: Any, base: Any, action: Any, module: Any) -> Any:
     """Tip radius of a ring: the usual one, or that which leaves the involute of the planet. [m]"""
     return np.maximum(usual, np.hypot(base, action + TIP_ROOM * module))
@@ -331,7 +303,7 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
     inv_t = np.tan(alpha_t) - alpha_t
     base_helix = np.arctan(np.tan(helix) * np.cos(alpha_t))
     ratio = layout.ratio(z)
-    strength = _strength(task)
+    strength = StrengthTable.model_validate(task.case.get("strength", {}))
     margins: dict[str, FloatArray] = {}
 
     def least(key: str, values: FloatArray) -> None:
@@ -341,18 +313,21 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
         error = np.abs(np.abs(ratio) / task.ratio - 1)
         allowed = max(task.limits.ratio_error, 1e-9)
         least("ratio_error", np.where(error <= allowed, 1.0, allowed / np.maximum(error, 1e-12)))
-        diameter, width, mass, backlash = (np.zeros(len(table)) for _ in range(4))
-        loss = np.zeros(len(table))
+        diameter, mass, backlash, loss = (np.zeros(len(table)) for _ in range(4))
         powers = sum(point.share * point.torque * point.speed for point in task.points)
         power = abs(powers) / sum(point.share for point in task.points)
         shifts: Gears = {}
+        modules, faces = {}, {}  # By the stage.
+        for stage, pinion in {"1": layout.gears[0], "2": "sun2"}.items():
+            if pinion in z:
+                modules[stage] = table["module2" if stage == "2" else "module"].to_numpy()
+                faces[stage] = table["width_ratio"].to_numpy() * modules[stage] * z[pinion]
+                faces[stage] = faces[stage] / np.cos(helix)
         for mesh in layout.meshes:
-            module = table["module2" if mesh.set == "2" else "module"].to_numpy()
+            module, face = modules[mesh.set], faces[mesh.set]
             distance = distances(task, table, mesh.set)
             sign = -1.0 if mesh.internal else 1.0
             z1, z2 = z[mesh.first], z[mesh.second]
-            pinion = z["sun2" if mesh.set == "2" else "pinion" if name == "pair" else "sun"]
-            face = table["width_ratio"].to_numpy() * module * pinion / np.cos(helix)
             transverse = module / np.cos(helix)
             bases = transverse * np.cos(alpha_t) / 2
             cosine = (z2 + sign * z1) * bases / distance
@@ -376,17 +351,12 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             alpha = eps1 + eps2
             overlap = face * np.tan(base_helix) / pitch
             least("contact_ratio", (alpha + overlap) / task.limits.contact_ratio)
-            least(
-                "mesh",
-                np.where((np.abs(cosine) <= 1) & (alpha > 0.5) & np.isfinite(alpha), 1.0, 0.0),
-            )
+            is_mesh = (np.abs(cosine) <= 1) & (alpha > 0.5) & np.isfinite(alpha)
+            least("mesh", np.where(is_mesh, 1.0, 0.0))
             # tips
             tip_angle = np.arccos(np.clip(z1 * bases / tip1, -1, 1))
-            half = (
-                (math.pi / 2 + 2 * x1 * math.tan(alpha_n)) / z1
-                + inv_t
-                - (np.tan(tip_angle) - tip_angle)
-            )
+            half = (math.pi / 2 + 2 * x1 * math.tan(alpha_n)) / z1 + inv_t
+            half -= np.tan(tip_angle) - tip_angle
             tip = 2 * tip1 * half * np.cos(helix) / module
             least("tip_thickness", np.clip(tip / max(task.limits.tip_thickness, 1e-9), 0, 10))
             # bounds of loss and strength
@@ -395,6 +365,7 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             # virtual work: the play of a mesh moves the output as its force loads it
             play = task.choices.backlash / np.cos(base_helix)
             backlash += np.abs(carried / (z1 * bases * ratio)) * play
+            # Ohlendorf's loss factor
             factor = math.pi * (z2 + sign * z1) / (z1 * z2 * np.cos(base_helix))
             factor = np.abs(factor) * (1 - alpha + eps1**2 + eps2**2)
             loss += BOUND_FRICTION * power * np.abs(carried * turning) * np.maximum(factor, 0)
@@ -412,18 +383,14 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             bears = [_material(strength, it) for it in (mesh.first, mesh.second)]
             soft = any(it.treatment == "through-hardened" for it in bears)
             if task.limits.pitting:
-                lives = np.maximum(
-                    *(lives_at(cycles, iso.PITTING_LIFE[it.treatment]) for it in bears)
-                )
+                lives = [iso.life_factor(cycles, iso.PITTING_LIFE[it.treatment]) for it in bears]
                 factor = BEST_SOFT_LIMIT if soft else BEST_LIMIT
-                best = factor * max(it.contact for it in bears) * lives
+                best = factor * max(it.contact for it in bears) * np.maximum(*lives)
                 least("pitting", best / stress / task.limits.pitting)
             if task.limits.bending:
                 bent = tangential / (face * module) * LEAST_ROOT * LEAST_HELIX
-                lives = np.maximum(
-                    *(lives_at(cycles, iso.BENDING_LIFE[it.treatment]) for it in bears)
-                )
-                best = 2 * 1.1 * max(it.bending for it in bears) * lives
+                lives = [iso.life_factor(cycles, iso.BENDING_LIFE[it.treatment]) for it in bears]
+                best = 2 * 1.1 * max(it.bending for it in bears) * np.maximum(*lives)
                 least("bending", best / bent / task.limits.bending)
             outside = 2 * (tip2 if not mesh.internal else r2 + module * (1.25 - x2 + 3))
             if name != "pair" and not mesh.internal:
@@ -434,24 +401,17 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             if name == "pair":
                 outside = tip1 + tip2 + distance
             diameter = np.maximum(diameter, outside)
-        counted = list(layout.gears)
-        faces: dict[str, FloatArray] = {}
-        for gear in counted:
-            two = gear.endswith("2")
-            module = table["module2" if two else "module"].to_numpy()
-            pinion = z["sun2" if two else "pinion" if name == "pair" else "sun"]
-            face = table["width_ratio"].to_numpy() * module * pinion / np.cos(helix)
-            faces[gear] = face
+        for gear in layout.gears:
+            stage = "2" if gear.endswith("2") else "1"
+            module = modules[stage]
             radius = z[gear] * module / np.cos(helix) / 2
             x = shifts[gear]
             number = planets if gear.startswith(("planet", "wide", "narrow")) else 1
             area = radius**2 * np.ones(len(table))
             if "ring" in gear:
                 area = (radius + module * (4.25 - x)) ** 2 - (radius + module * (0.125 - x)) ** 2
-            mass += number * math.pi * area * face * 7850.0
-        steps = ("sun", "sun2") if layout.stages == 2 else ("wide", "narrow")
-        width = sum((faces[it] for it in steps if it in faces), np.zeros(len(table)))
-        width = np.where(width == 0, faces[counted[0]], width)
+            mass += number * math.pi * area * faces[stage] * DENSITY
+        width = sum(faces.values()) * (2 if "wide" in z else 1)  # A stepped planet has two widths.
         known = {"diameter": diameter, "width": width, "mass": mass, "backlash": backlash}
         for key, found in known.items():
             limit = getattr(task.limits, key)
@@ -479,11 +439,8 @@ def _closing(layout: Layout, stage: str, kind: Any) -> int:
     meshes = []
     for mesh in layout.meshes:
         if mesh.set == stage and "sun" in layout.gears:
-            planet, central = (
-                (mesh.first, mesh.second) if mesh.internal else (mesh.second, mesh.first)
-            )
-            sign = -1 if mesh.internal else 1
-            meshes.append(({"planet": own[planet]}, sign * own[central]))
+            one, two = own[mesh.first], own[mesh.second]
+            meshes.append(({"planet": one}, -two) if mesh.internal else ({"planet": two}, one))
     return closing_number(meshes) if meshes else 0
 
 
@@ -492,10 +449,6 @@ def _material(table: StrengthTable, gear: str) -> Material:
     own = gear.removesuffix("2")
     stated = [it for name, it in table.gears.items() if name.split(".")[-1] == own]
     return max(map(material_of, stated or [GearStrength()]), key=lambda it: it.contact)
-
-
-def _strength(task: Task) -> StrengthTable:
-    return StrengthTable.model_validate(task.case.get("strength", {}))
 
 
 # A candidate as a case.
@@ -534,11 +487,9 @@ def case_tables(task: Task, row: Row, point: int = -1) -> dict[str, Any]:
             "B": _set_tables(task, row, "2", ("sun2", "planet2", "ring2")),
         }
         shafts = {
-            "in": ["A.sun"],
-            "middle": ["A.carrier", "B.sun"],
-            "out": ["B.carrier"],
+            "in": ["A.sun"], "middle": ["A.carrier", "B.sun"], "out": ["B.carrier"],
             "housing": ["A.ring", "B.ring"],
-        }
+        }  # fmt: skip
         return train | {"sets": sets, "shafts": shafts} | common
     own = _listed_tables(task, row)
     held, out = ("ring", "carrier") if name == "stepped" else ("fixed_ring", "output_ring")

@@ -26,7 +26,7 @@ from epicyclic.cli.common import (
     show,
     tell,
 )
-from epicyclic.files import make_folder, write_file
+from epicyclic.files import check_folder, make_folder, write_file
 
 if TYPE_CHECKING:
     from epicyclic.study.sweeps.runner import Runner
@@ -145,8 +145,6 @@ def design(
         check_samples(draws)
     read = read_task(task)
     raw, _ = task_tables(task)
-    if output is not None:
-        make_folder(output)
     if only_screen:
         found = screen(read)
         found.table.loc[found.table["fate"] == "", "fate"] = "passes the screens"
@@ -156,11 +154,13 @@ def design(
             json_file,
         )
         return
-    if journal is not None:
-        make_folder(journal, "--journal")
+    for folder, option in ((output, "-o"), (journal, "--journal")):
+        if folder is not None:
+            check_folder(folder, option)
     found = search(read, raw, replace(runner, journal=journal), tell=tell)
     sentences = tuple(odds(found, draws, runner)) if draws else ()
     if output is not None:
+        make_folder(output)
         for name in report.write_all(found, sentences, output):
             echo(f"Wrote {name}.")
     show(
@@ -223,7 +223,7 @@ def relief(
         --vary "sun.micro_geometry.tip_relief=5:45:5 um" --tolerance "3 um"
     """
     from epicyclic.plugins.design import report
-    from epicyclic.plugins.design.relief import Relief, relief_front
+    from epicyclic.plugins.design.relief import Relief, mesh_keys, relief_front
     from epicyclic.show.terminal import as_on_page, terminal
     from epicyclic.study.sweeps.run import check_output, parse_vary
 
@@ -244,14 +244,9 @@ def relief(
     if torques is not None:
         found = parse_vary(loaded, (f"operation.torque={torques}",))
         loads = [{"operation.torque": value} for value in found["operation.torque"]]
-    known = [
-        f"{own}.{mesh.key}" if own else mesh.key
-        for own, gearing in loaded.gearings.items()
-        for mesh in gearing.meshes
-    ]
     made = Relief(
         loaded,
-        name or known[0],
+        name or mesh_keys(loaded)[0],
         {key: list(texts[key]) for key in keys},
         loads,
         report.parse_length("--tolerance", tolerance),

@@ -95,5 +95,5 @@ def _hover(found: Found, number: int) -> str:
         f"helix {np.degrees(row['helix']):.3g}°"
     )
     aims = (f"{SHOWN[it][0]}: {SHOWN[it][1] * row[it]:.4g}" for it in found.task.search.objectives)
-    safe = (f"{it.replace('_', ' ')}: {row[it]:.3g}" for it in SAFETIES if not np.isnan(row[it]))
+    safe = (f"{SHOWN.get(it, (it,))[0]}: {row[it]:.3g}" for it in SAFETIES if not np.isnan(row[it]))
     return "<br>".join([shape, *aims, *safe, str(row["fate"])])

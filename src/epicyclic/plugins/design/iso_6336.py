@@ -14,13 +14,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from epicyclic.gears.cutting import RackTool, ShaperTool, Tool
 from epicyclic.gears.gear import Gear, involute
 from epicyclic.gears.mesh import Mesh
 
+FloatArray = NDArray[np.float64]
+Numbers = FloatArray | float
 MM, MPA = 1e3, 1e-6
 Treatment = Literal["case-hardened", "through-hardened", "nitrided"]
 
@@ -249,15 +253,10 @@ def face_factor_bending(face_factor: float, width: float, depth: float) -> float
 # What a material bears.
 
 
-def life_factor(cycles: float, knees: tuple[tuple[float, float], ...]) -> float:
+def life_factor(cycles: Numbers, knees: tuple[tuple[float, float], ...]) -> FloatArray:
     """Z_NT or Y_NT: straight in the logarithms between `knees`, cycles and factor. [1]"""
-    if cycles <= knees[0][0]:
-        return knees[0][1]
-    for (n1, z1), (n2, z2) in pairwise(knees):
-        if cycles <= n2:
-            share = math.log(cycles / n1) / math.log(n2 / n1)
-            return z1 * math.pow(z2 / z1, share)
-    return knees[-1][1]
+    at, factors = np.log(knees).T
+    return np.asarray(np.exp(np.interp(np.log(np.maximum(cycles, 1.0)), at, factors)))
 
 
 PITTING_LIFE: dict[Treatment, tuple[tuple[float, float], ...]] = {

@@ -32,30 +32,10 @@ from epicyclic.oil.oil import Oil, oil_state
 FloatArray = NDArray[np.float64]
 Numbers = FloatArray | float
 ZERO_CELSIUS, REFERENCE = 273.15, 38.0 + 273.15
-SCUFFING_TORQUES = MappingProxyType(
-    dict(
-        enumerate(
-            (
-                3.3,
-                13.7,
-                35.3,
-                60.8,
-                94.1,
-                135.3,
-                183.4,
-                239.3,
-                302.0,
-                372.6,
-                450.1,
-                534.5,
-                626.9,
-                714.2,
-            ),
-            start=1,
-        )
-    )
-)
-"""T_1T on the pinion in the load stages of FZG A/8.3/90; 13 and 14 second hand. [N m]"""
+SCUFFING_TORQUES = (
+    3.3, 13.7, 35.3, 60.8, 94.1, 135.3, 183.4, 239.3, 302.0, 372.6, 450.1, 534.5, 626.9, 714.2
+)  # fmt: skip
+"""T_1T on the pinion in the load stages 1 to 14 of FZG A/8.3/90; 13 and 14 second hand. [N m]"""
 MICROPITTING_TORQUES = MappingProxyType({5: 70.0, 6: 98.9, 7: 132.5, 8: 171.6, 9: 215.6, 10: 265.1})
 """T_1 on the pinion in the load stages of FVA 54/7. [N m]"""
 
@@ -217,7 +197,7 @@ def integral_scuffing_temperature(
     >>> round(integral_scuffing_temperature(14, 220e-6, 1.0) - 273.15, 2)
     455.17
     """
-    torque = SCUFFING_TORQUES[stage] * lubricant_factor
+    torque = SCUFFING_TORQUES[stage - 1] * lubricant_factor
     flash = 0.2 * torque * math.pow(100 / (viscosity40 * 1e6), 0.02)
     return ZERO_CELSIUS + 80 + 0.23 * torque + 1.5 * structure * flash
 
@@ -235,7 +215,7 @@ def integral_temperature(bulk: float, mean_flash: float) -> float:
 
 
 def integral_bulk(oil: float, mean_flash: float, factor: float) -> float:
-    """Bulk temperature of the integral method, C1 = 0.7; `factor` is X_S X_mp. [K]"""
+    """Bulk temperature with C1 = 0.7; `factor` is X_S X_mp. ISO/TS 6336-21, second hand. [K]"""
     return oil + 0.7 * factor * mean_flash
 
 

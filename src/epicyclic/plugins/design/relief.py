@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.plugins.design.search import dominated
 from epicyclic.study.sweeps.run import PointList
@@ -46,10 +48,13 @@ class Relief:
 
     def combinations(self) -> list[dict[str, str]]:
         """The full product of the values."""
-        from itertools import product
+        return [dict(zip(self.vary, it, strict=True)) for it in product(*self.vary.values())]
 
-        keys = [*self.vary]
-        return [dict(zip(keys, values, strict=True)) for values in product(*self.vary.values())]
+
+def mesh_keys(case: Case) -> list[str]:
+    """Names of all meshes, the first one first."""
+    sets = case.gearings.items()
+    return [joined_key(name, mesh.key) for name, own in sets for mesh in own.meshes]
 
 
 def key_problems(relief: Relief) -> list[Problem]:
@@ -60,11 +65,7 @@ def key_problems(relief: Relief) -> list[Problem]:
             allowed = "is no key of micro-geometry."
             remedy = 'As in "sun.micro_geometry.tip_relief=5:45:5 um".'
             problems.append(Problem("--vary", key, allowed, remedy))
-    keys = [
-        f"{name}.{mesh.key}" if name else mesh.key
-        for name, own in relief.case.gearings.items()
-        for mesh in own.meshes
-    ]
+    keys = mesh_keys(relief.case)
     if relief.mesh not in keys:
         allowed = f"must be one of {', '.join(keys)}."
         problems.append(Problem("--mesh", relief.mesh, allowed, f"Give --mesh {keys[0]}."))
@@ -89,9 +90,7 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
     """
     import xarray as xr
 
-    problems = key_problems(relief)
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(key_problems(relief), "the command")
     variants = relief.combinations()
     points, owners = _points(relief, variants)
     rows = (runner or Runner()).run(PointList(relief.case, points=tuple(points)))
@@ -141,24 +140,18 @@ def _points(
     relief: Relief, variants: Sequence[Mapping[str, str]]
 ) -> tuple[list[dict[str, Any]], list[tuple[int, int]]]:
     """Points to solve, and for each its variant and which amount is off; -1 for none."""
-    from epicyclic.schema.fields import find_field, quantity_of
-
     points: list[dict[str, Any]] = []
     owners: list[tuple[int, int]] = []
+    varied = _amounts(relief) if relief.tolerance else []
     for number, variant in enumerate(variants):
+        case = relief.case.updated(dict(variant)) if varied else relief.case
         for load in relief.loads:
             points.append({**variant, **load})
             owners.append((number, -1))
-            if not relief.tolerance:
-                continue
-            for place, key in enumerate(_amounts(relief)):
-                found = find_field(type(relief.case), key)
-                quantity = None if found is None else quantity_of(*found)
-                amount = relief.case.updated(dict(variant))[key]
-                off = f"{(amount + relief.tolerance) * 1e6:.9g} um"
-                if quantity is not None and amount is not None:
-                    points.append({**variant, **load, key: off})
-                    owners.append((number, place))
+            for place, key in enumerate(varied):
+                off = f"{(case[key] + relief.tolerance) * 1e6:.9g} um"
+                points.append({**variant, **load, key: off})
+                owners.append((number, place))
     return points, owners
 
 

@@ -13,8 +13,15 @@ from matplotlib.figure import Figure
 
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import whole_file, write_file
-from epicyclic.plugins.design.candidates import teeth_text
-from epicyclic.plugins.design.search import SAFETIES, Found, write_case
+from epicyclic.plugins.design.candidates import case_tables, teeth_text
+from epicyclic.plugins.design.search import (
+    ENOUGH_SOLVED,
+    LIKELY,
+    LOSS_MARGIN,
+    SAFETIES,
+    Found,
+    case_text,
+)
 from epicyclic.plugins.design.tables import mass_table, strength_tables
 from epicyclic.show.page import Cell, Listing, Table, number
 from epicyclic.show.plots.style import styled_figure
@@ -32,6 +39,7 @@ SHOWN = {
     "loss": ("loss [W]", 1.0), "mass": ("mass [kg]", 1.0), "diameter": ("diameter [mm]", 1e3),
     "width": ("width [mm]", 1e3), "transmission_error": ("transmission error [um]", 1.0),
     "pressure": ("pressure [GPa]", 1.0), "flash": ("flash temperature [K]", 1.0),
+    "bearing_life": ("bearing life [h]", 1.0),
 }  # fmt: skip
 
 FRONT = "not beaten"
@@ -42,14 +50,21 @@ def fates_table(found: Found) -> Table:
     rows = tuple(
         (Cell(fate), number(count, "", text=f"{count:,}")) for fate, count in found.fates.items()
     )
-    is_drawn = found.combinations > len(found.table)
+    notes = []
+    if found.combinations > len(found.table):
+        notes.append(f"Drawn from {found.combinations:,} combinations.")
+    if LIKELY in found.fates:
+        notes.append(
+            f"Probably beaten: a solved design is better even if they lose only {LOSS_MARGIN:.0%} "
+            f"of what {ENOUGH_SOLVED} or more solved designs of their arrangement let expect."
+        )
     total = (Cell("candidates"), number(len(found.table), "", text=f"{len(found.table):,}"))
     return Table(
         ("what became of them", "number"),
         (*rows, total),
         f"Candidates of {found.task.title or 'the task'}",
         frozenset({len(rows)}),
-        note=f"Drawn from {found.combinations:,} combinations." * is_drawn,
+        note=" ".join(notes),
     )
 
 
@@ -82,7 +97,7 @@ def front_table(found: Found) -> Table:
         )
     head = (
         "design", "gears", "planets", "m_n [mm]", "helix [°]",
-        *(SHOWN[it][0] for it in objectives), *(it.replace("_", " ") for it in safeties),
+        *(SHOWN[it][0] for it in objectives), *(SHOWN.get(it, (it,))[0] for it in safeties),
     )  # fmt: skip
     note = "* chosen and written. Mass is that of the gears as discs."
     return Table(head, tuple(rows), "Pareto-optimal designs", note=note)
@@ -117,11 +132,13 @@ def write_all(found: Found, sentences: Sequence[str], folder: Path) -> Iterator[
         write_netcdf(found.dataset(), temporary)
     yield path
     path = folder / "front.png"
-    write_file(path, picture_bytes(front_figure(found), path))
+    with styled_figure(1, 1, found.task.title or "Designs") as (figure, axes):
+        draw_front(found, axes[0, 0])
+    write_file(path, picture_bytes(figure, path))
     yield path
     for place in found.chosen:
         path = folder / f"design-{place}.toml"
-        write_case(found, place, path)
+        write_file(path, case_text(case_tables(found.task, found.table.loc[place])))
         yield path
         case = found.case(place)
         sheet = Console(file=io.StringIO(), width=100, highlight=False, emoji=False)
@@ -135,15 +152,8 @@ def write_all(found: Found, sentences: Sequence[str], folder: Path) -> Iterator[
         yield path
 
 
-def front_figure(found: Found) -> Figure:
-    """The first two objectives of all solved designs, those of the front marked."""
-    with styled_figure(1, 1, found.task.title or "Designs") as (figure, axes):
-        draw_front(found, axes[0, 0])
-    return figure
-
-
 def draw_front(found: Found, ax: Axes) -> Axes:
-    """Designs that miss a limit, that meet all, and that no other one beats."""
+    """The first two objectives of all solved designs, those of the front marked."""
     one, two = (*found.task.search.objectives, "mass", "loss")[:2]
     for (name, rows), marker in zip(front_groups(found).items(), "xoo", strict=True):
         line, alpha = ("-", 1.0) if name == FRONT else ("none", 0.45)

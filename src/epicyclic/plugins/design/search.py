@@ -62,7 +62,7 @@ SCREENS = {
 """What a candidate may be rejected for before it is solved, in the order in which it is asked."""
 UNITS = {
     "loss": "W", "mass": "kg", "diameter": "m", "width": "m", "backlash": "rad",
-    "transmission_error": "um", "bearing_life": "h",
+    "transmission_error": "um", "bearing_life": "h", "module": "m", "module2": "m",
 }  # fmt: skip
 SHOWN_LIMITS = {
     "diameter": (1e3, "mm"), "width": (1e3, "mm"), "mass": (1.0, "kg"),
@@ -169,10 +169,7 @@ class Found:
 
         data = xr.Dataset.from_dataframe(self.table.rename_axis("design"))
         for name in data.data_vars:
-            unit = UNITS.get(str(name), "")
-            if name in ("module", "module2"):
-                unit = "m"
-            data[name].attrs = {"units": unit or "1"}
+            data[name].attrs = {"units": UNITS.get(str(name), "1")}
         data.attrs = {
             "title": self.task.title,
             "fates": json.dumps(self.fates),
@@ -399,14 +396,9 @@ def _next(found: Found, left: Any, count: int) -> list[int]:
 
 
 def _solve(found: Found, raw: Mapping[str, Any], batch: list[int], runner: Runner) -> Rows:
-    columns = [
-        it for it in found.table.columns
-        if it not in ("fate", "bound", "ratio", *KNOWN, "loss", "transmission_error", *SAFETIES)
-    ]  # fmt: skip
-    made = []
-    for number in batch:
-        row = found.table.loc[number, columns].dropna().to_dict()
-        made.append({k: v if isinstance(v, str) else float(v) for k, v in row.items()})
+    left_out = ["fate", "bound", "ratio", *KNOWN, "loss", "transmission_error", *SAFETIES]
+    rows = found.table.loc[batch].drop(columns=left_out)
+    made = [row.dropna().to_dict() for _, row in rows.iterrows()]
     plan = DesignPlan(raw, tuple(made))
     return runner.within(plan).run(plan)
 
@@ -532,11 +524,9 @@ def _choose(found: Found) -> list[int]:
     values = _objectives(found, rows, "loss")
     span = np.ptp(values, axis=0)
     scaled = (values - values.min(axis=0)) / np.where(span > 0, span, 1.0)
-    wanted = [int(np.argmin(np.hypot.reduce(scaled, axis=1)))]
-    wanted += [int(it) for it in values.argmin(axis=0)]
-    wanted += [int(it) for it in np.argsort(np.hypot.reduce(scaled, axis=1), kind="stable")]
-    unique = list(dict.fromkeys(wanted))[: found.task.search.chosen]
-    return [rows[it] for it in unique]
+    order = np.argsort(np.hypot.reduce(scaled, axis=1), kind="stable")
+    wanted = dict.fromkeys([order[0], *values.argmin(axis=0), *order])
+    return [rows[it] for it in wanted][: found.task.search.chosen]
 
 
 def odds(found: Found, samples: int, runner: Runner | None = None) -> list[str]:
@@ -577,11 +567,3 @@ def case_text(tables: Mapping[str, Any]) -> str:
     from epicyclic.show.template import toml_key, toml_value
 
     return "".join(f"{toml_key(key)} = {toml_value(value)}\n" for key, value in tables.items())
-
-
-def write_case(found: Found, number: int, path: Path) -> None:
-    """The case file of a design."""
-    from epicyclic.files import write_file
-
-    row = found.table.loc[number].to_dict()
-    write_file(path, case_text(case_tables(found.task, row)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
@@ -325,7 +325,7 @@ class _Rating:
         elastic = loads.elastic or elastic_loads(duty)
         sharing = table.mesh_load_factor or abs(duty.torque1) / mean_torque
         nominal = mean_torque / mesh.gear1.reference_radius
-        limits = [self._material(name, gear) for gear in (mesh.gear1, mesh.gear2)]
+        limits = [material_of(self._own(name, gear)) for gear in (mesh.gear1, mesh.gear2)]
         factors = self._factors(name, own, duty, loads, elastic, nominal, sharing, limits)
         scale = mean_torque * factors.common / abs(duty.torque1)
         key = joined_key(name, gears.key)
@@ -342,9 +342,6 @@ class _Rating:
 
     def _own(self, name: str, gear: Gear) -> GearStrength:
         return self.table.gears.get(joined_key(name, gear.name), GearStrength())
-
-    def _material(self, name: str, gear: Gear) -> Material:
-        return material_of(self._own(name, gear))
 
     def _factors(
         self,
@@ -442,24 +439,36 @@ class _Rating:
         limits: list[Material],
     ) -> tuple[GearRating, GearRating]:
         mesh = duty.gears.mesh
+        speeds = abs(duty.speed1), abs(duty.speed1) / mesh.ratio
+        roughness = (duty.gears.flanks.roughness1, duty.gears.flanks.roughness2)
+        heights = [
+            self._own(name, gear).flank_height or RZ_OVER_RA * RA_OVER_RQ * rough
+            for gear, rough in zip((mesh.gear1, mesh.gear2), roughness, strict=True)
+        ]
+        radius = mesh.equivalent_radius(mesh.pitch_point)  # rho_red, transverse
+        radius *= math.cos(mesh.gear1.rack.base_helix_angle)
+        viscosity = oil_state(self.oil, 40 + lubricated.ZERO_CELSIUS).kinematic_viscosity
+        speed = speeds[0] * mesh.gear1.reference_radius
         modulus = duty.gears.flanks.equivalent_modulus
         stress = iso.nominal_contact_stress(mesh, nominal, modulus) * math.sqrt(factors.contact)
         single = iso.single_contact_factors(mesh)
-        speeds = abs(duty.speed1), abs(duty.speed1) / mesh.ratio
         made = []
         for member, gear in enumerate((mesh.gear1, mesh.gear2)):
             material, table = limits[member], self._own(name, gear)
             cycles = self.table.life * speeds[member] * self._mates(own, gear) / (2 * math.pi)
             root = iso.tooth_root(gear, duty.gears.tools[member], mesh.transverse_contact_ratio)
             bent = iso.nominal_root_stress(mesh, root, nominal, gear.face_width)
-            mean = table.mean_stress_factor or (0.7 if self._both_flanks(own, gear) else 1.0)
+            loads = sum(gear.name in (it.mesh.gear1.name, it.mesh.gear2.name) for it in own.meshes)
+            mean = table.mean_stress_factor or (0.7 if loads > 1 else 1.0)
             made.append(
                 GearRating(
                     gear=joined_key(name, gear.name),
                     cycles=cycles,
                     material=material.name,
                     contact_stress=stress * single[member],
-                    contact_limit=self._contact_limit(name, duty, member, limits, cycles),
+                    contact_limit=contact_limit(
+                        limits, member, cycles, heights, radius, viscosity, speed
+                    ),
                     form_factor=root.form_factor,
                     stress_correction=root.stress_correction,
                     nominal_root_stress=bent,
@@ -468,24 +477,6 @@ class _Rating:
                 )
             )
         return made[0], made[1]
-
-    def _both_flanks(self, own: GearSet, gear: Gear) -> bool:
-        meshes = [it for it in own.meshes if gear.name in (it.mesh.gear1.name, it.mesh.gear2.name)]
-        return len(meshes) > 1
-
-    def _contact_limit(
-        self, name: str, duty: MeshDuty, member: int, limits: list[Material], cycles: float
-    ) -> float:
-        mesh = duty.gears.mesh
-        roughness = (duty.gears.flanks.roughness1, duty.gears.flanks.roughness2)
-        heights = [
-            self._own(name, gear).flank_height or RZ_OVER_RA * RA_OVER_RQ * rough
-            for gear, rough in zip((mesh.gear1, mesh.gear2), roughness, strict=True)
-        ]
-        radius = transverse_radius(duty)
-        viscosity = oil_state(self.oil, 40 + lubricated.ZERO_CELSIUS).kinematic_viscosity
-        speed = abs(duty.speed1) * mesh.gear1.reference_radius
-        return contact_limit(limits, member, cycles, heights, radius, viscosity, speed)
 
     def _flanks(
         self, duty: MeshDuty, loads: LineLoads, scale: float, key: str, own: GearSet
@@ -501,18 +492,6 @@ class _Rating:
         friction_model = duty.gears.models.friction.solved_for(contact)
         friction = np.asarray(friction_model.coefficient(contact.seen_by(friction_model)))
         flash = flash_temperatures(contact, friction, duty.gears.materials)
-        return self._damage(duty, contact, friction, flash, own)
-
-    def _damage(
-        self,
-        duty: MeshDuty,
-        contact: MeshContact,
-        friction: FloatArray,
-        flash: FloatArray,
-        own: GearSet,
-    ) -> FlankRating:
-        fluids = self.state.fluids
-        assert fluids is not None
         mesh, oil = duty.gears.mesh, fluids.oil
         lubrication = LUBRICATION_FACTORS[self.case.thermal.lubrication]
         mates = max(self._mates(own, gear) for gear in (mesh.gear1, mesh.gear2))
@@ -593,13 +572,6 @@ def path_means(contact: MeshContact, values: FloatArray) -> float:
     return float((total[weight > 0] / weight[weight > 0]).mean())
 
 
-def transverse_radius(duty: MeshDuty) -> float:
-    """rho_red at the pitch point in the transverse section. [m]"""
-    mesh = duty.gears.mesh
-    radius = mesh.equivalent_radius(mesh.pitch_point)
-    return radius * math.cos(mesh.gear1.rack.base_helix_angle)
-
-
 def contact_limit(
     limits: list[Material],
     member: int,
@@ -620,14 +592,15 @@ def contact_limit(
         height *= math.pow(heights[1 - member] / heights[member], 0.66)
         height /= math.pow(max(viscosity40 * 1e6 * speed / 1500, 1e-6), 0.33)
         factor *= iso.hardening_factor(own.hardness / 1.05, height)
-    return own.contact * factor * iso.life_factor(cycles, iso.PITTING_LIFE[own.treatment])
+    lives = float(iso.life_factor(cycles, iso.PITTING_LIFE[own.treatment]))
+    return own.contact * factor * lives
 
 
 def root_limit(
     material: Material, root: iso.ToothRoot, cycles: float, height: float, mean: float
 ) -> float:
     """sigma_FG of a root with R_z `height` [m] and Y_M `mean`. ISO 6336-3, Eq. 5. [Pa]"""
-    factor = 2.0 * mean * iso.life_factor(cycles, iso.BENDING_LIFE[material.treatment])
+    factor = 2.0 * mean * float(iso.life_factor(cycles, iso.BENDING_LIFE[material.treatment]))
     factor *= iso.notch_sensitivity(root, material.slip_layer)
     factor *= iso.root_surface_factor(material.treatment, height)
     return material.bending * factor * iso.size_factor_bending(material.treatment, root.module)
@@ -685,6 +658,15 @@ def life_modification(kappa: float, load_ratio: float) -> float:
     return min(50.0, 0.1 * math.pow(inner, -9.185))
 
 
+JSON_UNITS = {
+    "stress": ("MPa", 1e6, 0.0), "contact_limit": ("MPa", 1e6, 0.0),
+    "root_limit": ("MPa", 1e6, 0.0), "temperature": ("degC", 1.0, lubricated.ZERO_CELSIUS),
+    "place": ("mm", 1 / iso.MM, 0.0), "load": ("N", 1.0, 0.0), "load_rating": ("N", 1.0, 0.0),
+    "speed": ("rpm", math.pi / 30, 0.0), "life": ("h", 3600.0, 0.0),
+}  # fmt: skip
+"""Unit, factor and zero of what JSON holds, by the ends of names."""
+
+
 def as_dict(found: Strength) -> dict[str, Any]:
     """The strength as JSON holds it, with units in the keys."""
     return {
@@ -695,57 +677,27 @@ def as_dict(found: Strength) -> dict[str, Any]:
             "micropitting": found.stages[1],
             "source": found.stages_source,
         },
-        "meshes": {mesh.key: _mesh_dict(mesh) for mesh in found.meshes},
-        "bearings": {one.key: _bearing_dict(one) for one in found.bearings},
+        "meshes": {
+            mesh.key: {
+                "load_factors": _in_units(mesh.factors),
+                "tangential_force_N": mesh.tangential_force,
+                "nominal_contact_stress_MPa": mesh.nominal_contact_stress / 1e6,
+                "gears": {it.gear: _in_units(it, "pitting", "bending") for it in mesh.gears},
+                "flanks": _in_units(mesh.flanks),
+            }
+            for mesh in found.meshes
+        },
+        "bearings": {one.key: _in_units(one) for one in found.bearings},
     }
 
 
-def _mesh_dict(mesh: MeshRating) -> dict[str, Any]:
-    factors = {name: getattr(mesh.factors, name) for name in LoadFactors.__dataclass_fields__}
-    gears = {
-        one.gear: {
-            "pitting": one.pitting,
-            "bending": one.bending,
-            "material": one.material,
-            "cycles": one.cycles,
-            "form_factor": one.form_factor,
-            "stress_correction": one.stress_correction,
-            "contact_stress_MPa": one.contact_stress / 1e6,
-            "contact_limit_MPa": one.contact_limit / 1e6,
-            "nominal_root_stress_MPa": one.nominal_root_stress / 1e6,
-            "root_stress_MPa": one.root_stress / 1e6,
-            "root_limit_MPa": one.root_limit / 1e6,
-        }
-        for one in mesh.gears
-    }
-    flanks: Mapping[str, float] = {
-        name: getattr(mesh.flanks, name) for name in FlankRating.__dataclass_fields__
-    }
-    own = {}
-    for name, value in flanks.items():
-        shown = None if math.isnan(value) else value
-        if name.endswith("temperature"):
-            own[f"{name}_degC"] = None if shown is None else shown - lubricated.ZERO_CELSIUS
-        elif name.endswith("place"):
-            own[f"{name}_mm"] = None if shown is None else shown * iso.MM
-        else:
-            own[name] = shown
-    return {
-        "load_factors": factors,
-        "tangential_force_N": mesh.tangential_force,
-        "nominal_contact_stress_MPa": mesh.nominal_contact_stress / 1e6,
-        "gears": gears,
-        "flanks": own,
-    }
-
-
-def _bearing_dict(one: BearingRating) -> dict[str, float]:
-    return {
-        "load_N": one.load,
-        "speed_rpm": one.speed * 30 / math.pi,
-        "dynamic_load_rating_N": one.dynamic_load_rating,
-        "viscosity_ratio": one.viscosity_ratio,
-        "life_factor": one.life_factor,
-        "basic_life_h": one.basic_life / 3600,
-        "modified_life_h": one.modified_life / 3600,
-    }
+def _in_units(one: Any, *more: str) -> dict[str, Any]:
+    """Numbers of a rating, with units in the keys; NaN is none."""
+    found: dict[str, Any] = {}
+    for name in (*more, *(it for it in one.__dataclass_fields__ if it not in ("gear", "key"))):
+        value = getattr(one, name)
+        known = next((it for end, it in JSON_UNITS.items() if name.endswith(end)), None)
+        if known is not None:
+            name, value = f"{name}_{known[0]}", (value - known[2]) / known[1]
+        found[name] = None if value != value else value
+    return found

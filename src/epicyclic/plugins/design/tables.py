@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from epicyclic.case.case import Case
 from epicyclic.plugins.design.mass import Part, parts
@@ -33,81 +34,62 @@ def tables_of(found: Strength) -> Iterator[Table | Listing]:
     )  # fmt: skip
 
 
-def _number(value: float, digits: int = 4) -> Cell:
-    return number(None if math.isnan(value) else value, "", digits)
+def _table(
+    title: str, head: tuple[str, ...], digits: Sequence[int], rows: Sequence[tuple[Any, ...]]
+) -> Table:
+    """Rows of a name and numbers, of which NaN is none."""
+
+    def cell(value: float, figures: int) -> Cell:
+        return number(None if math.isnan(value) else value, "", figures)
+
+    made = ((Cell(name), *map(cell, values, digits)) for name, *values in rows)
+    return Table(head, tuple(made), title)
+
+
+def _words(key: str) -> str:
+    return key.replace("_", " ")
 
 
 def _gears(found: Strength) -> Table:
-    rows = [
-        (
-            Cell(f"{gear.gear}, {mesh.key.replace('_', ' ')}"),
-            _number(gear.pitting, 3),
-            _number(gear.contact_stress * MPA),
-            _number(gear.contact_limit * MPA),
-            _number(gear.bending, 3),
-            _number(gear.root_stress * MPA),
-            _number(gear.root_limit * MPA),
-            _number(gear.form_factor, 3),
-            _number(gear.stress_correction, 3),
-        )
-        for mesh in found.meshes
-        for gear in mesh.gears
-    ]
     head = ("gear", "S_H", "sigma_H [MPa]", "limit", "S_F", "sigma_F [MPa]", "limit", "Y_F", "Y_S")
-    return Table(head, tuple(rows), "Pitting and bending after ISO 6336-2, -3")
+    rows = [
+        (f"{it.gear}, {_words(mesh.key)}", it.pitting, it.contact_stress * MPA,
+         it.contact_limit * MPA, it.bending, it.root_stress * MPA, it.root_limit * MPA,
+         it.form_factor, it.stress_correction)
+        for mesh in found.meshes for it in mesh.gears
+    ]  # fmt: skip
+    return _table("Pitting and bending after ISO 6336-2, -3", head, (3, 4, 4, 3, 4, 4, 3, 3), rows)
 
 
 def _flanks(found: Strength) -> Table:
-    rows = [
-        (
-            Cell(mesh.key.replace("_", " ")),
-            _number(mesh.flanks.micropitting, 3),
-            _number(mesh.flanks.film_ratio, 3),
-            _number(mesh.flanks.film_ratio_limit, 3),
-            _number(mesh.flanks.scuffing, 3),
-            _number(mesh.flanks.contact_temperature + CELSIUS),
-            _number(mesh.flanks.scuffing_temperature + CELSIUS),
-            _number(mesh.flanks.integral_scuffing, 3),
-        )
-        for mesh in found.meshes
-    ]
     head = ("mesh", "S_lambda", "lambda", "limit", "S_B", "theta_B [°C]", "limit", "S_intS")
-    return Table(head, tuple(rows), "Micropitting and scuffing after ISO/TS 6336-20 to -22")
+    rows = [
+        (_words(mesh.key), it.micropitting, it.film_ratio, it.film_ratio_limit, it.scuffing,
+         it.contact_temperature + CELSIUS, it.scuffing_temperature + CELSIUS, it.integral_scuffing)
+        for mesh in found.meshes for it in (mesh.flanks,)
+    ]  # fmt: skip
+    title = "Micropitting and scuffing after ISO/TS 6336-20 to -22"
+    return _table(title, head, (3, 3, 3, 3, 4, 4, 3), rows)
 
 
 def _factors(meshes: Sequence[MeshRating]) -> Table:
-    rows = [
-        (
-            Cell(mesh.key.replace("_", " ")),
-            _number(mesh.tangential_force, 5),
-            _number(mesh.factors.application),
-            _number(mesh.factors.sharing),
-            _number(mesh.factors.dynamic),
-            _number(mesh.factors.face),
-            _number(mesh.factors.face_computed),
-            _number(mesh.factors.transverse),
-        )
-        for mesh in meshes
-    ]
     head = ("mesh", "F_t [N]", "K_A", "K_gamma", "K_v", "K_Hbeta", "computed", "K_Halpha")
-    return Table(head, tuple(rows), "Load factors after ISO 6336-1")
+    rows = [
+        (_words(mesh.key), mesh.tangential_force, it.application, it.sharing, it.dynamic, it.face,
+         it.face_computed, it.transverse)
+        for mesh in meshes for it in (mesh.factors,)
+    ]  # fmt: skip
+    return _table("Load factors after ISO 6336-1", head, (5, *[4] * 6), rows)
 
 
 def _bearings(found: Strength) -> Table:
-    rows = [
-        (
-            Cell(one.key.replace("_", " ")),
-            _number(one.load),
-            _number(one.dynamic_load_rating),
-            _number(one.viscosity_ratio, 3),
-            _number(one.life_factor, 3),
-            _number(one.basic_life / HOUR),
-            _number(one.modified_life / HOUR),
-        )
-        for one in found.bearings
-    ]
     head = ("bearing", "P [N]", "C [N]", "kappa", "a_ISO", "L10 [h]", "L10m [h]")
-    return Table(head, tuple(rows), "Bearing life after ISO 281")
+    rows = [
+        (_words(it.key), it.load, it.dynamic_load_rating, it.viscosity_ratio, it.life_factor,
+         it.basic_life / HOUR, it.modified_life / HOUR)
+        for it in found.bearings
+    ]  # fmt: skip
+    return _table("Bearing life after ISO 281", head, (4, 4, 3, 3, 4, 4), rows)
 
 
 def mass_table(case: Case) -> Table:

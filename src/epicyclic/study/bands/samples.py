@@ -184,7 +184,7 @@ def sample_summary(samples: FloatArray) -> Summary:
     Examples
     --------
     >>> import numpy as np
-    >>> round(summary(np.arange(1000.0)).low, 3)
+    >>> round(sample_summary(np.arange(1000.0)).low, 3)
     24.025
     """
     spread = float(samples.std(ddof=1))
