@@ -670,7 +670,9 @@ def compare(other: Path, whole: bool) -> None:
             files += ["-o", str(folder / "map.nc")] if files[0] == "map" else []
             start = time.perf_counter()
             process = subprocess.Popen(
-                [sys.executable, "-m", "epicyclic", *files], stdout=-3, stderr=-3
+                [sys.executable, "-m", "epicyclic", *files],
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
             )
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = status

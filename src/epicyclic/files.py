@@ -12,6 +12,7 @@ import os
 import re
 import shutil
 import stat
+import sys
 import tempfile
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -150,11 +151,6 @@ def refuse(allowed: str, remedy: str) -> NoReturn:
 # A file is made in a private folder beside the one that it replaces. Nobody else can put a link
 # into that folder, and whatever ends the writer leaves the old file as it was. What a killed writer
 # leaves behind is removed by the next one that writes to the same folder.
-
-try:
-    import fcntl
-except ImportError:  # Windows, where the folder of a living writer cannot be removed anyway
-    fcntl = None  # type: ignore[assignment]
 
 PREFIX = ".epicyclic-"  # Begins the names of the private folders.
 OPTION, FILE, REMEDY = "-o", "FILE", "Name another file."
@@ -299,8 +295,10 @@ def _remove_leftovers(parent: Path) -> None:
 
 def _locked(folder: Path, *, wait: bool) -> int | None:
     """A handle that holds the lock of a folder; None if another has it, or there are no locks."""
-    if fcntl is None:
+    if sys.platform == "win32":  # where the folder of a living writer cannot be removed anyway
         return None
+    import fcntl
+
     try:
         handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
     except OSError:

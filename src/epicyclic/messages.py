@@ -19,6 +19,7 @@ PART_NAME = re.compile(rf"(?![\x00-/:-@[-^`{{-\xa0])(?![^/.]*[/.]){NAME.pattern}
 """Names of parts begin names of variables in NetCDF files, and end at a dot."""
 PART_NAME_RULE = "begin with a letter or digit, and use no dot or slash"
 
+_QUOTED = r'"((?:[^"\\]|\\.)*)"'  # A quote or backslash in it follows a backslash, as in TOML.
 _DEEPEST = 20  # Dots of a key; tables of a case are nested a few levels deep.
 
 
@@ -30,14 +31,14 @@ def dotted(path: Sequence[str | int]) -> str:
             text += f"[{part}]"
         else:
             bare = part.isascii() and part.replace("-", "").replace("_", "").isalnum()
-            text += ("." if text else "") + (part if bare else f'"{one_line(part)}"')
+            text += ("." if text else "") + (part if bare else f'"{one_line(_escaped(part))}"')
     return text
 
 
 def path_of(key: str) -> tuple[str | int, ...]:
     """The path of a key as `dotted` writes it."""
-    parts = re.findall(r'"[^"]*"|[^.\[\]]+', key)
-    return tuple(int(part) if part.isdecimal() else part.strip('"') for part in parts)
+    parts = re.findall(rf"{_QUOTED}|([^.\[\]]+)", key)
+    return tuple(int(bare) if bare.isdecimal() else bare or _plain(name) for name, bare in parts)
 
 
 def key_parts(key: str) -> list[str]:
@@ -50,7 +51,16 @@ def key_parts(key: str) -> list[str]:
         raise InputError([Problem(one_line(key), "", allowed, "Correct it.")])
     if '"' not in key:
         return key.split(".")
-    return [part.strip('"') for part in re.findall(r'"(?:[^"\\]|\\.)*"|[^.]+', key)]
+    parts = re.findall(rf"{_QUOTED}|([^.]+)", key)
+    return [bare.strip('"') or _plain(name) for name, bare in parts]
+
+
+def _escaped(name: str) -> str:
+    return re.sub(r'["\\]', r"\\\g<0>", name)
+
+
+def _plain(name: str) -> str:
+    return re.sub(r'\\(["\\])', r"\1", name)
 
 
 def value_at(tables: Any, path: Sequence[str | int]) -> Any:

@@ -129,7 +129,7 @@ def test_blocks_are_recognised(tmp_path, monkeypatch):
         "% test: ends with 2\n```console\n$ epicyclic check \\\n    a.toml\n1 problem:\n```\n"
         "```python\nimport pathlib\n"
         "assert pathlib.Path('a.toml').read_text() == 'x = 1\\n'\n```\n"
-        "% test: skip (it fails)\n```python\nraise ValueError\n```\n"
+        "% test: skip (it fails)\n```python\nraise ValueError('of the block')\n```\n"
         "```text\nnothing\n```\n",
         encoding="utf-8",
     )
@@ -140,5 +140,5 @@ def test_blocks_are_recognised(tmp_path, monkeypatch):
     ]  # fmt: skip
     assert blocks[1].commands == [["epicyclic", "check", "a.toml"]]
     run_page("page.md", tmp_path, monkeypatch, ("skip",))
-    with pytest.raises(ValueError):  # noqa: PT011 - that of the block
+    with pytest.raises(ValueError, match="of the block"):
         run_page("page.md", tmp_path, monkeypatch, left_out=())

@@ -184,7 +184,7 @@ def test_values_are_shown_as_they_were_written(every_kind):
         ("losses", "drag", {}, "losses.drag", "Did you mean"),
         ("sun", "torque", "5 N*m", "sun.torque", "It belongs to operation."),
         ("sun", "sun.teeth", 73, 'sun."sun.teeth"', "Did you mean 'teeth'?"),
-        ("sun", 'a "b"', 73, 'sun."a "b""', "The keys are teeth"),
+        ("sun", 'a "b"', 73, r'sun."a \"b\""', "The keys are teeth"),
         ("sun", "", 73, 'sun.""', "The keys are teeth"),
     ],
 )

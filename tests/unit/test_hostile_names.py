@@ -14,7 +14,8 @@ from rich.text import Text
 
 import epicyclic as ep
 from epicyclic.cli.main import main
-from epicyclic.show.template import case_text
+from epicyclic.messages import dotted
+from epicyclic.show.template import case_text, toml_keys
 from epicyclic.show.terminal import plain_table, terminal
 from trains import simple
 
@@ -172,6 +173,14 @@ def test_unusual_names_are_kept_in_a_case_file(tmp_path, place, name):
     path = tmp_path / "case.toml"
     path.write_text(case_text(case.given(), []), encoding="utf-8")
     assert ep.load_case(path).inputs() == case.inputs()
+
+
+@pytest.mark.parametrize("written", [toml_keys, dotted])
+@pytest.mark.parametrize("name", ['a"b', "a\\b", 'a\\"]', "a\\\\b", 'a"'])
+def test_keys_with_unusual_names_are_read_as_they_are_written(name, written):
+    key = written(["sets", name, "mesh_efficiency"])
+    changed = with_name("set", name).updated({key: 0.93})
+    assert changed.sets[name].mesh_efficiency == changed[key] == 0.93
 
 
 def test_a_run_shows_a_name_that_looks_like_markup(tmp_path, monkeypatch, capsys):

@@ -69,7 +69,7 @@ def proposals(name, problem):
 def test_what_a_remedy_states_helps(seed):
     draw, tried = random.Random(seed), 0
     for name in SETS:
-        for _ in range(2):
+        for _ in range(3):
             changes = dict(breaks(draw, name))
             for problem in problems(BASES[name], changes):
                 limit = problem.remedy.startswith("Make ")

@@ -125,7 +125,7 @@ def main() -> None:
     """Entry point: errors become messages and exit codes, never tracebacks."""
     tell_compilation()
     if sys.stdout is None:  # closed: what is printed must fail, and go into no file opened since
-        sys.stdout = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115
+        sys.stdout = Path(os.devnull).open(encoding="utf-8")  # noqa: SIM115 - to the end
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # signs that a terminal does not know become ?
             stream.reconfigure(errors="replace")

@@ -155,8 +155,8 @@ def _drawings(
 
 def items_html(*items: Item) -> str:
     """Tables and lists as a page has them, without the page."""
-    render = _templates().get_template("items.html").module.render  # type: ignore[attr-defined]
-    return "".join(render(item) for item in items)
+    macros = vars(_templates().get_template("items.html").module)
+    return "".join(macros["render"](item) for item in items)
 
 
 @cache

@@ -686,7 +686,7 @@ def _field(field: QuadMesh | TriMesh, labels: tuple[str, str]) -> dict[str, Any]
         x, y = corners[0, :, 0], corners[:, 0, 1]
         values = masked.filled(math.nan).reshape(corners.shape[:2])
     else:
-        known = field._triangulation  # type: ignore[attr-defined]
+        known = field._triangulation  # type: ignore[attr-defined]  # Matplotlib has no other access
         x, y = (np.linspace(one.min(), one.max(), GRID) for one in (known.x, known.y))
         points = np.column_stack([known.x, known.y])
         field_at = LinearNDInterpolator(points, masked.filled(math.nan), rescale=True)
