@@ -75,12 +75,15 @@ _MISSING_CARET = re.compile(r"(?<=[^\W\d])(?=[+-]?[0-9])")
 
 # Size of common units in SI; pint, which takes a sixth of a command to import, has all others.
 _SIZES = {
-    **dict.fromkeys((("mm", "m"), ("mPa*s", "Pa*s")), 1e-3),
+    **dict.fromkeys((("mm", "m"), ("mPa*s", "Pa*s"), ("g", "kg"), ("mN*m", "N*m")), 1e-3),
     **dict.fromkeys((("um", "m"), ("mm^2", "m^2"), ("mm^2/s", "m^2/s")), 1e-6),
     **dict.fromkeys((("nm", "m"), ("mm^3", "m^3"), ("1/GPa", "1/Pa")), 1e-9),
     **dict.fromkeys((("kN", "N"), ("N/mm", "N/m"), ("W/mm", "W/m"), ("kJ", "J"), ("kW", "W")), 1e3),
-    **dict.fromkeys((("MPa", "Pa"), ("N/um", "N/m")), 1e6),
+    **dict.fromkeys((("kN*m", "N*m"), ("kNm", "N*m")), 1e3),
+    **dict.fromkeys((("MPa", "Pa"), ("N/um", "N/m"), ("MN*m", "N*m"), ("MW", "W")), 1e6),
     **dict.fromkeys((("GPa", "Pa"), ("N/(mm*um)", "N/m^2")), 1e9),
+    ("Nm", "N*m"): 1.0,
+    ("l", "m^3"): 1.0000000000000002e-3,
     ("bar", "Pa"): 1e5,
     ("deg", "rad"): math.pi / 180,
     ("rpm", "rad/s"): math.tau / 60,

@@ -23,14 +23,11 @@ FloatArray = NDArray[np.float64]
 
 def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
     """The solution, refined once; None if the square `matrix` is singular."""
-    from scipy.linalg.lapack import dgesv, dgetrs  # a case that is only read needs no algebra
-
-    if not len(right):
-        return right
-    factors, pivots, found, singular = dgesv(matrix, right)
-    if singular:
+    try:
+        found = np.linalg.solve(matrix, right)
+        refined: FloatArray = found + np.linalg.solve(matrix, right - matrix @ found)
+    except np.linalg.LinAlgError:
         return None
-    refined: FloatArray = found + dgetrs(factors, pivots, right - matrix @ found)[0]
     return refined
 
 
