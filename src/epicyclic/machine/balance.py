@@ -24,10 +24,11 @@ FloatArray = NDArray[np.float64]
 def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
     """The solution, refined once; None if the square `matrix` is singular."""
     try:
-        found = np.linalg.solve(matrix, right)
-        refined: FloatArray = found + np.linalg.solve(matrix, right - matrix @ found)
+        inverse = np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
         return None
+    found = inverse @ right
+    refined: FloatArray = found + inverse @ (right - matrix @ found)
     return refined
 
 
