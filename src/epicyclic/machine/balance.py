@@ -259,9 +259,7 @@ class Statics:
         left = matrix @ np.array(values) + known
         lambdas = [value / length for value, length in zip(values, scale, strict=False)]
         outside = self._given | dict(zip(self._unknown, values[len(scale) :], strict=True))
-        meshes = {
-            row.key: -value * row.teeth[0] for row, value in zip(rows, lambdas, strict=False)
-        }
+        meshes = {row.key: -value * row.teeth[0] for row, value in zip(rows, lambdas, strict=False)}
         return Balance(
             torques=outside,
             meshes=meshes,
@@ -270,8 +268,7 @@ class Statics:
                 for coupling, value in zip(couplings, lambdas[len(rows) :], strict=True)
             },
             powers={
-                row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier])
-                for row in rows
+                row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier]) for row in rows
             },
             residual=max(map(abs, left.tolist()), default=0.0) / size if size else 0.0,
             unique=unique,
