@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -126,7 +126,8 @@ def mesh_contact(
     load = line_load.ravel()[touching.place]
     loaded = load > 0
     if not loaded.all():
-        touching, load = _Touching(*(values[loaded] for values in touching)), load[loaded]
+        kept: list[Any] = [values[loaded] for values in touching]
+        touching, load = _Touching(*kept), load[loaded]
     speed2 = speed1 / mesh.ratio
     u1, u2 = speed1 * touching.curvature1, speed2 * touching.curvature2
     return MeshContact(

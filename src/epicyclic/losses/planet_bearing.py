@@ -343,10 +343,11 @@ def mixed_ehl_rolling_loss(
     outside Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
-    carried, radius = loads.intensity[loads.intensity > 0], bearing.outer_radius
+    carried: FloatArray = loads.intensity[loads.intensity > 0]
     if carried.size == 0 or speed == 0:
         return BearingLoss(0.0)
-    modulus, rolling = bearing.equivalent_modulus, bearing.rolling_speed(speed)
+    modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
+    rolling = bearing.rolling_speed(speed)
     viscosity, alpha = oil.dynamic_viscosity, oil.pressure_viscosity
     if oil_held:
         viscosity = held_in_range(viscosity, VISCOSITY_RANGE)
