@@ -352,7 +352,8 @@ def mixed_ehl_rolling_loss(
     if oil_held:
         viscosity = held_in_range(viscosity, VISCOSITY_RANGE)
         alpha = held_in_range(alpha, PRESSURE_VISCOSITY_RANGE)
-    held_pressure = held_in_range(hertz_pressure(carried, radius, modulus), _PRESSURE)
+    alike = np.ones_like(carried)
+    held_pressure = held_in_range(hertz_pressure(carried, radius * alike, modulus), _PRESSURE)
     held_radius, held_speed = held_in_range(radius, _RADIUS), held_in_range(rolling, _SPEED)
     density = needle_rolling_loss_at(
         held_pressure,
@@ -363,7 +364,7 @@ def mixed_ehl_rolling_loss(
         held_in_range(math.hypot(bearing.race_roughness, bearing.roller_roughness), _COMPOSITE),
         modulus,
     )
-    held_load = line_load_at_pressure(held_pressure, held_radius, modulus)
+    held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
     beyond = beyond_data(carried, held_load, rolling, held_speed)
     local = bearing.slice_width * density * beyond
     return BearingLoss(
