@@ -80,7 +80,7 @@ figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 for temperature, line in sweep.efficiency.groupby("temperature"):
     axes.plot(sweep.torque / 1e6, 100 * line.squeeze(), "o-", label=f"{temperature:g}")
 axes.set(xlabel="torque of the rotor [MN m]", ylabel="efficiency [%]", title=case.title)
-axes.legend(title=f"oil inlet [{sweep.temperature.attrs['units']}]")
+axes.legend(title="oil inlet [°C]")
 
 # %%
 # How much oil

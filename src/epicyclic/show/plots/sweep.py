@@ -144,7 +144,8 @@ def plot_sweep_lines(data: xr.Dataset, name: str, ax: Axes) -> Axes:
             label=", ".join(_value(line[dim]) for dim in index),
         )
     if between:
-        legend_below(ax, title=_axis_label(data, between[0]), title_fontsize="small", ncols=4)
+        title = in_few_words(key_of(data[between[0]]))  # the entries have units
+        legend_below(ax, title=title, title_fontsize="small", ncols=4)
     ax.set(title=_titled(values, part, ax), xlabel=_axis_label(data, over), ylabel=label_of(values))
     if _is_count(values[over]):
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
