@@ -233,11 +233,13 @@ def _sweep_points(stored: Stored) -> list[Panel]:
 
 def _pocket_pressure(stored: Stored) -> list[Panel]:
     """Both kinds of pocket of each mesh."""
-    if not isinstance(stored, ResultRecord):
-        return []
+    found = stored.group("pockets") if isinstance(stored, ResultRecord) else {}
     return [
-        Panel(in_words(name), partial(plot_life_with_scale, data, "pressure", kind))
-        for name, data in stored.group("pockets").items()
+        Panel(
+            in_words(name) if len(found) > 1 else "",
+            partial(plot_life_with_scale, data, "pressure", kind),
+        )
+        for name, data in found.items()
         for kind in range(data.sizes["tooth"])
     ]
 

@@ -8,7 +8,7 @@ import math
 import re
 from abc import abstractmethod
 from collections import Counter, defaultdict
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -27,7 +27,7 @@ from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
 from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
 from epicyclic.study.load import CaseSource, as_case
-from epicyclic.study.operating import AXES, STATE_KEY, axis_name
+from epicyclic.study.operating import AXES, STATE_KEY, key_of
 from epicyclic.study.solve import pocket_flow_numbers, solve
 from epicyclic.study.sweeps.axes import (
     MOST_POINTS,
@@ -478,18 +478,14 @@ def _unit_of(item: str) -> str:
 FORMATS = (".nc", ".csv", ".parquet")
 _FORMULA = ("=", "+", "-", "@", "\t")  # What formulas of spreadsheets begin with.
 _CONTROLS = re.compile(r"[^\t\n -\x7e\xa0-\U0010ffff]")
-_CASE_KEY = "case_key"  # Attribute of a coordinate: the key that it varies.
 _INTERPOLATION_ERROR = "pocket_interpolation_error"
 
 
 def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
-    """The rows of all points of `plan` over its axes.
-
-    Dimensions are called as the keys. Beside each stands a coordinate of the same values with a
-    name without dots, for attributes and keywords. Keys that change with another one, or follow
-    from others, are coordinates over those.
-    """
+    """The rows of all points of `plan` over its axes."""
     import xarray as xr
+
+    from epicyclic.study.sweeps.names import with_plain_names
 
     numbers = {item.key: item for item in number_fields(layout_of(plan.case))}
     dims = tuple(axis.key for axis in plan.axes)
@@ -497,7 +493,6 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     for key, over, points, unit in _coordinates(plan):
         about = _about("row of the table of points" if key == ROW else key, unit)
         coords[key] = (over, points, about)
-        coords.setdefault(_plain_name(key, numbers), (over, points, about | {_CASE_KEY: key}))
     variables = {
         key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
         for key, item in numbers.items()
@@ -511,7 +506,7 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
         column = np.array(values, dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
     with texts_not_copied():
-        return xr.Dataset(variables, coords, _attributes(plan, rows))
+        return with_plain_names(xr.Dataset(variables, coords, _attributes(plan, rows)))
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
@@ -539,20 +534,11 @@ def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, s
         yield key, tuple(plan.axes[number].key for number in behind), known, unit_of(plan.case, key)
 
 
-def _plain_name(key: str, numbers: Container[str]) -> str:
-    """Name of a key without dots: ``"sun_mesh_misalignment_given"`` beside the computed one."""
-    name = axis_name(key)
-    return f"{name}_given" if name in numbers else name
-
-
 def by_keys(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset of a sweep without the names beside its keys; any other as it is."""
-    beside = [
-        name
-        for name, array in dataset.coords.items()
-        if name not in dataset.dims and _CASE_KEY in array.attrs
-    ]
-    return dataset.drop_vars(beside)
+    """The dataset of a sweep with its keys as the only names; any other as it is."""
+    keys = {name: key_of(array) for name, array in dataset.coords.items()}
+    beside = {name: key for name, key in keys.items() if key != name and key in dataset.coords}
+    return dataset.drop_vars(beside.values()).rename(beside)
 
 
 def _about(label: str, unit: str) -> dict[str, str]:
@@ -737,10 +723,11 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        One dimension for each key or group, every number with its unit; points that failed have
-        NaN, the status ``"failed"`` and the reason in ``message``. Which variables there are
-        depends on the kind of the case only. Keys that change with others or follow from them are
-        coordinates; the attributes ``together`` and ``links`` name them.
+        One dimension for each key or group, ``torque`` for ``operation.torque``, ``planet_count``
+        for ``planet.count``; the keys themselves are accepted in their place. Every number has its
+        unit; points that failed have NaN, the status ``"failed"`` and the reason in ``message``.
+        Which variables there are depends on the kind of the case only. Keys that change with others
+        or follow from them are coordinates; the attributes ``together`` and ``links`` name them.
 
     Raises
     ------
