@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import time
 import zipfile
 
@@ -182,7 +183,7 @@ def test_a_file_whose_content_is_to_come_is_refused(tmp_path, monkeypatch):
     path = tmp_path / "case.toml"
     os.mkfifo(path)
     writer = os.open(path, os.O_RDWR)
-    monkeypatch.setattr(Path, "is_file", lambda self: True)
+    monkeypatch.setattr(pathlib.Path, "is_file", lambda self: True)
     with pytest.raises(ep.InputError, match="no content now"):
         ep.load_case(path)
     os.close(writer)
