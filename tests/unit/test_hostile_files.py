@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import time
 import zipfile
 
@@ -175,6 +176,17 @@ def test_what_is_no_file_is_refused(tmp_path, name, kind):
     elif kind == "pipe":
         os.mkfifo(path)
     refusal(READERS[name], path)
+
+
+def test_a_file_whose_content_is_to_come_is_refused(tmp_path, monkeypatch):
+    """As some of the system, which look like files and keep a reader waiting."""
+    path = tmp_path / "case.toml"
+    os.mkfifo(path)
+    writer = os.open(path, os.O_RDWR)
+    monkeypatch.setattr(pathlib.Path, "is_file", lambda self: True)
+    with pytest.raises(ep.InputError, match="no content now"):
+        ep.load_case(path)
+    os.close(writer)
 
 
 UPLOADS = [name for name in READERS if name.endswith((".toml", ".rexs", ".rexsj", ".rexsz"))]
