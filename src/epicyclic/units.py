@@ -351,7 +351,8 @@ class Quantity:
         shown = self.to_display(value)
         if not self._is_allowed(shown):
             remedy = range_remedy(shown, self.low, self.high, self.display, open_low=self.open_low)
-            raise self._error("is out of range", remedy)
+            bounds = self._described() if self.describe() == self.noun else ""
+            raise self._error("is out of range", remedy, bounds)
         return value
 
     def _is_allowed(self, shown: float) -> bool:
@@ -425,7 +426,12 @@ class Quantity:
         return f"{float(value)!r} {self.si}"  # those of numpy would write their type
 
     def describe(self) -> str:
-        """What is allowed, in words: ``"a length > 0 mm"``."""
+        """What is allowed, in words: ``"a length > 0 mm"``, without bounds of no interest."""
+        if self.low is not None and self.low == -(self.high or 0.0):
+            return self.noun
+        return self._described()
+
+    def _described(self) -> str:
         return describe_range(self.noun, self.low, self.high, self.display, open_low=self.open_low)
 
     def _form(self, number: float | None = None) -> str:
@@ -435,13 +441,13 @@ class Quantity:
         text = format_number(number, 12) if isinstance(number, float) else str(number)
         return f'give it in {self.display}, such as "{text} {self.display}"'
 
-    def _error(self, what: str, remedy: str) -> PydanticCustomError:
+    def _error(self, what: str, remedy: str, allowed: str = "") -> PydanticCustomError:
         return PydanticCustomError(
             "quantity",
             "{what}; it must be {allowed}",
             {
                 "what": what,
-                "allowed": self.describe(),
+                "allowed": allowed or self.describe(),
                 "remedy": f"{remedy[:1].upper()}{remedy[1:]}",
             },
         )

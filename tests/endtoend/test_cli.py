@@ -235,6 +235,9 @@ def test_init_writes_a_case_that_runs(epicyclic, tmp_path, kind):
     assert done.returncode == 0
     assert tomllib.loads(file.read_text())["kind"] == kind
     assert epicyclic("check", str(file)).returncode == 0
+    shadow = epicyclic("init", "talbot-2012-pair")  # would stand in for the built-in case
+    assert shadow.returncode == 2
+    assert "--like talbot-2012-pair copies the case" in shadow.stderr
     again = epicyclic("init", str(file))
     assert again.returncode == 2
     assert "already exists" in again.stderr

@@ -189,7 +189,7 @@ def test_further_keys_are_axes(tmp_path, epicyclic):
     ("options", "words"),
     [
         (("-o", "map.xyz"), "must end in .nc"),
-        (("-o", "missing/map.nc"), "cannot hold a file"),
+        (("-o", "missing/map.nc"), "lies in a folder that does not exist"),
         (("-o", "map.nc", "--format", "wrong"), "must be one of netcdf"),
         (("-o", "map.nc", "--speed", " "), "--speed"),
         (("-o", "map.vtlm"), "temperature: has 2 values"),

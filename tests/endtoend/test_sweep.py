@@ -301,7 +301,7 @@ def test_command_reports_failed_points(tmp_path, epicyclic):
 
 
 @pytest.mark.parametrize(
-    ("output", "words"), [("s.xls", ".parquet"), ("missing/s.csv", "cannot hold a file")]
+    ("output", "words"), [("s.xls", ".parquet"), ("missing/s.csv", "does not exist")]
 )
 def test_unusable_output_is_refused_before_computing(tmp_path, epicyclic, output, words):
     done = epicyclic(

@@ -26,6 +26,7 @@ from epicyclic.cli.common import (
     show,
 )
 from epicyclic.errors import EXIT_NO_SOLUTION, InputError, Problem, Status
+from epicyclic.messages import either
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -253,8 +254,8 @@ def _check_target(quantity: str, target: str | None) -> None:
     if target is None:
         problem = Problem("--target", "", f"is needed with --solve {quantity}.", 'As in "90 degC".')
     else:
-        remedy = f"Name the quantity to solve for: --solve {', '.join(QUANTITIES[1:])}."
-        problem = Problem("--target", f'"{target}"', "is the quantity to solve for.", remedy)
+        remedy = f"Add --solve {either(QUANTITIES[1:])}."
+        problem = Problem("--target", f'"{target}"', "needs a quantity to solve for.", remedy)
     raise InputError([problem], "the command")
 
 

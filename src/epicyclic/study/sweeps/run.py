@@ -25,6 +25,7 @@ from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
+from epicyclic.schema.fields import quantity_of
 from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES, STATE_KEY, key_of
@@ -390,9 +391,8 @@ def parse_vary(
         try:
             vary[key] = list(_values(case, key, text))
         except ValueError as error:
-            problems.append(
-                Problem(key, f'"{text}"', f"{error}.", "Write start:stop:count in one unit.")
-            )
+            what, remedy = (*error.args, "Write start:stop:count in one unit.")[:2]
+            problems.append(Problem(key, f'"{text}"', f"{what}.", remedy))
         size = math.prod(map(len, vary.values()))
         if size > MOST_POINTS:
             problems.append(too_many(name, size))
@@ -428,7 +428,10 @@ def parse_links(options: Sequence[str]) -> dict[str, str]:
 
 
 def _values(case: Case, key: str, text: str) -> Iterator[Any]:
-    match = _RANGE.fullmatch(text)
+    """Values of one option; a `ValueError` has what is wrong, and may have what to do."""
+    match, field = _RANGE.fullmatch(text), field_at(case, key)
+    quantity = None if field is None else quantity_of(*field)
+    lacking = ValueError("has no unit", f'Write "{text.strip()} {quantity and quantity.display}".')
     if match is not None:
         start, stop = _NUMBER.fullmatch(match["start"]), _NUMBER.fullmatch(match["stop"])
         if start is None or stop is None:
@@ -442,7 +445,8 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
         if len(units) > 1:
             raise ValueError(f"the units {' and '.join(sorted(units))} differ")
         unit = units.pop() if units else ""
-        field = field_at(case, key)
+        if not unit and quantity is not None and quantity.si:
+            raise lacking
         whole = field is not None and field[0] is int
         for number in np.linspace(float(start[1]), float(stop[1]), count):
             if unit:
@@ -452,7 +456,11 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
             else:
                 yield float(number)
         return
+    if ":" in text and quantity is not None:
+        raise ValueError("must be a,b,c or start:stop:count", "Give all three, and a unit.")
     items = [item.strip() for item in text.split(",") if item.strip()]
+    if items and quantity is not None and quantity.si and all(map(_is_bare, items)):
+        raise lacking
     shared = _unit_of(items[-1]) if items else ""
     for item in items:
         if _LEADING_ZERO.match(item):
@@ -463,14 +471,14 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
 _LEADING_ZERO = re.compile(r"0\d")
 
 
+def _unit_of(item: str) -> str | None:
+    """The unit of a number, empty if it has none; None for what is no number."""
+    match = _NUMBER.fullmatch(item)
+    return None if match is None else match[2]
+
+
 def _is_bare(item: str) -> bool:
-    match = _NUMBER.fullmatch(item)
-    return match is not None and not match[2]
-
-
-def _unit_of(item: str) -> str:
-    match = _NUMBER.fullmatch(item)
-    return match[2] if match is not None else ""
+    return _unit_of(item) == ""
 
 
 # Rows of a sweep as an `xarray.Dataset`, and the files it is kept in.
