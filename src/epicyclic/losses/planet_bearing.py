@@ -63,8 +63,8 @@ BEARING_RELIABILITY = {
     FULL_COMPLEMENT: "rolling as mixed-ehl, which was made for caged rollers; sliding between "
     "rollers and by skew from statics and a traction model, not compared with measured bearings",
     "palmgren": "its source gives a range of a factor of 2 for caged rollers",
-    "reynolds": "solutions of a rigid aligned bearing, within 1 % of published ones; not compared "
-    "with measured planets, and in mixed friction as uncertain as its boundary friction",
+    "reynolds": "solutions of a rigid bearing, aligned ones within 1 % of published ones; not "
+    "compared with measured planets, and in mixed friction as uncertain as its boundary friction",
 }
 """How well each model is known to be right, as a phrase."""
 
