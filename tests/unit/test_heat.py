@@ -16,10 +16,11 @@ from epicyclic.errors import InputError
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.result.stored import read_result
 from epicyclic.show.plots.catalogue import available, figure_of
-from epicyclic.show.plots.heat_network import heat_figure
+from epicyclic.show.record import record
 from epicyclic.show.result_tables import heat_items, remarks
 from epicyclic.study import heat as analysis
 from epicyclic.study.heat import beyond_range
+from epicyclic.study.load import as_case
 from epicyclic.study.solve import mesh_contacts, solve
 from epicyclic.units import CELSIUS
 from listed_trains import ravigneaux
@@ -205,8 +206,9 @@ def pictures():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name, _ in pictures()])
 def test_texts_of_the_picture_are_apart_and_within_it(name):
-    heat = ep.heat_balance(dict(pictures())[name])
-    figure = heat_figure(heat, name)
+    source = dict(pictures())[name]
+    heat = ep.heat_balance(source)
+    figure = figure_of(record(analysis.with_network(as_case(source)), groups=()), "heat-network")
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     (ax,) = figure.axes
