@@ -16,7 +16,6 @@ from epicyclic.errors import InputError
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.result.stored import read_result
 from epicyclic.show.plots.catalogue import available, figure_of
-from epicyclic.show.record import record
 from epicyclic.show.result_tables import heat_items, remarks
 from epicyclic.study import heat as analysis
 from epicyclic.study.heat import beyond_range
@@ -208,7 +207,7 @@ def pictures():
 def test_texts_of_the_picture_are_apart_and_within_it(name):
     source = dict(pictures())[name]
     heat = ep.heat_balance(source)
-    figure = figure_of(record(analysis.with_network(as_case(source)), groups=()), "heat-network")
+    figure = figure_of(ep.record(analysis.with_network(as_case(source)), groups=()), "heat-network")
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     (ax,) = figure.axes
@@ -242,7 +241,7 @@ def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
     assert figure_of(stored, "heat-network").axes[0].get_title(loc="left").startswith("Heat: oil")
     page = ep.report_html(stored)
     assert "Where the heat leaves" in page
-    assert "Paths of the heat" in page
+    assert "Heat paths" in page
     assert 'id="figure-heat-network-1"' in page
     assert "The oil is at its inlet temperature at all contacts." not in page
 
