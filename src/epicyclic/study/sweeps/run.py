@@ -545,10 +545,13 @@ def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, s
 
 
 def by_keys(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset of a sweep with its keys as the only names; any other as it is."""
+    """The dataset of a sweep with its keys as the only names, a plain one; any other as it is."""
+    import xarray as xr
+
     keys = {name: key_of(array) for name, array in dataset.coords.items()}
     beside = {name: key for name, key in keys.items() if key != name and key in dataset.coords}
-    return dataset.drop_vars(beside.values()).rename(beside)
+    data = dataset.drop_vars(beside.values()).rename(beside)
+    return xr.Dataset(data.variables, attrs=data.attrs).set_coords(list(data.coords))
 
 
 def _about(label: str, unit: str) -> dict[str, str]:
