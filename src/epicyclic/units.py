@@ -427,7 +427,7 @@ class Quantity:
 
     def describe(self) -> str:
         """What is allowed, in words: ``"a length > 0 mm"``, without bounds of no interest."""
-        if self.low is not None and self.low == -(self.high or 0.0):
+        if self.high is not None and self.low == -self.high:
             return self.noun
         return self._described()
 

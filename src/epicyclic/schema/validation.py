@@ -297,7 +297,7 @@ def _check_group(
     name: str, alternatives: list[list[str]], given: Mapping[str, Any], *, is_needed: bool
 ) -> list[Problem]:
     started = [keys for keys in alternatives if any(key in given for key in keys)]
-    choice = either([" with ".join(keys) for keys in alternatives])
+    choice = " or ".join(" with ".join(keys) for keys in alternatives)
     if not started and not is_needed:
         return []
     if not started:

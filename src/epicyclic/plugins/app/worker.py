@@ -463,18 +463,17 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
         path = Path(folder) / f"result{_suffix(name)}"
         if is_rexs(path):
             return path.suffix, rexs_bytes(path, _result(study.case, progress), original, None)
-        if isinstance(found, ResultRecord) and path.suffix == ".json":
+        if path.suffix in PAGES:
+            from epicyclic.show.html import page_bytes, report_html  # only what is saved needs it
+
+            path.write_bytes(page_bytes(report_html(found), path.suffix))
+        elif not isinstance(found, ResultRecord):
+            write_map(found, path, name)
+        elif path.suffix == ".json":
             known = quick_known(study.case, found.result, brief=True)
             path.write_text(f"{result_json(found.result, known)}\n", encoding="utf-8")
-        elif isinstance(found, ResultRecord):
-            save(found.result, path)
-        elif path.suffix in PAGES:
-            from epicyclic.show.html import report_html, report_pdf  # only what is saved needs it
-
-            page = report_html(found)
-            path.write_bytes(report_pdf(page) if path.suffix == ".pdf" else page.encode())
         else:
-            write_map(found, path, name)
+            save(found.result, path)
         files = list(Path(folder).iterdir())
         if len(files) == 1:
             return path.suffix, path.read_bytes()

@@ -194,6 +194,9 @@ def _uncertainty_of(stored: Stored) -> xr.Dataset | None:
 
 
 def _drivers(stored: Stored) -> list[Panel]:
+    """Of a map the shares over all its points, else the change by each."""
+    if not isinstance(stored, ResultRecord) and "explained" in stored:
+        return [Panel("", partial(losses.plot_shares, stored))]
     data = _uncertainty_of(stored)
     return [] if data is None else [Panel("", partial(losses.plot_drivers, data))]
 

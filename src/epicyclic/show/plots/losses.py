@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.result.result import Result, in_words
-from epicyclic.show.plots.style import COLOURS, legend_below, styled_figure, write_beside
+from epicyclic.show.plots.style import COLOURS, legend_below, write_beside
 from epicyclic.study.bands.advice import in_few_words
 from epicyclic.units import decimals_of, format_number, percent, power_unit
 
@@ -157,33 +156,10 @@ TICKS = 6  # Most ticks under a distribution: its values have many digits.
 WIDE = (8.8, 4.6)  # Width and height of a picture with long names beside its bars. [inch]
 
 
-def drivers_figure(data: xr.Dataset) -> Figure:
-    """`plot_drivers` as a figure."""
-    with styled_figure(1, 1, data.attrs["title"], panel=WIDE) as (figure, axes):
-        plot_drivers(data, axes[0, 0])
-    return figure
-
-
-def band_figure(data: xr.Dataset) -> Figure:
-    """`plot_band` of the total loss and of the efficiency as a figure."""
-    names = banded(data)
-    with styled_figure(1, len(names), data.attrs["title"]) as (figure, axes):
-        for name, ax in zip(names, axes[0], strict=True):
-            plot_band(data, name, ax)
-    return figure
-
-
 def banded(data: xr.Dataset) -> tuple[str, ...]:
     """Results whose bands are drawn: the efficiency if power is passed on."""
     low, high = (float(data[end].sel(result="efficiency")) for end in ("low", "high"))
     return ("total", "efficiency") if low < high else ("total",)
-
-
-def shares_figure(data: xr.Dataset) -> Figure:
-    """`plot_shares` as a figure."""
-    with styled_figure(1, 1, data.attrs["title"], panel=WIDE) as (figure, axes):
-        plot_shares(data, axes[0, 0])
-    return figure
 
 
 def mean_shares(data: xr.Dataset) -> xr.DataArray:

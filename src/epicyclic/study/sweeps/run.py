@@ -8,7 +8,7 @@ import math
 import re
 from abc import abstractmethod
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,7 +25,7 @@ from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
-from epicyclic.schema.fields import quantity_of
+from epicyclic.schema.fields import is_array, quantity_of
 from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES, STATE_KEY, key_of
@@ -390,6 +390,8 @@ def parse_vary(
             continue
         try:
             vary[key] = list(_values(case, key, text))
+        except InputError:
+            raise  # the key itself is none
         except ValueError as error:
             what, remedy = (*error.args, "Write start:stop:count in one unit.")[:2]
             problems.append(Problem(key, f'"{text}"', f"{what}.", remedy))
@@ -430,7 +432,7 @@ def parse_links(options: Sequence[str]) -> dict[str, str]:
 def _values(case: Case, key: str, text: str) -> Iterator[Any]:
     """Values of one option; a `ValueError` has what is wrong, and may have what to do."""
     match, field = _RANGE.fullmatch(text), field_at(case, key)
-    quantity = None if field is None else quantity_of(*field)
+    quantity = None if field is None or is_array(field[0]) else quantity_of(*field)
     lacking = ValueError("has no unit", f'Write "{text.strip()} {quantity and quantity.display}".')
     if match is not None:
         start, stop = _NUMBER.fullmatch(match["start"]), _NUMBER.fullmatch(match["stop"])
@@ -543,10 +545,13 @@ def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, s
 
 
 def by_keys(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset of a sweep with its keys as the only names; any other as it is."""
+    """The dataset of a sweep with its keys as the only names, a plain one; any other as it is."""
+    import xarray as xr
+
     keys = {name: key_of(array) for name, array in dataset.coords.items()}
     beside = {name: key for name, key in keys.items() if key != name and key in dataset.coords}
-    return dataset.drop_vars(beside.values()).rename(beside)
+    data = dataset.drop_vars(beside.values()).rename(beside)
+    return xr.Dataset(data.variables, attrs=data.attrs).set_coords(list(data.coords))
 
 
 def _about(label: str, unit: str) -> dict[str, str]:
@@ -595,15 +600,19 @@ def check_output(path: Path) -> None:
     check_place(path)
 
 
-def write_dataset(dataset: xr.Dataset, path: Path) -> None:
-    """Write `dataset` to `path` in the format its suffix names, whole or not at all."""
+def write_dataset(
+    dataset: xr.Dataset, path: Path, rows: Callable[[xr.Dataset], pd.DataFrame] | None = None
+) -> None:
+    """Write to `path`, whole or not at all: all of it as .nc, or `rows` as .csv or .parquet."""
     with whole_file(path) as temporary:
         if path.suffix == ".nc":
             write_netcdf(dataset, temporary)
-        elif path.suffix == ".csv":
-            csv_safe(to_table(dataset)).to_csv(temporary, index=False)
+            return
+        table = (rows or to_table)(dataset)
+        if path.suffix == ".csv":
+            csv_safe(table).to_csv(temporary, index=False)
         else:
-            to_table(dataset).to_parquet(temporary, index=False)
+            table.to_parquet(temporary, index=False)
 
 
 def csv_safe(table: pd.DataFrame) -> pd.DataFrame:
