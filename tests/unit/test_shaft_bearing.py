@@ -36,6 +36,7 @@ from epicyclic.losses.shaft_bearing import (
     friction_load,
     full_film_friction,
     harris_coefficient,
+    limiting_speed,
     load_moment,
     minimum_load,
     preload_of,
@@ -642,13 +643,34 @@ def test_speed_beyond_the_thermal_rating_is_named(state):
     (note,) = bearing.evaluate(state(1.01 * rating, load)).notes
     assert "an estimate after ISO 15312" in note
     assert bearing.evaluate(state(0.99 * rating, load)).notes == ()
-    stated = replace(bearing, reference_speed=1.5 * rating * RPM)
+    stated = replace(bearing, reference_speed=1.5 * rating * RPM, limiting_speed=1e5)
     assert stated.evaluate(state(1.4 * rating, load)).notes == ()
     (note,) = stated.evaluate(state(1.6 * rating, load)).notes
     assert "estimate" not in note
     assert math.isnan(thermal_speed_rating(replace(own, width=math.nan)))
     tiny = replace(own, bore=1e-4, outside_diameter=2e-4, width=0.01, static_load_rating=1.0)
     assert thermal_speed_rating(tiny) > 1e5
+
+
+def test_speed_beyond_the_limit_of_the_cage_is_named(state):
+    """Within 8 % of limiting speeds of SKF's tables, second hand: 32006 X, 30204, NU 205."""
+    for kind, bore, outside, printed in [
+        ("tapered", 30, 55, 12000), ("tapered", 20, 47, 15000), ("cylindrical", 25, 52, 16000),
+    ]:  # fmt: skip
+        own = replace(BALL, type=kind, bore=1e-3 * bore, outside_diameter=1e-3 * outside)
+        assert limiting_speed(own) / RPM == pytest.approx(printed, rel=0.08)
+    bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS["palmgren"])
+    limit, load = 660e3 / (1e3 * BALL.pitch_diameter), BearingLoad(2000.0, 0.0)
+    stated = replace(bearing, limiting_speed=0.7 * limit * RPM)
+    for own, speed, said in (
+        (bearing, 1.01, "second hand, which"), (bearing, 0.99, None), (stated, 0.8, "rpm, which"),
+        (stated, 0.6, None),
+    ):  # fmt: skip
+        notes = own.evaluate(state(speed * limit, load)).notes
+        assert [said in note for note in notes if "limiting speed of" in note] == [True] * bool(
+            said
+        )
+    assert math.isinf(limiting_speed(replace(BALL, type="needle")))
 
 
 def test_estimated_drag_is_named(state):

@@ -66,6 +66,7 @@ def _bearing(
         force=force,
         minimum_load_factor=table.minimum_load_factor,
         reference_speed=table.reference_speed,
+        limiting_speed=table.limiting_speed,
     )
 
 

@@ -301,12 +301,13 @@ def _tilted(
     def at(unknown: FloatArray, share: float) -> tuple[JournalState, complex, complex]:
         """State, and force and moment of film and asperities.
 
-        Eccentricities at the edges are unknown, over what they leave of the clearance there.
+        Eccentricities at the edges are unknown, over what they leave of the clearance there, and
+        the logarithm of the rise of the temperature.
         """
         odds = unknown[:2] + 1j * unknown[2:4]
         first, second = odds / (1 + np.abs(odds))
         middle, tilt = complex(first + second) / 2, complex(second - first) / 2
-        temperature = oil.temperature + float(unknown[4]) * warm
+        temperature = oil.temperature + warm * math.exp(min(unknown[4], 10.0))
         eta = film_viscosity(oil, temperature)
         scale = 6 * eta * abs(speed) * bearing.length * radius * (radius / clearance) ** 2
         film, turning, flow = film_force(middle, tilt, bearing.slenderness)
@@ -340,7 +341,8 @@ def _tilted(
         middle = cmath.rect(state.eccentricity, state.attitude)
         tilt = cmath.rect(state.tilt * arm / clearance, state.tilt_direction)
         odds = np.array([end / (1 - abs(end)) for end in (middle - tilt, middle + tilt)])
-        return np.array([*odds.real, *odds.imag, (state.temperature - oil.temperature) / warm])
+        rise = max(state.temperature - oil.temperature, 1e-3)
+        return np.array([*odds.real, *odds.imag, math.log(rise / warm)])
 
     reach = _REACH * math.sqrt(1 - aligned.eccentricity) * force * bearing.length / abs(moment)
     tried = [(from_state(aligned), min(1.0, part * reach)) for part in (1.0, 0.5, 0.25)]
@@ -356,9 +358,8 @@ def _tilted(
         limit = balanced(np.append(found, share))
         if limit is not None and limit[5] <= 1:
             return at(limit[:5], float(limit[5]))[0]
-        # the limit is far away, or the whole moment can be held
-        next_one = (found, min(1.0, 2 * share)) if limit is None else (limit[:5], 1.0)
-        tried.insert(0, next_one)
+        if share < 1:  # the limit is far away, or the whole moment can be held
+            tried.insert(0, (found, min(1.0, 2 * share) if limit is None else 1.0))
     return replace(aligned, moment_share=0.0)
 
 

@@ -406,6 +406,9 @@ class ShaftBearingTable(ElementTable):
     reference_speed: ReferenceSpeed | None = option(
         "Of the catalogue; for the minimum load of cylindrical rollers, and a note above it."
     )
+    limiting_speed: ReferenceSpeed | None = option(
+        "Of the catalogue; a note above it. Default: that of small bearings of the type."
+    )
     table: LossTableTable | None = option("Loss table for model = table.")
 
     _fill = model_validator(mode="before")(
