@@ -57,7 +57,7 @@ def case():
 
 @pytest.fixture(scope="module")
 def study(case):
-    return ep.uncertainty(case, samples=64, jobs=1)
+    return ep.uncertainty(case, samples=16, jobs=1)
 
 
 def test_indices_of_the_function_of_ishigami():
@@ -174,7 +174,9 @@ def test_each_input_moves_the_losses_that_depend_on_it(study):
     assert float(pinion) != pytest.approx(float(gear), rel=0.05)
 
 
-def test_the_quick_band_is_that_of_many_samples(case, study):
+@pytest.mark.slow
+def test_the_quick_band_is_that_of_many_samples(case):
+    study = ep.uncertainty(case, samples=64, jobs=1)
     band = quick_dataset(case, ep.solve(case))
     quick, total = (data.sel(result="total") for data in (band, study))
     width = float(total["high"] - total["low"])
