@@ -291,6 +291,7 @@ def test_constant_friction_loses_what_the_load_factor_says(
             "models.constant_friction": friction,
             "models.load_distribution": distribution,
             "operation.torque": f"{torque!r} N*m",
+            "losses.mesh_pocketing.include": False,
         }
     )
     result = ep.solve(pair)

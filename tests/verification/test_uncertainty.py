@@ -16,7 +16,7 @@ from epicyclic.errors import InputError
 from epicyclic.losses.pocket_tables import FlowFamily
 from epicyclic.show.plots.catalogue import available
 from epicyclic.study.bands.inputs import uncertain_values
-from epicyclic.study.bands.plan import look_nearby
+from epicyclic.study.bands.plan import at_deviations, look_nearby
 from epicyclic.study.bands.samples import (
     cut_off,
     make_samples,
@@ -316,6 +316,12 @@ def test_a_cycle_is_compared_with_the_same_draw_at_all_its_points(case):
 def test_spreads_are_those_of_scipy(value, whole):
     assert standard_uncertainty(value) == pytest.approx(whole.std(), rel=1e-12)
     assert cut_off(value) == pytest.approx(whole.cdf(value.low) + whole.sf(value.high), rel=1e-12)
+
+
+@pytest.mark.parametrize("value", [normal("x", 3.1, 0.7), uniform("x", 1.2, 4.9)])
+def test_values_some_deviations_off_are_so_many_standard_uncertainties_off(value):
+    found = at_deviations(value, np.array([-1.3, 0.0, 0.8]))
+    assert (found - value.value) / standard_uncertainty(value) == pytest.approx([-1.3, 0.0, 0.8])
 
 
 def test_values_that_cannot_be_are_cut_off_and_told(case):
