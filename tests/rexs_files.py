@@ -129,7 +129,7 @@ def none(value: Any) -> tuple[Any, str]:
     return (value, "none")
 
 
-def _surroundings(parts: Parts) -> None:
+def surroundings(parts: Parts) -> None:
     parts.add(1, "gear_unit", "unit")
     parts.add(CASING, "gear_casing", "casing", temperature_lubricant=(80.0, "C"))
     parts.add(
@@ -164,7 +164,7 @@ def _gear(parts: Parts, number: int, name: str, kind: str, shaft: int, hand: int
 def planetary(version: str = "2.0.0") -> Parts:
     """24, 18 and 60 teeth, three planets, ring held, sun driven with 100 N m at 1500 rpm."""
     parts = Parts(version)
-    _surroundings(parts)
+    surroundings(parts)
     parts.add(STAGE, "planetary_stage", "stage A")
     parts.add(SUN_SHAFT, "shaft", "sun shaft", rotational_speed=(1500.0, "1 / min"))
     parts.add(6, "shaft", "ring shaft")
@@ -218,7 +218,7 @@ def _bearing(parts: Parts, number: int, pin: int, shaft: int) -> None:
 def pair(version: str = "2.0.0") -> Parts:
     """24 and 36 teeth, pinion driven with 50 N m at 3000 rpm."""
     parts = Parts(version)
-    _surroundings(parts)
+    surroundings(parts)
     parts.add(STAGE, "cylindrical_stage", "stage B", center_distance=mm(61.4))
     parts.add(SUN_SHAFT, "shaft", "pinion shaft", rotational_speed=(3000.0, "1 / min"))
     parts.add(6, "shaft", "gear shaft")
@@ -321,7 +321,7 @@ def eaxle(version: str = "2.0.0") -> Parts:
     The gear of the pair and the sun stand on two shafts that a coupling joins.
     """
     parts = Parts(version)
-    _surroundings(parts)
+    surroundings(parts)
     motor, mid, sun = (shaft(parts, 20, "motor"), shaft(parts, 21, "mid", 5.0, 61.4),
                        shaft(parts, 22, "sun shaft", 60.0, 61.4))  # fmt: skip
     ring, wheels = shaft(parts, 23, "ring", 80.0, 61.4), shaft(parts, 24, "wheels", 90.0, 61.4)
@@ -339,7 +339,7 @@ def eaxle(version: str = "2.0.0") -> Parts:
 def two_planetary(version: str = "2.0.0") -> Parts:
     """Two planetary sets one after the other, both rings held: carrier 1 drives sun 2."""
     parts = Parts(version)
-    _surroundings(parts)
+    surroundings(parts)
     names = ("in", "between", "out", "ring 1", "ring 2")
     first, between, out, *rings = (shaft(parts, 20 + i, name) for i, name in enumerate(names))
     add_planetary(parts, FIRST, "stage", {"sun": first, "ring": rings[0], "carrier": between})
@@ -353,7 +353,7 @@ def two_planetary(version: str = "2.0.0") -> Parts:
 def wind(version: str = "2.0.0") -> Parts:
     """Two planetary sets driven at the carrier and a pair, speeding up."""
     parts = Parts(version)
-    _surroundings(parts)
+    surroundings(parts)
     names = ("rotor", "slow", "wheel", "generator", "ring 1", "ring 2")
     rotor, slow, wheel, generator, *rings = (
         shaft(parts, 20 + i, name) for i, name in enumerate(names)

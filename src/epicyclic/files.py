@@ -18,7 +18,7 @@ import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, cast
 
 from epicyclic.errors import InputError, Problem
 
@@ -32,6 +32,7 @@ _MEGABYTE = 1_000_000
 _SEAL = "fingerprint"
 _MAKE_AGAIN = "Make it again."
 _LONGEST_REASON = 200
+_WITHOUT_WAITING = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 _PROBE = 65_536  # More than the start of any file. [bytes]
 
 
@@ -46,13 +47,13 @@ def read_text(
 
 def read_bytes(path: Path, noun: str, largest: int, *, whole: bool = True) -> bytes:
     """The content of a file, or its start. Parameters and errors as for `read_text`."""
-    kind, content = "a file", b""
+    kind, content = "a file", cast("bytes | None", b"")
     try:
         # a pipe or a device could keep the program waiting for ever
         if path.exists() and not path.is_file():
             kind = "a folder" if path.is_dir() else "not a regular file"
         else:
-            with path.open("rb") as file:
+            with os.fdopen(os.open(path, _WITHOUT_WAITING), "rb") as file:
                 content = file.read(largest + 1)
     except OSError as error:
         refuse(f"cannot be read: {error.strerror}.", "Check the path.")
@@ -60,6 +61,8 @@ def read_bytes(path: Path, noun: str, largest: int, *, whole: bool = True) -> by
         refuse("cannot be read: a path has no zero character.", "Check the path.")
     if kind != "a file":
         refuse(f"cannot be read: it is {kind}.", f"Give a {noun} file.")
+    if content is None:  # the system may write there some day
+        refuse("cannot be read: it has no content now.", f"Give a {noun} file.")
     if whole and len(content) > largest:
         size = f"{largest / _MEGABYTE:g} MB"
         refuse(f"is too large to be a {noun} file (over {size}).", f"Give a {noun} file.")
@@ -162,8 +165,10 @@ def check_place(path: Path) -> None:
         folder = path.absolute().parent
         with suppress(FileNotFoundError):
             path.lstat()  # raises for a name that is too long
-        if (path.exists() and not path.is_file()) or not folder.is_dir():
-            raise _error(path, OPTION, "cannot hold a file.", "Give a file in a folder.")
+        if not folder.is_dir():
+            raise _error(path, OPTION, "lies in a folder that does not exist.", "Create it first.")
+        if path.exists() and not path.is_file():
+            raise _error(path, OPTION, "is a folder or no regular file.", REMEDY)
         if not os.access(folder, os.W_OK):
             allowed = "lies in a folder without write permission."
             raise _error(path, OPTION, allowed, "Move it.")

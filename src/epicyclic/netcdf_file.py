@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, printable
-from epicyclic.files import refuse
+from epicyclic.files import read_bytes, refuse
 
 if TYPE_CHECKING:
     import h5py
@@ -233,12 +233,12 @@ def _check(path: Path) -> None:
             refuse("does not exist or is not a file.", "Check the path.")
         if path.stat().st_size > LARGEST:
             refuse(f"is larger than {LARGEST // 10**6} MB.", "Give a smaller file.")
-        with path.open("rb") as file:
-            if file.read(len(_SIGNATURE)) != _SIGNATURE:
-                refuse("is not a NetCDF 4 file.", _MAKE_AGAIN)
-            with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-                if not all(_ends(data, place) for place in _heaps(data)):
-                    refuse("is damaged: a heap of texts is incomplete.", _MAKE_AGAIN)
+        start = read_bytes(path, "NetCDF", len(_SIGNATURE), whole=False)
+        if not start.startswith(_SIGNATURE):
+            refuse("is not a NetCDF 4 file.", _MAKE_AGAIN)
+        with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            if not all(_ends(data, place) for place in _heaps(data)):
+                refuse("is damaged: a heap of texts is incomplete.", _MAKE_AGAIN)
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise

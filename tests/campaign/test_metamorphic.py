@@ -22,7 +22,7 @@ TABLE = Path(__file__).parents[2] / "docs" / "development" / "metamorphic.csv"
     ("first", "count"),
     [
         (1_000_001, 20),
-        pytest.param(1_000_100, 400, marks=pytest.mark.slow),
+        pytest.param(1_000_100, 100, marks=pytest.mark.slow),
         pytest.param(1_001_000, 5000, marks=pytest.mark.campaign),
     ],
 )
@@ -44,6 +44,12 @@ def test_pockets_of_the_other_flank_are_solved_again():
     found = ep.solve(other)
     for name in ("sun_mesh_pocketing", "ring_mesh_pocketing", "ring_mesh_rolling"):
         assert found.losses[name] == pytest.approx(result.losses[name], rel=tolerance), name
+
+
+def test_friction_that_bends_at_a_load_is_solved_as_well_from_both_ends():
+    """Sliding loss whose slope changes by 6 % within 0.7 % of the load: predictions err by it."""
+    form, name, _ = outcome(18_986)
+    assert (form, name) == ("exchanged", "same")
 
 
 def test_a_form_that_differs_is_a_fault(monkeypatch):

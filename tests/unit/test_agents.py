@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -123,3 +125,106 @@ def test_a_client_gets_bands_and_comparisons(tmp_path):
     assert pair.structured_content["total"]["difference"] == 0
     assert many.is_error
     assert "1024" in text_of(many)
+
+
+HELLO = {"protocolVersion": "2025-06-18", "capabilities": {},
+         "clientInfo": {"name": "any", "version": "1"}}  # fmt: skip
+
+
+class Wire:
+    """The server, spoken to in bytes."""
+
+    def __init__(self, folder):
+        command = [sys.executable, "-m", "epicyclic", "mcp"]
+        streams = dict.fromkeys(("stdin", "stdout"), subprocess.PIPE)
+        self.process = subprocess.Popen(command, cwd=folder, **streams)
+        self.ask(1, "initialize", HELLO)
+        self.send(json.dumps({"jsonrpc": "2.0", "method": "notifications/initialized"}).encode())
+
+    def send(self, line):
+        self.process.stdin.write(line + b"\n")
+        self.process.stdin.flush()
+
+    def answer(self):
+        return json.loads(self.process.stdout.readline())
+
+    def ask(self, number, method, params):
+        message = {"jsonrpc": "2.0", "id": number, "method": method, "params": params}
+        self.send(json.dumps(message).encode())
+        answer = self.answer()
+        assert answer["id"] == number
+        return answer.get("result", answer.get("error"))
+
+    def call(self, number, tool, **arguments):
+        return self.ask(number, "tools/call", {"name": tool, "arguments": arguments})
+
+    def peak(self):
+        """[MB]"""
+        status = Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
+        return int(re.search(r"VmHWM:\s*(\d+)", status)[1]) / 1e3
+
+
+@pytest.fixture
+def wire(tmp_path):
+    pytest.importorskip("mcp", reason="optional")
+    made = Wire(tmp_path)
+    with made.process:
+        yield made
+        made.process.kill()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_what_is_no_message_is_answered(wire):
+    """Once each, in 500 MB; the server goes on."""
+    for line, number, code in [
+        (b"{", None, -32700), (b"\xff\xfe", None, -32700), (b"[" * 200_000, None, -32700),
+        (b"[]", None, -32600), (b"7", None, -32600),
+        (b'{"jsonrpc":"2.0","id":5}', 5, -32600),
+        (b'{"jsonrpc":"2.0","id":[],"method":"ping"}', None, -32600),
+        (b'{"jsonrpc":"2.0","id":6,"method":"ping","x":"\\ud800"}', 6, -32600),
+        (b'{"jsonrpc":"2.0","id":8,"method":"' + b"x" * 150_000_000 + b'"}', 8, -32600),
+    ]:  # fmt: skip
+        wire.send(line)
+        found = wire.answer()
+        assert (found["id"], found["error"]["code"]) == (number, code), line[:50]
+    assert "operation.torque" in str(wire.call(9, "explain-key", key="operation.torque"))
+    assert wire.peak() < 500
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="needs links and pipes")
+def test_paths_that_lead_elsewhere_are_refused(wire, tmp_path):
+    """No line of a file that is no case is told, and nothing waits for a pipe."""
+    (tmp_path / "secret.key").write_text("hidden = words that nobody may see")
+    (tmp_path / "link.toml").symlink_to(tmp_path / "secret.key")
+    (tmp_path / "round.toml").symlink_to(tmp_path / "round.toml")
+    os.mkfifo(tmp_path / "pipe.toml")
+    before = sorted(tmp_path.iterdir())
+    paths = [
+        "secret.key", "link.toml", f"../{tmp_path.name}/secret.key", "round.toml", "pipe.toml",
+        "/dev/zero", "/dev/stdin", "/proc/self/mem", "/proc/self/environ", "a\0.toml", "\x1b[2J",
+        "x" * 5000,
+    ]  # fmt: skip
+    for number, path in enumerate(paths, start=10):
+        found = wire.call(number, "check", case=path)
+        (content,) = found["content"]
+        assert found["isError"], path
+        assert content["text"].startswith("1 problem"), path
+        assert "nobody may see" not in content["text"], path
+        assert "\x1b" not in content["text"]
+    assert sorted(tmp_path.iterdir()) == before
+    assert wire.peak() < 500
+
+
+@pytest.mark.slow
+def test_a_cancelled_call_ends(wire):
+    """At the next point, so that the next call need not wait for all of them."""
+    arguments = {"case": "train-8hp70", "speed": "500:6000:20 rpm", "torque": "10:200:20 N*m",
+                 "states": ["1"]}  # fmt: skip
+    message = {"jsonrpc": "2.0", "id": 30, "method": "tools/call",
+               "params": {"name": "map", "arguments": arguments}}  # fmt: skip
+    wire.send(json.dumps(message).encode())
+    cancel = {"jsonrpc": "2.0", "method": "notifications/cancelled", "params": {"requestId": 30}}
+    wire.send(json.dumps(cancel).encode())
+    assert "operation.torque" in str(wire.call(31, "explain-key", key="operation.torque"))

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+import epicyclic as ep
 from epicyclic.machine.machine import GearSeat, ShaftLoad, Support, bearing_reactions, mesh_force
 
 ROUNDING = 1e-12
@@ -121,6 +122,23 @@ def test_one_bearing_carries_what_does_not_tilt_it():
 def test_what_statics_cannot_give_is_refused(supports, loads, words):
     with pytest.raises(ValueError, match=words):
         bearing_reactions(supports, loads)
+
+
+def test_axial_forces_that_cancel_are_none():
+    """Of an idler: what rounding leaves needs no bearing that takes it."""
+    supports = [Support(0.0, "positive"), Support(1.0)]
+    loads = [ShaftLoad(0.3, (0.0, 0.0, axial)) for axial in (417.3, -417.3 * (1 + 1e-15))]
+    assert sum(load.force[2] for load in loads) < 0
+    assert [reaction.z for reaction in bearing_reactions(supports, loads)] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(("held", "pushed"), [("positive", "negative"), ("negative", "positive")])
+def test_a_shaft_that_no_bearing_holds_has_no_solution(held, pushed):
+    torque = {"positive": "137 N*m", "negative": "-137 N*m"}[held]
+    changes = {"bearings.motor_front.axial_sense": held, "operation.torque": torque}
+    with pytest.raises(ep.ConvergenceError, match="motor_front, motor_rear") as told:
+        ep.solve(ep.load_case("train-eaxle", changes))
+    assert f"in the {pushed} sense; let one take it with axial_sense." in str(told.value)
 
 
 # --- forces of a mesh -----------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.errors import ConvergenceError
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.machine.element import Element
 from epicyclic.units import NEWTON, format_number
@@ -24,7 +25,8 @@ FloatArray = NDArray[np.float64]
 AxialSense = Literal["none", "both", "positive", "negative"]
 
 NEGLIGIBLE = 1e-9
-"""Moment on a single support over the sum of all moments about it at which it vanishes. [1]"""
+"""Sum of moments about a single support, or of axial forces, over that of their magnitudes, at
+which it vanishes. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +102,10 @@ def bearing_reactions(
     else:
         _check_single(forces, moments, arms, about_first)
     radial = (-second - total[:2], second)[: len(supports)]
-    axial = _axial_reactions(supports, [math.hypot(*r) for r in radial], float(total[2]))
+    thrust = float(total[2])
+    if abs(thrust) <= NEGLIGIBLE * float(np.abs(forces[:, 2]).sum()):
+        thrust = 0.0
+    axial = _axial_reactions(supports, [math.hypot(*r) for r in radial], thrust)
     return tuple(Reaction(float(r[0]), float(r[1]), z) for r, z in zip(radial, axial, strict=True))
 
 
@@ -160,7 +165,7 @@ def _axial_bearing(supports: Sequence[Support], thrust: float) -> int:
     if not able and thrust != 0:
         raise ValueError(
             f"no bearing of the shaft takes its axial force of {NEWTON.text(abs(thrust), 4)} in "
-            f"the {sense} sense"
+            f"the {sense} sense; let one take it with axial_sense"
         )
     return able[0] if able else 0
 
@@ -253,11 +258,17 @@ def forces_of(
     layouts: Iterable[ShaftLayout],
     torques: Mapping[str, float],  # That each mesh takes up at its first gear. [N m]
 ) -> dict[str, BearingLoad]:
-    """Forces on the bearings of all shafts, by the keys of their elements."""
+    """Forces on the bearings of all shafts, by the keys of their elements.
+
+    Raises `ConvergenceError` if the bearings of a shaft cannot take the forces of its gears.
+    """
     forces: dict[str, BearingLoad] = {}
     for layout in layouts:
         loads = [seat.load(torques[seat.mesh]) for seat in layout.seats]
-        reactions = bearing_reactions(tuple(layout.supports.values()), loads)
+        try:
+            reactions = bearing_reactions(tuple(layout.supports.values()), loads)
+        except ValueError as error:
+            raise ConvergenceError(f"bearings {', '.join(layout.supports)}: {error}.") from None
         for key, reaction in zip(layout.supports, reactions, strict=True):
             forces[key] = reaction.force
     return forces

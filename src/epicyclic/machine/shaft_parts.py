@@ -352,7 +352,7 @@ class ShaftBearing:
             return ()
         notes = []
         # what holds the rolling elements to the races [N]
-        both = self.bearing.type in ("deep-groove", "tapered")
+        both = self.bearing.type in ("deep-groove", "tapered", "spherical")
         carried = math.hypot(load.radial, load.axial) if both else load.radial
         if carried < least:
             text = (

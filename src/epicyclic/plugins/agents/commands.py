@@ -28,9 +28,11 @@ def mcp() -> None:
         remedy = "Install it: pip install 'epicyclic[mcp]'."
         raise InputError([Problem("mcp", "", "needs the package mcp.", remedy)], "the command")
     from epicyclic.plugins.agents.tools import server
+    from epicyclic.plugins.agents.wire import bounded_wire
 
     os.environ["EPICYCLIC_PROGRESS"] = "0"  # answers hold results, not how far they are
-    server().run("stdio")
+    with bounded_wire():
+        server().run("stdio")
 
 
 @click.command()

@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from functools import wraps
 from importlib.metadata import version
+from pathlib import Path
 from typing import Annotated, Any
 
+from anyio import from_thread
 from mcp.server.mcpserver import MCPServer
 from mcp_types import CallToolResult, TextContent, ToolAnnotations
 from pydantic import Field
@@ -25,6 +27,8 @@ MOST_SAMPLES = 1024
 MOST_CHANGES = 200
 LONGEST = 60_000  # Characters of an answer.
 LONGEST_ARGUMENT = 2_000  # Characters.
+CASES = ("case", "first", "second")
+"""Arguments that name cases."""
 INSTRUCTIONS = """\
 Power losses of gears, planetary sets and gearboxes. A case is a path to a TOML or REXS file, or the
 name of a built-in case: talbot-2012 (planetary), talbot-2012-pair, train-8hp70, train-eaxle.
@@ -37,8 +41,6 @@ SHOWN = (
     "advice", "models", "versions",
 )  # fmt: skip
 """What an answer of `run` has of the JSON of the command."""
-
-OF_MAP = ("torque_loss", "total", "efficiency", "status", "message")
 
 Case = Annotated[str, Field(description="TOML or REXS file, or the name of a built-in case.")]
 Changes = Annotated[
@@ -71,7 +73,7 @@ def _answering(tool: Callable[..., dict[str, Any] | None]) -> Callable[..., Call
         failed = True
         with _printed() as text:
             try:
-                _check_sizes(arguments)
+                _check(arguments)
                 numbers = tool(**arguments)
                 failed = False
             except InputError as error:
@@ -103,10 +105,21 @@ def _printed() -> Iterator[io.StringIO]:
         yield text
 
 
-def _check_sizes(arguments: dict[str, Any]) -> None:
-    """Raise `InputError` for what is longer than any case needs."""
+def _check(arguments: dict[str, Any]) -> None:
+    """Raise `InputError` for what is longer than any case needs, and for files that are no cases.
+
+    Messages quote lines of a file. Of others than cases an agent is not told any, wherever a link
+    leads.
+    """
+    from epicyclic.registry import offered
+
+    endings = (".toml", *offered("case_readers"))
     problems = []
     for name, value in arguments.items():
+        if name in CASES and _leads_elsewhere(value, endings):
+            allowed = f"must lead to a file {', '.join(endings)}."
+            remedy = "Name a case file, or a built-in case."
+            problems.append(Problem(name, one_line(value), allowed, remedy))
         texts = value if isinstance(value, list) else [value]
         if len(texts) > MOST_CHANGES:
             allowed = f"must be at most {MOST_CHANGES}."
@@ -115,6 +128,15 @@ def _check_sizes(arguments: dict[str, Any]) -> None:
             allowed = f"must have at most {LONGEST_ARGUMENT} characters."
             problems.append(Problem(name, one_line(str(texts[0])), allowed, "Write a case file."))
     raise_any(problems, "the call")
+
+
+def _leads_elsewhere(path: str, endings: tuple[str, ...]) -> bool:
+    """True for a file, or a link to one, whose name has none of the endings."""
+    try:
+        found = Path(path).resolve()
+        return found.is_file() and not found.name.lower().endswith(endings)
+    except (OSError, RuntimeError, ValueError):  # the reader says what is wrong with it
+        return False
 
 
 def check(case: Case, changes: Changes = ()) -> None:
@@ -174,7 +196,7 @@ def loss_map(
     if plan.size > MOST_POINTS:
         remedy = "Give fewer values, or run the command 'epicyclic map', which writes a file."
         raise one_problem("map", f"{plan.size} points", f"has more than {MOST_POINTS}.", remedy)
-    data = to_map(plan, Runner().run(plan))
+    data = to_map(plan, Runner(progress=_go_on).run(plan))
     shown = [
         name for name in ("torque_loss", "total", "efficiency", "status", "message") if name in data
     ]
@@ -192,7 +214,7 @@ def uncertainty(
     from epicyclic.study.bands.points import uncertainty as compute
 
     _check_samples(samples)
-    data = compute(load_with(case, changes), samples=samples, seed=seed)
+    data = compute(load_with(case, changes), samples=samples, seed=seed, progress=_go_on)
     terminal().print(uncertainty_tables(data))
     return _numbers(data, ("nominal", "low", "high", "standard_uncertainty"))
 
@@ -205,9 +227,14 @@ def compare_cases(first: Case, second: Case, samples: int = 256, seed: int = 1) 
 
     _check_samples(samples)
     cases = [load_with(name, ()) for name in (first, second)]
-    data = compute(cases[0], cases[1], samples=samples, seed=seed)
+    data = compute(cases[0], cases[1], samples=samples, seed=seed, progress=_go_on)
     terminal().print(pair_tables(data))
     return _numbers(data, ("first", "second", "difference", "low", "high", "probability"))
+
+
+def _go_on(*_: int) -> None:
+    """Raise what ends a call that the agent has cancelled."""
+    from_thread.check_cancelled()
 
 
 def _check_samples(samples: int) -> None:

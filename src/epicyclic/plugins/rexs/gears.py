@@ -7,12 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from epicyclic.case.case import Case
 from epicyclic.gears import mesh as geometry
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import involute
 from epicyclic.plugins.rexs.draft import Amount, Draft, Lack, amount_text
-from epicyclic.plugins.rexs.model import Component, Model
+from epicyclic.plugins.rexs.model import IN_MILLIMETRES, Component, Model, vector
 from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, is_internal, rigid_parts
 from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
 
@@ -472,50 +474,48 @@ def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
     if not known:
         draft.lack("carrier", "outer_diameter and length of side_plate", carriers, instead)
         return
-    outer = max(item[0] for item in known)
+    outer = max(
+        (item[0] for item in known), key=lambda it: it.number * IN_MILLIMETRES.get(it.unit, 1.0)
+    )
     draft.give("carrier.outer_diameter", outer.text, outer.origin)
     _, length, first = known[0]
     if len(known) == 1:
         draft.give("carrier.width", length.text, length.origin)
         return
-    starts = [_position(plate) for _, _, plate in known]
-    if any(start is None for start in starts):
+    starts = [model.place(plate) for _, _, plate in known]
+    points = [start[1] for start in starts if start is not None]
+    if len(points) < len(known) or len({start and start[0] for start in starts}) > 1:
         draft.lacks["carrier.width"] = Lack(
             "carrier.width", f"support_vector of {first}", True, "Give the width over all plates."
         )
         return
-    axial = [start[0] for start in starts if start is not None]
-    ends = [start + item[1].number for start, item in zip(axial, known, strict=True)]
-    width = max(ends) - min(axial)
+    axis = model.axis([plate for _, _, plate in known], [point - points[0] for point in points[1:]])
+    ends: list[float] = []
+    for point, (_, own, plate) in zip(points, known, strict=True):
+        along = vector(plate, "u_axis_vector")
+        start, sense = float(point @ axis), 1.0 if along is None else float(np.sign(along @ axis))
+        ends += [start, start + sense * own.number * IN_MILLIMETRES.get(own.unit, 1.0)]
     draft.give(
         "carrier.width",
-        amount_text(round(width, 9), length.unit),
+        amount_text(round(max(ends) - min(ends), 9), "mm"),
         f"computed over {len(known)} side plates from support_vector and length",
     )
 
 
-def _position(component: Component) -> tuple[float, ...] | None:
-    """Position in the axes of the gear unit, in mm; None if it is not given."""
-    vector = component.get("support_vector")
-    try:
-        numbers = vector.numbers() if vector is not None else ()
-    except ValueError:
-        return None
-    return numbers if len(numbers) == 3 else None
-
-
-def planet_angles(draft: Draft, planetary: PlanetaryParts) -> None:
+def planet_angles(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
     """Positions of the planets, if they are not spaced equally."""
-    centre = _position(planetary.shafts["sun"][0]) if planetary.shafts["sun"] else None
-    places = [_position(shaft) for shaft in planetary.shafts["planet"]]
-    if centre is None or any(place is None for place in places) or len(places) < 2:
+    shafts = [*planetary.shafts["sun"][:1], *planetary.shafts["planet"]]
+    places = [place for shaft in shafts if (place := model.place(shaft)) is not None]
+    is_one_frame = len({frame for frame, _ in places}) == 1
+    if not planetary.shafts["sun"] or len(places) < max(3, len(shafts)) or not is_one_frame:
         return
-    angles = sorted(
-        math.degrees(math.atan2(place[2] - centre[2], place[1] - centre[1])) % 360
-        for place in places
-        if place is not None
-    )
-    turned = [angle - angles[0] for angle in angles]
+    centre, first, *others = (point for _, point in places)
+    ways = [np.cross(others[0] - first, other - first) for other in others[1:]]
+    axis = model.axis(shafts, [*ways, np.cross(first - centre, others[0] - centre)])
+    start = np.cross(np.cross(axis, first - centre), axis)
+    across = np.cross(axis, start)
+    angles = (math.atan2(across @ (it - centre), start @ (it - centre)) for it in others)
+    turned = [0.0, *sorted(math.degrees(angle) % 360 for angle in angles)]
     equal = [360 * number / len(turned) for number in range(len(turned))]
     if any(abs(a - b) > 1e-3 for a, b in zip(turned, equal, strict=True)):
         values = [f"{angle:.6f} deg" for angle in turned]
@@ -680,7 +680,7 @@ def _planetary(draft: Draft, model: Model, chosen: PlanetaryParts, place: str) -
     draft.take("planet.mass", "mass_of_component", chosen.planets, None)
     _shifts(draft, place, "sun", "planet", "sun")
     _shifts(draft, place, "planet", "ring", "ring")
-    planet_angles(draft, chosen)
+    planet_angles(draft, model, chosen)
     bearing_table(draft, model, chosen)
     carrier_table(draft, model, chosen)
     rims = model.partners(chosen.ring.id, "assembly", "assembly", "part", "gear_body")

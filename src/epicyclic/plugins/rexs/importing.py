@@ -22,7 +22,7 @@ from epicyclic.plugins.rexs.draft import (
 )
 from epicyclic.plugins.rexs.files import read_document
 from epicyclic.plugins.rexs.gears import set_tables
-from epicyclic.plugins.rexs.model import Model, build_model
+from epicyclic.plugins.rexs.model import Model, build_model, check_places
 from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, choose, chosen_train
 from epicyclic.plugins.rexs.train import train_draft
 from epicyclic.show.template import case_text
@@ -203,7 +203,7 @@ def _draft(model: Model, chosen: PlanetaryParts | Pair | Train) -> Draft:
     if len(model.load_cases) > 0:
         cases = ", ".join(map(str, list(model.load_cases)[:12]))
         draft.notes.append(f"The file has load cases: {cases}. Choose one with --load-case.")
-    raise_any(draft.problems)
+    raise_any([*draft.problems, *check_places(model)])
     return draft
 
 

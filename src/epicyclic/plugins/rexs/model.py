@@ -14,6 +14,7 @@ from importlib import resources
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.messages import one_line
@@ -284,12 +285,80 @@ class Model:
         ]
         return [item for item in found if not wanted or item.type in wanted]
 
+    def place(self, part: Component) -> tuple[int | None, FloatArray] | None:
+        """In whose axes a part is placed, None for those of the gear unit, and where. [mm]"""
+        reference, point = part.get("reference_component_for_position"), vector(part, _PLACE)
+        try:
+            number = None if reference is None else int(reference.number())
+        except ValueError:
+            return None
+        owner = None if number is None else self.components.get(number)
+        if point is None or (number is not None and owner is None):
+            return None
+        return (None if owner is None or owner.type == "gear_unit" else owner.id), point
+
+    def axis(self, parts: Iterable[Component], ways: Iterable[FloatArray] = ()) -> FloatArray:
+        """Direction of parts: as they state it, as the ways between them lie, of the gear unit."""
+        units = self.of_type("gear_unit")
+        unit = unit_vector(vector(units[0], "u_axis_vector") if units else None)
+        stated = (vector(part, "u_axis_vector") for part in parts)
+        vectors = (unit_vector(way) for found in (stated, ways) for way in found)
+        found = next((it for it in vectors if it is not None), unit)
+        if found is None:
+            return USUAL_AXIS
+        senses = [
+            it for it in (unit, USUAL_AXIS) if it is not None and abs(found @ it) > 1 - _ROUNDED
+        ]
+        return senses[0] if senses else found  # they tell the sense of an axis that is theirs
+
     def with_load_case(self, load_case: int) -> Model:
         """The model with the attributes that a load case changes."""
         components = dict(self.components)
         for number, changed in self.load_cases[load_case].items():
             components[number] = components[number].changed(changed.attributes)
         return replace(self, components=components)
+
+
+# Where parts stand.
+
+
+FloatArray = NDArray[np.float64]
+USUAL_AXIS: FloatArray = np.array([1.0, 0.0, 0.0])
+"""Axis of a gear unit that states none."""
+
+_PLACE = "support_vector"
+_SHORTEST, _FARTHEST = 1e-6, 1e8
+"""Bounds of the length of an axis vector and of the coordinates of parts. [mm]"""
+_ROUNDED = 1e-9  # Of the product of two unit vectors that are one. [1]
+IN_MILLIMETRES = {"mm": 1.0, "um": 1e-3}
+
+
+def vector(part: Component, name: str) -> FloatArray | None:
+    """Three numbers of a part; of a place in mm. None if it has none, or too large ones."""
+    found = part.get(name)
+    try:
+        numbers = found.numbers() if found is not None else ()
+        scale = IN_MILLIMETRES[checked_unit(found)] if name == _PLACE and found else 1.0
+    except (KeyError, ValueError):
+        return None
+    is_place = len(numbers) == 3 and max(map(abs, numbers)) < _FARTHEST
+    return scale * np.array(numbers) if is_place else None
+
+
+def unit_vector(way: FloatArray | None) -> FloatArray | None:
+    """A way over its length; None if it has none."""
+    length = 0.0 if way is None else float(np.linalg.norm(way))
+    return way / length if way is not None and length > _SHORTEST else None
+
+
+def check_places(model: Model) -> Iterator[Problem]:
+    """A problem for each place whose unit is no length."""
+    for part in model.components.values():
+        found = part.get(_PLACE)
+        unit = "" if found is None else str(found.unit)
+        if found is not None and unit_of(unit) not in IN_MILLIMETRES:
+            place, allowed = f"{found.id} of {part}", "must be in mm or mum."
+            yield Problem(place, f"a vector in {one_line(unit)}", allowed, "Correct the file.")
 
 
 # The parts of a REXS file as its form gives them, and the model they make.

@@ -7,7 +7,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import one_line
@@ -24,13 +23,18 @@ from epicyclic.plugins.rexs.draft import (
     temperature,
 )
 from epicyclic.plugins.rexs.gears import set_tables
-from epicyclic.plugins.rexs.model import Component, Model
+from epicyclic.plugins.rexs.model import (
+    IN_MILLIMETRES,
+    USUAL_AXIS,
+    Component,
+    FloatArray,
+    Model,
+    vector,
+)
 from epicyclic.plugins.rexs.sets import Joint, Pair, PlanetaryParts, Shaft, Train
 
 # Where gears stand along the shafts of a train, and the rolling bearings of the shafts.
 
-
-FloatArray = NDArray[np.float64]
 
 _TYPES = {
     "radial_grooved_ball_bearing": "deep-groove",
@@ -41,10 +45,6 @@ _TYPES = {
 _SENSES = {"both_directions": "both", "positive": "positive", "negative": "negative"}
 _OPPOSITE = {"both": "both", "positive": "negative", "negative": "positive"}
 _ABOUT_FORCE = "Needed for the forces on the bearings; or give their radial_force."
-_SHORTEST, _FARTHEST = 1e-6, 1e8
-"""Bounds of the length of an axis vector and of the coordinates of parts. [mm]"""
-
-_USUAL = np.array([1.0, 0.0, 0.0])  # Axis of a gear unit that states none.
 _ROUNDED = 1e-9  # Of the product of two unit vectors that are one. [1]
 _SUPPORTS = 2  # Bearings of a shaft whose forces statics gives.
 
@@ -68,8 +68,10 @@ class _Places:
         self.model = model
         driven = train.shafts.get(str(draft.tables.get("operation", {}).get("input")))
         shafts = driven.components if driven is not None else ()
-        self.unit_axis = self._axis_of(
-            [*([] if driven is None else [driven]), *train.shafts.values()]
+        every = [*([] if driven is None else [driven]), *train.shafts.values()]
+        self.unit_axis = model.axis(
+            [part for shaft in every for part in shaft.components],
+            (way for shaft in every if (way := self._line(shaft)) is not None),
         )
         self.axis = self.unit_axis
         speed = speed_of(draft, list(driven.parts.values())) if driven is not None else None
@@ -77,23 +79,9 @@ class _Places:
             self.axis = -self.axis
         # y of a gear unit along x, turned with its axis the shortest way
         first = np.array([0.0, 1.0, 0.0])
-        if (along := 1 + float(self.axis @ _USUAL)) > _ROUNDED:
-            first = first - float(first @ self.axis) / along * (self.axis + _USUAL)
+        if (along := 1 + float(self.axis @ USUAL_AXIS)) > _ROUNDED:
+            first = first - float(first @ self.axis) / along * (self.axis + USUAL_AXIS)
         self.frame = np.array([first, np.cross(self.axis, first)])
-
-    def _axis_of(self, shafts: Sequence[Shaft]) -> FloatArray:
-        """Direction of the shafts: as they state it, as their parts lie, that of the gear unit."""
-        units = self.model.of_type("gear_unit")
-        unit = _unit_vector(_vector(units[0], "u_axis_vector") if units else None)
-        stated = (_vector(part, "u_axis_vector") for shaft in shafts for part in shaft.components)
-        lines = map(self._line, shafts)
-        found = next(
-            (it for one in (*stated, *lines) if (it := _unit_vector(one)) is not None), unit
-        )
-        if found is None:
-            return _USUAL
-        senses = [it for it in (unit, _USUAL) if it is not None and abs(found @ it) > 1 - _ROUNDED]
-        return senses[0] if senses else found  # they tell the sense of an axis that is theirs
 
     def _line(self, shaft: Shaft) -> FloatArray | None:
         """From the start of a shaft to the part that is farthest from it. [mm]"""
@@ -104,20 +92,14 @@ class _Places:
 
     def sense(self, part: Component) -> float:
         """+1 or -1 if a part lies along the axis or against it, 0 across it."""
-        own = _vector(part, "u_axis_vector")
+        own = vector(part, "u_axis_vector")
         along = (self.unit_axis if own is None else own) @ self.axis
         return float(np.sign(np.round(along, 6)))
 
     def _point(self, part: Component) -> FloatArray | None:
         """Position in the axes of the gear unit. [mm]"""
-        reference = part.get("reference_component_for_position")
-        try:
-            number = None if reference is None else int(reference.number())
-        except ValueError:
-            return None
-        owner = self.model.components.get(number) if number is not None else None
-        in_unit = number is None or (owner is not None and owner.type == "gear_unit")
-        return _vector(part, "support_vector") if in_unit else None
+        found = self.model.place(part)
+        return found[1] if found is not None and found[0] is None else None
 
     def along(self, shaft: Shaft, part: Component) -> Amount | None:
         """Position of a gear or bearing along its shaft."""
@@ -143,13 +125,16 @@ class _Places:
             width = part.amount("face_width")
         except ValueError:
             return None
-        if found is None or found[1] != "mm":
+        scale = IN_MILLIMETRES.get("" if found is None else found[1])
+        if found is None or scale is None:
             return None
         if is_gear and self.model.version == "1.0":
-            if width is None or width[1] != "mm":
+            whole = None if width is None else IN_MILLIMETRES.get(width[1])
+            if width is None or whole is None:
                 return None
-            return found[0] + width[0] / 2, f"{name} of {part} plus half its face width"
-        return found[0], f"{name} of {part}"
+            place = scale * found[0] + whole * width[0] / 2
+            return place, f"{name} of {part} plus half its face width"
+        return scale * found[0], f"{name} of {part}"
 
     def direction(self, first: Iterable[Component], second: Iterable[Component]) -> float | None:
         """Angle from the axis of the first to that of the second, about the axis. [deg]"""
@@ -163,21 +148,6 @@ class _Places:
 
     def _first_point(self, parts: Iterable[Component]) -> FloatArray | None:
         return next((point for part in parts if (point := self._point(part)) is not None), None)
-
-
-def _vector(part: Component, name: str) -> FloatArray | None:
-    found = part.get(name)
-    try:
-        numbers = found.numbers() if found is not None else ()
-    except ValueError:
-        return None
-    is_place = len(numbers) == 3 and max(map(abs, numbers)) < _FARTHEST
-    return np.array(numbers) if is_place else None
-
-
-def _unit_vector(vector: FloatArray | None) -> FloatArray | None:
-    length = 0.0 if vector is None else float(np.linalg.norm(vector))
-    return vector / length if vector is not None and length > _SHORTEST else None
 
 
 def _amount(number: float, origin: str) -> Amount:
