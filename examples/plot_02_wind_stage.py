@@ -65,8 +65,9 @@ picture = rated.plot("losses")
 # %%
 # Part load
 # ---------
-# A sweep takes the product of the values of any keys. Its dataset has a unit on every number;
-# dimensions are called like their keys, and ``torque`` or ``temperature`` for short.
+# A sweep takes the product of the values of any keys. Its dataset has a unit on every number; its
+# dimensions are called as the axes of a map, ``torque`` and ``temperature``, or as their keys with
+# underscores, ``planet_count``.
 
 sweep = ep.sweep(
     case,
@@ -76,10 +77,10 @@ sweep = ep.sweep(
     },
 )
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
-for temperature, line in sweep.efficiency.groupby("operation.oil_inlet_temperature"):
+for temperature, line in sweep.efficiency.groupby("temperature"):
     axes.plot(sweep.torque / 1e6, 100 * line.squeeze(), "o-", label=f"{temperature:g}")
 axes.set(xlabel="torque of the rotor [MN m]", ylabel="efficiency [%]", title=case.title)
-axes.legend(title=f"oil inlet [{sweep.temperature.attrs['units']}]")
+axes.legend(title="oil inlet [°C]")
 
 # %%
 # How much oil

@@ -54,6 +54,7 @@ for value in comparison.fit.parameters:
 
 figure, axes = plt.subplots(figsize=(7.5, 4), layout="constrained")
 plot_points(comparison, axes)
+axes.legend()
 
 # %%
 # The calibrated case carries the fitted value and its uncertainty. Everything that is computed from

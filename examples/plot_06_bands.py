@@ -38,12 +38,13 @@ for name, data in bands.items():
 
 # %%
 # What that is due to, as total Sobol indices: the share of the variance that would be gone if
-# the input were known.
+# the input were known. From few samples an estimate may exceed the whole; it is drawn as 100 %.
 
-drivers = bands["ground"].total_order.sel(sum="total").to_series().sort_values()
+drivers = bands["ground"].total_order.sel(sum="total").to_series().nlargest(6)[::-1]
+names = bands["ground"].input_name.to_series()
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
-axes.barh(drivers.index[-6:], 100 * drivers.to_numpy()[-6:])
-axes.set(xlabel="share of the variance of the total loss [%]", title=ground.title)
+axes.barh([names.get(key, key) for key in drivers.index], 100 * drivers.clip(upper=1.0))
+axes.set(xlabel="share of the variance of the total loss [%]", title="Ground flanks")
 
 # %%
 # How well the difference is known

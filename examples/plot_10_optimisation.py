@@ -110,7 +110,7 @@ for teeth, optimum in found.items():
 start = ep.solve(pair(23, 14.0, 0.15))
 best = min(found, key=lambda teeth: found[teeth].fun)
 result = ep.solve(pair(best, *found[best].x))
-names = list(start.losses)
+names = [name.replace("_", " ") for name in start.losses]
 place = np.arange(len(names))
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 axes.barh(place - 0.2, list(start.losses.values()), 0.4, label="start")

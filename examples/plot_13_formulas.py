@@ -36,10 +36,10 @@ slipping = contact | rough | {"sliding_speed": "2.5 m/s"}
 _, axes = plt.subplots(1, 2, figsize=(9, 4), layout="constrained")
 for model in ("mixed-lubrication", "benedict-kelley", "xu-2007"):
     axes[0].plot(1e-9 * found.hertz_pressure, ep.friction(model, **slipping), label=model)
-axes[0].set(xlabel="contact pressure [GPa]", ylabel="coefficient of friction [1]", ylim=(0, None))
+axes[0].set(xlabel="contact pressure [GPa]", ylabel="coefficient of friction", ylim=(0, None))
 axes[0].legend()
 axes[1].plot(1e-3 * loads, ep.rolling_loss("goksem-hargreaves", **contact))
-axes[1].set(xlabel="line load [N/mm]", ylabel="rolling loss [W/m]", ylim=(0, None))
+axes[1].set(xlabel="line load [N/mm]", ylabel="rolling loss [W/m]", ylim=(0, 3000))
 
 # %%
 # What turns

@@ -94,6 +94,12 @@ def files() -> list[Path]:
     return sorted(SOURCE.rglob("*.py"))
 
 
+@cache
+def tree(path: Path) -> ast.Module:
+    """What a module says."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def room(path: Path) -> str:
     """The folder of a module below the package; of a module beside them its name."""
     return path.relative_to(SOURCE).parts[0]
@@ -117,7 +123,7 @@ def name_of(path: Path) -> str:
 @cache
 def imports() -> dict[str, frozenset[str]]:
     """What each module imports of the package when it is loaded."""
-    modules = {name_of(path): ast.parse(path.read_text(encoding="utf-8")) for path in files()}
+    modules = {name_of(path): tree(path) for path in files()}
 
     def found(tree: ast.Module) -> Iterator[str]:
         for node in tree.body:
@@ -139,7 +145,7 @@ def chain(module: str) -> tuple[str, ...]:
 def classes() -> Iterator[tuple[str, frozenset[str]]]:
     """Every class with fields, and their names."""
     for path in files():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree(path)):
             if isinstance(node, ast.ClassDef):
                 names = frozenset(
                     ast.unparse(item.target)
@@ -165,7 +171,7 @@ def kind_tests() -> list[str]:
     for path in files():
         if room(path) in KIND_ROOMS:
             continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree(path)):
             if isinstance(node, ast.Call) and ast.unparse(node.func) in TESTS:
                 asked = {item.id for item in ast.walk(node.args[1]) if isinstance(item, ast.Name)}
                 if asked & {*KINDS}:

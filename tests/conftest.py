@@ -12,7 +12,7 @@ from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.gears.mesh import Mesh
 from epicyclic.oil.oil import oil_state
 
-settings.register_profile("epicyclic", derandomize=True, deadline=None, max_examples=60)
+settings.register_profile("epicyclic", derandomize=True, deadline=None, max_examples=30)
 settings.load_profile("epicyclic")
 
 CELSIUS = 273.15

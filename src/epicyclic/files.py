@@ -165,8 +165,10 @@ def check_place(path: Path) -> None:
         folder = path.absolute().parent
         with suppress(FileNotFoundError):
             path.lstat()  # raises for a name that is too long
-        if (path.exists() and not path.is_file()) or not folder.is_dir():
-            raise _error(path, OPTION, "cannot hold a file.", "Give a file in a folder.")
+        if not folder.is_dir():
+            raise _error(path, OPTION, "lies in a folder that does not exist.", "Create it first.")
+        if path.exists() and not path.is_file():
+            raise _error(path, OPTION, "is a folder or no regular file.", REMEDY)
         if not os.access(folder, os.W_OK):
             allowed = "lies in a folder without write permission."
             raise _error(path, OPTION, allowed, "Move it.")

@@ -154,6 +154,11 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     return f"Did you mean {found[0]!r}?" if found else ""
 
 
+def either(names: Sequence[str]) -> str:
+    """``"a, b or c"``."""
+    return f"{', '.join(names[:-1])} or {names[-1]}" if len(names) > 1 else "".join(names)
+
+
 def misspelt(name: str, known: Iterable[str]) -> str:
     """The known name that `name` can only be a misspelling of; empty if there is none."""
     slips = {
@@ -166,9 +171,13 @@ def misspelt(name: str, known: Iterable[str]) -> str:
     return nearest if clear else ""
 
 
+_SEPARATORS = re.compile(r"[-_. ]")
+
+
 def _likeness(name: str, known: str, *, score_cutoff: float | None = None) -> float:
     """In percent; a name that is part of another one is somewhat like it."""
     one, two = name.casefold(), known.casefold()
     score = fuzz.ratio(one, two, score_cutoff=score_cutoff)
+    one, two = (_SEPARATORS.sub("", it) for it in (one, two))
     partly = min(len(one), len(two)) > 3 and (one in two or two in one)
     return max(score, _LIKENESS + 10) if partly else score

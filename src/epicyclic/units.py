@@ -75,12 +75,15 @@ _MISSING_CARET = re.compile(r"(?<=[^\W\d])(?=[+-]?[0-9])")
 
 # Size of common units in SI; pint, which takes a sixth of a command to import, has all others.
 _SIZES = {
-    **dict.fromkeys((("mm", "m"), ("mPa*s", "Pa*s")), 1e-3),
+    **dict.fromkeys((("mm", "m"), ("mPa*s", "Pa*s"), ("g", "kg"), ("mN*m", "N*m")), 1e-3),
     **dict.fromkeys((("um", "m"), ("mm^2", "m^2"), ("mm^2/s", "m^2/s")), 1e-6),
     **dict.fromkeys((("nm", "m"), ("mm^3", "m^3"), ("1/GPa", "1/Pa")), 1e-9),
     **dict.fromkeys((("kN", "N"), ("N/mm", "N/m"), ("W/mm", "W/m"), ("kJ", "J"), ("kW", "W")), 1e3),
-    **dict.fromkeys((("MPa", "Pa"), ("N/um", "N/m")), 1e6),
+    **dict.fromkeys((("kN*m", "N*m"), ("kNm", "N*m")), 1e3),
+    **dict.fromkeys((("MPa", "Pa"), ("N/um", "N/m"), ("MN*m", "N*m"), ("MW", "W")), 1e6),
     **dict.fromkeys((("GPa", "Pa"), ("N/(mm*um)", "N/m^2")), 1e9),
+    ("Nm", "N*m"): 1.0,
+    ("l", "m^3"): 1.0000000000000002e-3,
     ("bar", "Pa"): 1e5,
     ("deg", "rad"): math.pi / 180,
     ("rpm", "rad/s"): math.tau / 60,
@@ -348,7 +351,8 @@ class Quantity:
         shown = self.to_display(value)
         if not self._is_allowed(shown):
             remedy = range_remedy(shown, self.low, self.high, self.display, open_low=self.open_low)
-            raise self._error("is out of range", remedy)
+            bounds = self._described() if self.describe() == self.noun else ""
+            raise self._error("is out of range", remedy, bounds)
         return value
 
     def _is_allowed(self, shown: float) -> bool:
@@ -422,7 +426,12 @@ class Quantity:
         return f"{float(value)!r} {self.si}"  # those of numpy would write their type
 
     def describe(self) -> str:
-        """What is allowed, in words: ``"a length > 0 mm"``."""
+        """What is allowed, in words: ``"a length > 0 mm"``, without bounds of no interest."""
+        if self.high is not None and self.low == -self.high:
+            return self.noun
+        return self._described()
+
+    def _described(self) -> str:
         return describe_range(self.noun, self.low, self.high, self.display, open_low=self.open_low)
 
     def _form(self, number: float | None = None) -> str:
@@ -432,13 +441,13 @@ class Quantity:
         text = format_number(number, 12) if isinstance(number, float) else str(number)
         return f'give it in {self.display}, such as "{text} {self.display}"'
 
-    def _error(self, what: str, remedy: str) -> PydanticCustomError:
+    def _error(self, what: str, remedy: str, allowed: str = "") -> PydanticCustomError:
         return PydanticCustomError(
             "quantity",
             "{what}; it must be {allowed}",
             {
                 "what": what,
-                "allowed": self.describe(),
+                "allowed": allowed or self.describe(),
                 "remedy": f"{remedy[:1].upper()}{remedy[1:]}",
             },
         )

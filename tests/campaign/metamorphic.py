@@ -31,6 +31,7 @@ from unittest.mock import patch
 import epicyclic as ep
 from epicyclic.cli.common import parse_changes
 from epicyclic.files import write_file
+from epicyclic.machine.solve import LOSS_AGREEMENT
 from epicyclic.result.result import Result
 from epicyclic.show import html
 from epicyclic.show.template import case_text
@@ -41,9 +42,9 @@ __all__ = ["FORMS", "drawn", "outcome"]
 Tables = dict[str, Any]
 ROUNDING = 1e-9
 """The same numbers in another order, or after a conversion: relative."""
-AGREEMENT = 1e-7
+AGREEMENT = 2 * LOSS_AGREEMENT
 """Of torques and losses that are solved from the other end, where another iteration ends at the
-same tolerance: relative."""
+same tolerance, beside the solution or beyond it: relative."""
 FAULTS = ("differs", "refused in one form", "solved in one form", "exception")
 ATTEMPTS = 300
 STORED = 200

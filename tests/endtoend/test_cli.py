@@ -14,6 +14,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.cli.main import main
+from frozen.command import run_command
 
 PLANETARY_LOSSES = [
     "sun_mesh_sliding",
@@ -60,9 +61,15 @@ def test_run_prints_where_the_watts_go(epicyclic):
     assert max(map(len, done.stdout.splitlines())) <= 100
 
 
-def test_json_result_keeps_the_contract(epicyclic, tmp_path):
-    done = epicyclic("run", "talbot-2012", "--json", "-")
-    result = json.loads(done.stdout)
+@pytest.fixture(scope="module")
+def as_json(tmp_path_factory):
+    """What `run` prints of the test article as JSON."""
+    done = run_command(("run", "talbot-2012", "--json", "-"), tmp_path_factory.mktemp("json"))
+    return json.loads(done.output)
+
+
+def test_json_result_keeps_the_contract(epicyclic, as_json, tmp_path):
+    result = as_json
     assert list(result["losses"]) == PLANETARY_LOSSES
     assert result["total"] == pytest.approx(sum(result["losses"].values()), rel=1e-12)
     assert result["total"] == pytest.approx(
@@ -78,9 +85,9 @@ def test_json_result_keeps_the_contract(epicyclic, tmp_path):
     assert json.loads(file.read_text()) == result
 
 
-@pytest.mark.parametrize("rest", [(), ("--set", "operation.torque=1000 N*m")])
+@pytest.mark.parametrize("rest", [(), ("--set", "operation.torque=10 N*m")])
 def test_json_without_a_file_goes_to_standard_output(epicyclic, rest):
-    done = epicyclic("run", "talbot-2012", "--json", *rest)
+    done = epicyclic("run", "talbot-2012-pair", "--json", *rest)
     assert done.returncode == 0
     assert json.loads(done.stdout)["losses"]
 
@@ -89,22 +96,24 @@ def test_json_without_a_file_goes_to_standard_output(epicyclic, rest):
 def test_json_goes_through_pipes_and_links(epicyclic, tmp_path):
     file, link, pipe = tmp_path / "r.json", tmp_path / "link.json", tmp_path / "pipe.json"
     link.symlink_to(file)
-    assert epicyclic("run", "talbot-2012", "--json", str(link)).returncode == 0
+    assert epicyclic("run", "talbot-2012-pair", "--json", str(link)).returncode == 0
     assert link.is_symlink()
     os.mkfifo(pipe)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     try:
-        assert epicyclic("run", "talbot-2012", "--json", str(pipe)).returncode == 0
+        assert epicyclic("run", "talbot-2012-pair", "--json", str(pipe)).returncode == 0
         assert pipe.is_fifo()
         assert os.read(reader, 10**6).decode() == file.read_text()
     finally:
         os.close(reader)
 
 
-def test_zeros_have_no_sign(epicyclic, tmp_path):
+def test_zeros_have_no_sign(epicyclic, coarse_options, tmp_path):
     file = tmp_path / "result.json"
     for change in ("operation.torque=0 N*m", "operation.speed=0 rpm", "operation.speed=-100 rpm"):
-        done = epicyclic("run", "talbot-2012", "--details", "--set", change, "--json", str(file))
+        done = epicyclic(
+            "run", "talbot-2012", "--details", "--set", change, *coarse_options, "--json", str(file)
+        )
         for text in (done.stdout, file.read_text()):
             assert len(text) > 1000
             # not in the name of a folder, such as pytest-0
@@ -138,9 +147,9 @@ def test_gear_pair_has_its_own_losses(epicyclic):
     assert result["losses"]["mesh_sliding"] > 0
 
 
-def test_set_changes_the_case(epicyclic):
+def test_set_changes_the_case(epicyclic, coarse_options):
     args = ("--set", "operation.torque=-500 N*m", "--set", "planet.count=6", "--json", "-")
-    result = json.loads(epicyclic("run", "talbot-2012", *args).stdout)
+    result = json.loads(epicyclic("run", "talbot-2012", *args, *coarse_options).stdout)
     assert result["inputs"]["planet"]["count"] == 6
     assert result["members"]["sun"]["torque"]["value"] == -500
     assert 0 < result["efficiency"] < 1
@@ -155,14 +164,13 @@ def test_an_empty_value_removes_a_key(epicyclic):
     assert "no [carrier]" in result["not_included"]["carrier_drag"]
 
 
-def test_options_of_a_loss_are_reported(epicyclic):
+def test_options_of_a_loss_are_reported(epicyclic, as_json):
     args = (
         "--set", "losses.sun_drag.factor=2",
         "--set", "losses.ring_mesh_rolling.include=false",
     )  # fmt: skip
-    plain = json.loads(epicyclic("run", "talbot-2012", "--json", "-").stdout)
     result = json.loads(epicyclic("run", "talbot-2012", *args, "--json", "-").stdout)
-    assert result["losses"]["sun_drag"] == 2 * plain["losses"]["sun_drag"]
+    assert result["losses"]["sun_drag"] == 2 * as_json["losses"]["sun_drag"]
     assert result["losses"]["ring_mesh_rolling"] == 0
     assert result["not_included"]["ring_mesh_rolling"] == "left out by the case"
     assert result["factors"] == {"sun_drag": 2.0}
@@ -197,9 +205,9 @@ def test_all_problems_of_a_case_are_reported_together(epicyclic, tmp_path):
         (("rum", "talbot-2012"), "No such command"),
         (("run", "talbot-2012", "--set", "planet.count"), "KEY=VALUE"),
         (("run", "talbot-2012", "--set", "planet.cuont=3"), "Did you mean 'count'?"),
-        (("run", "talbot-2012", "--json", "no/such/folder/r.json"), "cannot be written"),
-        (("run", "talbot-2012", "--json", "."), "cannot be written"),
-        (("run", "talbot-2012", "--json", "x" * 300), "cannot be written"),
+        (("run", "talbot-2012-pair", "--json", "no/such/folder/r.json"), "cannot be written"),
+        (("run", "talbot-2012-pair", "--json", "."), "cannot be written"),
+        (("run", "talbot-2012-pair", "--json", "x" * 300), "cannot be written"),
         (("sweep", "talbot-2012", "-o", "s.csv"), "--vary"),
         (("oils", "atf-talbot-2021"), "atf-talbot-2012"),
     ],
@@ -235,6 +243,9 @@ def test_init_writes_a_case_that_runs(epicyclic, tmp_path, kind):
     assert done.returncode == 0
     assert tomllib.loads(file.read_text())["kind"] == kind
     assert epicyclic("check", str(file)).returncode == 0
+    shadow = epicyclic("init", "talbot-2012-pair")  # would stand in for the built-in case
+    assert shadow.returncode == 2
+    assert "--like talbot-2012-pair copies the case" in shadow.stderr
     again = epicyclic("init", str(file))
     assert again.returncode == 2
     assert "already exists" in again.stderr

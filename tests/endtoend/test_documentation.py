@@ -17,9 +17,10 @@ import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
+import click
 import pytest
 
-from epicyclic.cli.main import main
+from epicyclic.cli.main import cli, main
 
 DOCS = Path(__file__).parents[2] / "docs"
 BLOCK = re.compile(
@@ -64,7 +65,12 @@ def blocks_of(page):
 PAGES = sorted(str(path.relative_to(DOCS)) for path in DOCS.rglob("*.md"))
 RUN = [page for page in PAGES if any(not block.file for block in blocks_of(page))]
 LONG = (
+    "index.md",
     "tutorial/index.md",
+    "how-to/compare-friction.md",
+    "how-to/compare-measured.md",
+    "how-to/design.md",
+    "how-to/reproduce.md",
     "how-to/uncertainty.md",
     "how-to/loss-map.md",
     "how-to/look-at-a-mesh.md",
@@ -108,8 +114,26 @@ def test_blocks_of_a_page_run(page, tmp_path, monkeypatch):
     run_page(page, tmp_path, monkeypatch, ("slow", "skip"))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("page", SLOW)
+@pytest.mark.parametrize("page", RUN)
+def test_commands_of_a_page_are_understood(page, monkeypatch):
+    """Also those that are slow: each has the options that the page gives it."""
+    monkeypatch.setattr(click.Command, "invoke", lambda command, context: None)
+    for block in blocks_of(page):
+        if block.kind == "console" and not (block.exit_code or block.note.startswith("skip")):
+            for _, *arguments in block.commands:
+                cli.main(arguments, standalone_mode=False)
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        # this one compares all figures, as tests/validation does
+        pytest.param(
+            page, marks=getattr(pytest.mark, "campaign" if page == "validation.md" else "slow")
+        )
+        for page in SLOW
+    ],
+)
 def test_all_blocks_of_a_page_run(page, tmp_path, monkeypatch):
     run_page(page, tmp_path, monkeypatch, ("skip",))
 

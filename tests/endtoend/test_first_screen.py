@@ -1,12 +1,28 @@
 """What `run` prints first: short, narrow, with the loss, its band and what matters most."""
 
 import re
+from functools import cache
 
 import pytest
 
 from epicyclic.show.summary import WIDTH
+from frozen.command import SETTINGS, run_command
 
 SET, TRAIN = 40, 55  # Lines at most.
+
+
+@pytest.fixture(scope="module")
+def screen(tmp_path_factory):
+    """What `run` prints, of each case once."""
+    folder = tmp_path_factory.mktemp("screens")
+
+    @cache
+    def printed(*arguments):
+        done = run_command(("run", *arguments), folder)
+        assert done.code == 0, done.errors
+        return done.output
+
+    return printed
 
 
 @pytest.mark.parametrize(
@@ -22,20 +38,18 @@ SET, TRAIN = 40, 55  # Lines at most.
         ("train-8hp70", ("operation.state=R",), TRAIN),
     ],
 )
-def test_the_first_screen_is_short_and_narrow(epicyclic, case, changes, lines):
-    given = [part for change in changes for part in ("--set", change)]
-    done = epicyclic("run", case, *given)
-    assert done.returncode == 0, done.stderr
-    printed = done.stdout.splitlines()
+def test_the_first_screen_is_short_and_narrow(screen, case, changes, lines):
+    text = screen(case, *(part for change in changes for part in ("--set", change)))
+    printed = text.splitlines()
     assert 15 < len(printed) <= lines
     assert max(map(len, printed)) <= WIDTH
     assert not [line for line in printed if line != line.rstrip()]
     assert printed[-1].startswith("More: run --details")
-    assert re.search(r"^total loss +\d", done.stdout, re.MULTILINE)
+    assert re.search(r"^total loss +\d", text, re.MULTILINE)
 
 
-def test_numbers_of_a_row_and_the_band_have_the_same_digits(epicyclic):
-    text = epicyclic("run", "talbot-2012").stdout
+def test_numbers_of_a_row_and_the_band_have_the_same_digits(screen):
+    text = screen("talbot-2012")
     total = re.search(r"^total loss +(\S+) W +95 % band (\S+) to (\S+) W$", text, re.MULTILINE)
     share = re.search(r"^efficiency +(\S+) % +95 % band (\S+) to (\S+) %$", text, re.MULTILINE)
     for found in (total, share):
@@ -47,27 +61,25 @@ def test_numbers_of_a_row_and_the_band_have_the_same_digits(epicyclic):
     assert row[1] == total[1]
 
 
-def test_the_widest_output_follows_the_terminal(started, monkeypatch):
+def test_the_widest_output_follows_the_terminal(epicyclic, monkeypatch):
     widths = []
     for columns in (60, 132):
-        monkeypatch.setenv("COLUMNS", str(columns))
-        text = started("run", "talbot-2012-pair", "--details").stdout
+        monkeypatch.setitem(SETTINGS, "COLUMNS", str(columns))
+        text = epicyclic("run", "talbot-2012-pair", "--details").stdout
         widths.append(max(map(len, text.splitlines())))
         assert widths[-1] <= columns
     assert widths[0] < widths[1]
 
 
-def test_warnings_come_by_the_watts_that_they_concern(epicyclic):
-    text = epicyclic("run", "train-eaxle").stdout.partition("Warnings (3 of ")[2]
+def test_warnings_come_by_the_watts_that_they_concern(screen):
+    text = screen("train-eaxle").partition("Warnings (3 of ")[2]
     watts = [float(found) for found in re.findall(r"([\d.]+) W\b", text)]
     assert len(watts) == 3
     assert watts == sorted(watts, reverse=True)
 
 
-def test_details_have_what_the_first_screen_leaves_out(epicyclic):
-    first, details = (
-        epicyclic("run", "train-eaxle", *more).stdout for more in ((), ("--details",))
-    )
+def test_details_have_what_the_first_screen_leaves_out(screen):
+    first, details = screen("train-eaxle"), screen("train-eaxle", "--details")
     for words in ("Single losses", "Shafts", "Sources", "Methods", "Limits of confidence"):
         assert words not in first
         assert words in details

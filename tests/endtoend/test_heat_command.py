@@ -60,7 +60,7 @@ def test_heat_draws_the_network(epicyclic, tmp_path):
     [
         (("--set", "thermal.oil_flow="), "leaves no path out for the heat"),
         ((*FLOW, "--solve", "oil_flow"), "--target: is needed with --solve oil_flow"),
-        ((*FLOW, "--target", "90 degC"), "is the quantity to solve for"),
+        ((*FLOW, "--target", "90 degC"), "needs a quantity to solve for"),
         ((*FLOW, "--solve", "oil_flow", "--target", "60 degC"), "cannot be reached"),
         ((*FLOW, "--solve", "oil_flow", "--target", "60 W"), "temperature"),
         ((*FLOW, "--solve", "money", "--target", "60 degC"), "money"),

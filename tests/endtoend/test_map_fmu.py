@@ -28,7 +28,7 @@ def data():
         ep.load_case("talbot-2012").updated(changes),
         ["-500 rpm", "0 rpm", "500 rpm", "3000 rpm"],
         ["-800 N*m", "-10 N*m", "0 N*m", "10 N*m", "800 N*m"],
-        ["40 degC", "60 degC", "90 degC"],
+        ["40 degC", "90 degC"],
         jobs=1,
     )
 
@@ -89,7 +89,7 @@ def test_a_simulator_gets_what_interpolation_in_the_map_gives(data, path, kind):
 
 def test_nodes_have_the_losses_of_the_map(data, path):
     table = signals(4)
-    for row, point in enumerate([(3000, 800, 90), (500, -10, 40), (-500, 10, 60), (3000, 0, 40)]):
+    for row, point in enumerate([(3000, 800, 90), (500, -10, 40), (-500, 10, 90), (3000, 0, 40)]):
         speed, torque, celsius = point
         table[row] = (row, speed * np.pi / 30, torque, celsius + 273.15)
         wanted = data.sel(speed=speed, torque=torque, temperature=celsius)
@@ -102,9 +102,9 @@ def test_nodes_have_the_losses_of_the_map(data, path):
 
 def test_points_outside_are_said_and_taken_at_the_border(data, path):
     table = signals(3)
-    table["speed"], table["torque"], table["temperature"] = 4000 * np.pi / 30, 10, 333.15
+    table["speed"], table["torque"], table["temperature"] = 4000 * np.pi / 30, 10, 363.15
     found = run(path, table, "CoSimulation")
-    border = float(data["torque_loss"].sel(speed=3000, torque=10, temperature=60))
+    border = float(data["torque_loss"].sel(speed=3000, torque=10, temperature=90))
     assert not found["inside_map"].any()
     np.testing.assert_allclose(found["torque_loss"], border, rtol=1e-12)
 
@@ -180,7 +180,7 @@ def heated(tmp_path_factory):
         case,
         ["0 rpm", "1500 rpm", "3000 rpm"],
         ["0 N*m", "50 N*m", "100 N*m"],
-        ["10 degC", "40 degC", "70 degC", "110 degC"],
+        ["10 degC", "40 degC", "110 degC"],
         jobs=1,
     )
     data = ep.with_temperature_state(data, case)

@@ -28,15 +28,14 @@ TITLE = "=1+1\nsecond line"
 
 
 @pytest.fixture(scope="module")
-def data():
-    case = ep.load_case("talbot-2012").updated({"title": TITLE})
-    return ep.loss_map(case, SPEED, TORQUE, jobs=1)
+def data(coarse_talbot):
+    return ep.loss_map(coarse_talbot.updated({"title": TITLE}), SPEED, TORQUE, jobs=1)
 
 
 @pytest.fixture(scope="module")
-def temperatures():
+def temperatures(coarse_talbot):
     return ep.loss_map(
-        ep.load_case("talbot-2012"),
+        coarse_talbot,
         SPEED,
         TORQUE,
         ["40 degC", "90 degC"],

@@ -39,7 +39,7 @@ def test_a_result_is_stored_shown_and_drawn(epicyclic, tmp_path):
         (("plot", "talbot-2013", "losses"), "neither a file nor a built-in case"),
         (("plot", "talbot-2012", "losses", "-o", "x.docx"), "must end in .png or .svg or .pdf"),
         (("run", "talbot-2012", "--save", "result.json"), "must end in .nc"),
-        (("run", "talbot-2012", "--save", "nowhere/result.nc"), "cannot hold a file"),
+        (("run", "talbot-2012", "--save", "nowhere/result.nc"), "that does not exist"),
     ],
 )
 def test_bad_requests_end_in_one_clear_error(epicyclic, tmp_path, arguments, reason):

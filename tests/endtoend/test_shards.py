@@ -29,7 +29,7 @@ PAIR = (
 SPEEDS = ("--speed", "0:9000:10 rpm")
 COMMANDS = {
     "sweep.csv": (
-        "sweep", *PAIR, "--vary", "operation.speed=1000:9000:9 rpm",
+        "sweep", *PAIR, "--vary", "operation.speed=1000:9000:3 rpm",
         "--vary", "pinion.teeth=25,26", "--vary", "operation.torque=-20,50 N*m",
     ),
     "sweep.nc": (

@@ -66,7 +66,10 @@ def test_a_pipe_that_is_closed_early_is_no_error(tmp_path):
     assert done.stderr == b""
 
 
-@pytest.mark.parametrize("command", ["schema", "cases", "run talbot-2012-pair --json -"])
+@pytest.mark.parametrize(
+    "command",
+    ["schema", "cases", pytest.param("run talbot-2012-pair --json -", marks=pytest.mark.slow)],
+)
 def test_an_output_that_is_closed_is_told(tmp_path, command):
     done = shell(f"{RUN} {command} >&-", tmp_path)
     assert done.returncode == 2

@@ -21,6 +21,7 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.losses.ranges import OUT_OF_RANGE
+from epicyclic.study.operating import key_of
 from frozen.make_frozen import RESULTS, band_of
 from frozen.texts import improved, words
 
@@ -105,8 +106,9 @@ def test_maps_and_sweeps_are_the_frozen_ones(name):
         data = ep.loss_map(case, **entry["asked"], jobs=1)
     else:
         data = ep.sweep(case, entry["asked"], jobs=1)
-    found = {
-        str(key): {"dims": list(array.dims), "values": array.values.tolist()}
+    keys = {} if entry["kind"] == "loss_map" else {name: key_of(data[name]) for name in data.dims}
+    found = {  # a sweep's dimensions, once its keys, have names without dots
+        str(key): {"dims": [keys.get(it, it) for it in array.dims], "values": array.values.tolist()}
         for key, array in {**data.coords, **data.data_vars}.items()
     }
     for one in (entry["data"], found):

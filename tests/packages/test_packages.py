@@ -6,6 +6,7 @@ Tests that install take minutes and need a package index: they are slow.
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import tarfile
@@ -30,9 +31,14 @@ CORE = (
 
 
 def run(*command: object, folder: Path) -> str:
-    """What a command prints, run in a folder outside the tree."""
+    """What a command prints, run in a folder outside the tree, whatever PYTHONPATH adds to it."""
     result = subprocess.run(
-        [str(part) for part in command], cwd=folder, capture_output=True, text=True, check=False
+        [str(part) for part in command],
+        cwd=folder,
+        env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert result.returncode == 0, result.stdout + result.stderr
     return result.stdout

@@ -19,7 +19,7 @@ from epicyclic.messages import value_at
 from epicyclic.schema.read import changed_at, plain
 from limits import is_soon
 
-EXAMPLES = 150
+EXAMPLES = 60
 SLOWEST = 1.0  # s of processor time: others may use the machine too
 INTERNAL = re.compile(
     r"pydantic|Traceback|Input should|\b(NoneType|None|tuple|dict|instance|str|int)\b"

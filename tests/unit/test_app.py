@@ -507,9 +507,10 @@ def test_the_page_shows_form_and_losses_and_the_message_beside_a_wrong_field(sim
     ("chapter", "tab", "shown"),
     [
         ("", "Summary", "picture of losses"),
-        ("map", "Summary", "Compute"),
+        pytest.param("map", "Summary", "Compute", marks=pytest.mark.slow),
         ("gears", "Gears", "mesh periods"),
-        ("bearing", "Summary", "picture of losses"),  # of a planet; a pair has none
+        # of a planet; a pair has none
+        pytest.param("bearing", "Summary", "picture of losses", marks=pytest.mark.slow),
     ],
 )
 def test_a_chapter_is_shown_before_the_others_are_known(simulate, chapter, tab, shown):

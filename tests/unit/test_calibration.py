@@ -501,7 +501,7 @@ def test_repeated_points_alone_tell_two_inputs_not_apart(case):
     assert uncertainty_tables(fit) == {}
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_intervals_of_a_real_case_cover_the_truth(case):
     """400 repetitions of eight measured points of a gear pair."""
     truth = case.updated(TRUTH)

@@ -72,7 +72,7 @@ factor = nan
 """
 
 EVERY_PROBLEM = {
-    "kind": "planetary or gear_pair",
+    "kind": "planetary, gear_pair",
     "title": "text",
     "operation.torque": "is not TOML",
     "operation.speed": "turns or radians",
@@ -174,6 +174,15 @@ def test_values_are_shown_as_they_were_written(every_kind):
         ("planet", "angles", ["0 deg", "x", "240 deg"], "planet.angles[1]", "deg"),
         ("lubricant", "oil", "iso-vg-100-mneral", "lubricant.oil", "iso-vg-100-mineral"),
         ("lubricant", "oil", "water", "lubricant.oil", "Check the name."),
+        ("lubricant", "oil", "75W90", "lubricant.oil", "Did you mean '75w-90-gear-oil'?"),
+        (
+            "uncertainty",
+            "sun",
+            {"roughness": {"normal": "9 %"}},
+            "uncertainty.sun.roughness",
+            'Write uncertainty."sun.roughness", with the key in quotes.',
+        ),
+        ("planet", "count", 40, "planet.count", "Use at most 11 planets, equally spaced."),
         ("lubricant", "oil", 5, "lubricant.oil", "[lubricant.oil]"),
         ("models", "friction", "schlenck", "models.friction", "Did you mean 'schlenk'?"),
         ("losses", "sun_drag", True, "losses.sun_drag", "[losses.sun_drag]"),
@@ -182,7 +191,7 @@ def test_values_are_shown_as_they_were_written(every_kind):
         ("models", "drag", "seetharaman", "models.drag", "seetharaman-kahraman"),
         ("models", "drag", "none", "models.drag", "Choose one of them."),
         ("losses", "drag", {}, "losses.drag", "Did you mean"),
-        ("sun", "torque", "5 N*m", "sun.torque", "It belongs to operation."),
+        ("sun", "torque", "5 N*m", "sun.torque", "Write operation.torque."),
         ("sun", "sun.teeth", 73, 'sun."sun.teeth"', "Did you mean 'teeth'?"),
         ("sun", 'a "b"', 73, r'sun."a \"b\""', "The keys are teeth"),
         ("sun", "", 73, 'sun.""', "The keys are teeth"),
@@ -202,9 +211,9 @@ def test_one_problem_for_one_mistake(table, key, value, place, words):
     [
         ({}, "kind", "is missing"),
         ({"kind": None}, "kind", "is missing"),
-        ({"kind": "planetery"}, "kind", "must be planetary or gear_pair"),
-        ({"kind": 5}, "kind", "must be planetary or gear_pair"),
-        ({"kind": ["planetary"]}, "kind", "must be planetary or gear_pair"),
+        ({"kind": "planetery"}, "kind", "must be planetary, gear_pair"),
+        ({"kind": 5}, "kind", "must be planetary, gear_pair"),
+        ({"kind": ["planetary"]}, "kind", "must be planetary, gear_pair"),
         ({"kind": "gear_pair"}, "pinion", "the table [pinion] is missing"),
         ({"pinion": {}, "gear": {}}, "pinion.teeth", "is missing; it must be a whole number"),
     ],

@@ -84,6 +84,8 @@ def test_an_open_clutch_of_a_gearbox_drags_and_a_closed_one_does_not():
         < (result.losses["K.shear"])
     )
     unknown = ep.solve(found.updated({"clutches.K.oil_flow": None}))
+    fewer = ep.solve(found.updated({"clutches.K.oil_flow": None, "clutches.K.gaps": 4}))
+    assert unknown.losses["K.shear"] == pytest.approx(10 / 4 * fewer.losses["K.shear"], rel=1e-3)
     assert any("clutches.K.oil_flow is not given" in note for note in unknown.notes)
     assert unknown.losses["K.shear"] >= result.losses["K.shear"]
 

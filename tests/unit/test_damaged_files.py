@@ -1,6 +1,7 @@
 """Sound files damaged at random: a reader takes them, or says in its own words what is wrong.
 
-A quick share runs in the suite, all with ``-m slow -s``, which prints how many were refused.
+A quick share runs in the suite, more with ``-m slow``, all with ``-m campaign -s``, which prints
+how many were refused.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ from epicyclic.study.sweeps.run import SweepPlan, make_plan, write_dataset
 from epicyclic.study.sweeps.runner import Journal, Row, Runner, gather
 from limits import MOST_MEMORY, is_soon, peak_memory
 
-QUICK, ALL = 40, 1000
+QUICK, SLOW, ALL = 12, 200, 1000
 COARSE = {"numerics.pocket_slices": 4, "numerics.pocket_steps": 12}
 OIL = {
     "kind": "mineral",
@@ -257,7 +258,13 @@ def damaged(data, rng):
 @pytest.mark.filterwarnings("ignore::UserWarning")  # of the libraries, on damaged workbooks
 @pytest.mark.parametrize("name", READERS)
 @pytest.mark.parametrize(
-    "copies", [QUICK, pytest.param(ALL, marks=pytest.mark.slow)], ids=["quick", "all"]
+    "copies",
+    [
+        QUICK,
+        pytest.param(SLOW, marks=pytest.mark.slow),
+        pytest.param(ALL, marks=pytest.mark.campaign),
+    ],
+    ids=["quick", "slow", "all"],
 )
 def test_damaged_files_end_in_an_input_error_or_are_read(tmp_path, binary_files, name, copies):
     path = tmp_path / name

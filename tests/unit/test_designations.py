@@ -71,6 +71,8 @@ def test_cages_thrust_bearings_and_full_complements():
     cage = designated("K 40x48x20")
     assert (cage.element_diameter, cage.pitch_diameter) == pytest.approx((4e-3, 44e-3))
     assert thrust_bearing("51108") == pytest.approx((40e-3, 60e-3, 13e-3))
+    assert (designated("51108").type, designated("81207").type) == ("thrust-ball", "thrust-roller")
+    assert math.isnan(designated("51108").static_load_rating)
     full, caged = designated("SL18 5010"), designated("NU 2010")
     assert full.cage == "full-complement"
     assert full.rows == 2
@@ -124,7 +126,7 @@ def test_case_with_designations_states_the_estimate():
     [
         ({"designation": "6298"}, "designation"),
         ({"designation": "6208", "type": "tapered"}, "designation"),
-        ({"designation": "22220"}, "type"),
+        ({"designation": "22220", "type": "cylindrical"}, "designation"),
     ],
 )
 def test_wrong_designations_are_one_problem(keys, part):

@@ -16,10 +16,10 @@ from epicyclic.errors import InputError
 from epicyclic.losses.friction import FRICTION_MODELS
 from epicyclic.result.stored import read_result
 from epicyclic.show.plots.catalogue import available, figure_of
-from epicyclic.show.plots.heat_network import heat_figure
 from epicyclic.show.result_tables import heat_items, remarks
 from epicyclic.study import heat as analysis
 from epicyclic.study.heat import beyond_range
+from epicyclic.study.load import as_case
 from epicyclic.study.solve import mesh_contacts, solve
 from epicyclic.units import CELSIUS
 from listed_trains import ravigneaux
@@ -205,8 +205,9 @@ def pictures():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name, _ in pictures()])
 def test_texts_of_the_picture_are_apart_and_within_it(name):
-    heat = ep.heat_balance(dict(pictures())[name])
-    figure = heat_figure(heat, name)
+    source = dict(pictures())[name]
+    heat = ep.heat_balance(source)
+    figure = figure_of(ep.record(analysis.with_network(as_case(source)), groups=()), "heat-network")
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     (ax,) = figure.axes
@@ -240,7 +241,7 @@ def test_a_stored_result_has_the_picture_of_its_heat(tmp_path):
     assert figure_of(stored, "heat-network").axes[0].get_title(loc="left").startswith("Heat: oil")
     page = ep.report_html(stored)
     assert "Where the heat leaves" in page
-    assert "Paths of the heat" in page
+    assert "Heat paths" in page
     assert 'id="figure-heat-network-1"' in page
     assert "The oil is at its inlet temperature at all contacts." not in page
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import replace
 
@@ -12,7 +13,9 @@ import epicyclic as ep
 from epicyclic import library
 from epicyclic.kernels.journal_bearing import journal_pressure
 from epicyclic.losses.journal_bearing import (
+    TOUCHING,
     JournalBearing,
+    film_force,
     film_viscosity,
     friction_variable,
     loaded_journal,
@@ -59,14 +62,15 @@ def test_finite_bearing(slenderness, eps, S, friction, degrees):
 def test_two_grooves_of_lund_and_thomsen(slenderness, S, eps, degrees):
     """J. W. Lund and K. K. Thomsen (1978), second hand: grooves of 20 degrees across the load."""
     phi = math.radians(degrees)
+    grid = 2 * math.pi * np.arange(240) / 240, np.linspace(-1, 1, 25)
     for _ in range(4):
-        grooves = math.pi - phi + np.array([-math.pi / 2, math.pi / 2])
-        towards, across, _, sweeps = journal_pressure(
-            eps, slenderness, 240, 12, grooves, math.radians(10), 1e-6, 5000
+        grooves = np.array([-math.pi / 2, math.pi / 2]) - phi
+        force, _, _, sweeps = journal_pressure(
+            complex(eps), 0j, slenderness, *grid, grooves, math.radians(10), 1e-6, 5000
         )
         assert sweeps > 0
-        phi = math.atan2(across, towards)
-    assert 1 / (6 * math.pi * math.hypot(towards, across)) == pytest.approx(S, rel=0.03)
+        phi = -cmath.phase(force)
+    assert 1 / (6 * math.pi * abs(force)) == pytest.approx(S, rel=0.03)
     assert math.degrees(phi) == pytest.approx(degrees, rel=0.03)
 
 
@@ -79,6 +83,95 @@ def test_short_bearing():
     assert pytest.approx(short, rel=0.02) == S
     assert math.tan(phi) == pytest.approx(math.pi * math.sqrt(1 - eps**2) / (4 * eps), rel=0.02)
     assert flow == pytest.approx(eps, rel=0.01)
+
+
+def test_short_bearing_tilted_along_the_line_of_centres():
+    """h^3 dP/dzeta + A = (L/D)^2 times the integral of dh/dtheta, for each angle by itself."""
+    middle, tilt, slenderness = 0.53, 0.21, 0.04
+    theta = math.pi * (np.arange(400) + 0.5)[:, None] / 400 - math.pi  # where the film narrows
+    ends = np.linspace(-1, 1, 801)
+    zeta, step = (ends[1:] + ends[:-1]) / 2, ends[1] - ends[0]
+    film = 1 - (middle + tilt * zeta) * np.cos(theta)
+    dragged = slenderness**2 * (middle * zeta + tilt * zeta**2 / 2) * np.sin(theta)
+    carried = (dragged / film**3).sum(axis=1) / (1 / film**3).sum(axis=1)
+    P = np.cumsum((dragged - carried[:, None]) / film**3, axis=1) * step
+    push = P * np.exp(1j * theta) * (math.pi / 400) * step / 2
+    force, moment, _ = film_force(middle, complex(tilt), slenderness)
+    assert force == pytest.approx(push.sum(), rel=0.01)
+    assert moment == pytest.approx((push * ends[1:]).sum(), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("middle", "tilt", "slenderness"), [(0.7, 0.25j, 0.5), (0.85, 0.1 + 0.07j, 1.3)]
+)
+def test_tilted_film(middle, tilt, slenderness):
+    """Against a fine grid, and mirrored: the force is even in the tilt, the moment odd."""
+    force, moment, flow = film_force(middle, tilt, slenderness)
+    grid = 2 * math.pi * np.arange(160) / 160, np.linspace(-1, 1, 61)
+    fine = journal_pressure(
+        complex(middle), complex(tilt), slenderness, *grid, np.zeros(0), 0.0, 1e-7, 5000
+    )
+    assert (force, moment, flow) == (
+        pytest.approx(fine[0], rel=0.01), pytest.approx(fine[1], rel=0.01),
+        pytest.approx(fine[2], rel=0.02),
+    )  # fmt: skip
+    mirrored = film_force(middle, -tilt, slenderness)
+    assert mirrored == pytest.approx((force, -moment, flow), rel=1e-7)
+    turned = film_force(middle * 1j, tilt * 1j, slenderness)
+    assert turned == pytest.approx((force * 1j, moment * 1j, flow), rel=1e-6)
+    assert abs(film_force(middle, 0j, slenderness)[1]) < 1e-9 * abs(force)
+
+
+COUPLE = 0.04j * 9e5 * 0.39  # As if the load stood 4 % of the length beside the middle.
+
+
+def test_couple_tilts_a_pin():
+    aligned = solve_journal(PIN, 9e5, 30 * RPM, STATE, CAPACITY)
+    tilted = solve_journal(PIN, 9e5, 30 * RPM, STATE, CAPACITY, COUPLE)
+    end = cmath.rect(tilted.tilt * 0.39 / 2 / (0.35e-3 / 2), tilted.tilt_direction)
+    middle = cmath.rect(tilted.eccentricity, tilted.attitude)
+    narrowest = 0.35e-3 / 2 * (1 - max(abs(middle - end), abs(middle + end)))
+    assert tilted.film == pytest.approx(narrowest, rel=1e-9)
+    assert tilted.film < aligned.film / 2
+    assert tilted.moment_share == 1
+    assert tilted.watts > aligned.watts
+    rise = tilted.temperature - STATE.temperature
+    flow = STATE.density * CAPACITY * tilted.side_flow
+    assert rise * (2 * flow + PIN.conductance) == pytest.approx(tilted.watts, rel=1e-6)
+
+
+@pytest.mark.parametrize("speed", [3, 30, 300])  # rpm, from mixed friction on
+def test_no_couple_is_the_limit_of_a_small_one(speed):
+    aligned = solve_journal(PIN, 9e5, speed * RPM, STATE, CAPACITY)
+    assert solve_journal(PIN, 9e5, speed * RPM, STATE, CAPACITY, 0j) == aligned
+    nearly = solve_journal(PIN, 9e5, speed * RPM, STATE, CAPACITY, COUPLE * 1e-5)
+    assert nearly.watts == pytest.approx(aligned.watts, rel=1e-5)
+    assert nearly.film == pytest.approx(aligned.film, rel=1e-3)
+    assert 0 < nearly.tilt < 1e-7
+
+
+def test_mirrored_couples_tilt_alike():
+    load = 9e5, 30 * RPM, STATE, CAPACITY
+    couple = COUPLE * cmath.exp(0.5j)
+    found = solve_journal(PIN, *load, couple)
+    for other in (
+        solve_journal(PIN, *load, -couple),
+        solve_journal(PIN, 9e5, -30 * RPM, STATE, CAPACITY, couple.conjugate()),
+    ):
+        assert other.watts == pytest.approx(found.watts, rel=1e-6)
+        assert (other.film, other.tilt) == pytest.approx((found.film, found.tilt), rel=1e-5)
+
+
+def test_an_edge_limits_what_the_film_holds():
+    held = []
+    for factor in (3.3, 7.1):
+        found = solve_journal(PIN, 9e5, 30 * RPM, STATE, CAPACITY, COUPLE * factor)
+        assert found.film == pytest.approx(TOUCHING * 0.35e-3 / 2, rel=1e-6)
+        held.append(found.moment_share * factor)
+    assert held[0] == pytest.approx(held[1], rel=1e-5)
+    assert 1 < held[0] < 3.3
+    again = solve_journal(PIN, 9e5, 30 * RPM, STATE, CAPACITY, COUPLE * 7.1, found)
+    assert again.watts == pytest.approx(found.watts, rel=1e-6)
 
 
 def test_concentric_pin_loses_as_petroff_says():
@@ -187,6 +280,11 @@ def test_planets_on_plain_pins_in_a_case(plain):
     friction = watts / (count * bearing.radial_force * sliding)
     assert film.friction_coefficient == pytest.approx(friction, rel=1e-4)
     assert 0 < film.eccentricity < 1
+    assert film.tilt > 0
+    assert any("the couple of" in note and "by the teeth" in note for note in result.notes)
+    spur = ep.solve(plain.updated({"gears.helix_angle": "0 deg"}))
+    assert spur.parts["planet_bearing_film"].tilt == 0
+    assert not any("the couple of" in note for note in spur.notes)
     powers = [member.power for member in result.flow.members.values()]
     assert sum(powers) == pytest.approx(result.total, rel=1e-10)
 

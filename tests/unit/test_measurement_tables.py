@@ -51,6 +51,14 @@ def test_a_table_is_read_with_its_units(read):
     }
 
 
+def test_an_efficiency_is_of_the_power_that_enters(read):
+    """With negative torque it enters at the other shaft: more than at this one."""
+    text = "speed [rpm],torque [N*m],temperature [degC],efficiency [%]\n"
+    found = read(f"{text}1000,500,90,98.3\n1000,-300,90,97.1\n").loss
+    powers = np.array([500, 300]) * 1000 * np.pi / 30
+    assert found == pytest.approx(powers * [1 - 0.983, 1 / 0.971 - 1])
+
+
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 @pytest.mark.parametrize("newline", ["\n", "\r\n"])
 def test_separators_and_line_ends_are_recognised(read, separator, newline):

@@ -223,9 +223,7 @@ def test_all_points_at_once_give_the_same():
     pressure = np.array([0.3e9, 1e9, 2e9])
     rest = (8.0, 0.006, 12e-9, 2.3e-3, 0.14e-6, STEEL)
     each = [mixed_ehl.needle_rolling_loss(p_h, *rest) for p_h in pressure]
-    speed, viscosity, slope, radius, *others = rest
-    alike = np.full(3, speed), viscosity, slope, np.full(3, radius), *others
-    assert mixed_ehl.needle_rolling_loss_at(pressure, *alike) == pytest.approx(
+    assert mixed_ehl.needle_rolling_loss_at(pressure, *rest) == pytest.approx(
         each, rel=TRANSCRIPTION
     )
 

@@ -9,6 +9,7 @@ from click.testing import CliRunner
 import epicyclic as ep
 from epicyclic.cli.main import cli
 from epicyclic.study.maps.compute import resolving_zero
+from epicyclic.study.maps.tables import make_lookup
 
 COARSE = {"numerics.pocket_slices": 6, "numerics.pocket_steps": 10}
 
@@ -16,6 +17,14 @@ COARSE = {"numerics.pocket_slices": 6, "numerics.pocket_steps": 10}
 @pytest.fixture(scope="module")
 def case():
     return ep.load_case("talbot-2012").updated(COARSE)
+
+
+def test_losses_at_rest_are_shared_as_at_the_nearest_speed_rather_forward(case):
+    data = ep.loss_map(case, ["-90 rpm", "0 rpm", "90 rpm"], ["170 N*m"], jobs=1)
+    torques = make_lookup(data).torques.squeeze()
+    back, rest, ahead = (torques / torques.sum(axis=0)).T
+    assert rest == pytest.approx(ahead, rel=1e-12)
+    assert rest != pytest.approx(back, rel=1e-4)
 
 
 def test_torques_crowd_on_each_side_that_reaches_zero():

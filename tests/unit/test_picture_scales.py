@@ -20,7 +20,7 @@ from epicyclic.show.plots.arrangement import arrangement_of
 from epicyclic.show.plots.catalogue import draw, figure_of
 from epicyclic.show.plots.drawing import plot_gear_set
 from epicyclic.show.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
-from epicyclic.show.plots.losses import plot_loss_sum, plot_losses
+from epicyclic.show.plots.losses import banded, plot_loss_sum, plot_losses
 from epicyclic.show.plots.mesh import (
     mesh_figure,
     plot_along_path,
@@ -336,3 +336,24 @@ def test_sets_and_shafts_of_a_train_lie_where_the_case_has_them():
     assert found.starts["middle"] == pytest.approx(5.0)  # its gear stands at 35 mm
     assert found.middles["planets"] > 40.0 + (30.0 + 36.0) / 2
     assert found.assumed == ("planets",)
+
+
+def test_losses_that_would_read_nothing_are_drawn_together(talbot_record):
+    contents = talbot_record.result
+    tiny = {"sun_drag": 0.13, "carrier_drag": 0.21}
+    few = replace(
+        contents,
+        terms=tuple(replace(it, watts=tiny.get(it.name, it.watts)) for it in contents.terms),
+    )
+    ax = plot_loss_sum(few, axes())
+    names = [text.get_text() for text in ax.get_yticklabels()]
+    assert not {"sun drag", "carrier drag"} & set(names)
+    assert names[-2:] == ["others", "total"]
+    assert ax.texts[len(names) - 2].get_text() == "0"
+    assert ax.patches[-1].get_width() == pytest.approx(few.total)
+
+
+def test_an_efficiency_that_is_nothing_has_no_band(talbot_record):
+    data = talbot_record.group("uncertainty")["result"]
+    assert banded(data) == ("total", "efficiency")
+    assert banded(data.assign({end: 0 * data[end] for end in ("low", "high")})) == ("total",)

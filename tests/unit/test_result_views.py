@@ -106,7 +106,7 @@ def test_files_of_a_result(result, tmp_path):
     assert (tmp_path / "kept.html").read_text().startswith("<!DOCTYPE html>")
     with pytest.raises(ep.InputError, match=r"must end in \.nc, \.json, \.html, \.pdf"):
         result.save(tmp_path / "kept.docx")
-    with pytest.raises(ep.InputError, match="cannot hold a file"):
+    with pytest.raises(ep.InputError, match="lies in a folder that does not exist"):
         result.save(tmp_path / "nowhere" / "kept.json")
     assert len(list(tmp_path.iterdir())) == 3
 

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
+from epicyclic.plugins.rexs.exporting import train_parts
+from epicyclic.plugins.rexs.model import Component
 from rexs_files import (
     CASING,
     DRIVEN,
@@ -521,3 +523,15 @@ def test_train_without_unit_and_names(read):
     assert needed(found) == {
         "operation.oil_inlet_temperature", "operation.speeds", "lubricant.oil",
     }  # fmt: skip
+
+
+def test_bearings_without_a_name_there_are_written_without_their_type():
+    changed = {"shaft": "motor", "position": "0 mm", "designation": "7207 B", "locating": True}
+    case = ep.load_case("train-eaxle").updated({"bearings.motor_front": changed})
+    bearings = {
+        part.name: part.get("bearing_type")
+        for part in train_parts(case)
+        if isinstance(part, Component) and part.type.startswith("rolling_bearing_with_catalog")
+    }
+    assert bearings["motor_front"] is None
+    assert bearings["motor_rear"].text() == "radial_roller_bearing"

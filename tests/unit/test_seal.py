@@ -70,6 +70,8 @@ def test_linke_over_temperature_and_viscosity():
 
     assert loss(40, 100) > loss(60, 100) > loss(100, 100) > 0
     assert loss(60, 320) > loss(60, 100) > loss(60, 32)
+    # lg lg (9.2 + 0.8) = 0
+    assert linke_bracket(313.15, 9.2e-6) == pytest.approx(145 - 1.6 * 40)
     # 10 K less: 16 in the bracket
     assert linke_bracket(323.15, VG_100) - linke_bracket(333.15, VG_100) == pytest.approx(16.0)
 

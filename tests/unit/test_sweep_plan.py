@@ -167,3 +167,17 @@ def test_values_with_the_same_fault_are_one_problem(case):
         make_plan(case, {"operation.speed": [1000.0, "2000 rpm", 3000.0, 4000.0, "5 kg"]})
     bare, wrong = caught.value.problems
     assert (bare.value, wrong.value) == ("1000.0 and 2 more", '"5 kg"')
+
+
+@pytest.mark.parametrize(
+    ("option", "told"),
+    [
+        ("operation.speed=700:4300:5", 'has no unit. Write "700:4300:5 rpm".'),
+        ("operation.torque=15,80", 'has no unit. Write "15,80 N*m".'),
+        ("operation.speed=700:4300 rpm", "must be a,b,c or start:stop:count. Give all three"),
+    ],
+)
+def test_values_without_what_they_need_are_told_as_they_were_written(case, option, told):
+    with pytest.raises(ep.InputError) as error:
+        parse_vary(case, [option])
+    assert told in str(error.value)

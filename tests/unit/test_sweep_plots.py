@@ -63,7 +63,7 @@ def test_a_field_is_over_two_keys_of_numbers(data):
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("speed, rpm", "torque, N·m")
     (field,) = (one for one in ax.collections if isinstance(one, QuadMesh))
     wanted = 100 * data["efficiency"].sel(models_friction="schlenk")
-    wanted = wanted.transpose("operation.torque", "operation.speed")
+    wanted = wanted.transpose("torque", "speed")
     np.testing.assert_array_equal(np.asarray(field.get_array()).ravel(), wanted.values.ravel())
 
 

@@ -266,7 +266,7 @@ def test_a_loss_follows_from_two_torques(talbot):
 
 
 def test_a_table_may_be_long(tmp_path):
-    rows = 150_000
+    rows = 70_000
     buffer = io.StringIO()
     frame = pd.DataFrame({"time [s]": np.arange(rows), "speed [rpm]": 7.5, "torque [N*m]": 3.5})
     frame.to_csv(buffer, index=False, sep=";", decimal=",")

@@ -56,6 +56,12 @@ def test_printed_spans(teeth, shift, count, printed):
     assert measures.usual_span_teeth(found) == count
 
 
+@pytest.mark.parametrize("count", [3, 8])
+def test_the_span_of_a_ring_is_that_of_the_teeth_that_fill_its_spaces(count):
+    ring, fills = (gear(1.75e-3, 61, shift, internal=shift > 0) for shift in (0.23, -0.23))
+    assert measures.span(ring, count) == pytest.approx(measures.span(fills, count), rel=1e-12)
+
+
 def test_printed_dimension_over_balls():
     # MESYS AG, online calculation of helical gears: module 1 mm, 20 teeth, balls of 1.7 mm,
     # radial dimension 11.1471 mm; span over 2 teeth 4.7083 mm, touched at 19.3746 mm

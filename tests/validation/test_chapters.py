@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -264,8 +266,19 @@ def test_every_figure_belongs_to_one_chapter():
     assert chapters.CHAPTERS["3"][:2] == ("3.3", "3.4")
     assert len(chapters.CHAPTERS["4"]) == 6
     assert len(chapters.CHAPTERS["5"]) == 12
-    known = {compare._topic(item) for item in published_figures()}
-    assert set(chapters.TOPICS.values()) <= known
+
+
+def test_numbers_belong_to_the_chapter_that_prints_them(monkeypatch):
+    monkeypatch.setattr(compare, "_compare", lambda figure: figure)
+    found = {name: compare_published(lambda *_: None, *it) for name, it in chapters.TOPICS.items()}
+    first = {"2": 19, "3": 55, "4": 92, "5": 125, "": 170}
+    for (name, begins), (_, ends) in itertools.pairwise(first.items()):
+        stated = [re.search(r"p\. (\d+)", figure["source"]) for figure in found[name]]
+        pages = [int(page[1]) for page in stated if page]
+        assert pages
+        assert all(begins <= page < ends for page in pages)
+    tests = [it for it in published_figures() if compare._topic(it) == chapters.TOPICS["2"][0]]
+    assert len(found["2"]) + len(found["5"]) == len(tests)
 
 
 def test_a_topic_is_compared_alone():

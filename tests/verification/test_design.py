@@ -387,7 +387,7 @@ def test_ten_thousand_candidates_are_screened_in_two_minutes():
     assert time.perf_counter() - start < 120
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_search_finds_what_brute_force_finds():
     raw = task_of("pair", ratio=3.1, pinion_teeth=[17, 31], distance_shift=[0.0, 0.3])
     raw["choices"]["module"] = ["1.25 mm", "1.5 mm", "2 mm"]

@@ -8,6 +8,8 @@ import pytest
 
 import asymmetric
 import epicyclic as ep
+from epicyclic.build.machine import build
+from epicyclic.machine.gear_mesh import elastic_loads
 
 ROUNDING = 1e-9  # the same numbers in another order
 MODELS = [
@@ -52,6 +54,22 @@ def test_a_pair_with_its_gears_exchanged_loses_the_same(friction):
     one, two = ep.solve(ep.load_case(tables)), ep.solve(ep.load_case(exchanged(tables)))
     for name in ("mesh_sliding", "mesh_rolling", "mesh_pocketing", "drag"):
         assert two.losses[name] == pytest.approx(one.losses[name], rel=ROUNDING), name
+
+
+def test_misaligned_teeth_carry_at_the_end_of_the_face_where_contact_begins():
+    """It begins at the other end if the gear drives."""
+    changes = {"mesh.misalignment": "37 um", "models.load_distribution": "compliance"}
+    case = ep.load_case(asymmetric.gear_pair()).updated(changes)
+    middles = []
+    for torque in ("187 N*m", "-187 N*m"):
+        built = build(case.updated({"operation.torque": torque}))
+        (duty,) = built.loaded_duties(built.loaded_state()).values()
+        loads = elastic_loads(duty)
+        force = loads.line_load * loads.lines.length
+        middle = float((force * loads.lines.face_position).sum() / force.sum())
+        middles.append(middle / duty.gears.mesh.face_width)
+    assert middles[0] < 0.4
+    assert middles[1] > 0.6
 
 
 def test_a_pair_with_its_gears_exchanged_is_as_warm():

@@ -144,6 +144,32 @@ def test_formulas_fitted_by_the_oil_take_the_oil(friction, changes_it):
     assert same is not changes_it
 
 
+def test_flank_rises_by_the_loss_of_one_of_its_meshes():
+    """7400 (P/(a b))^0.72/1.2 of ISO/TS 6336-22, P of one of the planets, in kW and mm."""
+    changes = {"models.temperatures": "flank", "thermal.bulk": "iso-6336-22"}
+    case = ep.load_case(planetary()).updated(changes | {"thermal.lubrication": "dip"})
+    result, geometries = ep.solve(case), case.gearings[""].geometries
+    sun, ring = (
+        7400 / 1.2
+        * (result.losses[f"{key}_sliding"] / 1e3 / case.planet.count
+           / (1e6 * mesh.center_distance * mesh.face_width)) ** 0.72
+        for key, mesh in zip(("sun_mesh", "ring_mesh"), geometries, strict=True)
+    )  # fmt: skip
+    inlet = case.operation.oil_inlet_temperature
+    rises = {node: value - inlet for node, value in result.heat.temperatures.items()}
+    assert rises == pytest.approx({"sun": sun, "planet": (sun + ring) / 2, "ring": ring}, rel=1e-4)
+
+
+def test_oil_of_jets_that_meets_one_part_cools_no_other():
+    case = ep.load_case(planetary()).updated(FLOW)
+    even, given = (
+        ep.solve(case.updated(changes)).heat.temperatures
+        for changes in ({}, {"thermal.jet_shares": {"sun": 0.8}})
+    )
+    assert given["sun"] < even["sun"] - 0.1
+    assert given["ring"] > even["ring"] + 0.1
+
+
 def test_heat_of_sliding_goes_where_it_is_carried_away():
     """A gear of a material that takes up heat more readily gets more of it."""
     tables = planetary()

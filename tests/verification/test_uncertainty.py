@@ -16,7 +16,7 @@ from epicyclic.errors import InputError
 from epicyclic.losses.pocket_tables import FlowFamily
 from epicyclic.show.plots.catalogue import available
 from epicyclic.study.bands.inputs import uncertain_values
-from epicyclic.study.bands.plan import look_nearby
+from epicyclic.study.bands.plan import at_deviations, look_nearby
 from epicyclic.study.bands.samples import (
     cut_off,
     make_samples,
@@ -57,7 +57,7 @@ def case():
 
 @pytest.fixture(scope="module")
 def study(case):
-    return ep.uncertainty(case, samples=64, jobs=1)
+    return ep.uncertainty(case, samples=16, jobs=1)
 
 
 def test_indices_of_the_function_of_ishigami():
@@ -174,7 +174,9 @@ def test_each_input_moves_the_losses_that_depend_on_it(study):
     assert float(pinion) != pytest.approx(float(gear), rel=0.05)
 
 
-def test_the_quick_band_is_that_of_many_samples(case, study):
+@pytest.mark.slow
+def test_the_quick_band_is_that_of_many_samples(case):
+    study = ep.uncertainty(case, samples=64, jobs=1)
     band = quick_dataset(case, ep.solve(case))
     quick, total = (data.sel(result="total") for data in (band, study))
     width = float(total["high"] - total["low"])
@@ -314,6 +316,12 @@ def test_a_cycle_is_compared_with_the_same_draw_at_all_its_points(case):
 def test_spreads_are_those_of_scipy(value, whole):
     assert standard_uncertainty(value) == pytest.approx(whole.std(), rel=1e-12)
     assert cut_off(value) == pytest.approx(whole.cdf(value.low) + whole.sf(value.high), rel=1e-12)
+
+
+@pytest.mark.parametrize("value", [normal("x", 3.1, 0.7), uniform("x", 1.2, 4.9)])
+def test_values_some_deviations_off_are_so_many_standard_uncertainties_off(value):
+    found = at_deviations(value, np.array([-1.3, 0.0, 0.8]))
+    assert (found - value.value) / standard_uncertainty(value) == pytest.approx([-1.3, 0.0, 0.8])
 
 
 def test_values_that_cannot_be_are_cut_off_and_told(case):

@@ -15,10 +15,10 @@ from epicyclic.cli.main import cli
 from epicyclic.errors import InputError
 from epicyclic.show.html import report_html
 from epicyclic.show.uncertainty_tables import LIMITS, uncertainty_items
+from epicyclic.study.bands.plan import Outputs
+from epicyclic.study.bands.points import Energies
 from epicyclic.study.bands.samples import fit_curves, index_values, make_samples
 from epicyclic.study.sweeps.run import write_dataset
-
-pytestmark = pytest.mark.slow
 
 ISOLATED = {
     "losses.mesh_pocketing.include": False,
@@ -65,6 +65,7 @@ def at(case, speed, torque, celsius="55"):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "torque", "celsius"), [(2700, 190, 0), (2700, -70, 55)])
 def test_a_point_of_a_map_is_as_uncertain_as_the_case_there(case, over_map, speed, torque, celsius):
     alone = ep.uncertainty(at(case, speed, torque, celsius), samples=32, jobs=1)
@@ -78,6 +79,7 @@ def test_a_point_of_a_map_is_as_uncertain_as_the_case_there(case, over_map, spee
     )
 
 
+@pytest.mark.slow
 def test_the_torque_loss_has_a_band_at_rest_where_no_power_is_lost(over_map):
     rest = over_map.sel(speed=0, torque=190, temperature=55)
     assert rest["high"].sel(result="total") == 0
@@ -92,6 +94,7 @@ def test_the_torque_loss_has_a_band_at_rest_where_no_power_is_lost(over_map):
     )
 
 
+@pytest.mark.slow
 def test_drivers_over_a_map_are_those_of_the_indices_at_a_point(case, over_map):
     alone = ep.uncertainty(at(case, 2700, 190), samples=512, jobs=1)
     point = over_map.sel(speed=2700, torque=190, temperature=55)
@@ -102,6 +105,7 @@ def test_drivers_over_a_map_are_those_of_the_indices_at_a_point(case, over_map):
     assert float(exact.max()) > 0.3
 
 
+@pytest.mark.slow
 def test_what_limits_the_trust_in_a_map_is_told_where_it_is_largest(over_map):
     (advice,) = (it for it in uncertainty_items(over_map) if it.title == LIMITS)
     mean = (over_map["first_order"] * over_map["total"]).sum(over_map["total"].dims)
@@ -117,6 +121,7 @@ def test_what_limits_the_trust_in_a_map_is_told_where_it_is_largest(over_map):
     assert 1 <= len(advice.items) <= 3
 
 
+@pytest.mark.slow
 def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path):
     write_dataset(over_map, tmp_path / "band.nc")
     read = ep.open_result(tmp_path / "band.nc")
@@ -134,6 +139,7 @@ def test_a_map_with_its_uncertainty_remains_a_map(plain_map, over_map, tmp_path)
     assert "95 % band of the total loss" not in report_html(plain_map)
 
 
+@pytest.mark.slow
 def test_energies_are_sums_of_the_same_samples_at_all_points(case):
     cycle = {name: [*column[:2], column[3]] for name, column in CYCLE.items()}
     over_cycle = ep.uncertainty(case, cycle, samples=16, jobs=1)
@@ -158,6 +164,7 @@ def test_energies_are_sums_of_the_same_samples_at_all_points(case):
     assert str(total["unit"].values) == "kJ"
 
 
+@pytest.mark.slow
 def test_some_points_stand_for_a_long_cycle(case):
     number = np.arange(40)
     cycle = {
@@ -179,6 +186,7 @@ def test_some_points_stand_for_a_long_cycle(case):
     assert float(some["curves_explain"]) > 0.98
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cycle", [None, CYCLE], ids=["map", "cycle"])
 def test_workers_give_the_same_file(case, plain_map, cycle, tmp_path):
     source = plain_map.isel(temperature=[1]) if cycle is None else case
@@ -189,6 +197,7 @@ def test_workers_give_the_same_file(case, plain_map, cycle, tmp_path):
     assert one.identical(two)
 
 
+@pytest.mark.slow
 def test_groups_are_those_of_a_test_rig_where_the_case_says_so(case):
     """What torque adds is less, and known better, than the sum of what depends on the load."""
     tested = at(case, 2100, 120).updated({"models.load_dependent": "as-tested"})
@@ -231,6 +240,26 @@ def value(key, kind, spread):
     return UncertainValue(key, "", 1.5, kind, (spread,))
 
 
+def test_energies_of_samples_follow_from_losses_at_points():
+    """Two points, power at the shaft in the first and at the other end in the second."""
+    outputs = Outputs(("drag", "sliding"), np.array([False, True]), ("drag", "sliding"))
+    time, shaft = np.array([3.0, 1.7]), np.array([900.0, -400.0])
+    by_map = np.array([[11.0, 7.0], [23.0, 13.0]])  # losses, points
+    losses = by_map.T[:, :, None] * [[1.0, 1.6], [1.0, 0.7]]  # points, losses, samples
+    total = losses.sum(axis=1, keepdims=True)
+    results = np.concatenate([losses, 0 * total, 0 * total, total, 0 * total], axis=1)
+    whole = 3.0 * 900 + 1.7 * (400 + 20)
+    energies = Energies(outputs, ({}, {}), shaft, time, by_map, by_map @ time, whole, True)
+    drag, sliding, dependent, independent, lost, efficiency = energies.of(results)
+    assert drag == pytest.approx(np.array([1.0, 1.6]) * 44.9e-3)  # kJ
+    assert sliding == pytest.approx(np.array([1.0, 0.7]) * 91.1e-3)
+    assert dependent == pytest.approx(sliding)
+    assert independent == pytest.approx(drag)
+    assert lost == pytest.approx(drag + sliding)
+    entering = 3.0 * 900 + 1.7 * (400 + total[1, 0])
+    assert 1 - efficiency == pytest.approx(1e3 * lost / entering)
+
+
 def test_curves_meet_products_of_powers():
     """ln P is linear: the indices of one loss are those of a product of lognormal factors."""
     values = [value("a", "lognormal", 1.2), value("model_form.sliding", "lognormal", 1.4)]
@@ -259,6 +288,7 @@ def test_curves_of_too_few_samples_explain_nothing():
     assert np.isnan(fit_curves(mask, samples, drawn.sum(axis=0)[None]).explained)
 
 
+@pytest.mark.slow
 def test_a_key_without_a_distribution_at_some_points_is_told(case):
     shares = {"surroundings.oil_air_ratio": [0.0, 0.3]}
     data = ep.loss_map(case, ["900 rpm"], ["60 N*m"], vary=shares, jobs=1)
@@ -270,6 +300,7 @@ def test_a_key_without_a_distribution_at_some_points_is_told(case):
     assert (found["high"] > found["low"]).sel(result="total").all()
 
 
+@pytest.mark.slow
 def test_what_cannot_be_sampled_is_told(case, plain_map):
     for source, options, message in (
         (case, {"cycle": CYCLE, "temperature": ["40 degC", "50 degC"]}, "must be a single value"),
@@ -282,6 +313,7 @@ def test_what_cannot_be_sampled_is_told(case, plain_map):
             ep.uncertainty(source, **options)
 
 
+@pytest.mark.slow
 def test_the_command_on_a_map(plain_map, over_map, tmp_path):
     ep.write_map(plain_map, tmp_path / "map.nc")
     output, picture = tmp_path / "band.nc", tmp_path / "band.png"

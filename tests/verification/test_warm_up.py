@@ -105,7 +105,10 @@ CASES = {
 }
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(
+    scope="module",
+    params=["talbot-2012", "talbot-2012-pair", pytest.param("train-eaxle", marks=pytest.mark.slow)],
+)
 def warmed(request):
     case = ep.load_case(request.param).updated(CASES[request.param])
     return case, ep.warm_up(case, "12 h")

@@ -56,8 +56,8 @@ def _bearing(
     name: str, table: ShaftBearingTable, bodies: tuple[str, str], oil: Oil, folder: Path
 ) -> ShaftBearing:
     force = None
-    if table.radial_force is not None:
-        force = BearingLoad(radial=table.radial_force, axial=table.axial_force or 0.0)
+    if table.radial_force is not None or table.axial_force is not None:
+        force = BearingLoad(radial=table.radial_force or 0.0, axial=table.axial_force or 0.0)
     return ShaftBearing(
         key=name,
         between=bodies,
@@ -66,6 +66,7 @@ def _bearing(
         force=force,
         minimum_load_factor=table.minimum_load_factor,
         reference_speed=table.reference_speed,
+        limiting_speed=table.limiting_speed,
     )
 
 
@@ -77,7 +78,7 @@ def catalogue_bearing(table: ShaftBearingTable) -> CatalogueBearing:
     dynamic, static, estimated = table.dynamic_load_rating, table.static_load_rating, ""
     if table.designation is not None and (dynamic is None or static is None):
         own = designated(table.designation)
-        estimated = table.designation
+        estimated = table.designation if own.elements else ""
         dynamic = dynamic or own.dynamic_load_rating
         static = static or own.static_load_rating
     return CatalogueBearing(

@@ -83,6 +83,7 @@ from epicyclic.messages import (
     PART_NAME,
     PART_NAME_RULE,
     did_you_mean,
+    either,
     misspelt,
     one_line,
     path_of,
@@ -1033,7 +1034,7 @@ def _build_any(tables: dict[str, Any], source: str, problems: Sequence[Problem] 
         name = misspelt(str(given), KINDS) or max(
             KINDS, key=lambda kind: len(tables.keys() & tables_of(KINDS[kind]).keys())
         )
-        allowed = f"must be {' or '.join(KINDS)}."
+        allowed = f"must be {either(list(KINDS))}."
         if given is None:
             allowed = f"is missing; it {allowed}"
         shown = "" if given is None else written(given)

@@ -269,7 +269,7 @@ class Planet(GearTable):
         "micro_geometry_ring_side": None,
     }
 
-    count: int = Field(ge=1, le=24, description="Number of planets.")
+    count: int = Field(ge=1, le=99, description="Number of planets.")
     angles: tuple[Angle, ...] | None = option(
         "Position of each planet on the carrier. Default: the admissible positions nearest to "
         "equal spacing."

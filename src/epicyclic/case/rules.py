@@ -506,7 +506,8 @@ GIVE_FORCE = "Or give radial_force (and axial_force) of the bearings of this sha
 def needs_force(table: ShaftBearingTable) -> bool:
     """True if the force on a bearing is to be found from those of the gears."""
     by_load = table.table is None or table.table.radial_force is not None
-    return table.radial_force is None and (table.model != "table" or by_load)
+    stated = table.radial_force is not None or table.type.startswith("thrust")
+    return not stated and (table.model != "table" or by_load)
 
 
 def bearing_force_problems(train: TrainCase, complete: bool) -> Iterator[Problem]:

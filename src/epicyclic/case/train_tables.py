@@ -71,7 +71,7 @@ class GivenPlanet(Table):
     """The planets of a set of given efficiency."""
 
     teeth: int | None = option("Default: half the difference of ring and sun.", ge=5, le=2000)
-    count: int = option("Number of planets.", 3, ge=1, le=24)
+    count: int = option("Number of planets.", 3, ge=1, le=99)
 
 
 class GivenGear(Teeth):
@@ -204,7 +204,7 @@ MeshPair = tuple[str, str]
 class _Listed(Table):
     """A set whose gears and meshes are listed."""
 
-    planets: int | None = option("Number of planets of each kind; none: fixed axes.", ge=1, le=24)
+    planets: int | None = option("Number of planets of each kind; none: fixed axes.", ge=1, le=99)
     meshes: tuple[MeshPair, ...] = Field(min_length=1, description="Pairs of gears.")
 
     @classmethod

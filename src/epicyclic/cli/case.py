@@ -26,9 +26,9 @@ from epicyclic.cli.common import (
     show,
 )
 from epicyclic.errors import EXIT_NO_SOLUTION, InputError, Problem, Status
+from epicyclic.messages import either
 
 if TYPE_CHECKING:
-    import xarray as xr
     from rich.console import RenderableType
 
     from epicyclic.case.case import Case
@@ -241,10 +241,10 @@ def heat(
         )
     show(lambda: _tables(solved, result, found), lambda: _json(result, found), json_file)
     if plot is not None:
-        from epicyclic.show.plots.heat_network import heat_figure
+        from epicyclic.show.plots.catalogue import figure_of
+        from epicyclic.show.record import record
 
-        assert result.heat is not None
-        draw(heat_figure(result.heat, result.title), plot, point_of(solved))
+        draw(figure_of(record(solved, result=result, groups=()), "heat-network"), plot)
 
 
 def _check_target(quantity: str, target: str | None) -> None:
@@ -253,8 +253,8 @@ def _check_target(quantity: str, target: str | None) -> None:
     if target is None:
         problem = Problem("--target", "", f"is needed with --solve {quantity}.", 'As in "90 degC".')
     else:
-        remedy = f"Name the quantity to solve for: --solve {', '.join(QUANTITIES[1:])}."
-        problem = Problem("--target", f'"{target}"', "is the quantity to solve for.", remedy)
+        remedy = f"Add --solve {either(QUANTITIES[1:])}."
+        problem = Problem("--target", f'"{target}"', "needs a quantity to solve for.", remedy)
     raise InputError([problem], "the command")
 
 
@@ -280,9 +280,6 @@ def _json(result: Result, found: Found | None) -> str:
 
 
 # The command warm-up: temperatures and losses over time.
-
-
-OUTPUTS = (".nc", ".csv", ".parquet")
 
 
 @click.command("warm-up")
@@ -319,12 +316,13 @@ def warm_up(
     """
     from epicyclic.cli.common import progress_bar
     from epicyclic.files import check_place
-    from epicyclic.show.studies import warm_up_tables
+    from epicyclic.show.studies import warm_up_rows, warm_up_tables
     from epicyclic.show.terminal import terminal
     from epicyclic.study.maps.warm_up import warm_up as compute
+    from epicyclic.study.sweeps.run import FORMATS, write_dataset
 
     if output is not None:
-        check_ending("-o", output, OUTPUTS)
+        check_ending("-o", output, FORMATS)
     for path in (output, plot):
         if path is not None:
             check_place(path)
@@ -332,25 +330,9 @@ def warm_up(
     with progress_bar("warming up") as progress:
         data = compute(loaded, duration, start, cycle=cycle, progress=progress)
     if output is not None:
-        _write(data, output)
+        write_dataset(data, output, warm_up_rows)
     terminal().print(warm_up_tables(data))
     if plot is not None:
         from epicyclic.show.plots.heat_network import warm_up_figure
 
         draw(warm_up_figure(data), plot, f"cycle {cycle}" if cycle else point_of(loaded))
-
-
-def _write(data: xr.Dataset, output: Path) -> None:
-    from epicyclic.files import whole_file
-    from epicyclic.show.studies import warm_up_rows
-    from epicyclic.study.sweeps.run import csv_safe, write_dataset
-
-    if output.suffix == OUTPUTS[0]:
-        write_dataset(data, output)
-        return
-    rows = warm_up_rows(data)
-    with whole_file(output) as file:
-        if output.suffix == OUTPUTS[1]:
-            csv_safe(rows).to_csv(file, index=False)
-        else:
-            rows.to_parquet(file, index=False)

@@ -259,12 +259,9 @@ def check_page(path: Path) -> None:
 
 def write_page(path: Path, page: str) -> None:
     """Write a page as it is, or printed to a PDF."""
-    if path.suffix == PRINT:
-        from epicyclic.show.html import report_pdf
+    from epicyclic.show.html import page_bytes
 
-        write_file(path, report_pdf(page))
-    else:
-        write_file(path, page)
+    write_file(path, page_bytes(page, path.suffix))
     echo(f"Wrote {path}.")
 
 

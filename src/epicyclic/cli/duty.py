@@ -115,7 +115,8 @@ def duty(
         return
     data = _map(map_or_case, changes, checked, celsius, map_file, runner)
     result = with_distance(_result(data, checked, celsius, clamp, runner), distance)
-    _write_table(result, output)
+    if output is not None:
+        _write_table(result, output)
     _show(result, json_file)
 
 
@@ -254,14 +255,11 @@ def _write_map(data: xr.Dataset, map_file: Path) -> None:
     echo(f"Wrote the map to {map_file}.", err=True)
 
 
-def _write_table(result: xr.Dataset, output: Path | None) -> None:
+def _write_table(result: xr.Dataset, output: Path) -> None:
     from epicyclic.show.studies import duty_rows
-    from epicyclic.study.sweeps.run import csv_safe, write_dataset
+    from epicyclic.study.sweeps.run import write_dataset
 
-    if output is not None and output.suffix == _MAP_SUFFIX:
-        write_dataset(result, output)
-    elif output is not None:
-        write_file(output, csv_safe(duty_rows(result)).to_csv(index=False))
+    write_dataset(result, output, duty_rows)
 
 
 def _show(result: xr.Dataset, json_file: str | None) -> None:

@@ -71,9 +71,11 @@ def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
         given = "--minimal" if minimal else "--kind"
         problem = Problem("--like", like, f"conflicts with {given}.", "Give one of them.")
         raise InputError([problem], "the command")
-    if file.exists():
-        problem = Problem("FILE", str(file), "already exists.", "Name another file.")
-        raise InputError([problem], "the command")
+    allowed, remedy = "already exists.", "Name another file."
+    if str(file) in library.names("cases"):  # it would stand in for that from then on
+        allowed, remedy = "is a built-in case.", f"Name a file; --like {file} copies the case."
+    if file.exists() or str(file) in library.names("cases"):
+        raise InputError([Problem("FILE", str(file), allowed, remedy)], "the command")
     if like is not None:
         text = text_like(like)
     else:

@@ -190,17 +190,13 @@ def _cycle_study(
 
 
 def _draw(data: xr.Dataset, plot: Path) -> None:
-    from epicyclic.show.plots.catalogue import about, figure_of
-    from epicyclic.show.plots.losses import band_figure, drivers_figure, shares_figure
+    from epicyclic.show.plots.catalogue import figure_of
 
-    _, point = about(data)
+    names = {"drivers": "drivers", "band": "band"}
     if "explained" in data:
-        draw(shares_figure(data), beside(plot, "drivers"), point)
-        draw(figure_of(data, "loss-band"), beside(plot, "band"))
-        draw(figure_of(data, "loss-band-lines"), beside(plot, "lines"))
-        return
-    draw(drivers_figure(data), beside(plot, "drivers"), point)
-    draw(band_figure(data), beside(plot, "band"), point)
+        names |= {"band": "loss-band", "lines": "loss-band-lines"}
+    for ending, name in names.items():
+        draw(figure_of(data, name), beside(plot, ending))
 
 
 def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:

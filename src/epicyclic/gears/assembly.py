@@ -21,7 +21,7 @@ from epicyclic.messages import millimetres
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
 SAME_PLACE = 1e-7  # Pin radii and overlaps that differ by less are equal: rounding of drawings. [m]
-MOST_PLANETS = 24
+MOST_PLANETS = 99
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""
 
@@ -291,7 +291,6 @@ def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
         if gap > 0 or bodies in seen:
             continue
         seen.add(bodies)
-        apart = ", or move them apart (planet.angles)" if not gearing.listed else ""
         touching = f"neighbouring {one}" if one == two else f"{one} and {two}"
         which = (
             f"the planets overlap: {touching}, by"
@@ -300,7 +299,7 @@ def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
         )
         key = gearing.count_key if gearing.stated_angles is None else "planet.angles"
         allowed = f"{which} {millimetres(-gap)}."
-        yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, close, apart))
+        yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, close))
 
 
 def _gap(
@@ -322,17 +321,12 @@ def _gap(
     return gap
 
 
-def _fewer(
-    gearing: Gearing,
-    sound: Mapping[str, Gear],
-    close: list[tuple[str, str]],
-    other: str,  # What else helps.
-) -> str:
+def _fewer(gearing: Gearing, sound: Mapping[str, Gear], close: list[tuple[str, str]]) -> str:
     """How many planets would not touch."""
     for count in range(MOST_PLANETS, 0, -1):
         places = replace(gearing, count=count, stated_angles=None).planet_angles
         if all(_gap(gearing, sound, places, one, two) > 0 for one, two in close):
-            return f"Use fewer planets (at most {count} fit){other}."
+            return f"Use at most {count} planets, equally spaced."
     return "Shorten their teeth, or change the centre distances."
 
 

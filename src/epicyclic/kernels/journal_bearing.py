@@ -1,7 +1,8 @@
-"""Reynolds' equation for a cylindrical journal bearing of finite width, with rupture of the film.
+"""Reynolds' equation for a journal bearing of finite width, also tilted, with rupture of the film.
 
-The angle runs in the sense of rotation from the widest film, h = 1 + eps cos(theta) over the radial
-clearance; the pressure is over 6 eta omega (R/C)^2; half of the width is solved.
+The angle runs in the sense of rotation; the film over the radial clearance is 1 less the part of
+middle + tilt zeta along the angle, with zeta from -1 to 1 across the width, as complex numbers that
+point to the narrowest film. The pressure is over 6 eta omega (R/C)^2.
 """
 
 from __future__ import annotations
@@ -18,75 +19,84 @@ FloatArray = NDArray[np.float64]
 
 @kernel
 def journal_pressure(
-    eps: float,
+    middle: complex,
+    tilt: complex,
     width: float,  # L/D
-    around: int,  # points around the circumference
-    across: int,  # intervals over half of the width
+    angles: FloatArray,  # of the points around the circumference, rising
+    places: FloatArray,  # of the points across the width, from -1 to 1
     grooves: FloatArray,  # angles of the middle of axial grooves
     half_groove: float,  # half of the angle that each of them takes
     tolerance: float,
     most: int,
-) -> FloatArray:
-    """Forces towards and across the narrowest film, the side flow, and the sweeps taken.
+) -> tuple[complex, complex, float, int]:
+    """Force and moment of the pressure, the flow at both sides, and the sweeps taken.
 
-    Projected over-relaxation: the pressure is nowhere negative, which gives Reynolds' condition
-    where the film ruptures. The sweeps are negative without convergence.
+    Finite volumes, and projected over-relaxation: the pressure is nowhere negative, which gives
+    Reynolds' condition where the film ruptures. The sweeps are negative without convergence.
     """
-    step = 2 * math.pi / around
-    dz = 1.0 / across
-    P = np.zeros((around, across + 1))
-    ahead, behind, side, source = (
-        np.empty(around),
-        np.empty(around),
-        np.empty(around),
-        np.empty(around),
-    )
+    around, across = angles.size, places.size
+    ahead = np.zeros((around, across))
+    side = np.zeros((around, across))
+    dragged = np.zeros((around, across))
+    steps = np.empty(around)
+    cells = np.empty(around)
     closed = np.zeros(around)
     for i in range(around):
-        theta = i * step
-        front = 1 + eps * math.cos(theta + step / 2)
-        back = 1 + eps * math.cos(theta - step / 2)
-        ahead[i] = front**3 / step**2
-        behind[i] = back**3 / step**2
-        side[i] = (1 + eps * math.cos(theta)) ** 3 / (width * dz) ** 2
-        source[i] = (front - back) / step
+        steps[i] = angles[(i + 1) % around] - angles[i] + (2 * math.pi if i == around - 1 else 0.0)
+    for i in range(around):
+        cells[i] = (steps[i] + steps[i - 1]) / 2
         for groove in grooves:
-            apart = (theta - groove + math.pi) % (2 * math.pi) - math.pi
+            apart = (angles[i] - groove + math.pi) % (2 * math.pi) - math.pi
             if abs(apart) <= half_groove:
                 closed[i] = 1.0
-    relaxed = 2 / (1 + math.pi / max(around / 4, 2 * across))
+        here = complex(math.cos(angles[i]), -math.sin(angles[i]))
+        front = here * complex(math.cos(steps[i] / 2), -math.sin(steps[i] / 2))
+        for j in range(across - 1):
+            film = 1 - ((middle + tilt * (places[j] + places[j + 1]) / 2) * here).real
+            side[i, j] = film**3 * cells[i] / ((places[j + 1] - places[j]) * width**2)
+            if j:
+                film = 1 - ((middle + tilt * places[j]) * front).real
+                dragged[i, j] = film * (places[j + 1] - places[j - 1]) / 2
+                ahead[i, j] = film**2 * dragged[i, j] / steps[i]
+    source = np.zeros((around, across))
+    share = np.zeros((around, across))
+    for i in range(around):
+        for j in range(1, across - 1):
+            source[i, j] = dragged[i - 1, j] - dragged[i, j]
+            share[i, j] = 1 / (ahead[i, j] + ahead[i - 1, j] + side[i, j] + side[i, j - 1])
+    relaxed = 2 / (1 + math.pi / max(around / 2, across))
+    P = np.zeros((around, across))
     sweeps = -most
     for sweep in range(1, most + 1):
         change = largest = 0.0
-        for i in range(around):
+        # as on a chessboard, of which the points of one colour do not wait for each other
+        for turn in range(2 * around):
+            i = turn % around
             if closed[i]:
                 continue
             following, before = (i + 1) % around, (i - 1) % around
-            whole = ahead[i] + behind[i] + 2 * side[i]
-            for j in range(across):
-                inner = P[i, j - 1] if j else P[i, 1]
-                wanted = (
-                    ahead[i] * P[following, j]
-                    + behind[i] * P[before, j]
-                    + side[i] * (inner + P[i, j + 1])
-                    - source[i]
-                ) / whole
-                new = max(0.0, P[i, j] + relaxed * (wanted - P[i, j]))
-                change = max(change, abs(new - P[i, j]))
+            for j in range(1 + (i + turn // around) % 2, across - 1, 2):
+                wanted = share[i, j] * (
+                    ahead[i, j] * P[following, j]
+                    + ahead[before, j] * P[before, j]
+                    + side[i, j] * P[i, j + 1]
+                    + side[i, j - 1] * P[i, j - 1]
+                    + source[i, j]
+                )
+                last = P[i, j]
+                new = max(0.0, last + relaxed * (wanted - last))
+                change = max(change, abs(new - last))
                 largest = max(largest, new)
                 P[i, j] = new
         if change <= tolerance * largest:
             sweeps = sweep
             break
-    towards = across_it = flow = 0.0
+    force, moment, flow = 0j, 0j, 0.0
     for i in range(around):
-        theta = i * step
-        mean = 0.5 * P[i, 0]
-        for j in range(1, across):
-            mean += P[i, j]
-        mean *= dz
-        towards -= mean * math.cos(theta) * step
-        across_it += mean * math.sin(theta) * step
-        slope = (4 * P[i, across - 1] - P[i, across - 2]) / (2 * dz)
-        flow += (1 + eps * math.cos(theta)) ** 3 * slope * step
-    return np.array([towards, across_it, flow / (2 * width**2), float(sweeps)])
+        outward = complex(math.cos(angles[i]), math.sin(angles[i]))
+        for j in range(1, across - 1):
+            push = outward * P[i, j] * cells[i] * (places[j + 1] - places[j - 1]) / 4
+            force += push
+            moment += push * places[j]
+        flow += side[i, 0] * P[i, 1] + side[i, across - 2] * P[i, across - 2]
+    return force, moment, flow / 4, sweeps

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,6 +88,28 @@ class MeshContact(LineContacts):
         return self.force * self.speed1 * self.mesh.gear1.base_radius
 
 
+class _Touching(NamedTuple):
+    """What of the contact lines can carry load, whatever the load is, each of shape (n,)."""
+
+    place: NDArray[np.intp]  # Among all segments.
+    curvature1: FloatArray  # Transverse, of member 1 and member 2. [m]
+    curvature2: FloatArray
+    radius: FloatArray  # The others as of `MeshContact`.
+    weight: FloatArray
+    path: FloatArray
+
+
+@lru_cache(maxsize=64)
+def _touching(mesh: Mesh, lines: ContactLines) -> _Touching:
+    place = np.flatnonzero(lines.length > 0)
+    rho1, rho2 = lines.curvature1.ravel()[place], lines.curvature2.ravel()[place]
+    weight = (lines.weight[:, None, None] * lines.length).ravel()[place]
+    found = (place, rho1, rho2, mesh.equivalent_radius(rho1), weight, rho1 - mesh.pitch_point)
+    for values in found:
+        values.flags.writeable = False
+    return _Touching(*found)
+
+
 def mesh_contact(
     mesh: Mesh,  # The mesh and its contact lines.
     lines: ContactLines,  # The mesh and its contact lines.
@@ -100,10 +122,14 @@ def mesh_contact(
     around: OilState | None = None,  # Oil around the gears, if its temperature differs.
 ) -> MeshContact:
     """Conditions at the loaded segments of `lines`. Theory (C2)."""
-    loaded = (lines.length > 0) & (line_load > 0)
+    touching = _touching(mesh, lines)
+    load = line_load.ravel()[touching.place]
+    loaded = load > 0
+    if not loaded.all():
+        kept: list[Any] = [values[loaded] for values in touching]
+        touching, load = _Touching(*kept), load[loaded]
     speed2 = speed1 / mesh.ratio
-    rho1, rho2 = lines.curvature1[loaded], lines.curvature2[loaded]
-    u1, u2 = speed1 * rho1, speed2 * rho2
+    u1, u2 = speed1 * touching.curvature1, speed2 * touching.curvature2
     return MeshContact(
         mesh=mesh,
         oil=oil,
@@ -111,10 +137,10 @@ def mesh_contact(
         force=force,
         speed1=speed1,
         speed2=speed2,
-        weight=(lines.weight[:, None, None] * lines.length)[loaded],
-        line_load=line_load[loaded],
-        path=rho1 - mesh.pitch_point,
-        radius=mesh.equivalent_radius(rho1),
+        weight=touching.weight,
+        line_load=load,
+        path=touching.path,
+        radius=touching.radius,
         rolling_speed=(u1 + u2) / 2,
         sliding_speed=u1 - u2,
         around=around,

@@ -140,18 +140,12 @@ def designated(text: str) -> DesignatedBearing:
 
 
 def thrust_bearing(text: str) -> tuple[float, float, float]:
-    """Bore, outside diameter, height of a thrust ball bearing of ISO 104; `KeyError` as above."""
+    """Bore, outside diameter, height of a thrust bearing of ISO 104; `KeyError` as above."""
     name = re.sub(r"[\s.\-]", "", text.upper())
-    sizes = {
-        f"{series}{_code(bore)}": (bore / 1e3, outside / 1e3, height / 1e3)
-        for series, table in _tables()["thrust"].items()
-        for bore, outside, height in zip(
-            table["bore"], table["outside"], table["height"], strict=True
-        )
-    }
-    if name not in sizes:
-        raise KeyError(did_you_mean(name, sizes))
-    return sizes[name]
+    known = {name: one for name, one in _known().items() if one.type.startswith("thrust")}
+    if name not in known:
+        raise KeyError(did_you_mean(name, known))
+    return known[name].bore / 1e3, known[name].outside_diameter / 1e3, known[name].width / 1e3
 
 
 def radial_clearance(bore: float) -> float:
@@ -198,6 +192,10 @@ def _listed() -> Iterator[DesignatedBearing]:
                     rows=kind["rows"][number] if "rows" in kind else 1,
                     series=kind["skf"][number] if "skf" in kind else "",
                 )
+    for number, plan in tables["thrust"].items():  # cylindrical rollers have the sizes of balls
+        for series, kind in ((number, "thrust-ball"), (f"8{number[1:]}", "thrust-roller")):
+            for size in zip(plan["bore"], plan["outside"], plan["height"], strict=True):
+                yield DesignatedBearing(f"{series}{_code(size[0])}", kind, *size)
 
 
 def _code(bore: int) -> str:
@@ -205,8 +203,11 @@ def _code(bore: int) -> str:
 
 
 def with_elements(bearing: DesignatedBearing, diameter: float | None = None) -> DesignatedBearing:
-    """A bearing of sizes in millimetres with the rolling elements that fit, and in metres."""
-    share, fill, length = _ELEMENTS[bearing.type]
+    """A bearing of sizes in millimetres with the rolling elements that fit, and in metres.
+
+    The elements of thrust bearings are left open, and so are their load ratings.
+    """
+    share, fill, length = _ELEMENTS.get(bearing.type, (math.nan, 0.0, math.nan))
     pitch = (bearing.bore + bearing.outside_diameter) / 2
     if diameter is None:
         diameter = share * (bearing.outside_diameter - bearing.bore)
@@ -222,7 +223,7 @@ def with_elements(bearing: DesignatedBearing, diameter: float | None = None) -> 
         pitch_diameter=pitch / 1e3,
         element_diameter=diameter / 1e3,
         element_length=length * bearing.width / bearing.rows / 1e3,
-        elements=int(count),
+        elements=int(np.nan_to_num(count)),
     )
 
 
@@ -246,7 +247,8 @@ def _shaft_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
     keys: dict[str, Any] = {key: f"{1e3 * size:g} mm" for key, size in sizes.items()}
     keys |= {"type": found.type, "cage": found.cage}
     keys |= {"series": found.series} if found.series and raw.get("model") == "skf-2018" else {}
-    if found.contact_angle and not {"axial_factor", "contact_angle"} & raw.keys():
+    stated = found.type == "spherical" or {"axial_factor", "contact_angle"} & raw.keys()
+    if found.contact_angle and not stated:
         keys["contact_angle"] = f"{math.degrees(found.contact_angle):.4g} deg"
     return keys
 
@@ -280,7 +282,7 @@ def _checked(text: str) -> DesignatedBearing:
         return designated(text)
     except KeyError as error:
         reason = "is not known; it must be a size of the ISO plans, such as "
-        reason += '"6208", "NU 2210", "32006", "NKI 40/30"'
+        reason += '"6208", "NU 2210", "32006", "NKI 40/30", "22210", "51107"'
         raise KeyError(reason, error.args[0] or "Give the dimensions instead") from None
 
 

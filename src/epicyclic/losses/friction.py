@@ -142,23 +142,22 @@ def held_in_table(contact: LineContacts, *, oil_held: bool = True) -> LineContac
 
     Without `oil_held` viscosity and pressure-viscosity stay as they are: the formula goes on.
     """
-    return contact.held(_HELD if oil_held else without_oil(_HELD))
+    own = {name: pair for name, pair in _HELD.items() if oil_held or name not in _OIL}
+    return contact.held(own)
 
 
-def without_oil(limits: Limits) -> Limits:
-    """Limits of conditions but for those of the oil."""
-    return {name: pair for name, pair in limits.items() if name not in _OIL}
-
-
-def beyond_data(contact: LineContacts, held: LineContacts) -> FloatArray:
-    """Rolling loss over that of the same contacts with conditions `held`. Theory (R5). [1]
+def beyond_data(
+    load: FloatArray,  # Of every contact, and held within the data. [N/m]
+    held_load: FloatArray,
+    speed: FloatArray | float,  # Rolling speed, likewise. [m/s]
+    held_speed: FloatArray | float,
+) -> FloatArray:
+    """Rolling loss over that of the same contacts held within the data. Theory (R5). [1]
 
     Below the held load the loss falls with the load, so that it vanishes with it; above, it is
     that of the held load. Beyond the held speed the rolling force is that of the held speed.
     """
-    return np.minimum(1.0, contact.line_load / held.line_load) * (
-        contact.rolling_speed / held.rolling_speed
-    )
+    return np.minimum(1.0, load / held_load) * (speed / held_speed)
 
 
 # The published regressions for flanks of unequal roughness.

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,8 +17,15 @@ from epicyclic.units import CELSIUS, NUMBER
 
 ECCENTRICITIES = (0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.9, 0.94, 0.97, 0.985)
 """Eccentricities that are solved. [1]"""
-AROUND, ACROSS = 240, 16
-TOLERANCE, MOST_SWEEPS = 1e-7, 20_000
+AROUND, ACROSS = 48, 20
+"""Points around the circumference, intervals across the width."""
+TOLERANCE, MOST_SWEEPS = 1e-9, 20_000
+_PLACES = -np.cos(np.pi * np.arange(ACROSS + 1) / ACROSS)
+_CLUSTERED = 0.9  # Largest eccentricity to which the spacing of points is fitted. [1]
+TOUCHING = 1e-3
+"""Least film at an edge, over the clearance, down to which a bearing tilts under a moment. [1]"""
+_BALANCED = 1e-7  # Imbalance of forces and heat at which a tilt counts as found. [1]
+_REACH = 0.3  # Offset of a load over length times (1 - eps)^0.5, of which tilts are easily found.
 STEEPEST = 14.0  # Largest |ln(eps/(1 - eps))| that is tried: films of 1e-6 of the clearance. [1]
 # Pressure of asperities over E' after J. A. Greenwood and J. H. Tripp (1971), second hand, for
 # sigma beta eta = 0.05 and sigma/beta = 0.01, usual values of ground steel.
@@ -54,6 +62,10 @@ class JournalBearing:
         """Of the bore. [m]"""
         return self.inner_diameter + self.diametral_clearance
 
+    def rubbing(self, force: float, speed: float) -> float:
+        """Boundary friction under a force. [W]"""
+        return self.boundary_friction * force * abs(speed) * self.inner_diameter / 2
+
     @property
     def slenderness(self) -> float:
         """L/D. [1]"""
@@ -66,7 +78,9 @@ class JournalState:
 
     eccentricity: float  # eps. [1]
     attitude: float  # phi, from the load to the narrowest film. [rad]
-    film: float  # Narrowest, h0. [m]
+    tilt: float  # Of planet and pin against each other. [rad]
+    tilt_direction: float  # From the load to where the film at one edge is narrower by it. [rad]
+    film: float  # Narrowest, h0; of a tilted bearing at an edge. [m]
     film_ratio: float  # The same over the roughness. [1]
     contact_force: float  # Of the asperities. [N]
     temperature: float  # Of the film. [K]
@@ -74,6 +88,7 @@ class JournalState:
     fluid_watts: float  # Of the film, with that. [W]
     contact_watts: float  # [W]
     side_flow: float  # [m^3/s]
+    moment_share: float = 1.0  # Of a tilting moment, what film and asperities hold. [1]
 
     @property
     def watts(self) -> float:
@@ -115,14 +130,30 @@ def journal_curves(slenderness: float) -> _Curves:
     """Solutions of Reynolds' equation for one L/D. Theory (Z1), (Z2)."""
     found = []
     for eps in ECCENTRICITIES:
-        towards, across, flow, sweeps = journal_pressure(
-            eps, slenderness, AROUND, ACROSS, np.zeros(0), 0.0, TOLERANCE, MOST_SWEEPS
-        )
-        assert sweeps > 0, "the relaxation converges for every eccentricity of the list"
-        S = 1 / (6 * math.pi * math.hypot(towards, across))
-        x = math.log(eps / (1 - eps))
-        found.append((x, math.log(S), math.log(across / towards), flow / eps))
+        force, _, flow = film_force(eps, 0j, slenderness)
+        S, x = 1 / (6 * math.pi * abs(force)), math.log(eps / (1 - eps))
+        found.append((x, math.log(S), math.log(-force.imag / force.real), flow / eps))
     return _Curves(*(np.array(column) for column in zip(*found, strict=True)))
+
+
+@lru_cache(maxsize=64)
+def film_force(
+    middle: complex, tilt: complex, slenderness: float
+) -> tuple[complex, complex, float]:
+    """Force and moment of a film, and Q/(omega R C L). Theory (Z1), (Z2), (Z7). [1]
+
+    Of the clearance, `middle` is the way to the narrowest film in the middle of the length, and
+    `tilt` what is added to it up to one edge; angles rise in the sense of rotation. The force is
+    over 6 eta omega R L (R/C)^2, the moment over L/2 times that.
+    """
+    # Sommerfeld's substitution: equal steps of it are short where the film is narrow
+    eps = min(abs(middle), _CLUSTERED)
+    halves = (np.arange(AROUND) + 0.5) * math.pi / AROUND - math.pi / 2
+    angles = cmath.phase(middle) + 2 * np.arctan(math.sqrt((1 - eps) / (1 + eps)) * np.tan(halves))
+    shape = complex(middle), tilt, slenderness, angles, _PLACES, np.zeros(0), 0.0
+    force, moment, flow, sweeps = journal_pressure(*shape, TOLERANCE, MOST_SWEEPS)
+    assert sweeps > 0, "the relaxation converges for every film"
+    return force, moment, flow
 
 
 def sommerfeld_number(slenderness: float, eccentricity: float) -> tuple[float, float, float]:
@@ -142,20 +173,24 @@ def friction_variable(sommerfeld: float, eccentricity: float, attitude: float) -
     return shear + eccentricity * math.sin(attitude) / 2
 
 
-def asperity_force(bearing: JournalBearing, x: float) -> float:
-    """Force of the asperities along the line of centres, at ln(eps/(1 - eps)). Theory (Z4). [N]"""
-    eps, narrowest = 1 / (1 + math.exp(-x)), 1 / (1 + math.exp(x))
+def asperity_force(bearing: JournalBearing, eccentricity: FloatArray) -> FloatArray:
+    """Force of the asperities along the lines of centres, for each eccentricity. Theory (Z4). [N]
+
+    As if they touched so over the whole length.
+    """
+    eps = np.asarray(eccentricity, dtype=np.float64)[..., None]
     # film less the narrowest one, over the clearance, up to where asperities touch
-    room = _CONTACT_FROM * bearing.roughness * 2 / bearing.diametral_clearance - narrowest
-    if room <= 0:
-        return 0.0
-    end = math.acos(max(-1.0, 1 - room / eps))
+    room = _CONTACT_FROM * bearing.roughness * 2 / bearing.diametral_clearance - (1 - eps)
+    if not (room > 0).any():
+        return np.zeros(eps.shape[:-1])
+    end = np.arccos(np.clip(1 - room / eps, -1.0, 1.0))
     theta = _POINTS * end
     touching = (room - eps * (1 - np.cos(theta))) * bearing.diametral_clearance / 2
     scale = _ASPERITIES * bearing.contact_modulus * _F52_FACTOR
     pressure = scale * (np.maximum(touching, 0.0) / bearing.roughness) ** _F52_EXPONENT
     area = bearing.length * bearing.inner_diameter / 2 * end
-    return float((_WEIGHTS * pressure * np.cos(theta)).sum() * area)
+    force: FloatArray = (_WEIGHTS * pressure * np.cos(theta) * area).sum(axis=-1)
+    return force
 
 
 def film_viscosity(oil: OilState, temperature: float) -> float:
@@ -169,8 +204,10 @@ def film_viscosity(oil: OilState, temperature: float) -> float:
 
 def loaded_journal(
     bearing: JournalBearing, force: float, speed: float, viscosity: float
-) -> tuple[float, float, float]:
-    """ln(eps/(1 - eps)), attitude and asperity force under a load. Theory (Z4).
+) -> tuple[float, complex, float]:
+    """ln(eps/(1 - eps)), force of the film and that of asperities under a load. Theory (Z4).
+
+    The force has parts towards and across the narrowest film.
 
     Film and asperities carry together; both rise with the eccentricity. Where neither can, at the
     narrowest film that is tried, the surfaces carry the rest.
@@ -183,14 +220,18 @@ def loaded_journal(
 
     def carried(x: float) -> tuple[complex, float]:
         S, phi, _ = curves.at(x)
-        contact = asperity_force(bearing, x)
-        return complex(scale / S * math.cos(phi) + contact, scale / S * math.sin(phi)), contact
+        return cmath.rect(scale / S, phi), float(asperity_force(bearing, np.array(_share(x))))
 
-    x = _root(lambda x: abs(carried(x)[0]) - force, -STEEPEST, STEEPEST)
-    whole, contact = carried(x)
+    x = _root(lambda x: abs(sum(carried(x))) - force, -STEEPEST, STEEPEST)
+    film, contact = carried(x)
     if x == STEEPEST:
-        contact += force - abs(whole)
-    return x, math.atan2(whole.imag, whole.real) if whole else math.pi / 2, contact
+        contact += force - abs(film + contact)
+    return x, film, contact
+
+
+def _share(x: float) -> float:
+    """Eccentricity at ln(eps/(1 - eps)). [1]"""
+    return 1 / (1 + math.exp(-x))
 
 
 def _root(rising: Callable[[float], float], low: float, high: float) -> float:
@@ -207,47 +248,163 @@ def _root(rising: Callable[[float], float], low: float, high: float) -> float:
 def solve_journal(
     bearing: JournalBearing,
     force: float,  # [N]
-    speed: float,  # Of the planet against its pin. [rad/s]
+    speed: float,  # Of the planet against its pin, from the force to what is across it. [rad/s]
     oil: OilState,  # As it enters.
     heat_capacity: float,  # Of the oil. [J/(kg K)]
+    moment: complex = 0j,  # In the planes of the axis and the force, and across it. [N m]
+    last: JournalState | None = None,  # Under nearly the same load, which saves work.
 ) -> JournalState:
-    """Film, loss and temperature that agree. Theory (Z3), (Z5).
+    """Film, loss and temperature that agree. Theory (Z3), (Z5), (Z7).
 
     The loss warms the oil that leaves at the sides, and pin and planet; the film has the mean of
-    its temperatures at inlet and outlet.
+    its temperatures at inlet and outlet. A moment tilts the bearing.
     """
 
-    def excess(rise: float) -> float:
-        found = _at(bearing, force, speed, oil, oil.temperature + rise)
+    def excess(found: JournalState) -> float:
         flow = oil.density * heat_capacity * (found.side_flow + bearing.oil_flow)
+        rise = found.temperature - oil.temperature
         return rise * (2 * flow + bearing.conductance) - found.watts
 
-    return _at(bearing, force, speed, oil, oil.temperature + _root(excess, 0.0, HOTTEST))
+    def at(rise: float) -> JournalState:
+        return _at(bearing, force, speed, oil, oil.temperature + rise)
+
+    aligned = at(_root(lambda rise: excess(at(rise)), 0.0, HOTTEST))
+    if not (moment and force and speed):
+        return aligned
+    turned = moment if speed > 0 else moment.conjugate()
+    return _tilted(bearing, force, turned, speed, oil, aligned, excess, last)
+
+
+def _tilted(
+    bearing: JournalBearing,
+    force: float,
+    moment: complex,
+    speed: float,
+    oil: OilState,
+    aligned: JournalState,
+    excess: Callable[[JournalState], float],
+    last: JournalState | None,
+) -> JournalState:
+    """The bearing under a moment, from its state without one.
+
+    Film and asperities hold the share of the moment that brings one edge to `TOUCHING`, at most.
+    """
+    from scipy.optimize import root  # cases that are only read need no algebra
+
+    clearance, radius = bearing.diametral_clearance / 2, bearing.inner_diameter / 2
+    arm, warm = bearing.length / 2, max(aligned.temperature - oil.temperature, 1e-3)
+    # so that without a moment the film is that of the curves, which are interpolated
+    S, phi, leaking = sommerfeld_number(bearing.slenderness, aligned.eccentricity)
+    known, _, flowing = film_force(aligned.eccentricity, 0j, bearing.slenderness)
+    fitted, leaked = cmath.rect(1 / (6 * math.pi * S), -phi) / known, leaking / flowing
+
+    def at(unknown: FloatArray, share: float) -> tuple[JournalState, complex, complex]:
+        """State, and force and moment of film and asperities.
+
+        Eccentricities at the edges are unknown, over what they leave of the clearance there, and
+        the logarithm of the rise of the temperature.
+        """
+        odds = unknown[:2] + 1j * unknown[2:4]
+        first, second = odds / (1 + np.abs(odds))
+        middle, tilt = complex(first + second) / 2, complex(second - first) / 2
+        temperature = oil.temperature + warm * math.exp(min(unknown[4], 10.0))
+        eta = film_viscosity(oil, temperature)
+        scale = 6 * eta * abs(speed) * bearing.length * radius * (radius / clearance) ** 2
+        film, turning, flow = film_force(middle, tilt, bearing.slenderness)
+        film, turning = scale * fitted * film, scale * fitted * turning
+        across = (middle * film.conjugate() + tilt * turning.conjugate()).imag
+        slices = middle + tilt * _POINTS
+        size = np.abs(slices)
+        along = _WEIGHTS / 2 * asperity_force(bearing, size)
+        place, contact = (bearing, middle, tilt, across), float(along.sum())
+        state = _state(*place, contact, flow * leaked, speed, eta, temperature)
+        rubbed = along * slices / size
+        held = film + complex(rubbed.sum()), turning + complex(rubbed @ _POINTS)
+        return replace(state, moment_share=share), *held
+
+    def imbalance(unknown: FloatArray, *shares: float) -> FloatArray:
+        (share,) = shares or unknown[5:]
+        state, carried, turning = at(unknown, share)
+        missing = np.array([carried - force, turning - share * moment / arm]) / force
+        found = [*missing.real, *missing.imag, excess(state) / state.watts]
+        closest = state.film / (TOUCHING * clearance) - 1
+        return np.array(found if shares else [*found, closest])
+
+    def balanced(start: FloatArray, *shares: float) -> FloatArray | None:
+        # what is only the start of the next is found roughly
+        enough = _BALANCED if not shares or shares[0] == 1 else 0.01
+        options = {"eps": 1e-8, "maxfev": 80}
+        solved = root(imbalance, start, shares, tol=enough / 10, options=options)
+        return solved.x if np.abs(solved.fun).max() <= enough else None
+
+    def from_state(state: JournalState) -> FloatArray:
+        middle = cmath.rect(state.eccentricity, state.attitude)
+        tilt = cmath.rect(state.tilt * arm / clearance, state.tilt_direction)
+        odds = np.array([end / (1 - abs(end)) for end in (middle - tilt, middle + tilt)])
+        rise = max(state.temperature - oil.temperature, 1e-3)
+        return np.array([*odds.real, *odds.imag, math.log(rise / warm)])
+
+    reach = _REACH * math.sqrt(1 - aligned.eccentricity) * force * bearing.length / abs(moment)
+    tried = [(from_state(aligned), min(1.0, part * reach)) for part in (1.0, 0.5, 0.25)]
+    if last is not None and last.moment_share:
+        tried.insert(0, (from_state(last), last.moment_share))
+    while tried and aligned.film > TOUCHING * clearance:
+        start, share = tried.pop(0)
+        found = start if last and share == last.moment_share < 1 else balanced(start, share)
+        if found is None:
+            continue
+        if share == 1 and (state := at(found, share)[0]).film >= TOUCHING * clearance:
+            return state
+        limit = balanced(np.append(found, share))
+        if limit is not None and limit[5] <= 1:
+            return at(limit[:5], float(limit[5]))[0]
+        if share < 1:  # the limit is far away, or the whole moment can be held
+            tried.insert(0, (found, min(1.0, 2 * share) if limit is None else 1.0))
+    return replace(aligned, moment_share=0.0)
 
 
 def _at(
     bearing: JournalBearing, force: float, speed: float, oil: OilState, temperature: float
 ) -> JournalState:
-    """The bearing with a film of known temperature."""
-    eta, omega = film_viscosity(oil, temperature), abs(speed)
-    x, phi, contact = loaded_journal(bearing, force, speed, eta)
-    eps = 1 / (1 + math.exp(-x))
+    """The bearing with a film of known temperature, without a moment."""
+    eta = film_viscosity(oil, temperature)
+    x, film, contact = loaded_journal(bearing, force, speed, eta)
+    middle = cmath.rect(_share(x), cmath.phase(film + contact))
+    flow = journal_curves(bearing.slenderness).at(x)[2]
+    across = abs(middle) * film.imag
+    return _state(bearing, middle, 0j, across, contact, flow, speed, eta, temperature)
+
+
+def _state(
+    bearing: JournalBearing,
+    middle: complex,
+    tilt: complex,
+    across: float,  # Force of the film across the line of centres, times the eccentricity. [N]
+    contact: float,  # [N]
+    flow: float,  # Q/(omega R C L)
+    speed: float,
+    eta: float,
+    temperature: float,
+) -> JournalState:
+    """What follows from the place of a planet on its pin."""
     clearance, radius = bearing.diametral_clearance / 2, bearing.inner_diameter / 2
+    omega = abs(speed)
     petroff = 2 * math.pi * eta * omega**2 * radius**3 * bearing.length / clearance
-    film_force = max(force - contact, 0.0)
-    shear = petroff / math.sqrt(1 - eps**2)
-    lifting = film_force * omega * clearance * eps * math.sin(phi) / 2
-    _, _, flow = journal_curves(bearing.slenderness).at(x)
+    slices = np.abs(middle + tilt * _POINTS) ** 2
+    thinner = float((_WEIGHTS / 2 / np.sqrt(1 - slices)).sum())
+    film = clearance * (1 - max(abs(middle + tilt), abs(middle - tilt)))
     return JournalState(
-        eccentricity=eps,
-        attitude=phi,
-        film=clearance * (1 - eps),
-        film_ratio=clearance * (1 - eps) / bearing.roughness,
+        eccentricity=abs(middle),
+        attitude=cmath.phase(middle),
+        tilt=abs(tilt) * clearance / (bearing.length / 2),
+        tilt_direction=cmath.phase(tilt),
+        film=film,
+        film_ratio=film / bearing.roughness,
         contact_force=contact,
         temperature=temperature,
         petroff_watts=petroff,
-        fluid_watts=shear + lifting,
-        contact_watts=bearing.boundary_friction * contact * omega * radius,
+        fluid_watts=petroff * thinner + omega * clearance * across / 2,
+        contact_watts=bearing.rubbing(contact, speed),
         side_flow=flow * omega * radius * clearance * bearing.length,
     )
 

@@ -16,16 +16,11 @@ from numpy.typing import NDArray
 
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import ConvergenceError
-from epicyclic.kernels.line_contact import hertz_pressure
+from epicyclic.kernels.line_contact import hertz_pressure, line_load_at_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at
 from epicyclic.kernels.roller_bearing import solve_roller_loads
 from epicyclic.losses.drag import SPEED_PARAMETER, speed_parameter
-from epicyclic.losses.friction import (
-    PRESSURE_VISCOSITY_RANGE,
-    VISCOSITY_RANGE,
-    beyond_data,
-    without_oil,
-)
+from epicyclic.losses.friction import PRESSURE_VISCOSITY_RANGE, VISCOSITY_RANGE, beyond_data
 from epicyclic.losses.mixed_lubrication import RUN_IN, mixed_friction
 from epicyclic.losses.ranges import (
     Flags,
@@ -68,8 +63,8 @@ BEARING_RELIABILITY = {
     FULL_COMPLEMENT: "rolling as mixed-ehl, which was made for caged rollers; sliding between "
     "rollers and by skew from statics and a traction model, not compared with measured bearings",
     "palmgren": "its source gives a range of a factor of 2 for caged rollers",
-    "reynolds": "solutions of a rigid aligned bearing, within 1 % of published ones; not compared "
-    "with measured planets, and in mixed friction as uncertain as its boundary friction",
+    "reynolds": "solutions of a rigid bearing, aligned ones within 1 % of published ones; not "
+    "compared with measured planets, and in mixed friction as uncertain as its boundary friction",
 }
 """How well each model is known to be right, as a phrase."""
 
@@ -98,10 +93,6 @@ NEEDLE_RANGES = (
     _PRESSURE,
 )
 """Ranges of the 2,880 simulations behind Eq. 3.5."""
-_HELD = {
-    item.name: item.limits()
-    for item in (_PRESSURE, _SPEED, VISCOSITY_RANGE, PRESSURE_VISCOSITY_RANGE, _RADIUS)
-}
 PALMGREN_RANGES = (
     Range(
         "hertz_pressure",
@@ -352,23 +343,42 @@ def mixed_ehl_rolling_loss(
     outside Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
-    contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius,))
-    if contacts is None:
+    carried: FloatArray = loads.intensity[loads.intensity > 0]
+    if carried.size == 0 or speed == 0:
         return BearingLoss(0.0)
-    held = contacts.held(_HELD if oil_held else without_oil(_HELD))
+    modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
+    rolling = bearing.rolling_speed(speed)
+    viscosity, alpha = oil.dynamic_viscosity, oil.pressure_viscosity
+    if oil_held:
+        viscosity = held_in_range(viscosity, VISCOSITY_RANGE)
+        alpha = held_in_range(alpha, PRESSURE_VISCOSITY_RANGE)
+    alike = np.ones_like(carried)
+    held_pressure = held_in_range(hertz_pressure(carried, radius * alike, modulus), _PRESSURE)
+    held_radius, held_speed = held_in_range(radius, _RADIUS), held_in_range(rolling, _SPEED)
     density = needle_rolling_loss_at(
-        held.hertz_pressure,
-        held.rolling_speed,
-        held.dynamic_viscosity,
-        held.pressure_viscosity,
-        held.radius,
+        held_pressure,
+        held_speed,
+        viscosity,
+        alpha,
+        held_radius,
         held_in_range(math.hypot(bearing.race_roughness, bearing.roller_roughness), _COMPOSITE),
-        bearing.equivalent_modulus,
+        modulus,
     )
-    local = bearing.slice_width * density * beyond_data(contacts, held)
+    held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
+    beyond = beyond_data(carried, held_load, rolling, held_speed)
+    local = bearing.slice_width * density * beyond
+    return BearingLoss(
+        float(local.sum()), Flags(partial(_flags, bearing, loads, speed, oil, local))
+    )
+
+
+def _flags(
+    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState, local: FloatArray
+) -> tuple[ValidityFlag, ...]:
+    """Flags of `mixed_ehl_rolling_loss`, with its loss at every slice."""
+    contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius,))
     use = ModelUse("bearing", "mixed-ehl", "planet bearing")
-    look = partial(check_contacts, use, NEEDLE_RANGES, contacts, local)
-    return BearingLoss(float(local.sum()), Flags(look))
+    return check_contacts(use, NEEDLE_RANGES, contacts, local)
 
 
 def fitted_rolling_loss(

@@ -90,7 +90,11 @@ def mixed_ehl_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
     """
     held = held_in_table(contact, oil_held=oil_held)
     number = rolling_loss_number_at(*regression_groups(held))
-    return number * rolling_scale(held) * beyond_data(contact, held)
+    return number * rolling_scale(held) * _beyond(contact, held)
+
+
+def _beyond(contact: LineContacts, held: LineContacts) -> FloatArray:
+    return beyond_data(contact.line_load, held.line_load, contact.rolling_speed, held.rolling_speed)
 
 
 def paired_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
@@ -375,7 +379,7 @@ class FittedRolling(_Fit):
     def loss_density(self, contact: LineContacts) -> FloatArray:
         """See the class. [W/m]"""
         held = contact.held(self.model.fits[self.quantity].domain)
-        return self.fitted(contact) * beyond_data(contact, held)
+        return self.fitted(contact) * _beyond(contact, held)
 
 
 def domain_ranges(model: OilModel, quantity: str) -> tuple[Range, ...]:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from importlib import resources
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from epicyclic.kernels.line_contact import (
     hertz_pressure,
     inlet_film_factor,
 )
+from epicyclic.losses.designations import SPHERICAL_ANGLE
 from epicyclic.losses.drag import (
     RPM,
     SPEED_PARAMETER,
@@ -31,16 +32,21 @@ from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.oil.oil import OilState
 from epicyclic.units import MILLIMETRE, MILLIPASCAL_SECOND, NUMBER
 
-BearingType = Literal["deep-groove", "cylindrical", "tapered", "needle", "angular-contact"]
-Cage = Literal["caged", "full-complement"]
-
-BEARING_TYPES: tuple[BearingType, ...] = (
+BearingType = Literal[
     "deep-groove",
     "cylindrical",
     "tapered",
     "needle",
     "angular-contact",
-)
+    "spherical",
+    "thrust-ball",
+    "thrust-roller",
+]
+Cage = Literal["caged", "full-complement"]
+
+BEARING_TYPES: tuple[BearingType, ...] = get_args(BearingType)
+THRUST_TYPES = ("thrust-ball", "thrust-roller")
+"""Bearings that carry no radial force."""
 DEFAULT_VISCOUS_FACTORS: Mapping[tuple[BearingType, Cage], float] = {
     ("deep-groove", "caged"): 2.0,
     ("cylindrical", "caged"): 3.0,
@@ -49,6 +55,9 @@ DEFAULT_VISCOUS_FACTORS: Mapping[tuple[BearingType, Cage], float] = {
     ("needle", "caged"): 12.0,
     ("needle", "full-complement"): 12.0,
     ("angular-contact", "caged"): 3.3,
+    ("spherical", "caged"): 4.0,
+    ("thrust-ball", "caged"): 1.5,
+    ("thrust-roller", "caged"): 3.5,
 }
 """f0 in an oil bath, Harris (1991); general knowledge. The keys are the bearings there are. [1]"""
 DEFAULT_COEFFICIENTS: Mapping[tuple[BearingType, Cage], float] = {
@@ -59,9 +68,18 @@ DEFAULT_COEFFICIENTS: Mapping[tuple[BearingType, Cage], float] = {
     ("needle", "caged"): 0.0005,
     ("needle", "full-complement"): 0.00055,
     ("angular-contact", "caged"): 0.0005,
+    ("spherical", "caged"): 0.00025,
+    ("thrust-ball", "caged"): 0.0004,
+    ("thrust-roller", "caged"): 0.0015,
 }
 """f1, Harris (1991); second hand. Balls: at a seventh of the static rating. Caged needle
 rollers: an estimate, printed values run up to 0.002. [1]"""
+_OF_BALLS: Mapping[BearingType, tuple[float, float]] = {
+    "deep-groove": (0.0009, 0.55),
+    "angular-contact": (0.001, 0.33),
+    "thrust-ball": (0.0008, 0.33),
+}
+"""z and y of Harris's f1 = z (P0/C0)^y; second hand. [1]"""
 DEFAULT_FLANGE_COEFFICIENTS: Mapping[Cage, float] = {"caged": 0.002, "full-complement": 0.003}
 """f_f of cylindrical roller bearings with oil, Harris (1991); general knowledge. [1]"""
 DEFAULT_MINIMUM_LOAD_FACTORS: Mapping[BearingType, float] = {
@@ -72,7 +90,8 @@ DEFAULT_MINIMUM_LOAD_FACTORS: Mapping[BearingType, float] = {
 MINIMUM_LOAD_SHARE = 0.02
 """Least load of tapered and needle roller bearings over their dynamic load rating (SKF). [1]"""
 MINIMUM_BALL_SHARE = 0.01
-"""The same of angular contact ball bearings, SKF's rule of thumb for balls; second hand. [1]"""
+"""The same of angular contact ball bearings, SKF's rule of thumb for balls; second hand. Of
+spherical roller bearings over their static load rating. [1]"""
 _ANGLES = (15, 20, 25, 30, 35, 40, 45)
 _STATIC_AXIAL = _ANGLES, (0.46, 0.42, 0.38, 0.33, 0.29, 0.26, 0.22)
 """Y0 of angular contact ball bearings by their angle in degrees, ISO 76. [1]"""
@@ -175,12 +194,14 @@ class FrictionPart:
 def bearing_types(model: str) -> tuple[BearingType, ...]:
     """The bearing types of a model, as a case names it.
 
-    Neither Harris's table nor SKF's here has needle roller bearings, SKF's no angular contact ones.
+    Neither Harris's table nor SKF's here has needle roller bearings, SKF's here no angular contact,
+    spherical and thrust ones.
     """
     if model == "zhou-hoeprich":
         return ("tapered", "cylindrical")
-    lacking = {"harris": ("needle",), "skf-2018": ("needle", "angular-contact")}
-    return tuple(kind for kind in BEARING_TYPES if kind not in lacking.get(model, ()))
+    if model == "skf-2018":
+        return ("deep-groove", "cylindrical", "tapered")
+    return tuple(kind for kind in BEARING_TYPES if model != "harris" or kind != "needle")
 
 
 # --- Palmgren and Harris --------------------------------------------------------------------------
@@ -190,9 +211,13 @@ def friction_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
     """Load P1 that sets the load-dependent friction of a bearing. Theory (J1). [N]
 
     Deep groove: the larger of F_r and 3 F_a - 0.1 F_r; angular contact: of F_r and
-    0.9 cot(alpha) F_a - 0.1 F_r; tapered: of F_r and 2 Y F_a; cylindrical and needle: F_r. Harris
-    (1991), second hand.
+    0.9 cot(alpha) F_a - 0.1 F_r; tapered: of F_r and 2 Y F_a; spherical: of F_r and
+    0.8 cot(alpha) F_a; thrust: F_a; cylindrical and needle: F_r. Harris (1991), second hand.
     """
+    if bearing.type in THRUST_TYPES:
+        return load.axial
+    if bearing.type == "spherical":
+        return max(load.radial, 0.8 * load.axial / math.tan(SPHERICAL_ANGLE))
     if bearing.type == "angular-contact":
         return max(load.radial, 2.25 * bearing.axial_factor * load.axial - 0.1 * load.radial)
     if bearing.type == "deep-groove":
@@ -206,8 +231,13 @@ def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
     """Equivalent static load P0 of ISO 76. Theory (J2). [N]
 
     Deep groove: the larger of F_r and 0.6 F_r + 0.5 F_a; angular contact: of F_r and
-    0.5 F_r + Y0 F_a; tapered: of F_r and 0.5 F_r + 0.55 Y F_a; cylindrical and needle: F_r.
+    0.5 F_r + Y0 F_a; tapered: of F_r and 0.5 F_r + 0.55 Y F_a; spherical:
+    F_r + 0.44 cot(alpha) F_a; thrust: F_a; cylindrical and needle: F_r.
     """
+    if bearing.type in THRUST_TYPES:
+        return load.axial
+    if bearing.type == "spherical":
+        return load.radial + 0.44 * load.axial / math.tan(SPHERICAL_ANGLE)
     if bearing.type == "angular-contact":
         Y0 = float(np.interp(math.degrees(bearing.contact_angle), *_STATIC_AXIAL))
         return max(load.radial, 0.5 * load.radial + Y0 * load.axial)
@@ -221,18 +251,17 @@ def static_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
 def harris_coefficient(bearing: CatalogueBearing, load: BearingLoad) -> float:
     """Coefficient f1 after Harris. Theory (J3). [1]
 
-    Deep groove: 0.0009 (P0/C0)^0.55; angular contact: 0.001 (P0/C0)^0.33; rollers: constant, 0.0003
-    caged cylindrical, 0.00055 full complement, 0.0004 tapered. Harris (1991), second hand. Raises
-    `ValueError` for needle roller bearings, which Harris's table does not have.
+    Deep groove: 0.0009 (P0/C0)^0.55; angular contact: 0.001 (P0/C0)^0.33; thrust balls:
+    0.0008 (P0/C0)^0.33; rollers: constant, `DEFAULT_COEFFICIENTS`. Harris (1991), second hand.
+    Raises `ValueError` for needle roller bearings, which Harris's table does not have.
     """
     if bearing.type not in bearing_types("harris"):
         raise ValueError(f"Harris gives no coefficient for {bearing.type} bearings")
-    if bearing.type not in ("deep-groove", "angular-contact"):
+    if bearing.type not in _OF_BALLS:
         return DEFAULT_COEFFICIENTS[bearing.type, bearing.cage]
+    factor, exponent = _OF_BALLS[bearing.type]
     ratio = static_load(bearing, load) / bearing.static_load_rating
-    if bearing.type == "angular-contact":
-        return 0.001 * math.pow(ratio, 0.33)
-    return 0.0009 * math.pow(ratio, 0.55)
+    return factor * math.pow(ratio, exponent)
 
 
 def load_moment(
@@ -402,6 +431,10 @@ def minimum_load(
         return MINIMUM_LOAD_SHARE * bearing.dynamic_load_rating
     if bearing.type == "angular-contact":
         return MINIMUM_BALL_SHARE * bearing.dynamic_load_rating
+    if bearing.type == "spherical":
+        return MINIMUM_BALL_SHARE * bearing.static_load_rating
+    if bearing.type in THRUST_TYPES:
+        return math.nan  # by a constant of the product table
     k_r = DEFAULT_MINIMUM_LOAD_FACTORS[bearing.type] if factor is None else factor
     size = 1e3 * k_r * (10 * bearing.pitch_diameter) ** 2
     if bearing.type == "deep-groove":
@@ -417,12 +450,24 @@ THERMAL_FACTORS: Mapping[tuple[BearingType, Cage], tuple[float, float]] = {
     ("needle", "caged"): (5.0, 0.0005),
     ("needle", "full-complement"): (5.0, 0.0005),
     ("angular-contact", "caged"): (2.0, 0.00025),
+    ("spherical", "caged"): (4.0, 0.0002),
+    ("thrust-ball", "caged"): (math.nan, math.nan),
+    ("thrust-roller", "caged"): (math.nan, math.nan),
 }
-"""f0r and f1r of ISO 15312, of light and medium series; second hand, general knowledge. [1]"""
+"""f0r and f1r of ISO 15312, of light and medium series; second hand, general knowledge. Seats of
+thrust bearings have another area than that below. [1]"""
 THERMAL_VISCOSITY = 12e-6  # Reference viscosity at 70 degC. [m^2/s]
 THERMAL_LOAD = 0.05  # Reference load over the static load rating. [1]
 THERMAL_DENSITY, THERMAL_AREA, THERMAL_EXPONENT = 0.016e6, 0.05, -0.34
 """Heat that a seat takes up for its area [W/m^2], and how that falls beyond an area [m^2]."""
+LIMITING_SPEEDS: Mapping[tuple[BearingType, Cage], float] = {
+    ("deep-groove", "caged"): 660e3,
+    ("cylindrical", "caged"): 640e3,
+    ("tapered", "caged"): 510e3,
+    ("angular-contact", "caged"): 610e3,
+}
+"""n d_m of the limiting speed, in mm/min: the medians of 31, 9, 27 and 9 bearings with bores up to
+20, 25, 32 and 25 mm as SKF's tables print them; they scatter by 20, 4, 8 and 7 %. Second hand."""
 FASTEST = 1e12  # Beyond the rating of any bearing, however small. [rad/s]
 
 
@@ -438,6 +483,20 @@ def thermal_excess(bearing: CatalogueBearing, speed: float) -> float:
     own = bearing_viscous_loss(viscous, THERMAL_VISCOSITY, speed, diameter)
     load = THERMAL_LOAD * bearing.static_load_rating
     return float(own + mechanical * load * diameter * speed - heat)
+
+
+def limiting_speed(bearing: CatalogueBearing) -> float:
+    """Speed that its cage stands, as of small bearings of the type. Theory (J37). [rad/s]
+
+    Infinite where nothing is known.
+
+    Examples
+    --------
+    >>> round(limiting_speed(CatalogueBearing("tapered", 0.03, 0.055, 0.017)) / RPM)
+    12000
+    """
+    known = LIMITING_SPEEDS.get((bearing.type, bearing.cage), math.inf)
+    return 1e-3 * known * RPM / bearing.pitch_diameter
 
 
 @lru_cache(maxsize=256)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from itertools import combinations, islice
 
 import numpy as np
@@ -22,14 +23,12 @@ FloatArray = NDArray[np.float64]
 
 def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
     """The solution, refined once; None if the square `matrix` is singular."""
-    from scipy.linalg.lapack import dgesv, dgetrs  # a case that is only read needs no algebra
-
-    if not len(right):
-        return right
-    factors, pivots, found, singular = dgesv(matrix, right)
-    if singular:
+    try:
+        inverse = np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
         return None
-    refined: FloatArray = found + dgetrs(factors, pivots, right - matrix @ found)[0]
+    found = inverse @ right
+    refined: FloatArray = found + inverse @ (right - matrix @ found)
     return refined
 
 
@@ -227,67 +226,111 @@ class Balance:
         return self.residual <= UNBALANCED
 
 
-def balance(
-    machine: Machine,
-    operation: Operation,
-    speeds: Mapping[str, float],  # Speeds of all bodies. [rad/s]
-    drives: Mapping[str, bool],  # For each mesh, True if its first gear drives it.
-    efficiencies: Mapping[str, float],  # Efficiency of each mesh with its carrier at rest. [1]
-    frictions: Iterable[Friction] = (),
-) -> Balance:
-    """Torques and mesh loads from the balance of every body. Theory (T3), (T5)."""
-    bodies = machine.bodies
-    place = {body: index for index, body in enumerate(bodies)}
-    # torques that balance: of the output, and of all bodies of given speed but the input
-    held = [body for body in operation.speeds if body not in (operation.input, operation.output)]
-    unknown = [body for body in (operation.output, *held) if body in place]
-    rows: list[list[float]] = []  # the transposed system
-    scale: list[float] = []
-    # each mesh with the term of its driven gear reduced
-    lossy = [
-        row.terms(1.0, efficiencies[row.key])
-        if drives[row.key]
-        else row.terms(efficiencies[row.key], 1.0)
-        for row in machine.rows
-    ]
-    stiff = [coupling.terms() for coupling in machine.couplings]
-    for terms in (*lossy, *stiff):
-        column = [0.0] * len(bodies)
+@dataclass(frozen=True)
+class Statics:
+    """A machine that turns at given speeds: what balances whatever losses."""
+
+    machine: Machine
+    operation: Operation
+    speeds: Mapping[str, float]  # Of all bodies. [rad/s]
+
+    def balance(
+        self,
+        drives: Mapping[str, bool],  # For each mesh, True if its first gear drives it.
+        efficiencies: Mapping[str, float],  # Of each mesh with its carrier at rest. [1]
+        frictions: Iterable[Friction] = (),
+    ) -> Balance:
+        """Torques and mesh loads from the balance of every body. Theory (T3), (T5)."""
+        rows, couplings, speeds = self.machine.rows, self.machine.couplings, self.speeds
+        matrix, scale = self._fixed[0].copy(), []
+        for number, row in enumerate(rows):  # the term of the driven gear is reduced
+            lost = efficiencies[row.key]
+            column, length = self._column(
+                row.terms(1.0, lost) if drives[row.key] else row.terms(lost, 1.0)
+            )
+            matrix[:, number] = column
+            scale.append(length)
+        scale += self._fixed[1]
+        known = self._known_torques(frictions)
+        found, unique = _least(matrix, -known)
+        values = found.tolist()
+        size = max(map(abs, (*known.tolist(), *values)), default=0.0)
+        values = [0.0 if abs(value) <= ROUNDING * size else value for value in values]
+        left = matrix @ np.array(values) + known
+        lambdas = [value / length for value, length in zip(values, scale, strict=False)]
+        outside = self._given | dict(zip(self._unknown, values[len(scale) :], strict=True))
+        meshes = {row.key: -value * row.teeth[0] for row, value in zip(rows, lambdas, strict=False)}
+        return Balance(
+            torques=outside,
+            meshes=meshes,
+            couplings={
+                coupling.key: -value
+                for coupling, value in zip(couplings, lambdas[len(rows) :], strict=True)
+            },
+            powers={
+                row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier]) for row in rows
+            },
+            residual=max(map(abs, left.tolist()), default=0.0) / size if size else 0.0,
+            unique=unique,
+        )
+
+    @cached_property
+    def _place(self) -> Mapping[str, int]:
+        return {body: index for index, body in enumerate(self.machine.bodies)}
+
+    @cached_property
+    def _unknown(self) -> tuple[str, ...]:
+        """Torques that balance: of the output, and of bodies of given speed but the input."""
+        own = self.operation
+        held = (body for body in own.speeds if body not in (own.input, own.output))
+        return tuple(body for body in (own.output, *held) if body in self._place)
+
+    @cached_property
+    def _given(self) -> dict[str, float]:
+        """Torques from outside, 0 where none is given. [N m]"""
+        own = self.operation
+        return dict.fromkeys(self._place, 0.0) | dict(own.torques) | {own.input: own.torque}
+
+    @cached_property
+    def _fixed(self) -> tuple[FloatArray, list[float]]:
+        """Columns of clutches and unknown torques behind those of meshes; lengths of the former."""
+        columns = [self._column(coupling.terms()) for coupling in self.machine.couplings]
+        first = len(self.machine.rows)
+        matrix = np.zeros((len(self._place), first + len(columns) + len(self._unknown)))
+        for number, (column, _) in enumerate(columns, first):
+            matrix[:, number] = column
+        for number, body in enumerate(self._unknown, first + len(columns)):
+            matrix[self._place[body], number] = 1.0
+        return matrix, [length for _, length in columns]
+
+    def _column(self, terms: Terms) -> tuple[list[float], float]:
+        """A constraint as a column of length 1, and its length."""
+        column = [0.0] * len(self._place)
         for body, coefficient in terms:
             if body != HOUSING:
-                column[place[body]] += coefficient
+                column[self._place[body]] += coefficient
         length = math.hypot(*column) or 1.0
-        rows.append([coefficient / length for coefficient in column])
-        scale.append(length)
-    rows += [[float(other == body) for other in bodies] for body in unknown]
-    columns = np.array(rows).reshape(len(rows), len(bodies)).T
-    known = _known_torques(machine, operation, speeds, frictions)
-    found, unique = _least(columns, -known)
-    values = found.tolist()
-    size = max(map(abs, (*known.tolist(), *values)), default=0.0)
-    values = [0.0 if abs(value) <= ROUNDING * size else value for value in values]
-    left = columns @ np.array(values) + known
-    lambdas = [value / length for value, length in zip(values, scale, strict=False)]
-    outside = dict.fromkeys(bodies, 0.0) | dict(operation.torques)
-    outside[operation.input] = operation.torque
-    outside |= dict(zip(unknown, values[len(scale) :], strict=True))
-    meshes = {
-        row.key: -value * row.teeth[0] for row, value in zip(machine.rows, lambdas, strict=False)
-    }
-    return Balance(
-        torques=outside,
-        meshes=meshes,
-        couplings={
-            coupling.key: -lambdas[len(machine.rows) + number]
-            for number, coupling in enumerate(machine.couplings)
-        },
-        powers={
-            row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier])
-            for row in machine.rows
-        },
-        residual=max(map(abs, left.tolist()), default=0.0) / size if size else 0.0,
-        unique=unique,
-    )
+        return [coefficient / length for coefficient in column], length
+
+    def _known_torques(self, frictions: Iterable[Friction]) -> FloatArray:
+        """Given torques and those of friction on every body. Theory (T6). [N m]"""
+        own, speeds, place = self.operation, self.speeds, self._place
+        torques = [0.0] * len(place)
+        for body, torque in own.torques.items():
+            if body in place:
+                torques[place[body]] = torque
+        if own.input in place:
+            torques[place[own.input]] += own.torque
+        for friction in frictions:
+            one, two = friction.between
+            difference = speeds[one] - speeds[two]
+            if difference:
+                torque = friction.watts / difference
+                if one in place:
+                    torques[place[one]] -= torque
+                if two in place:
+                    torques[place[two]] += torque
+        return np.array(torques)
 
 
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
@@ -307,26 +350,6 @@ def drives_first(powers: Mapping[str, float], before: Mapping[str, bool]) -> dic
     """For each mesh whether its first gear drives; as `before` where no power flows."""
     limit = NO_POWER * max(map(abs, powers.values()), default=0.0)
     return {key: before[key] if abs(power) <= limit else power > 0 for key, power in powers.items()}
-
-
-def _known_torques(
-    machine: Machine,
-    operation: Operation,
-    speeds: Mapping[str, float],
-    frictions: Iterable[Friction],
-) -> FloatArray:
-    """Given torques and those of friction on every body. Theory (T6). [N m]"""
-    torques = dict.fromkeys((*machine.bodies, *machine.resting, HOUSING), 0.0) | dict(
-        operation.torques
-    )
-    torques[operation.input] += operation.torque
-    for friction in frictions:
-        one, two = friction.between
-        difference = speeds[one] - speeds[two]
-        if difference:
-            torques[one] -= friction.watts / difference
-            torques[two] += friction.watts / difference
-    return np.array([torques[body] for body in machine.bodies])
 
 
 # Which gear drives each mesh: the directions of the rolling powers that agree with themselves.
@@ -357,9 +380,7 @@ class Directions:
 
 
 def find_directions(
-    machine: Machine,
-    operation: Operation,
-    speeds: Mapping[str, float],  # Speeds of all bodies. [rad/s]
+    statics: Statics,
     lossless: Balance,  # Torques without losses.
     efficiencies: Mapping[str, float],  # Efficiency of each mesh with its carrier at rest. [1]
 ) -> Directions:
@@ -371,7 +392,8 @@ def find_directions(
     agree, it is jammed.
     """
     start = drives_first(lossless.powers, dict.fromkeys(lossless.powers, True))
-    wanted = lossless.torques[operation.output]
+    output = statics.operation.output
+    wanted = lossless.torques[output]
     passes = any(lossless.powers.values())
     if not passes or all(efficiency == 1 for efficiency in efficiencies.values()):
         return Directions(start, locking=False)
@@ -379,10 +401,10 @@ def find_directions(
     drives: Drives = start
     seen = []
     for _ in range(MOST_FOLLOWED):
-        found = balance(machine, operation, speeds, drives, efficiencies)
+        found = statics.balance(drives, efficiencies)
         follow = drives_first(found.powers, drives)
         if follow == drives:
-            if found.torques[operation.output] * wanted >= 0:
+            if found.torques[output] * wanted >= 0:
                 return Directions(drives, locking=False)
             agreeing = drives
         seen.append(drives)
@@ -390,9 +412,9 @@ def find_directions(
             break
         drives = follow
     for drives in islice(_turned(start, lossless, efficiencies), MOST_TRIED):
-        found = balance(machine, operation, speeds, drives, efficiencies)
+        found = statics.balance(drives, efficiencies)
         if drives_first(found.powers, drives) == drives:
-            if found.torques[operation.output] * wanted >= 0:
+            if found.torques[output] * wanted >= 0:
                 return Directions(drives, locking=False)
             agreeing = agreeing or drives
     return Directions(agreeing or start, locking=True, jammed=agreeing is None)

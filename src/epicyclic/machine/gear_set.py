@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
-from epicyclic.losses.planet_bearing import RollerLoads
 from epicyclic.losses.pocket_tables import KnownFlows
 from epicyclic.losses.ranges import Flags, ModelUse, Sought, ValidityFlag
 from epicyclic.machine.disc import Disc, ThrustBearing, disc_loss, thrust_loss
@@ -27,6 +26,7 @@ from epicyclic.machine.element import (
 from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshResult, solve_mesh
 from epicyclic.machine.planets import (
     BearingFigures,
+    Carried,
     LoadSharing,
     PinFigures,
     PlanetBearing,
@@ -188,7 +188,7 @@ class GearSetResult(ElementResult):
     drags: Drags
     flows: Mapping[tuple[bool, ...], Flows]  # By which gears drive.
     meshes: Mapping[str, MeshResult]
-    rollers: Mapping[tuple[str, float], RollerLoads | None]  # By planet and share of the load.
+    rollers: Mapping[tuple[str, float], Carried]  # By planet and share of the load.
     known_flows: KnownFlows  # Through pockets, also those at other temperatures.
 
 
@@ -197,7 +197,7 @@ class _Branch(ElementResult):
     """Losses of all planets with one and the same share, and the figures of one."""
 
     meshes: Mapping[str, MeshResult]
-    rollers: Mapping[tuple[str, float], RollerLoads | None]
+    rollers: Mapping[tuple[str, float], Carried]
 
 
 @dataclass(frozen=True, slots=True)
@@ -428,11 +428,11 @@ class GearSet:
         planets: int,
         flows: Flows,
         last_meshes: Mapping[str, MeshResult],
-        last_rollers: Mapping[tuple[str, float], RollerLoads | None],
+        last_rollers: Mapping[tuple[str, float], Carried],
     ) -> _Branch:
         duties = {duty.gears.key: duty for duty in self.duties(state, torques, share)}
         bearings = []
-        rollers: dict[tuple[str, float], RollerLoads | None] = {}
+        rollers: dict[tuple[str, float], Carried] = {}
         notes: list[Callable[[], Iterable[str]]] = []
         carrier = state.speeds[self.carrier]
         for planet in self.planets:
@@ -442,11 +442,13 @@ class GearSet:
                 notes.append(partial(planet.notes, carrier, load))
             speed = state.speeds[planet.body] - carrier
             oil = state.fluids.at(joined_key(self.key, planet.key))
+            last = last_rollers.get((planet.key, share))
             if planet.bearing is None:
-                bearings.append(missing_bearing(planet.key, planet.no_bearing))
+                bearing = missing_bearing(planet.key, planet.no_bearing)
             elif isinstance(planet.bearing, PlanetPin):
-                bearings.append(solve_pin(planet.key, planet.bearing, load, planets, oil, speed))
-                notes.append(bearings[-1].notes.__iter__)
+                # in the axes of the load, in which the first mesh turns the planet from t to r
+                driven = -speed if duties[planet.meshes[0].mesh].torque1 > 0 else speed
+                bearing = solve_pin(planet.key, planet.bearing, load, planets, oil, driven, last)
             else:
                 bearing = solve_bearing(
                     planet.key,
@@ -455,14 +457,14 @@ class GearSet:
                     planets,
                     oil,
                     speed,
-                    last_rollers.get((planet.key, share)),
+                    last,
                     planet.pin_radius,
                     carrier,
                     loaded=any(duty.torque1 for duty in tilted),
                 )
-                notes.append(bearing.notes.__iter__)
-                rollers[planet.key, share] = bearing.loads
-                bearings.append(bearing)
+            notes.append(bearing.notes.__iter__)
+            rollers[planet.key, share] = bearing.loads
+            bearings.append(bearing)
         meshes = [
             solve_mesh(
                 duty,

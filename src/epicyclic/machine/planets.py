@@ -545,11 +545,15 @@ class BearingFigures:
     heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
 
 
+Carried = RollerLoads | JournalState | None
+"""What the bearing of a planet carried in the last pass."""
+
+
 @dataclass(frozen=True, slots=True)
 class BearingResult(ElementResult):
     """Losses of the planet bearings, and the figures of one of them."""
 
-    loads: RollerLoads | None = None  # On its rollers: what the next pass goes on from.
+    loads: Carried = None  # On its rollers or film: what the next pass goes on from.
 
 
 def missing_bearing(key: str, reason: str) -> BearingResult:
@@ -569,7 +573,7 @@ def solve_bearing(
     count: int,
     oil: OilState,
     speed: float,  # Speed of the planet against the carrier. [rad/s]
-    last: RollerLoads | None = None,  # The rollers under nearly this load, which saves work.
+    last: Carried = None,  # Under nearly this load, which saves work.
     pin_radius: float = 0.0,  # From the axis of the set to that of the planet. [m]
     carrier: float = 0.0,  # Speed of the carrier. [rad/s]
     loaded: bool = True,  # False if no mesh carries torque.
@@ -578,10 +582,10 @@ def solve_bearing(
     bearing, where = own.bearing, key.replace("_", " ")
     if own.aligns_itself:
         load = PlanetLoad(load.force, 0.0, 0.0, load.outward)
-    if last is None:
-        loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
-    else:
+    if isinstance(last, RollerLoads):
         loads = roller_loads_next_to(last, bearing, load.force, load.moment_x, load.moment_y)
+    else:
+        loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     loss = _by_load(own, loads, load.force, speed, oil)
     notes: tuple[str, ...] = ()
     if own.model == FULL_COMPLEMENT:
@@ -750,8 +754,6 @@ PIN_SOURCE = (
 PETROFF = "film of a concentric pin after Petroff"
 MIXED = 0.01
 """Share of the load on asperities from which a note says so. [1]"""
-TILTED = 0.05
-"""Offset of the load from the middle over the length from which a note says so. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -771,6 +773,7 @@ class PinFigures(PartFigures):
 
     eccentricity: float = figure("eccentricity over the clearance", NUMBER)
     attitude: float = figure("attitude angle", DEGREE)
+    tilt: float = figure("tilt of the planet on its pin", DEGREE)
     film: float = figure("narrowest film", MICROMETRE)
     film_ratio: float = figure("film over roughness", NUMBER)
     contact_share: float = figure("load on asperities", NUMBER)
@@ -784,20 +787,22 @@ def solve_pin(
     load: PlanetLoad,
     count: int,
     oil: OilState,
-    speed: float,  # Of the planet against the carrier. [rad/s]
+    speed: float,  # Of the planet against the carrier, positive if the first mesh drives. [rad/s]
+    last: Carried = None,  # Under nearly this load, which saves work.
 ) -> BearingResult:
     """Losses of `count` planets on plain pins under the same load."""
     capacity = own.heat_capacity
     if capacity is None:
         capacity = oil_heat_capacity(oil.temperature, own.specific_gravity)
-    found = solve_journal(own.bearing, load.force, speed, oil, capacity)
+    tilting = complex(load.moment_x, load.moment_y)
+    last = last if isinstance(last, JournalState) else None
+    found = solve_journal(own.bearing, load.force, speed, oil, capacity, tilting, last)
     by_load = max(found.watts - found.petroff_watts, 0.0)
     losses = {
         f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * by_load, PIN_METHOD, PIN_SOURCE),
         f"{key}_viscous": Loss(LOAD_INDEPENDENT, count * found.petroff_watts, PETROFF, PIN_SOURCE),
     }
     bearing = own.bearing
-    moment = math.hypot(load.moment_x, load.moment_y)
     sliding = abs(speed) * bearing.inner_diameter / 2
     friction = found.watts / (load.force * sliding) if load.force * sliding else math.nan
     figures = BearingFigures(
@@ -805,7 +810,7 @@ def solve_pin(
         flattening=0.0,
         resistance=0.0,
         radial_force=load.force,
-        moment=moment,
+        moment=abs(tilting),
         speed=abs(speed),
         rollers_loaded=math.nan,
         roller_load_max=math.nan,
@@ -821,6 +826,7 @@ def solve_pin(
     film = PinFigures(
         eccentricity=found.eccentricity,
         attitude=found.attitude,
+        tilt=found.tilt,
         film=found.film,
         film_ratio=found.film_ratio,
         contact_share=found.contact_force / load.force if load.force else 0.0,
@@ -833,13 +839,14 @@ def solve_pin(
         {key: figures, f"{key}_film": film},
         journal_flags(where, found, speed),
         _pin_notes(where, own, load, found, count * found.watts, speed),
+        found,
     )
 
 
 def _pin_notes(
     where: str, own: PlanetPin, load: PlanetLoad, found: JournalState, watts: float, speed: float
 ) -> tuple[str, ...]:
-    """Mixed friction, and the couple of helical meshes, which the film does not carry here."""
+    """Mixed friction, and what of the couple of helical meshes the film cannot hold."""
     notes, rubbing = [], watts * found.contact_watts / found.watts if found.watts else 0.0
     if speed and found.contact_force > MIXED * load.force:
         notes.append(
@@ -852,16 +859,18 @@ def _pin_notes(
                 rubbing,
             )
         )
-    moment = math.hypot(load.moment_x, load.moment_y)
-    offset = moment / (load.force * own.bearing.length) if load.force else 0.0
-    if speed and offset > TILTED:
+    if speed and found.moment_share < 1:
+        held, moment = found.moment_share, math.hypot(load.moment_x, load.moment_y)
+        force = 2 * (1 - held) * moment / own.bearing.length
+        edges = watts / found.watts * own.bearing.rubbing(force, speed)
         notes.append(
             Note(
-                f"{where}: the couple of the helical meshes tilts the planet on its pin, as if the "
-                f"load stood {percent(offset, 0)} of the length "
-                "beside the middle. The film is that of an aligned pin; a tilted one is narrower "
-                "at the ends.",
-                watts,
+                f"{where}: the film holds {percent(held, 0)} of the couple of "
+                f"{NEWTON_METRE.text(moment, 3)} that tilts the planet on its pin; then an edge "
+                f"of the bore is {MICROMETRE.text(found.film, 2)} from it. The rest counts as held "
+                "by the teeth, whose load moves along the face, which is not computed. Edges that "
+                f"held it would rub with {WATT.text(edges, 3)} more.",
+                edges,
             )
         )
     return tuple(notes)

@@ -18,6 +18,7 @@ from epicyclic.losses.shaft_bearing import (
     CatalogueBearing,
     SkfModel,
     friction_load,
+    limiting_speed,
     minimum_load,
     thermal_excess,
     thermal_speed_rating,
@@ -287,6 +288,7 @@ class ShaftBearing:
     minimum_load_factor: float | None = None  # k_r of SKF; None for the default of the type. [1]
     # Reference speed of a cylindrical roller bearing, for its minimum load. [rad/s]
     reference_speed: float | None = None
+    limiting_speed: float | None = None  # None for that of the type. [rad/s]
     arrangement_assumed: bool = False  # True if nobody states how it is set against the other one.
 
     figure_types: ClassVar = (("bearing", ShaftBearingFigures),)
@@ -350,7 +352,7 @@ class ShaftBearing:
             return ()
         notes = []
         # what holds the rolling elements to the races [N]
-        both = self.bearing.type in ("deep-groove", "tapered")
+        both = self.bearing.type in ("deep-groove", "tapered", "spherical")
         carried = math.hypot(load.radial, load.axial) if both else load.radial
         if carried < least:
             text = (
@@ -367,6 +369,15 @@ class ShaftBearing:
                 f"{self.key}: {RPM.text(abs(speed), 4)} exceed the thermal reference speed of "
                 f"{RPM.text(rating, 2)}{whose}. Above it a bearing in an oil bath overheats by "
                 "itself; give reference_speed of the catalogue, and check its limiting speed."
+            )
+            notes.append(Note(text, watts))
+        limit = self.limiting_speed or limiting_speed(self.bearing)
+        if abs(speed) > limit:
+            whose = "" if self.limiting_speed else ", an estimate by SKF's tables, second hand"
+            text = (
+                f"{self.key}: {RPM.text(abs(speed), 4)} exceed the limiting speed of "
+                f"{RPM.text(limit, 2)}{whose}, which cage and rolling elements stand. Beyond it "
+                "no loss is known; give limiting_speed of the catalogue, or take another bearing."
             )
             notes.append(Note(text, watts))
         if self.arrangement_assumed and load.axial > 0:

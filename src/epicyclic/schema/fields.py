@@ -14,7 +14,7 @@ from pydantic import BaseModel, GetJsonSchemaHandler, Tag
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema
 
-from epicyclic.messages import key_parts
+from epicyclic.messages import either, key_parts
 from epicyclic.units import Quantity, describe_range
 
 
@@ -130,7 +130,7 @@ def describe(annotation: Any, metadata: Sequence[Any] = ()) -> str:
     choices = choices_of(annotation)
     if choices:
         quoted = [f'"{choice}"' for choice in choices]
-        return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
+        return either(quoted)
     if member in (int, float):
         low, high, is_open = bounds_of(annotation, metadata)
         noun = "a whole number" if member is int else "a number"

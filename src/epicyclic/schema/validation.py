@@ -14,7 +14,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from epicyclic.errors import Problem
-from epicyclic.messages import did_you_mean, dotted, misspelt, sentence, value_at, written
+from epicyclic.messages import did_you_mean, dotted, either, misspelt, sentence, value_at, written
 from epicyclic.schema.fields import (
     Named,
     Place,
@@ -36,6 +36,7 @@ _PLAIN_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0
 
 _OUT_OF_RANGE = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 _OWN = ("quantity", "preset", "oil")
+_OF_KEYS = "uncertainty"  # The table whose names are keys of others, in quotes.
 _WRONG_TAG = ("union_tag_invalid", "union_tag_not_found")
 
 _REMEDIES = {
@@ -82,10 +83,12 @@ def unknown_key(
     """The problem of a key that the schema does not have."""
     name = str(place.path[-1])
     known = () if place.owner is None else tuple(place.owner.model_fields)
-    homes = [table for table, fields in tables if name in fields.model_fields]
+    homes = [f"{table}.{name}" for table, fields in tables if name in fields.model_fields]
     remedy = did_you_mean(name, known)
-    if not remedy and homes:
-        remedy = f"It belongs to {' or '.join(homes)}."
+    if place.path[0] == _OF_KEYS and isinstance(value, dict):
+        remedy = f'Write {_OF_KEYS}."{dotted(place.path[1:])}", with the key in quotes.'
+    elif not remedy and homes:
+        remedy = f"Write {either(homes)}."
     if not remedy:
         remedy = f"The keys are {', '.join(known)}." if known else "Remove it."
     return Problem(dotted(place.path), written(value), "is not a known key.", remedy)
@@ -124,7 +127,7 @@ def _wrong_tag(place: Place, detail: ErrorDetails) -> Problem:
         for law in tables_in(place.annotation)
         for choice in choices_of(law.model_fields[name].annotation)
     ]
-    choices = " or ".join(f'"{choice}"' for choice in expected)
+    choices = either([f'"{choice}"' for choice in expected])
     key = dotted((*place.path, name))
     if given is None:
         return Problem(key, "", f"is missing; it must be {choices}.", f"Add {name}.")
@@ -203,6 +206,8 @@ def validate(
         tables = tables_of(kind).items()
         problems += [unknown_key(place, value_at(raw, place.path), tables) for place in unknown]
         raw = _mend_names(raw, unknown)
+        if isinstance(own := raw.get(_OF_KEYS), dict):  # those without quotes are told
+            raw[_OF_KEYS] = {key: table for key, table in own.items() if table != {}}
         case, details = _try(kind, raw)
     alternatives = _check_alternatives(kind, {k: v for k, v in raw.items() if k not in sound})
     problems += alternatives + [translate(kind, detail) for detail in details]

@@ -13,7 +13,7 @@ from matplotlib.colors import to_hex
 from epicyclic.show.page import Explorer, Item, Listing
 from epicyclic.show.plots.loss_map import BEST_EFFICIENCY, EFFICIENCIES, LEAST_EFFICIENCY
 from epicyclic.show.plots.style import COLOUR_MAP
-from epicyclic.study.operating import OPERATING, PLANE
+from epicyclic.study.operating import OPERATING, PLANE, key_of
 from epicyclic.units import WATT, unit_text
 
 EXPLORER_LEAD = (
@@ -98,7 +98,7 @@ def _axis(data: xr.Dataset, name: str) -> dict[str, Any]:
         "name": name,
         "label": _label(data, name),
         "unit": unit_text(unit),
-        "key": str(axis.attrs.get("case_key", name)),
+        "key": key_of(axis),
         "stated": "" if unit == "1" else unit,
         "values": axis.values.tolist(),
         "continuous": rising,

@@ -202,6 +202,11 @@ def check_pdf() -> ModuleType:
         raise InputError([problem], "the command") from None
 
 
+def page_bytes(page: str, ending: str) -> bytes:
+    """What a file holds of a page: the page itself, or a ``".pdf"`` of it."""
+    return report_pdf(page) if ending == ".pdf" else page.encode()
+
+
 def report_pdf(
     page: str,  # As `report_html` returns it.
 ) -> bytes:

@@ -539,6 +539,9 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
             raise_any(field_problems("uncertainty/", root))
             return root
         if is_sweep(root):
+            from epicyclic.study.sweeps.names import with_plain_names
+
+            root = with_plain_names(root)
             raise_any(sweep_problems(root))
             raise_any(_attribute_problems(root.attrs))
             return root

@@ -75,6 +75,7 @@ _ROLES = {
     "shaft_bearing": "shaft bearing",
     "drag": "drag",
 }
+_RATIO = "times the input power"
 _ERRORS = ("pocket_power_difference", "pocket_interpolation_error")
 """Figures of meshes that tell how well others are computed; there are none of what is solved."""
 _NO_CONTACT = f'"{MISSING}": no load or no motion in the mesh.'
@@ -93,7 +94,7 @@ def key_figures(result: Result) -> list[KeyFigure]:
         _power("load-independent", result.load_independent, "load_independent"),
         _power("input power", result.input_power, ""),
         *(
-            [KeyFigure("power ratio", number(train.power_ratio, "power_ratio"))]
+            [KeyFigure("rolling power", number(train.power_ratio, "power_ratio"), _RATIO)]
             if train and train.power_ratio is not None
             else []
         ),

@@ -287,8 +287,8 @@ def _percent(value: float) -> str:
 
 def _legend(comparison: MeasuredComparison) -> str:
     text = (
-        "mean: mean error; size: mean magnitude of the errors; most: largest magnitude in W, "
-        "with its line; %: relative to the measured loss."
+        "mean: mean error; size: mean magnitude of the errors; most: largest magnitude, with "
+        "the line of that in W; %: relative to the measured loss."
     )
     if comparison.load_dependent == AS_TESTED:
         text += (

@@ -165,8 +165,9 @@ def first_warnings(result: Result) -> Listing:
     heavy = [pair for pair in found if pair[0] >= CONCERNED * result.total and pair[0] > 0]
     heavy.sort(key=lambda pair: -pair[0])
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))
-    count = len(result.warnings)
-    return Listing(shown, f"Warnings ({len(shown)} of {count}, largest effect first)")
+    count, many = len(result.warnings), len(shown) > 1
+    counted = f" ({len(shown)} of {count}, largest effect first)" if len(shown) < count else ""
+    return Listing(shown, f"Warning{'s' * (many or bool(counted))}{counted}")
 
 
 def summary_section(result: Result, known: Known | None, drawings: Drawings) -> Section:

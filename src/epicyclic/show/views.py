@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Self, cast
 
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem
-from epicyclic.files import check_place, whole_file
+from epicyclic.files import check_place, write_file
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.result import result as plain
 from epicyclic.study import heat
@@ -137,7 +137,7 @@ class Result(plain.Result):
 
 def save(result: plain.Result, path: Path) -> None:
     """`Result.save`, of any result."""
-    from epicyclic.show.html import check_pdf, report_html, report_pdf
+    from epicyclic.show.html import check_pdf, page_bytes, report_html
     from epicyclic.show.record import save_result
 
     if path.suffix not in FILES:
@@ -150,11 +150,7 @@ def save(result: plain.Result, path: Path) -> None:
         save_result(_record_of(result), path)
         return
     text = result.to_json() + "\n" if path.suffix == ".json" else report_html(_record_of(result))
-    with whole_file(path) as file:
-        if path.suffix == ".pdf":
-            file.write_bytes(report_pdf(text))
-        else:
-            file.write_text(text, encoding="utf-8")
+    write_file(path, page_bytes(text, path.suffix))
 
 
 @lru_cache(maxsize=4)

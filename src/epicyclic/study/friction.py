@@ -33,10 +33,7 @@ MOSTLY = 0.5
 UNEQUAL = 0.01
 """Relative difference of sliding losses from which the pairing of the flanks matters. [1]"""
 PAIRED = "mixed-ehl+pairing"
-_FOR_ONE_OIL = ("mixed-ehl", FittedOrSchlenk.name, "xu-2007")
-"""Models made for an oil, the one that is known best first."""
-_OF_ALL_OILS = ("schlenk", "niemann-winter")
-"""Fitted to gear tests with many oils, the one recommended first."""
+_REGRESSION = "mixed-ehl"
 _ANY_OIL = "mixed-lubrication"
 STANDARD = "ISO/TR 14179-2"  # Begins what is said of it beside a result.
 _STANDARD = "schlenk"  # ISO/TR 14179-2.
@@ -79,7 +76,7 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
     built = build_computed(case)
     owners = list(built.set_cases.values())
     chosen = {own.chosen["friction"] for own in owners}
-    suiting = (_STANDARD,) if _ANY_OIL in chosen else (*_FOR_ONE_OIL, PAIRED, *_OF_ALL_OILS)
+    suiting = {_STANDARD, _ANY_OIL} | (set() if _ANY_OIL in chosen else {_REGRESSION, PAIRED})
     rows = []
     for name in dict.fromkeys([*_models_for(owners), *sorted(chosen)]):
         if brief and name not in (*suiting, *chosen):
@@ -105,7 +102,7 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
                 reasons=tuple(_reason(flag) for flag in flags),
                 outside=_outside(local, flags),
                 other_oil="" if fluid is None or same else fluid.title,
-                own_oil=same or name == FittedOrSchlenk.name,
+                own_oil=same,
                 standing=standing_of(own)["friction"].removeprefix(f"{name}: "),
             )
         )
@@ -115,33 +112,19 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
 def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison, str]:
     """The model that suits the oil and the conditions, and why.
 
-    The model for any oil stays where it is chosen. Else a model made for the oil comes first, if
-    most of the loss lies where it was made; then the formulas of gear tests, which many oils stand
-    behind; of these the one that leaves its range least.
+    The one for any oil, which measured gears agree best with; where it is not chosen, the
+    regression of the dissertation for its fluid, if most of the loss lies in its range.
     """
     by_name = {row.name: row for row in rows}
-    any_oil = by_name.get(_ANY_OIL)
-    if any_oil is not None and any_oil.chosen:
-        why = "it holds for any oil and is nearer to measured gears than the others"
-        return any_oil, f"{why} ('epicyclic validate --measured'); {_inside(any_oil)}"
-    own = [by_name[name] for name in _FOR_ONE_OIL if name in by_name and by_name[name].own_oil]
-    paired = by_name.get(PAIRED)
-    for row in own:
-        if row.outside <= MOSTLY:
-            if row.name == "mixed-ehl" and paired is not None and _differ(row, paired):
-                why = "it was made for this oil and accounts for unequal roughness of the flanks"
-                return paired, f"{why}; {_inside(paired)}"
-            fitted = row.name == FittedOrSchlenk.name
-            made = "fitted to simulated contacts of" if fitted else "made for"
-            return row, f"it was {made} this oil, and {_inside(row)}"
-    general = min((by_name[name] for name in _OF_ALL_OILS), key=lambda row: row.outside)
-    why = "it was fitted to gear tests with many oils"
-    if own:
-        outside = percent(own[0].outside, 0)
-        why += f", whereas {outside} of the loss is outside the range of {own[0].name}"
-    else:
-        why += ", and no model was made for this oil ('epicyclic oil characterise' creates one)"
-    return general, f"{why}; {_inside(general)}"
+    any_oil = by_name[_ANY_OIL]
+    own = any_oil if any_oil.chosen else by_name[_REGRESSION]
+    if own.own_oil and own.outside <= MOSTLY:
+        if _differ(own, paired := by_name[PAIRED]):
+            why = "it was made for this oil and accounts for unequal roughness of the flanks"
+            return paired, f"{why}; {_inside(paired)}"
+        return own, f"it was made for this oil, and {_inside(own)}"
+    why = "it holds for any oil and is nearer to measured gears than the others"
+    return any_oil, f"{why} ('epicyclic validate --measured'); {_inside(any_oil)}"
 
 
 def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str | None:

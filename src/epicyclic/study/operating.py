@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity, torque_text, unit_text
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +42,18 @@ AXES = {name: part.key for name, part in OPERATING.items()}
 PLANE = ("speed", "torque")  # Axes of the tables and pictures of a map.
 STATE, STATE_KEY = "state", "operation.state"
 """Axis, column and key of the states of a train that has any."""
+CASE_KEY = "case_key"  # Attribute of a coordinate: the key that it varies.
 _NAMES = {key: name for name, key in AXES.items()} | {STATE_KEY: STATE}
 
 
 def axis_name(key: str) -> str:
     """Name of the dimension of a key: ``"speed"``, ``"planet_count"`` for ``"planet.count"``."""
-    return _NAMES.get(key, key.replace(".", "_"))
+    return _NAMES.get(key, re.sub(r"\W", "_", key))
+
+
+def key_of(array: xr.DataArray) -> str:
+    """The key that a coordinate of a map or sweep varies; its name if it is none of a case."""
+    return str(array.attrs.get(CASE_KEY, array.name))
 
 
 def operating_line(operation: Mapping[str, Any]) -> str:

@@ -51,6 +51,7 @@ from epicyclic.units import (
     SmallLength,
     Speed,
     Temperature,
+    Torque,
 )
 
 FloatArray = NDArray[np.float64]
@@ -80,6 +81,7 @@ _MEASURES: dict[str, Any] = {
     "clearance": Length,
     "speed": RotationalSpeed,
     "force": Force,
+    "moment": Torque,
     "radial_force": Force,
     "axial_force": Force,
 }
@@ -465,11 +467,12 @@ def plain_pin(
     oil: OilName,
     roughness: Any = "0.5 um",
     conductance: float = 0.0,
+    moment: Any = 0.0,
 ) -> dict[str, FloatArray]:
     """Film, temperature and loss of a journal bearing: a planet on a plain pin.
 
     Reynolds' equation of a short to long bearing with the mean temperature of its film, asperities
-    of Greenwood and Tripp where the film is thin. See (Z3), (Z5) in the theory.
+    of Greenwood and Tripp where the film is thin. See (Z3), (Z5), (Z7) in the theory.
 
     Parameters
     ----------
@@ -485,6 +488,8 @@ def plain_pin(
         Rms, of both surfaces together. [m]
     conductance : float
         From the film to pin and planet; 0: all heat leaves with the oil. [W/K]
+    moment : float, str or array_like
+        Tilts the planet, in the plane of its axis across the force, as helical meshes do. [N m]
 
     Returns
     -------
@@ -503,16 +508,17 @@ def plain_pin(
     names = ("watts", *(one.name for one in fields(JournalState)))
 
     def at(*values: float) -> tuple[float, ...]:
-        inner, long, gap, rough, load, omega, t = values
+        inner, long, gap, rough, load, omega, t, couple = values
         state = oil_state(liquid, t)
         bearing = JournalBearing(
             inner, long, gap, rough, STEEL / 2, state.boundary_friction, conductance
         )
-        found = solve_journal(bearing, load, omega, state, oil_medium(liquid, t).heat_capacity)
+        capacity = oil_medium(liquid, t).heat_capacity
+        found = solve_journal(bearing, load, omega, state, capacity, complex(0.0, couple))
         return tuple(getattr(found, name) for name in names)
 
     columns = _each(
         at, diameter=diameter, length=length, clearance=clearance, roughness=roughness,
-        force=force, speed=speed, temperature=temperature,
+        force=force, speed=speed, temperature=temperature, moment=moment,
     )  # fmt: skip
     return dict(zip(names, columns, strict=True))

@@ -450,12 +450,12 @@ CHAPTERS = {
 }
 """The figures of each chapter that are computed again."""
 TOPICS = {
-    "2": "Planetary sets, tests",
-    "3": "Planet bearings",
-    "4": "Pockets",
-    "5": "Planetary sets, tests",
+    "2": ("Planetary sets, tests", r"p\. \d\d\b"),
+    "3": ("Planet bearings", ""),
+    "4": ("Pockets", ""),
+    "5": ("Planetary sets, tests", r"p\. 1\d\d\b"),
 }
-"""Which published numbers belong to a chapter."""
+"""Which published numbers belong to a chapter: their topic, and a pattern of their pages."""
 
 
 # --- what the source says of each parameter -------------------------------------------------------

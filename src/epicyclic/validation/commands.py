@@ -206,7 +206,7 @@ def reproduce(
             write_file(path, picture_bytes(item.picture, path))
             echo(f"Wrote {path}, .nc and .csv.")
     with progress_bar("figures") as progress:
-        rows = compare_published(progress, topic=TOPICS[chapter])
+        rows = compare_published(progress, *TOPICS[chapter])
     found.sort(key=lambda item: known.index(item.number))
     write_page(output / PAGE, chapter_html(chapter, found, rows))
     if (table := influence_table(found)).rows:

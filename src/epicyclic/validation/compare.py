@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -173,10 +174,19 @@ class Comparison(Published):
 
 
 def compare_published(
-    progress: Callable[[int, int], None] = lambda done, total: None, topic: str = ""
+    progress: Callable[[int, int], None] = lambda done, total: None,
+    topic: str = "",
+    where: str = "",
 ) -> tuple[Comparison, ...]:
-    """Every published figure whose model exists, or those of a topic, compared."""
-    figures = [item for item in published_figures() if topic in ("", _topic(item))]
+    """Every published figure whose model exists, compared: of a topic, or where they are printed.
+
+    `where` is a regular expression, of which the source of a figure has a match.
+    """
+    figures = [
+        item
+        for item in published_figures()
+        if topic in ("", _topic(item)) and re.search(where, item["source"])
+    ]
     rows = []
     for number, figure in enumerate(figures):
         rows.append(_compare(figure))

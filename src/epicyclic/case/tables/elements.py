@@ -307,7 +307,16 @@ class ShaftBearingTable(ElementTable):
         "6208, NU 2210, 32006, NKI 40/30, ...: type and sizes by the ISO plans and estimated load "
         "ratings, where they are not given."
     )
-    type: Literal["deep-groove", "cylindrical", "tapered", "needle", "angular-contact"]
+    type: Literal[
+        "deep-groove",
+        "cylindrical",
+        "tapered",
+        "needle",
+        "angular-contact",
+        "spherical",
+        "thrust-ball",
+        "thrust-roller",
+    ] = Field(description="thrust-ball, thrust-roller: need axial_force, take no radial one.")
     bore: Length
     outside_diameter: Length
     width: Length | None = option("Needed for the drag of rollers in an oil bath.")
@@ -356,13 +365,15 @@ class ShaftBearingTable(ElementTable):
     )
     viscous_factor: Number | None = option(
         "f0 of palmgren and harris. Default: deep-groove 2, angular-contact 3.3, cylindrical 3 or "
-        "7.5 (full complement), tapered 6, needle 12.",
+        "7.5 (full complement), tapered 6, needle 12, spherical 4, thrust-ball 1.5, thrust-roller "
+        "3.5 (needles 5).",
         ge=0,
         le=100,
     )
     palmgren_coefficient: Number | None = option(
         "f1 of palmgren. Default: 0.0003, full complement 0.00055, tapered 0.0004, angular-contact "
-        "0.0005, needle 0.0005 (estimate).",
+        "0.0005, needle 0.0005 (estimate), spherical 0.00025, thrust-ball 0.0004, thrust-roller "
+        "0.0015.",
         gt=0,
         le=0.05,
     )
@@ -394,6 +405,9 @@ class ShaftBearingTable(ElementTable):
     )
     reference_speed: ReferenceSpeed | None = option(
         "Of the catalogue; for the minimum load of cylindrical rollers, and a note above it."
+    )
+    limiting_speed: ReferenceSpeed | None = option(
+        "Of the catalogue; a note above it. Default: that of small bearings of the type."
     )
     table: LossTableTable | None = option("Loss table for model = table.")
 
@@ -429,15 +443,16 @@ class ShaftBearingTable(ElementTable):
         yield from super().problems()
         yield from _force_problems(self)
         if kind not in bearing_types(model):
-            reason = f"has no constants for {kind} roller bearings."
+            reason = f"has no constants for {kind} bearings."
             yield Problem("model", written(model), reason, 'Choose model = "palmgren" or "table".')
             return
         yield from _own_table_problems(self, LossTableTable.AXES)
         yield from _roller_problems(self)
         if model == "skf-2018":
             yield from _skf_problems(self)
-        balls = kind in ("deep-groove", "angular-contact")
-        needs_rating = balls and model in ("harris", "skf-2018") and not self.designation
+        balls = kind in ("deep-groove", "angular-contact", "thrust-ball")
+        rated = self.designation and kind != "thrust-ball"
+        needs_rating = balls and model in ("harris", "skf-2018") and not rated
         if needs_rating and not self.static_load_rating:
             reason = f"is missing; the model {model} needs it for ball bearings."
             yield Problem("static_load_rating", "", reason, "Add C0 from the catalogue.")
@@ -528,6 +543,15 @@ def _pair_problems(table: ShaftBearingTable) -> Iterator[Problem]:
 
 
 def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
+    if table.type.startswith("thrust"):
+        if table.axial_force is None and table.model != "table":
+            remedy = 'Add that of the gears on its shaft: "2 kN".'
+            yield Problem("axial_force", "", "is missing of a thrust bearing.", remedy)
+        for key in ("radial_force", "position", "locating"):
+            if getattr(table, key):
+                reason = "is not possible with a thrust bearing, which carries no radial force."
+                yield Problem(key, "", reason, "Delete it.")
+        return
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
         yield Problem("radial_force", "", "is missing with axial_force.", remedy)

@@ -42,8 +42,6 @@ SHOWN = (
 )  # fmt: skip
 """What an answer of `run` has of the JSON of the command."""
 
-OF_MAP = ("torque_loss", "total", "efficiency", "status", "message")
-
 Case = Annotated[str, Field(description="TOML or REXS file, or the name of a built-in case.")]
 Changes = Annotated[
     Sequence[str], Field(description='Changed keys, as in ["operation.torque=500 N*m"].')

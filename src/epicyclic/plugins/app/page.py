@@ -33,6 +33,7 @@ from epicyclic.plugins.app.views import (
     CompareView,
     DesignView,
     Do,
+    Failure,
     MapView,
     View,
     download,
@@ -319,8 +320,7 @@ class Page:
             self._form_place = ui.element("aside")
             with ui.element("main"):
                 self._problems = ui.element("div").classes("problems")
-                self._failed = ui.label().classes("problem")
-                self._failed.set_visibility(False)
+                self._failed = Failure()
                 with ui.element("div") as self._results:
                     self._figures = ui.element("div").classes("key-figures")
                     self._doing = Doing(shelf.slow.end)
@@ -386,7 +386,7 @@ class Page:
         with self._problems:
             for problem in self.desk.problems:
                 ui.label(str(problem)).classes("problem")
-        self._fail("")
+        self._failed.tell("")
         self._results.classes(**{"add" if self.desk.problems else "remove": "stale"})
         mark_behind(self._figures, self.desk.case is not None)
 
@@ -418,7 +418,7 @@ class Page:
         case = self.desk.case
         if case is None:
             return
-        self._fail("")  # what was cancelled is of an earlier case
+        self._failed.tell("")  # what was cancelled is of an earlier case
         study = Study(case)
 
         def is_wanted() -> bool:
@@ -434,15 +434,9 @@ class Page:
                 if is_at_rest():
                     await self._chapters.complete(study, is_at_rest)
         except (Ended, EpicyclicError) as error:
-            self._fail(str(error))
+            self._failed.tell(str(error))
         if self.desk.case is not None and not self._figures.is_deleted:
             self._chapters.age(Study(self.desk.case))
-
-    def _fail(self, text: str) -> None:
-        """Say why the case was not solved."""
-        if not self._failed.is_deleted:
-            self._failed.set_text(text)
-            self._failed.set_visibility(bool(text))
 
     def _show_command(self) -> None:
         with ui.dialog() as dialog, ui.card().classes("command"):

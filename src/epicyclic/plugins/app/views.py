@@ -46,6 +46,20 @@ def key_figures(figures: Sequence[KeyFigure]) -> None:
             ui.label(f"95 %: {figure.band}" if figure.band else "").classes("band")
 
 
+class Failure(ui.label):
+    """Why something could not be done; it is there while there is a reason."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.classes("problem").set_visibility(False)
+
+    def tell(self, text: str) -> None:
+        """Show the reason, none if it is empty, unless the page is gone."""
+        if not self.is_deleted:
+            self.set_text(text)
+            self.set_visibility(bool(text))
+
+
 MAP_FILES = {
     **{name: f"{one.about}, {one.suffix or name}" for name, one in formats().items()},
     ".html": "Report, .html",
@@ -416,8 +430,7 @@ class MapView:
             save_menu("Save map", MAP_FILES, self._save)
         ui.label("Values as a,b,c or start:stop:count, with their unit.").classes("soft")
         self._doing = Doing(self._worker.end)
-        self._failed = ui.label().classes("problem")
-        self._failed.set_visibility(False)
+        self._failed = Failure()
         self._body = ui.element("div")
         self._sheet = None
 
@@ -454,7 +467,7 @@ class MapView:
         try:
             if case is not None and (self._is_asked or is_old):
                 self._is_asked = False
-                self._fail("")
+                self._failed.tell("")
                 texts = (self._texts[axis].strip() for axis in OPERATING)
                 study = Study(case, *texts, is_map=True)
                 with self._doing.shown("points of the map"):
@@ -464,12 +477,7 @@ class MapView:
             if self._known is not None and not self._body.is_deleted:
                 await self._fill(*self._known)
         except (Ended, EpicyclicError) as error:
-            self._fail(str(error))
-
-    def _fail(self, text: str) -> None:
-        if not self._failed.is_deleted:
-            self._failed.set_text(text)
-            self._failed.set_visibility(bool(text))
+            self._failed.tell(str(error))
 
     async def _fill(self, study: Study, answer: Answer) -> None:
         values = {axis: getattr(study, axis) for axis in OPERATING}
@@ -625,6 +633,7 @@ class DesignView:
     """
 
     title = "Designs"
+    _failed: Failure
 
     def __init__(self, folder: Path, worker: Worker, then: Callable[[Desk], None]) -> None:
         self._folder, self._worker, self._then = folder, worker, then
@@ -638,11 +647,10 @@ class DesignView:
             max_file_size=LARGEST_DATASET,
             auto_upload=True,
             on_upload=self._take,
-            on_rejected=lambda: self._fail(f"Files of up to {LARGEST_DATASET // 10**6} MB."),
+            on_rejected=lambda: self._failed.tell(f"Files of up to {LARGEST_DATASET // 10**6} MB."),
         ).props("flat bordered accept=.toml,.nc").classes("upload")
         self._doing = Doing(self._worker.end)
-        self._failed = ui.label().classes("problem")
-        self._failed.set_visibility(False)
+        self._failed = Failure()
         self._body = ui.element("div")
         self._fill()
 
@@ -653,7 +661,7 @@ class DesignView:
         """Nothing here is of the case of the form."""
 
     async def _take(self, event: events.UploadEventArguments) -> None:
-        self._fail("")
+        self._failed.tell("")
         own = Path(tempfile.mkdtemp(dir=self._folder))
         try:
             path = received_task(event.file.name, await event.file.read(), own)
@@ -661,13 +669,8 @@ class DesignView:
                 progress = self._doing.progress
                 self._front = await self._worker.do(tasks.designs, path, progress=progress)
         except (Ended, EpicyclicError) as error:
-            self._fail(str(error))
+            self._failed.tell(str(error))
         self._fill()
-
-    def _fail(self, text: str) -> None:
-        if not self._failed.is_deleted:
-            self._failed.set_text(text)
-            self._failed.set_visibility(bool(text))
 
     def _fill(self) -> None:
         front = self._front

@@ -42,8 +42,10 @@ from epicyclic.show.result_page import (
 )
 from epicyclic.show.result_tables import side_by_side
 from epicyclic.show.summary import head_figures, summary_section
+from epicyclic.show.uncertainty_tables import result_json
 from epicyclic.show.views import save
 from epicyclic.study.bands.advice import Known, known_of
+from epicyclic.study.bands.study import quick_known
 from epicyclic.study.maps.compute import loss_map
 from epicyclic.study.maps.formats import formats, write_map
 from epicyclic.study.operating import AXES, operating_line
@@ -456,22 +458,22 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
     Of a REXS file a copy of the original with the results; of a format with a file for each state,
     these in an archive.
     """
-    from epicyclic.show.html import report_html, report_pdf
-
     found = _stored(study, progress)
     with tempfile.TemporaryDirectory() as folder, contact_progress(progress):
         path = Path(folder) / f"result{_suffix(name)}"
         if is_rexs(path):
             return path.suffix, rexs_bytes(path, _result(study.case, progress), original, None)
-        if isinstance(found, ResultRecord):
-            save(found.result, path)
-        elif path.suffix in PAGES:
-            from epicyclic.show.html import report_html, report_pdf  # only what is saved needs it
+        if path.suffix in PAGES:
+            from epicyclic.show.html import page_bytes, report_html  # only what is saved needs it
 
-            page = report_html(found)
-            path.write_bytes(report_pdf(page) if path.suffix == ".pdf" else page.encode())
-        else:
+            path.write_bytes(page_bytes(report_html(found), path.suffix))
+        elif not isinstance(found, ResultRecord):
             write_map(found, path, name)
+        elif path.suffix == ".json":
+            known = quick_known(study.case, found.result, brief=True)
+            path.write_text(f"{result_json(found.result, known)}\n", encoding="utf-8")
+        else:
+            save(found.result, path)
         files = list(Path(folder).iterdir())
         if len(files) == 1:
             return path.suffix, path.read_bytes()

@@ -225,7 +225,7 @@ def relief(
     from epicyclic.plugins.design import report
     from epicyclic.plugins.design.relief import Relief, mesh_keys, relief_front
     from epicyclic.show.terminal import as_on_page, terminal
-    from epicyclic.study.sweeps.run import check_output, parse_vary
+    from epicyclic.study.sweeps.run import check_output, parse_vary, write_dataset
 
     if output is not None:
         check_output(output)
@@ -254,7 +254,7 @@ def relief(
     )
     data = relief_front(made, replace(runner, journal=journal))
     if output is not None:
-        report.write_variants(data, output)
+        write_dataset(data, output, lambda found: found.to_dataframe())
         echo(f"Wrote {output}.")
     terminal().print(as_on_page(report.variants_table(data)))
     if plot is not None:

@@ -26,7 +26,7 @@ from epicyclic.plugins.design.tables import mass_table, strength_tables
 from epicyclic.show.page import Cell, Listing, Table, number
 from epicyclic.show.plots.style import styled_figure
 from epicyclic.show.terminal import as_on_page, spaced
-from epicyclic.study.sweeps.run import csv_safe, write_netcdf
+from epicyclic.study.sweeps.run import write_netcdf
 from epicyclic.units import Length
 
 if TYPE_CHECKING:
@@ -210,17 +210,6 @@ def variants_table(data: xr.Dataset) -> Table:
     head = (*short, *(f"{it.replace('_', ' ')} [{data[it].attrs['units']}]" for it in names))
     title = f"{data.attrs['mesh'].replace('_', ' ').capitalize()} of {data.attrs['title']}"
     return Table((*head, "not beaten"), tuple(rows), title)
-
-
-def write_variants(data: xr.Dataset, path: Path) -> None:
-    """A dataset or a table."""
-    with whole_file(path) as temporary:
-        if path.suffix == ".nc":
-            write_netcdf(data, temporary)
-        elif path.suffix == ".csv":
-            csv_safe(data.to_dataframe()).to_csv(temporary, index=False)
-        else:
-            data.to_dataframe().to_parquet(temporary, index=False)
 
 
 def relief_figure(data: xr.Dataset) -> Figure:

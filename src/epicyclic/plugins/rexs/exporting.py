@@ -492,7 +492,7 @@ def _bearings(
         number = builder.add(
             "rolling_bearing_with_catalog_geometry",
             name,
-            bearing_type=_TYPES[table.type],
+            **({"bearing_type": _TYPES[table.type]} if table.type in _TYPES else {}),
             inner_diameter=(table.bore, "m"),
             outer_diameter=(table.outside_diameter, "m"),
             axial_force_absorption=_absorption(table),

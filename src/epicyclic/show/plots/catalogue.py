@@ -194,6 +194,9 @@ def _uncertainty_of(stored: Stored) -> xr.Dataset | None:
 
 
 def _drivers(stored: Stored) -> list[Panel]:
+    """Of a map the shares over all its points, else the change by each."""
+    if not isinstance(stored, ResultRecord) and "explained" in stored:
+        return [Panel("", partial(losses.plot_shares, stored))]
     data = _uncertainty_of(stored)
     return [] if data is None else [Panel("", partial(losses.plot_drivers, data))]
 
@@ -233,11 +236,13 @@ def _sweep_points(stored: Stored) -> list[Panel]:
 
 def _pocket_pressure(stored: Stored) -> list[Panel]:
     """Both kinds of pocket of each mesh."""
-    if not isinstance(stored, ResultRecord):
-        return []
+    found = stored.group("pockets") if isinstance(stored, ResultRecord) else {}
     return [
-        Panel(in_words(name), partial(plot_life_with_scale, data, "pressure", kind))
-        for name, data in stored.group("pockets").items()
+        Panel(
+            in_words(name) if len(found) > 1 else "",
+            partial(plot_life_with_scale, data, "pressure", kind),
+        )
+        for name, data in found.items()
         for kind in range(data.sizes["tooth"])
     ]
 

@@ -121,13 +121,6 @@ class _Layout:
         return CELSIUS.to_display(min(known)), CELSIUS.to_display(max(known))
 
 
-def heat_figure(heat: HeatBalance, title: str) -> Figure:
-    """The network of heat as a figure."""
-    with styled_figure(1, 1, title, panel=SLIDE) as (figure, axes):
-        plot_heat_network(heat, axes[0, 0])
-    return figure
-
-
 def plot_heat_network(heat: HeatBalance, ax: Axes) -> Axes:
     """How warm every part is, and which heat flows from part to part and outside."""
     layout = _layout(heat)

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.result.result import Result, in_words
-from epicyclic.show.plots.style import COLOURS, legend_below, styled_figure, write_beside
+from epicyclic.show.plots.style import COLOURS, legend_below, write_beside
 from epicyclic.study.bands.advice import in_few_words
 from epicyclic.units import decimals_of, format_number, percent, power_unit
 
@@ -51,10 +50,13 @@ def plot_losses(result: Result, ax: Axes) -> Axes:
 
 
 def plot_loss_sum(result: Result, ax: Axes) -> Axes:
-    """How the components add up to the total loss, the largest first."""
+    """How the components add up to the total loss, the largest first; nothing that reads 0."""
     unit, scale = power_unit(result.total)
     total, digits = result.total / scale, decimals_of(result.total / scale)
-    parts = {name: own for name, own in _parts(result, scale).items() if any(own.values())}
+    parts = _parts(result, scale)
+    least = 0.5 / 10**digits
+    small = [it for it, own in parts.items() if it == OTHERS or sum(own.values()) < least]
+    parts = _together(parts, small)
     parts = dict(sorted(parts.items(), key=lambda it: (it[0] == OTHERS, -sum(it[1].values()))))
     sums = np.array([sum(own.values()) for own in parts.values()])
     ends = sums.cumsum()
@@ -119,11 +121,17 @@ def _parts(result: Result, scale: float) -> dict[str, dict[str, float]]:
             own[term.group] = own.get(term.group, 0.0) + term.watts / scale
     if len(parts) > MOST_ROWS:
         by_size = sorted(parts, key=lambda name: -sum(parts[name].values()))
-        small = [parts.pop(name) for name in by_size[MOST_ROWS - 1 :]]
-        parts[OTHERS] = {
-            group: sum(own.get(group, 0.0) for own in small) for group in GROUP_COLOURS
-        }
+        return _together(parts, by_size[MOST_ROWS - 1 :])
     return parts
+
+
+def _together(
+    parts: Mapping[str, Mapping[str, float]], small: Sequence[str]
+) -> dict[str, dict[str, float]]:
+    """Some parts as one, the last, unless all of these are nothing."""
+    kept = {name: dict(own) for name, own in parts.items() if name not in small}
+    sums = {it: sum(parts[name].get(it, 0.0) for name in small) for it in GROUP_COLOURS}
+    return kept | ({OTHERS: sums} if any(sums.values()) else {})
 
 
 def _labels(result: Result) -> dict[str, str]:
@@ -148,33 +156,10 @@ TICKS = 6  # Most ticks under a distribution: its values have many digits.
 WIDE = (8.8, 4.6)  # Width and height of a picture with long names beside its bars. [inch]
 
 
-def drivers_figure(data: xr.Dataset) -> Figure:
-    """`plot_drivers` as a figure."""
-    with styled_figure(1, 1, data.attrs["title"], panel=WIDE) as (figure, axes):
-        plot_drivers(data, axes[0, 0])
-    return figure
-
-
-def band_figure(data: xr.Dataset) -> Figure:
-    """`plot_band` of the total loss and of the efficiency as a figure."""
-    names = banded(data)
-    with styled_figure(1, len(names), data.attrs["title"]) as (figure, axes):
-        for name, ax in zip(names, axes[0], strict=True):
-            plot_band(data, name, ax)
-    return figure
-
-
 def banded(data: xr.Dataset) -> tuple[str, ...]:
     """Results whose bands are drawn: the efficiency if power is passed on."""
-    known = bool(np.isfinite(data["low"].sel(result="efficiency")))
-    return ("total", "efficiency") if known else ("total",)
-
-
-def shares_figure(data: xr.Dataset) -> Figure:
-    """`plot_shares` as a figure."""
-    with styled_figure(1, 1, data.attrs["title"], panel=WIDE) as (figure, axes):
-        plot_shares(data, axes[0, 0])
-    return figure
+    low, high = (float(data[end].sel(result="efficiency")) for end in ("low", "high"))
+    return ("total", "efficiency") if low < high else ("total",)
 
 
 def mean_shares(data: xr.Dataset) -> xr.DataArray:

@@ -249,6 +249,8 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
             ax.plot(
                 middle, mean, label="one mean value for the whole mesh; the model gives no other"
             )
+        elif (high - low).max() <= 2 * np.ptp(mean) / len(mean):  # the same across the face
+            ax.plot(middle, mean)
         else:
             ax.fill_between(middle, low, high, alpha=0.25, lw=0, label="range across the face")
             ax.plot(middle, mean, label="mean across the face")

@@ -31,7 +31,7 @@ from epicyclic.show.plots.style import (
     write_beside,
 )
 from epicyclic.study.bands.advice import in_few_words
-from epicyclic.study.operating import operating_line
+from epicyclic.study.operating import CASE_KEY, key_of, operating_line
 from epicyclic.study.sweeps.run import is_sweep
 from epicyclic.units import format_number, unit_text
 
@@ -115,18 +115,15 @@ def sweep_line(data: xr.Dataset) -> str:
     """What was varied, and the operating point with the rest."""
     operation = dict(json.loads(data.attrs["case"])["operation"])
     spans = []
-    for key in map(str, [*data["total"].dims, *_with_dimensions(data)]):
-        spans.append(f"{in_few_words(key)} {_span(data[key])}")
+    for array in data.coords.values():
+        key = key_of(array)
+        if array.name not in data.dims and (key == array.name or key in data.dims):
+            continue  # the key beside its dimension
+        spans.append(f"{in_few_words(key)} {_span(array)}")
         table, _, name = key.partition(".")
         if table == "operation":
             operation.pop(name, None)
     return "; ".join(filter(None, [*spans, operating_line(operation)]))
-
-
-def _with_dimensions(data: xr.Dataset) -> list[str]:
-    """Keys that change with a dimension or follow from it."""
-    keys = (name for name, array in data.coords.items() if "case_key" not in array.attrs)
-    return [str(name) for name in keys if name not in data.dims]
 
 
 def plot_sweep_lines(data: xr.Dataset, name: str, ax: Axes) -> Axes:
@@ -147,7 +144,8 @@ def plot_sweep_lines(data: xr.Dataset, name: str, ax: Axes) -> Axes:
             label=", ".join(_value(line[dim]) for dim in index),
         )
     if between:
-        legend_below(ax, title=_axis_label(data, between[0]), title_fontsize="small", ncols=4)
+        title = in_few_words(key_of(data[between[0]]))  # the entries have units
+        legend_below(ax, title=title, title_fontsize="small", ncols=4)
     ax.set(title=_titled(values, part, ax), xlabel=_axis_label(data, over), ylabel=label_of(values))
     if _is_count(values[over]):
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -251,14 +249,10 @@ def _at_first(data: xr.Dataset, kept: list[str]) -> xr.Dataset:
 
 def _titled(values: xr.DataArray, part: xr.Dataset, ax: Axes) -> str:
     """What is shown, and the values of the dimensions that are not."""
-    held = [f"{in_few_words(key)} {_value(part[key])}" for key in _held(part)]
+    fixed = [array for array in part.coords.values() if array.ndim == 0 and CASE_KEY in array.attrs]
+    held = [f"{in_few_words(key_of(array))} {_value(array)}" for array in fixed]
     width = int(TITLE_CHARACTERS * room_of(ax))
     return textwrap.fill(", ".join([title_of(values), *held]), width, break_long_words=False)
-
-
-def _held(part: xr.Dataset) -> list[str]:
-    single = (array for array in part.coords.values() if array.ndim == 0)
-    return [array.attrs["case_key"] for array in single if "case_key" in array.attrs]
 
 
 def _is_number(values: xr.DataArray) -> bool:
@@ -275,7 +269,7 @@ def _unit(values: xr.DataArray) -> str:
 
 def _axis_label(data: xr.Dataset, dim: str) -> str:
     """``"speed, rpm"``."""
-    unit, name = _unit(data[dim]), in_few_words(dim)
+    unit, name = _unit(data[dim]), in_few_words(key_of(data[dim]))
     return f"{name}, {unit}" if unit else name
 
 

@@ -38,7 +38,6 @@ from epicyclic.units import NEWTON_METRE, NUMBER, RPM, WATT, Quantity, format_nu
 MOST_ROWS = 10_000
 """Every row is a computation; tables of more rows are recordings, to be averaged first."""
 _MOST_COLUMNS = 200
-_SHOWN_LINES = 5
 
 
 @dataclass(frozen=True, slots=True)

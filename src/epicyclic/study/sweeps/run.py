@@ -8,7 +8,7 @@ import math
 import re
 from abc import abstractmethod
 from collections import Counter, defaultdict
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,9 +25,10 @@ from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import number_fields, origin
+from epicyclic.schema.fields import is_array, quantity_of
 from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
 from epicyclic.study.load import CaseSource, as_case
-from epicyclic.study.operating import AXES, STATE_KEY, axis_name
+from epicyclic.study.operating import AXES, STATE_KEY, key_of
 from epicyclic.study.solve import pocket_flow_numbers, solve
 from epicyclic.study.sweeps.axes import (
     MOST_POINTS,
@@ -389,10 +390,11 @@ def parse_vary(
             continue
         try:
             vary[key] = list(_values(case, key, text))
+        except InputError:
+            raise  # the key itself is none
         except ValueError as error:
-            problems.append(
-                Problem(key, f'"{text}"', f"{error}.", "Write start:stop:count in one unit.")
-            )
+            what, remedy = (*error.args, "Write start:stop:count in one unit.")[:2]
+            problems.append(Problem(key, f'"{text}"', f"{what}.", remedy))
         size = math.prod(map(len, vary.values()))
         if size > MOST_POINTS:
             problems.append(too_many(name, size))
@@ -428,7 +430,10 @@ def parse_links(options: Sequence[str]) -> dict[str, str]:
 
 
 def _values(case: Case, key: str, text: str) -> Iterator[Any]:
-    match = _RANGE.fullmatch(text)
+    """Values of one option; a `ValueError` has what is wrong, and may have what to do."""
+    match, field = _RANGE.fullmatch(text), field_at(case, key)
+    quantity = None if field is None or is_array(field[0]) else quantity_of(*field)
+    lacking = ValueError("has no unit", f'Write "{text.strip()} {quantity and quantity.display}".')
     if match is not None:
         start, stop = _NUMBER.fullmatch(match["start"]), _NUMBER.fullmatch(match["stop"])
         if start is None or stop is None:
@@ -442,7 +447,8 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
         if len(units) > 1:
             raise ValueError(f"the units {' and '.join(sorted(units))} differ")
         unit = units.pop() if units else ""
-        field = field_at(case, key)
+        if not unit and quantity is not None and quantity.si:
+            raise lacking
         whole = field is not None and field[0] is int
         for number in np.linspace(float(start[1]), float(stop[1]), count):
             if unit:
@@ -452,7 +458,11 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
             else:
                 yield float(number)
         return
+    if ":" in text and quantity is not None:
+        raise ValueError("must be a,b,c or start:stop:count", "Give all three, and a unit.")
     items = [item.strip() for item in text.split(",") if item.strip()]
+    if items and quantity is not None and quantity.si and all(map(_is_bare, items)):
+        raise lacking
     shared = _unit_of(items[-1]) if items else ""
     for item in items:
         if _LEADING_ZERO.match(item):
@@ -463,14 +473,14 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
 _LEADING_ZERO = re.compile(r"0\d")
 
 
+def _unit_of(item: str) -> str | None:
+    """The unit of a number, empty if it has none; None for what is no number."""
+    match = _NUMBER.fullmatch(item)
+    return None if match is None else match[2]
+
+
 def _is_bare(item: str) -> bool:
-    match = _NUMBER.fullmatch(item)
-    return match is not None and not match[2]
-
-
-def _unit_of(item: str) -> str:
-    match = _NUMBER.fullmatch(item)
-    return match[2] if match is not None else ""
+    return _unit_of(item) == ""
 
 
 # Rows of a sweep as an `xarray.Dataset`, and the files it is kept in.
@@ -478,18 +488,14 @@ def _unit_of(item: str) -> str:
 FORMATS = (".nc", ".csv", ".parquet")
 _FORMULA = ("=", "+", "-", "@", "\t")  # What formulas of spreadsheets begin with.
 _CONTROLS = re.compile(r"[^\t\n -\x7e\xa0-\U0010ffff]")
-_CASE_KEY = "case_key"  # Attribute of a coordinate: the key that it varies.
 _INTERPOLATION_ERROR = "pocket_interpolation_error"
 
 
 def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
-    """The rows of all points of `plan` over its axes.
-
-    Dimensions are called as the keys. Beside each stands a coordinate of the same values with a
-    name without dots, for attributes and keywords. Keys that change with another one, or follow
-    from others, are coordinates over those.
-    """
+    """The rows of all points of `plan` over its axes."""
     import xarray as xr
+
+    from epicyclic.study.sweeps.names import with_plain_names
 
     numbers = {item.key: item for item in number_fields(layout_of(plan.case))}
     dims = tuple(axis.key for axis in plan.axes)
@@ -497,7 +503,6 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
     for key, over, points, unit in _coordinates(plan):
         about = _about("row of the table of points" if key == ROW else key, unit)
         coords[key] = (over, points, about)
-        coords.setdefault(_plain_name(key, numbers), (over, points, about | {_CASE_KEY: key}))
     variables = {
         key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
         for key, item in numbers.items()
@@ -511,7 +516,7 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
         column = np.array(values, dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
     with texts_not_copied():
-        return xr.Dataset(variables, coords, _attributes(plan, rows))
+        return with_plain_names(xr.Dataset(variables, coords, _attributes(plan, rows)))
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
@@ -539,20 +544,14 @@ def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, s
         yield key, tuple(plan.axes[number].key for number in behind), known, unit_of(plan.case, key)
 
 
-def _plain_name(key: str, numbers: Container[str]) -> str:
-    """Name of a key without dots: ``"sun_mesh_misalignment_given"`` beside the computed one."""
-    name = axis_name(key)
-    return f"{name}_given" if name in numbers else name
-
-
 def by_keys(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset of a sweep without the names beside its keys; any other as it is."""
-    beside = [
-        name
-        for name, array in dataset.coords.items()
-        if name not in dataset.dims and _CASE_KEY in array.attrs
-    ]
-    return dataset.drop_vars(beside)
+    """The dataset of a sweep with its keys as the only names, a plain one; any other as it is."""
+    import xarray as xr
+
+    keys = {name: key_of(array) for name, array in dataset.coords.items()}
+    beside = {name: key for name, key in keys.items() if key != name and key in dataset.coords}
+    data = dataset.drop_vars(beside.values()).rename(beside)
+    return xr.Dataset(data.variables, attrs=data.attrs).set_coords(list(data.coords))
 
 
 def _about(label: str, unit: str) -> dict[str, str]:
@@ -601,15 +600,19 @@ def check_output(path: Path) -> None:
     check_place(path)
 
 
-def write_dataset(dataset: xr.Dataset, path: Path) -> None:
-    """Write `dataset` to `path` in the format its suffix names, whole or not at all."""
+def write_dataset(
+    dataset: xr.Dataset, path: Path, rows: Callable[[xr.Dataset], pd.DataFrame] | None = None
+) -> None:
+    """Write to `path`, whole or not at all: all of it as .nc, or `rows` as .csv or .parquet."""
     with whole_file(path) as temporary:
         if path.suffix == ".nc":
             write_netcdf(dataset, temporary)
-        elif path.suffix == ".csv":
-            csv_safe(to_table(dataset)).to_csv(temporary, index=False)
+            return
+        table = (rows or to_table)(dataset)
+        if path.suffix == ".csv":
+            csv_safe(table).to_csv(temporary, index=False)
         else:
-            to_table(dataset).to_parquet(temporary, index=False)
+            table.to_parquet(temporary, index=False)
 
 
 def csv_safe(table: pd.DataFrame) -> pd.DataFrame:
@@ -737,10 +740,11 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        One dimension for each key or group, every number with its unit; points that failed have
-        NaN, the status ``"failed"`` and the reason in ``message``. Which variables there are
-        depends on the kind of the case only. Keys that change with others or follow from them are
-        coordinates; the attributes ``together`` and ``links`` name them.
+        One dimension for each key or group, ``torque`` for ``operation.torque``, ``planet_count``
+        for ``planet.count``; the keys themselves are accepted in their place. Every number has its
+        unit; points that failed have NaN, the status ``"failed"`` and the reason in ``message``.
+        Which variables there are depends on the kind of the case only. Keys that change with others
+        or follow from them are coordinates; the attributes ``together`` and ``links`` name them.
 
     Raises
     ------
