@@ -141,6 +141,7 @@ def micrometres(value: float) -> str:
 
 _LIKENESS = 60.0  # Smallest likeness, in percent, at which a name is worth suggesting.
 
+_MOST_KINDS = 3  # Names of kinds of one thing that are all suggested.
 _MOST_SLIPS = 2  # Letters left out, added, changed or swapped in a name that is still clear.
 
 _LONGEST = 60  # No name is longer, and longer text is not compared. [characters]
@@ -150,7 +151,12 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     """``"Did you mean 'sun'?"``, or nothing if no known name is near."""
     if len(name) > _LONGEST:
         return ""
-    found = process.extractOne(name, list(known), scorer=_likeness, score_cutoff=_LIKENESS)
+    known = list(known)
+    start = re.sub(r"[\s_]+", "-", name.casefold()) + "-"
+    kinds = [repr(one) for one in known if f"-{start}" in f"-{one.casefold()}"]
+    if 1 < len(kinds) <= _MOST_KINDS:  # none of them is nearer
+        return f"Did you mean {' or '.join(kinds)}?"
+    found = process.extractOne(name, known, scorer=_likeness, score_cutoff=_LIKENESS)
     return f"Did you mean {found[0]!r}?" if found else ""
 
 

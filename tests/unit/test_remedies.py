@@ -173,3 +173,19 @@ def test_the_pressure_of_voids_that_a_remedy_names_is_taken(pressure):
     (problem,) = caught.value.problems
     taken = re.fullmatch(r"Take (.+)\.", problem.remedy)[1]
     assert load_case("talbot-2012-pair", changes | {problem.key: taken})
+
+
+@pytest.mark.parametrize(
+    ("value", "remedy"),
+    [("-31", "Increase it to 5"), ("2", "Increase it to 5"), ("7000", "Reduce it to 2000"),
+     ("37", "Write 37, without quotes.")],
+)  # fmt: skip
+def test_a_number_in_quotes_that_would_not_do_is_not_proposed(value, remedy):
+    (problem,) = problems("talbot-2012-pair", {"gear.teeth": value})
+    assert problem.remedy.startswith(remedy)
+
+
+@pytest.mark.parametrize("grade", ["ISO VG 220", "VG 220", "iso_vg_220"])
+def test_a_grade_names_every_kind_of_oil(grade):
+    (problem,) = problems("talbot-2012-pair", {"lubricant.oil": grade})
+    assert problem.remedy == "Did you mean 'iso-vg-220-mineral' or 'iso-vg-220-pao'?"

@@ -145,10 +145,19 @@ def _remedy(place: Place, kind: str, value: Any) -> str:
         only = f'write "{choices[0]}"' if len(choices) == 1 else "choose one of them"
         return did_you_mean(str(value), choices) or only
     if kind in ("int_type", "float_type"):
+        low, high, is_open = bounds_of(place.annotation, place.metadata)
+        match = _PLAIN_NUMBER.fullmatch(value[:100]) if isinstance(value, str) else None
+        number = None if match is None or match[2] else float(match[1])
+        if number is not None and not _is_within(number, low, high):
+            return range_remedy(number, low, high, open_low=is_open)
         return _number_remedy(value)
     if table_of(place.annotation) is not None:
         return _table_remedy(place.path, value)
     return _REMEDIES.get(kind, "correct this value")
+
+
+def _is_within(number: float, low: float | None, high: float | None) -> bool:
+    return (low is None or number >= low) and (high is None or number <= high)
 
 
 def _table_remedy(path: Sequence[str | int], value: Any) -> str:
