@@ -399,7 +399,7 @@ def test_states_are_swept_as_names(tmp_path, epicyclic):
     with xr.open_dataset(output) as stored:
         assert list(stored["operation.state"].values) == ["1", "2", "3"]
         assert list(stored["sets.P1.efficiency"].values) == [0.97, 0.98]
-        assert (stored["ratio"].diff("operation.state") < 0).all()
+        assert (stored["ratio"].diff("state") < 0).all()
         worse = stored["total"].sel({"operation.state": "3"})
         assert float(worse[0]) > float(worse[1])
 

@@ -124,7 +124,7 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
             return paired, f"{why}; {_inside(paired)}"
         return own, f"it was made for this oil, and {_inside(own)}"
     why = "it holds for any oil and is nearer to measured gears than the others"
-    return any_oil, f"{why} ('epicyclic validate --measured'); {_inside(any_oil)}"
+    return any_oil, f"{why}; {_inside(any_oil)}"
 
 
 def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str | None:
