@@ -310,6 +310,15 @@ def test_a_search_ends_when_all_are_solved(monkeypatch):
     assert not found.fates.keys() & {"", "not solved"}
 
 
+def test_a_short_search_solves_some_of_every_arrangement(monkeypatch):
+    monkeypatch.setattr(searching, "evaluate", made_up)
+    raw = task_of("pair", "planetary", ratio=4.1, pinion_teeth=[18, 19])
+    raw["limits"] |= {"pitting": 0.05, "bending": 0.05}
+    raw["search"] |= {"solved": 3, "batch": 3}
+    table = search(read_task(raw), raw, Runner(1)).table
+    assert set(table.arrangement[table.loss.notna()]) == {"pair", "planetary"}
+
+
 def test_a_polished_design_meets_the_limits_and_the_front_is_told_anew(monkeypatch):
     monkeypatch.setattr(searching, "evaluate", made_up)
     raw = task_of("pair", ratio=3.1)

@@ -375,7 +375,8 @@ def _least_ratios(found: Found, rows: Any) -> FloatArray:
 def _next(found: Found, left: Any, count: int) -> list[int]:
     """The next designs to solve: fronts of their bounds, those first that will probably hold.
 
-    Solved designs tell how far safeties stay below their bounds. That only changes the order.
+    Solved designs tell how far safeties stay below their bounds. That only changes the order, and
+    so does one design of every arrangement of which none is solved yet.
     """
     bounds = _objectives(found, left, "bound")
     rank = np.log(np.maximum(bounds, 1e-12)).sum(axis=1)
@@ -390,9 +391,10 @@ def _next(found: Found, left: Any, count: int) -> list[int]:
     few = order[: 40 * count]
     few = few[weak[few] == weak[few[0]]]
     front = few[~dominated(bounds[few], bounds[few])]
-    first = set(front.tolist())
-    rest = [it for it in order if it not in first]
-    return [int(left[it]) for it in [*front, *rest][:count]]
+    kinds = found.table["arrangement"]
+    new = ~kinds[left[order]].isin(kinds[found.table["loss"].notna()])
+    untried = order[new & ~kinds[left[order]].duplicated()]
+    return [int(left[it]) for it in dict.fromkeys([*untried, *front, *order])][:count]
 
 
 def _solve(found: Found, raw: Mapping[str, Any], batch: list[int], runner: Runner) -> Rows:
