@@ -116,7 +116,7 @@ def test_every_key_can_be_described(model):
         ("planet_bearing.cage", '"caged" or "full-complement"'),
         ("operation.input", '"sun", "ring" or "carrier"'),
         ("operation.fixed", '"sun", "ring" or "carrier"'),
-        ("planet.angles", "an array, each entry an angle >= -360 deg and <= 360 deg"),
+        ("planet.angles", "an array, each entry an angle"),
         ("losses.sun_drag.include", "true or false"),
         ("title", "text"),
         ("carrier", "a table of keys"),

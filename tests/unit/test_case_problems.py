@@ -86,7 +86,7 @@ EVERY_PROBLEM = {
     "sun.thickness_diameter": "belongs to tooth_thickness",
     "sun.face_width": "is missing",
     "sun.roughness": "no such finish",
-    "planet.count": "a whole number >= 1 and <= 24",
+    "planet.count": "a whole number >= 1 and <= 99",
     "planet.teeth": "a whole number",
     "planet.face_width": "decimal comma",
     "planet.profile_shift_coefficient": "a number >= -3 and <= 5",

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from epicyclic.gears.gear import HOUSING
-from epicyclic.machine.balance import balance, speeds_of
+from epicyclic.machine.balance import Statics, speeds_of
 from epicyclic.machine.element import LOAD_INDEPENDENT, ElementResult, Loss
 from epicyclic.machine.machine import Machine, MeshRow, Operation
 from epicyclic.machine.solve import solve_machine
@@ -68,13 +68,9 @@ def lossless_torques(z_s, z_r, member, torque):
     other, held = (name for name in MEMBERS if name != member)
     given = {member: 1.0, held: 0.5}
     ones = {row.key: 1.0 for row in machine.rows}
-    found = balance(
-        machine,
-        Operation(member, other, torque, given),
-        speeds_of(machine, given),
-        dict.fromkeys(ones, True),
-        ones,
-    )
+    operation = Operation(member, other, torque, given)
+    statics = Statics(machine, operation, speeds_of(machine, given))
+    found = statics.balance(dict.fromkeys(ones, True), ones)
     return {name: found.torques[name] for name in MEMBERS}
 
 

@@ -467,7 +467,7 @@ def test_planets_that_touch(kind, planets, gears, most):
     problem = only(found(kind, planets=planets))
     assert problem.key == "sets.S.planets"
     assert gears in problem.allowed
-    assert f"at most {most} fit" in problem.remedy
+    assert f"at most {most} planets" in problem.remedy
 
 
 def test_planets_that_do_not_share_a_plane_cannot_touch():

@@ -392,3 +392,11 @@ def test_every_assumption_has_a_source():
         assert all(value.source for value in values)
         pairs = itertools.pairwise(sorted(value.key for value in values))
         assert all(one != two for one, two in pairs)
+
+
+def test_a_set_that_states_no_model_parameter_has_that_of_the_train():
+    """Varied in the train and in the sets at once, its band would count twice."""
+    key, own = "models.hurst_exponent", "sets.planets.models.hurst_exponent"
+    axle = ep.load_case("train-eaxle")
+    for case, found in ((axle, {key}), (axle.updated({own: 0.42}), {key, own})):
+        assert {it.key for it in uncertain_values(case)[0] if it.key.endswith(key)} == found

@@ -119,7 +119,7 @@ def uncertain_values(
 
 
 def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
-    if not has_effect(case, key) or not _is_shared(case, key):
+    if not has_effect(case, key) or not _is_shared(case, key) or _is_inherited(case, key):
         return None
     if key.endswith(FACTOR_KEY):
         return _assumed_factor(case, key)
@@ -142,6 +142,15 @@ def _is_shared(case: CaseTable, key: str) -> bool:
     if table != "load_sharing":
         return True
     return (case.gearings[owner[-1]].count or 1) > 1
+
+
+def _is_inherited(case: CaseTable, key: str) -> bool:
+    """True for a model parameter of a set that does not state it: that of the train counts."""
+    parts = key_parts(key)
+    if len(parts) != 4 or (parts[0], parts[2]) != ("sets", "models"):
+        return False
+    models: Any = value_of(case, dotted(parts[:3]))
+    return parts[3] not in models.model_fields_set
 
 
 def _assumed_slope(case: CaseTable, key: str, limit: float) -> UncertainValue:
