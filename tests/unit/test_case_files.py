@@ -69,7 +69,7 @@ def test_a_file_needs_no_suffix_and_goes_before_a_built_in_case(write, monkeypat
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("talbot", "Did you mean 'talbot-2012'?"),
+        ("talbot", "Did you mean 'talbot-2012' or 'talbot-2012-pair'?"),
         ("talbot-2012-n7", "n3 or n4 or n5 or n6"),
         ("xyz", "'epicyclic cases'"),
         ("a\0b", "epicyclic cases"),
