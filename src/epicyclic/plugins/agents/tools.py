@@ -264,7 +264,7 @@ def explain_key(
     """What a key of a case file means: unit, range or choices, default; of a table its keys."""
     from epicyclic.case.case import KINDS
     from epicyclic.messages import did_you_mean, key_parts, written
-    from epicyclic.schema.fields import all_keys, describe, locate, table_of
+    from epicyclic.schema.fields import all_keys, describe, locate, quantity_of, table_of
 
     if kind not in KINDS:
         allowed = f"must be {' or '.join(KINDS)}."
@@ -283,6 +283,9 @@ def explain_key(
     field = None if place.owner is None else place.owner.model_fields.get(str(place.path[-1]))
     inner = table_of(place.annotation)
     found: dict[str, Any] = {"key": key, "allowed": describe(place.annotation, place.metadata)}
+    quantity = quantity_of(place.annotation, place.metadata)
+    if quantity is not None:
+        found["unit"] = quantity.display
     if field is not None:
         found["meaning"] = field.description or ""
         found["required"] = field.is_required()
