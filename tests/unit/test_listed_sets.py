@@ -384,10 +384,16 @@ def test_keys_of_a_gear_are_told_where_the_user_wrote_them():
 
 
 def test_gear_that_cannot_be_cut():
-    problem = only(found("wolfrom", gears__sun__tip_diameter="60 mm"))
+    problem = only(found("wolfrom", gears__sun__tip_diameter="38 mm"))
     assert problem.key == "sets.S.gears.sun.tip_diameter"
-    assert problem.value == '"60 mm"'
+    assert problem.value == '"38 mm"'
     assert "gears.sun.profile_shift_coefficient" in problem.remedy
+
+
+def test_a_tip_circle_far_from_the_teeth_names_those_that_it_belongs_to():
+    problem = only(found("wolfrom", gears__sun__tip_diameter="60 mm"))  # 12 teeth, module 2 mm
+    assert problem.key == "sets.S.gears.sun.teeth, sets.S.gears.sun.tip_diameter"
+    assert "28 teeth" in problem.remedy  # 28 of 2 mm, and an addendum on either side
 
 
 def test_mesh_without_backlash():

@@ -36,6 +36,7 @@ from epicyclic.gears.stated import (
 )
 from epicyclic.messages import micrometres, millimetres
 
+FARTHEST_TIP = 8.0  # From the reference circle: the largest shift and addendum. [normal modules]
 THINNEST_RIM = 0.25  # A thinner rim is foil, and its teeth find no balance. [normal modules]
 
 LARGEST_RIM_RATIO = 1000.0  # Root radius over thickness of a rim, for the same reason. [1]
@@ -150,6 +151,15 @@ def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
         remedy = "Correct one of the two."
         return Problem(f"{tip}, {root}", f"{tip_shown}, {root_shown}", allowed, remedy)
     thickness = thickness_key(key, table)
+    module = gear.rack.normal_module
+    if abs(gear.tip_radius - gear.reference_radius) > FARTHEST_TIP * module:
+        allowed = f"do not belong together: {gear.teeth} teeth have a reference circle of "
+        allowed += f"{millimetres(2 * gear.reference_radius)}."
+        reference = gear.tip_radius + (module if gear.internal else -module)
+        teeth = round(gear.teeth * reference / gear.reference_radius)
+        remedy = f"Correct one of the two: this tip circle belongs to about {teeth} teeth."
+        shown = f"{table.teeth}, {tip_shown}"
+        return Problem(f"{key}.teeth, {tip}", shown, allowed, remedy)
     if gear.tip_radius <= gear.base_radius:
         allowed = f"lies inside the base circle of {millimetres(2 * gear.base_radius)}, so that "
         allowed += "the tooth has no involute at its tip."
