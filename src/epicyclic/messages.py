@@ -156,8 +156,13 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     kinds = [repr(one) for one in known if f"-{start}" in f"-{one.casefold()}"]
     if 1 < len(kinds) <= _MOST_KINDS:  # none of them is nearer
         return f"Did you mean {' or '.join(kinds)}?"
-    found = process.extractOne(name, known, scorer=_likeness, score_cutoff=_LIKENESS)
-    return f"Did you mean {found[0]!r}?" if found else ""
+    slips = max(0, min(_MOST_SLIPS, (len(name) - 1) // 2))
+    found = (
+        process.extractOne(name, known, scorer=OSA.distance, score_cutoff=slips),
+        process.extractOne(name, known, scorer=_likeness, score_cutoff=_LIKENESS),
+    )
+    near = dict.fromkeys(repr(one[0]) for one in found if one)
+    return f"Did you mean {' or '.join(near)}?" if near else ""
 
 
 def either(names: Sequence[str]) -> str:

@@ -223,6 +223,11 @@ def test_near_names_are_suggested(name, meant):
     assert did_you_mean(name, known) == f"Did you mean {meant!r}?"
 
 
+def test_names_that_are_near_by_letters_and_by_parts_are_both_suggested():
+    known = ["teeth", "tooth_thickness", "tip_diameter"]
+    assert did_you_mean("tooth", known) == "Did you mean 'teeth' or 'tooth_thickness'?"
+
+
 @pytest.mark.parametrize("name", ["", "x", "colour", "zzzzzz", "t" * 10**6])
 def test_far_names_are_not(name):
     assert did_you_mean(name, ["teeth", "count", "face_width"]) == ""
