@@ -18,7 +18,7 @@ import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any, NoReturn, cast
+from typing import Any, NoReturn
 
 from epicyclic.errors import InputError, Problem
 
@@ -47,7 +47,8 @@ def read_text(
 
 def read_bytes(path: Path, noun: str, largest: int, *, whole: bool = True) -> bytes:
     """The content of a file, or its start. Parameters and errors as for `read_text`."""
-    kind, content = "a file", cast("bytes | None", b"")
+    kind = "a file"
+    content: bytes | None = b""
     try:
         # a pipe or a device could keep the program waiting for ever
         if path.exists() and not path.is_file():

@@ -21,7 +21,7 @@ from epicyclic.plugins.app import worker as tasks
 from epicyclic.plugins.app.case_form import Desk, Shelves, built_in, form_of, opened, received
 from epicyclic.plugins.app.page import LARGEST_BODY, Guard, names_of
 from epicyclic.plugins.app.views import _values
-from epicyclic.plugins.app.worker import Ended, Latest, Worker, WorkError
+from epicyclic.plugins.app.worker import EndedError, Latest, Worker, WorkError
 from epicyclic.schema.fields import all_keys
 from epicyclic.show.page import Drawing
 from epicyclic.study.operating import OPERATING
@@ -724,15 +724,15 @@ def test_the_worker_tells_progress_and_errors_and_can_be_ended():
             await worker.do(app_tasks.refused, progress=print)
         with pytest.raises(WorkError, match="ZeroDivisionError: no number"):
             await worker.do(app_tasks.broken, progress=print)
-        with pytest.raises(Ended):
+        with pytest.raises(EndedError):
             await worker.do(app_tasks.endless, progress=lambda *at: worker.end())
         assert await worker.do(app_tasks.doubled, 4, progress=lambda *at: None) == 8
         waiting = asyncio.ensure_future(worker.do(app_tasks.endless, progress=lambda *at: None))
         await asyncio.sleep(0.1)
         worker.close()
-        with pytest.raises(Ended):
+        with pytest.raises(EndedError):
             await waiting
-        with pytest.raises(Ended):
+        with pytest.raises(EndedError):
             await worker.do(app_tasks.doubled, 3, progress=print)
 
     async def run():
@@ -759,9 +759,9 @@ def test_a_worker_that_is_closed_between_two_answers_ends_its_work(task):
             told.append(count)
             worker.close()
 
-        with pytest.raises(Ended):
+        with pytest.raises(EndedError):
             await worker.do(task, *arguments, progress=close)
-        with pytest.raises(Ended):
+        with pytest.raises(EndedError):
             await worker.do(app_tasks.doubled, 3, progress=print)
         assert len(told) == 1
         worker.close()

@@ -250,7 +250,7 @@ class _Listener(event.Listener):
         """Ignored."""
 
 
-event.register("numba:compile", _Listener())  # type: ignore[no-untyped-call]
+event.register("numba:compile", _Listener())
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:

@@ -148,7 +148,7 @@ def _remedy(place: Place, kind: str, value: Any) -> str:
         low, high, is_open = bounds_of(place.annotation, place.metadata)
         match = _PLAIN_NUMBER.fullmatch(value[:100]) if isinstance(value, str) else None
         number = None if match is None or match[2] else float(match[1])
-        if number is not None and not _is_within(number, low, high):
+        if number is not None and not _is_within(number, low, high, is_open):
             return range_remedy(number, low, high, open_low=is_open)
         return _number_remedy(value)
     if table_of(place.annotation) is not None:
@@ -156,8 +156,9 @@ def _remedy(place: Place, kind: str, value: Any) -> str:
     return _REMEDIES.get(kind, "correct this value")
 
 
-def _is_within(number: float, low: float | None, high: float | None) -> bool:
-    return (low is None or number >= low) and (high is None or number <= high)
+def _is_within(number: float, low: float | None, high: float | None, is_open: bool) -> bool:
+    low_ok = low is None or (number > low if is_open else number >= low)
+    return low_ok and (high is None or number <= high)
 
 
 def _table_remedy(path: Sequence[str | int], value: Any) -> str:

@@ -41,7 +41,7 @@ from epicyclic.plugins.app.views import (
     mark_behind,
     save_menu,
 )
-from epicyclic.plugins.app.worker import Doing, Ended, Latest, Study
+from epicyclic.plugins.app.worker import Doing, Latest, Study
 from epicyclic.show.page import KeyFigure
 
 # Who may talk to the app: browsers of this machine that know its token.
@@ -397,7 +397,7 @@ class Page:
             return
         try:
             figures = await self._shelf.quick.do(tasks.moved, case, progress=self._doing.progress)
-        except (Ended, EpicyclicError):
+        except EpicyclicError:
             return  # what follows the chapters says it
         if desk is self.desk and self._banded != case:
             self._show_figures(Study(case), figures)
@@ -433,7 +433,7 @@ class Page:
                 await self._chapters.follow(study, is_wanted)
                 if is_at_rest():
                     await self._chapters.complete(study, is_at_rest)
-        except (Ended, EpicyclicError) as error:
+        except EpicyclicError as error:
             self._failed.tell(str(error))
         if self.desk.case is not None and not self._figures.is_deleted:
             self._chapters.age(Study(self.desk.case))

@@ -17,7 +17,7 @@ from nicegui.element import Element
 from epicyclic.errors import EpicyclicError
 from epicyclic.plugins.app import worker as tasks
 from epicyclic.plugins.app.case_form import Desk, Shelf, number_in, received, received_task
-from epicyclic.plugins.app.worker import IN_PAGE, MESH, Answer, Doing, Ended, Latest, Study, Worker
+from epicyclic.plugins.app.worker import IN_PAGE, MESH, Answer, Doing, Latest, Study, Worker
 from epicyclic.show.html import items_html
 from epicyclic.show.page import Drawing, Gallery, Item, KeyFigure, Listing, Row, Section, Table
 from epicyclic.study.maps.formats import formats
@@ -79,7 +79,7 @@ async def download(do: Do, study: Study, name: str, original: str | None, stem: 
     """Hand what `saved` makes to the browser, or say why there is nothing."""
     try:
         suffix, content = await do(tasks.saved, study, name, original)
-    except (Ended, EpicyclicError) as error:
+    except EpicyclicError as error:
         ui.notify(str(error), multi_line=True)
         return
     ui.download(content, f"{stem}{suffix}")
@@ -91,7 +91,7 @@ def save_buttons(name: str, draw: Callable[[str], Awaitable[bytes]]) -> None:
     async def save(ending: str) -> None:
         try:
             ui.download(await draw(ending), f"{name}.{ending}")
-        except (Ended, EpicyclicError) as error:
+        except EpicyclicError as error:
             ui.notify(str(error))
 
     with ui.element("div").classes("formats"):
@@ -476,7 +476,7 @@ class MapView:
                 self._known = study, answer
             if self._known is not None and not self._body.is_deleted:
                 await self._fill(*self._known)
-        except (Ended, EpicyclicError) as error:
+        except EpicyclicError as error:
             self._failed.tell(str(error))
 
     async def _fill(self, study: Study, answer: Answer) -> None:
@@ -584,7 +584,7 @@ class CompareView:
         try:
             tables = await self._do(tasks.compared, other.case, now.case, names)
             drawings = await self._do(tasks.beside, other.case, now.case, names, IN_PAGE)
-        except (Ended, EpicyclicError) as error:
+        except EpicyclicError as error:
             if not self._body.is_deleted:
                 self._body.clear()
                 with self._body:
@@ -668,7 +668,7 @@ class DesignView:
             with self._doing.shown("designs"):
                 progress = self._doing.progress
                 self._front = await self._worker.do(tasks.designs, path, progress=progress)
-        except (Ended, EpicyclicError) as error:
+        except EpicyclicError as error:
             self._failed.tell(str(error))
         self._fill()
 

@@ -96,7 +96,7 @@ Progress = Callable[[int, int], None]
 """Called with what is done and what there is to do, and with 0 for this while code is compiled."""
 
 
-class Ended(Exception):  # noqa: N818  no error: the user has asked for it
+class EndedError(EpicyclicError):
     """The work was ended before it was done."""
 
     def __str__(self) -> str:
@@ -132,13 +132,13 @@ class Worker:
     ) -> Any:
         """What a function of a module returns, computed in the process.
 
-        Raises `Ended` if `end` or `close` was called meanwhile, or `close` before. Raises
+        Raises `EndedError` if `end` or `close` was called meanwhile, or `close` before. Raises
         `EpicyclicError`: As the task raises it.
         """
         loop = asyncio.get_running_loop()
         async with self._lock:
             if self.is_closed:
-                raise Ended
+                raise EndedError
             pipe = self._pipe()
             try:
                 pipe.send((task, arguments))
@@ -150,10 +150,10 @@ class Worker:
                         raise content
                     progress(*content)
                     if self.is_closed:  # since then, and there is no thread to wait any more
-                        raise Ended
+                        raise EndedError
             except (EOFError, OSError):
                 self.end()
-                raise Ended from None
+                raise EndedError from None
 
     def end(self) -> None:
         """End what is being done; the next thing starts a new process."""

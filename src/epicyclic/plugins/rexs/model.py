@@ -307,7 +307,7 @@ class Model:
         if found is None:
             return USUAL_AXIS
         senses = [
-            it for it in (unit, USUAL_AXIS) if it is not None and abs(found @ it) > 1 - _ROUNDED
+            it for it in (unit, USUAL_AXIS) if it is not None and abs(found @ it) > 1 - ROUNDED
         ]
         return senses[0] if senses else found  # they tell the sense of an axis that is theirs
 
@@ -329,7 +329,7 @@ USUAL_AXIS: FloatArray = np.array([1.0, 0.0, 0.0])
 _PLACE = "support_vector"
 _SHORTEST, _FARTHEST = 1e-6, 1e8
 """Bounds of the length of an axis vector and of the coordinates of parts. [mm]"""
-_ROUNDED = 1e-9  # Of the product of two unit vectors that are one. [1]
+ROUNDED = 1e-9  # Of the product of two unit vectors that are one. [1]
 IN_MILLIMETRES = {"mm": 1.0, "um": 1e-3}
 
 

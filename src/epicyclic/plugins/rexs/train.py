@@ -25,6 +25,7 @@ from epicyclic.plugins.rexs.draft import (
 from epicyclic.plugins.rexs.gears import set_tables
 from epicyclic.plugins.rexs.model import (
     IN_MILLIMETRES,
+    ROUNDED,
     USUAL_AXIS,
     Component,
     FloatArray,
@@ -45,7 +46,6 @@ _TYPES = {
 _SENSES = {"both_directions": "both", "positive": "positive", "negative": "negative"}
 _OPPOSITE = {"both": "both", "positive": "negative", "negative": "positive"}
 _ABOUT_FORCE = "Needed for the forces on the bearings; or give their radial_force."
-_ROUNDED = 1e-9  # Of the product of two unit vectors that are one. [1]
 _SUPPORTS = 2  # Bearings of a shaft whose forces statics gives.
 
 
@@ -79,7 +79,7 @@ class _Places:
             self.axis = -self.axis
         # y of a gear unit along x, turned with its axis the shortest way
         first = np.array([0.0, 1.0, 0.0])
-        if (along := 1 + float(self.axis @ USUAL_AXIS)) > _ROUNDED:
+        if (along := 1 + float(self.axis @ USUAL_AXIS)) > ROUNDED:
             first = first - float(first @ self.axis) / along * (self.axis + USUAL_AXIS)
         self.frame = np.array([first, np.cross(self.axis, first)])
 

@@ -2,55 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Self
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Any
 
 import xarray as xr
-from xarray.core.types import ErrorOptionsWithWarn
 
 from epicyclic.study.operating import CASE_KEY, axis_name, key_of
 
 
-class SweepArray(xr.DataArray):  # type: ignore[no-untyped-call]
+def _by_key(isel: Callable[..., Any]) -> Callable[..., Any]:
+    """A method `isel` to which dimensions may also be named by their keys."""
+
+    @wraps(isel)
+    def chosen(
+        data: Any, indexers: Mapping[str, Any] | None = None, *options: Any, **named: Any
+    ) -> Any:
+        dims = {array.attrs.get(CASE_KEY): name for name, array in data.coords.variables.items()}
+        given = {**(indexers or {}), **named}
+        return isel(data, None, *options, **{dims.get(key, key): it for key, it in given.items()})
+
+    return chosen
+
+
+class SweepArray(xr.DataArray):
     """A variable of a sweep."""
 
     __slots__ = ()
-
-    def isel(
-        self,
-        indexers: Mapping[Any, Any] | None = None,
-        drop: bool = False,
-        missing_dims: ErrorOptionsWithWarn = "raise",
-        **names: Any,
-    ) -> Self:
-        """As of any array; dimensions may be named by their keys."""
-        return super().isel(_by_dimension(self, {**(indexers or {}), **names}), drop, missing_dims)
+    isel = _by_key(xr.DataArray.isel)
 
 
-class SweepData(xr.Dataset):  # type: ignore[no-untyped-call]
+class SweepData(xr.Dataset):
     """What `sweep` returns."""
 
     __slots__ = ()
+    isel = _by_key(xr.Dataset.isel)
 
     def __getitem__(self, key: Any) -> Any:
         """A variable or a part, as of any dataset."""
         found = super().__getitem__(key)
         return SweepArray(found) if isinstance(found, xr.DataArray) else found
-
-    def isel(
-        self,
-        indexers: Mapping[Any, Any] | None = None,
-        drop: bool = False,
-        missing_dims: ErrorOptionsWithWarn = "raise",
-        **names: Any,
-    ) -> Self:
-        """As of any dataset; dimensions may be named by their keys."""
-        return super().isel(_by_dimension(self, {**(indexers or {}), **names}), drop, missing_dims)
-
-
-def _by_dimension(data: xr.DataArray | xr.Dataset, given: dict[Any, Any]) -> dict[Any, Any]:
-    dims = {array.attrs.get(CASE_KEY): name for name, array in data.coords.variables.items()}
-    return {dims.get(name, name): value for name, value in given.items()}
 
 
 def with_plain_names(data: xr.Dataset) -> SweepData:
