@@ -38,9 +38,11 @@ def test_changed_files_are_read_or_refused(tmp_path_factory, data):
             parts.relations.pop(data.draw(st.integers(0, len(parts.relations) - 1)))
     file = tmp_path_factory.mktemp("rexs") / "gears.rexsj"
     file.write_text(parts.json(), encoding="utf-8")
+    problems = None
     try:
         found = ep.read_rexs(file)
         assert tomllib.loads(found.text())["kind"] == found.kind
         found.geometry_notes(found.case())
     except ep.InputError as error:
-        assert error.problems  # noqa: PT017 - both outcomes are right
+        problems = error.problems
+    assert problems is None or problems

@@ -173,18 +173,58 @@ def wire(tmp_path):
         made.process.kill()
 
 
+NO_MESSAGES = [
+    (b"{", None, -32700), (b"\xff\xfe", None, -32700), (b"[" * 200_000, None, -32700),
+    (b"[]", None, -32600), (b"7", None, -32600),
+    (b'{"jsonrpc":"2.0","id":5}', 5, -32600),
+    (b'{"jsonrpc":"2.0","id":[],"method":"ping"}', None, -32600),
+    (b'{"jsonrpc":"2.0","id":6,"method":"ping","x":"\\ud800"}', 6, -32600),
+]  # fmt: skip
+"""Lines, and the number and code of the answer to each."""
+
+
+def endless(size):
+    return b'{"jsonrpc":"2.0","id":8,"method":"' + b"x" * size + b'"}', 8, -32600
+
+
+def test_messages_alone_are_passed_on(tmp_path):
+    pytest.importorskip("mcp", reason="optional")
+    echo = (
+        "import os, sys\nfrom epicyclic.plugins.agents.wire import bounded_wire\n"
+        "with bounded_wire():\n    os.write(1, b'aside')\n"
+        "    for line in sys.stdin:\n        sys.stdout.write(line)\n        sys.stdout.flush()\n"
+    )
+    wrong = [*NO_MESSAGES, endless(4_000_000)]
+    passed = b'{"jsonrpc":"2.0","id":3,"method":"ping","params":{"a":"' + b"y" * 99_999 + b'"}}'
+    given = b"\n".join([*(line for line, *_ in wrong), b"", passed, b""])
+    command = [sys.executable, "-c", echo]
+    done = subprocess.run(command, input=given, cwd=tmp_path, capture_output=True, check=True)
+    *answers, last = done.stdout.splitlines()
+    found = [(it["id"], it["error"]["code"]) for it in map(json.loads, answers)]
+    assert found == [(number, code) for _, number, code in wrong]
+    assert last == passed
+    assert done.stderr == b"aside"
+
+
+def test_files_that_are_no_cases_are_not_told(tmp_path, monkeypatch):
+    pytest.importorskip("mcp", reason="optional")
+    from epicyclic.plugins.agents.tools import server
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "secret.key").write_text("hidden = words that nobody may see")
+    (tmp_path / "link.toml").symlink_to(tmp_path / "secret.key")
+    for path in ("secret.key", "link.toml"):
+        found = asyncio.run(server().call_tool("check", {"case": path}))
+        assert found.is_error
+        assert "must lead to a file .toml" in text_of(found)
+        assert "nobody may see" not in text_of(found)
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_what_is_no_message_is_answered(wire):
     """Once each, in 500 MB; the server goes on."""
-    for line, number, code in [
-        (b"{", None, -32700), (b"\xff\xfe", None, -32700), (b"[" * 200_000, None, -32700),
-        (b"[]", None, -32600), (b"7", None, -32600),
-        (b'{"jsonrpc":"2.0","id":5}', 5, -32600),
-        (b'{"jsonrpc":"2.0","id":[],"method":"ping"}', None, -32600),
-        (b'{"jsonrpc":"2.0","id":6,"method":"ping","x":"\\ud800"}', 6, -32600),
-        (b'{"jsonrpc":"2.0","id":8,"method":"' + b"x" * 150_000_000 + b'"}', 8, -32600),
-    ]:  # fmt: skip
+    for line, number, code in [*NO_MESSAGES, endless(150_000_000)]:
         wire.send(line)
         found = wire.answer()
         assert (found["id"], found["error"]["code"]) == (number, code), line[:50]

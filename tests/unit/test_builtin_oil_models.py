@@ -307,9 +307,11 @@ def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil()
     best, why = recommended(compare_friction(case))
     assert best.name == "mixed-lubrication"
     assert "nearer to measured gears" in why
-    best, why = recommended(compare_friction(case.updated(FORMER)))
+    rows = compare_friction(case.updated(FORMER))
+    best, why = recommended(rows)
     assert best.name == "mixed-ehl"
     assert "made for this oil" in why
+    assert recommended([replace(row, outside=0.51) for row in rows])[0].name == "mixed-lubrication"
     polished = ep.load_case("talbot-2012-n6-polished").updated(FORMER)
     best, why = recommended(compare_friction(polished))
     assert best.name == "mixed-ehl+pairing"

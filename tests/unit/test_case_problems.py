@@ -183,6 +183,13 @@ def test_values_are_shown_as_they_were_written(every_kind):
             'Write uncertainty."sun.roughness", with the key in quotes.',
         ),
         ("planet", "count", 40, "planet.count", "Use at most 11 planets, equally spaced."),
+        (
+            "planet",
+            "angles",
+            ["0 deg", "20 deg", "120 deg"],
+            "planet.angles",
+            "Use at most 11 planets, equally spaced.",
+        ),
         ("lubricant", "oil", 5, "lubricant.oil", "[lubricant.oil]"),
         ("models", "friction", "schlenck", "models.friction", "Did you mean 'schlenk'?"),
         ("losses", "sun_drag", True, "losses.sun_drag", "[losses.sun_drag]"),

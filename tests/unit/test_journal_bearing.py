@@ -15,6 +15,7 @@ from epicyclic.kernels.journal_bearing import journal_pressure
 from epicyclic.losses.journal_bearing import (
     TOUCHING,
     JournalBearing,
+    asperity_force,
     film_force,
     film_viscosity,
     friction_variable,
@@ -138,6 +139,31 @@ def test_couple_tilts_a_pin():
     rise = tilted.temperature - STATE.temperature
     flow = STATE.density * CAPACITY * tilted.side_flow
     assert rise * (2 * flow + PIN.conductance) == pytest.approx(tilted.watts, rel=1e-6)
+
+
+@pytest.mark.parametrize("speed", [8, 30])  # rpm, in mixed friction and on a full film
+def test_tilted_film_and_asperities_carry_load_and_couple(speed):
+    found, omega = solve_journal(PIN, 9e5, speed * RPM, STATE, CAPACITY, COUPLE), speed * RPM
+    radius, clearance, length = 0.15, 0.35e-3 / 2, 0.39
+    middle = cmath.rect(found.eccentricity, found.attitude)
+    tilt = cmath.rect(found.tilt * length / 2 / clearance, found.tilt_direction)
+    zeta = (np.arange(500) + 0.5) / 250 - 1
+    ends = middle + tilt * zeta
+    contact = asperity_force(PIN, np.abs(ends))
+    rubbed = contact * ends / np.abs(ends)
+    eta = film_viscosity(STATE, found.temperature)
+    force, moment, _ = film_force(middle, tilt, PIN.slenderness)
+    scale = 6 * eta * omega * length * radius * (radius / clearance) ** 2
+    carried, turning = scale * force + rubbed.mean(), scale * moment + (rubbed * zeta).mean()
+    # 0.3 %: between the eccentricities of the curves to which the film is fitted
+    assert carried == pytest.approx(9e5, rel=3e-3)
+    assert turning * length / 2 == pytest.approx(COUPLE, rel=3e-3)
+    assert found.contact_force == pytest.approx(contact.mean(), rel=1e-3, abs=1e-9)
+    assert found.contact_watts == pytest.approx(PIN.rubbing(contact.mean(), omega), rel=1e-3)
+    thinner = (1 / np.sqrt(1 - np.abs(ends) ** 2)).mean()
+    shear = 2 * math.pi * eta * omega**2 * radius**3 * length / clearance * thinner
+    across = scale * (middle * force.conjugate() + tilt * moment.conjugate()).imag
+    assert found.fluid_watts == pytest.approx(shear + omega * clearance / 2 * across, rel=1e-3)
 
 
 @pytest.mark.parametrize("speed", [3, 30, 300])  # rpm, from mixed friction on

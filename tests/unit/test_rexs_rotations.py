@@ -160,6 +160,12 @@ def test_a_planetary_set_stands_in_any_way(read, axes, seed):
     assert read(stood_otherwise(uneven(), seed, axes)).tables == expected
 
 
+def test_planets_in_axes_of_several_parts_have_no_angles(read):
+    parts = uneven()
+    parts.set(21, reference_component_for_position=none(5))
+    assert "angles" not in read(parts).tables["planet"]
+
+
 @pytest.mark.parametrize(("places", "axis"), [((5.0, 63.0), 1.0), ((63.0, 5.0), -1.0)])
 def test_plates_reach_as_far_as_their_axes_point(read, places, axis):
     parts = uneven()

@@ -632,6 +632,10 @@ def test_speed_beyond_the_thermal_rating_is_named(state):
     rating = thermal_speed_rating(own) / RPM
     moment = 2 * 1e-7 * (12 * rating) ** (2 / 3) * 60**3 + 0.0002 * 950 * 60
     assert 1e-3 * moment * rating * RPM == pytest.approx(0.016 * math.pi * 120 * 18, rel=1e-6)
+    rollers = replace(own, type="spherical")
+    rating_rollers = thermal_speed_rating(rollers) / RPM
+    moment = 4 * 1e-7 * (12 * rating_rollers) ** (2 / 3) * 60**3 + 0.0002 * 950 * 60
+    assert 1e-3 * moment * rating_rollers * RPM == pytest.approx(108.6, rel=1e-3)
     large = replace(own, bore=0.4, outside_diameter=0.6, width=0.09, static_load_rating=9e5)
     rating_large = thermal_speed_rating(large) / RPM
     moment = 2 * 1e-7 * (12 * rating_large) ** (2 / 3) * 500**3 + 0.0002 * 45000 * 500
@@ -670,6 +674,8 @@ def test_speed_beyond_the_limit_of_the_cage_is_named(state):
         assert [said in note for note in notes if "limiting speed of" in note] == [True] * bool(
             said
         )
+    angular = replace(BALL, type="angular-contact")
+    assert limiting_speed(angular) / RPM == pytest.approx(610e3 / 60, rel=1e-12)
     assert math.isinf(limiting_speed(replace(BALL, type="needle")))
 
 
@@ -737,6 +743,12 @@ def test_defaults_of_the_keys(oil, tmp_path):
     assert bearing.between == ("input", HOUSING)
     assert bearing.model == PalmgrenModel(2.0, 0.0003, 0.002)
     assert bearing.force is None
+    for kind, axial, viscous, coefficient in (
+        ("spherical", None, 4.0, 0.00025), ("thrust-ball", "2 kN", 1.5, 0.0004),
+        ("thrust-roller", "2 kN", 3.5, 0.0015),
+    ):  # fmt: skip
+        found = build(bearing_table(type=kind, axial_force=axial), oil, tmp_path).model
+        assert (found.viscous_factor, found.constant) == (viscous, coefficient)
 
 
 def test_keys_reach_the_element(oil, tmp_path):
