@@ -16,44 +16,47 @@ from epicyclic.build.elements import build_element, catalogue_bearing
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels.line_contact import hertz_pressure, inlet_film_factor
-from epicyclic.losses import shaft_bearing
+from epicyclic.losses import zhou_hoeprich
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.shaft_bearing import (
-    RIB_ROUGHNESS,
-    STARVATION,
     AxialSpring,
     BearingLoad,
     CatalogueBearing,
-    CylindricalModel,
     PalmgrenModel,
-    SkfModel,
     TableModel,
-    TaperedModel,
     bearing_types,
-    cylindrical_rolling,
-    drag_variable,
     friction_load,
-    full_film_friction,
     harris_coefficient,
     limiting_speed,
     load_moment,
     minimum_load,
     preload_of,
-    roller_loads,
-    rolling_force,
-    rolling_moment,
+    static_load,
+    thermal_speed_rating,
+)
+from epicyclic.losses.skf_2018 import (
+    STARVATION,
+    SkfModel,
+    drag_variable,
+    full_film_friction,
     seal_moment,
     skf_constants,
     skf_drag_moment,
     skf_load_variables,
     skf_moments,
-    skf_reduction_factors,
     skf_series,
     skf_supply,
-    static_load,
+)
+from epicyclic.losses.zhou_hoeprich import (
+    RIB_ROUGHNESS,
+    CylindricalModel,
+    TaperedModel,
+    cylindrical_rolling,
+    roller_loads,
+    rolling_force,
+    rolling_moment,
     tapered_moments,
-    thermal_speed_rating,
 )
 from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import ShaftBearing
@@ -296,7 +299,7 @@ GEAR_OIL = lubricant(40e-3, 47e-6, 17e-9, 0.035)
 
 def test_rollers_of_a_cylindrical_bearing_carry_its_force(monkeypatch):
     given = []
-    monkeypatch.setattr(shaft_bearing, "rolling_moment", lambda *args: given.extend(args[3]) or 0.0)
+    monkeypatch.setattr(zhou_hoeprich, "rolling_moment", lambda *args: given.extend(args[3]) or 0.0)
     cylindrical_rolling(NJ_MODEL, NJ, 2000.0, 100.0, GEAR_OIL)
     upright = [force * math.cos(2 * math.pi * k / len(given)) for k, force in enumerate(given)]
     # 9 rollers in all positions carry 2 kN, the most loaded 4.08 F_r/z of half of them (NSK)
@@ -313,7 +316,7 @@ def test_rolling_of_cylindrical_rollers_on_two_equal_raceways():
     E = 206e9 / (1 - 0.3**2)
     own = rolling_force(40e-3 * u / (E * R), 17e-9 * E, force / 15e-3 / (E * R))
     heat = inlet_film_factor(GEAR_OIL.thermal_load(u), hertz_pressure(force / 15e-3, R, E) / E, 0.0)
-    _, starved = skf_reduction_factors(NJ, NJ_MODEL.skf.constants, 3e-8, speed, 47e-6)
+    _, starved = NJ_MODEL.skf.reduction_factors(NJ, speed, 47e-6)
     assert moment == pytest.approx(2 * own * heat * R / 17e-9 * 15e-3 * radius * starved, rel=1e-3)
 
 
@@ -347,7 +350,8 @@ def test_reduction_factors_at_published_conditions():
     # bearing 61900 at 30,000 rpm in oil of 1 mm^2/s, starved as with grease; worked out separately
     bearing = CatalogueBearing("deep-groove", 10e-3, 22e-3, static_load_rating=1270.0)
     constants = skf_constants("deep-groove", "619")
-    hot, dry = skf_reduction_factors(bearing, constants, STARVATION["grease"], 30_000 * RPM, 1e-6)
+    greased = SkfModel(constants, 0.05, STARVATION["grease"])
+    hot, dry = greased.reduction_factors(bearing, 30_000 * RPM, 1e-6)
     assert hot == pytest.approx(0.96672563, rel=PRINTED)
     assert dry == pytest.approx(0.97951150, rel=PRINTED)
     model = SkfModel(constants, 0.05)
@@ -430,9 +434,7 @@ def test_submerged_bearing_does_not_starve():
         skf_moments(skf(BALL, oil_level=level), BALL, load, 3000 * RPM, 20e-6).rolling
         for level in (72.1e-3, 0.0)
     )
-    _, factor = skf_reduction_factors(
-        BALL, skf(BALL).constants, STARVATION["jet"], 3000 * RPM, 20e-6
-    )
+    _, factor = skf(BALL).reduction_factors(BALL, 3000 * RPM, 20e-6)
     assert factor < 0.97
     assert dry / deep == pytest.approx(factor, rel=1e-12)  # rounding
 
