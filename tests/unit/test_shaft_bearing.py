@@ -1,11 +1,9 @@
-"""Shaft bearings: Palmgren, Harris and SKF, the element, and its table of keys."""
+"""Shaft bearings: Palmgren and Harris, loads, speeds, the element, and its table of keys."""
 
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import replace
-from importlib import resources
 
 import numpy as np
 import pytest
@@ -15,67 +13,33 @@ from epicyclic import library
 from epicyclic.build.elements import build_element, catalogue_bearing
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.gears.gear import HOUSING
-from epicyclic.kernels.line_contact import hertz_pressure, inlet_film_factor
-from epicyclic.losses import shaft_bearing
 from epicyclic.losses.drag import bearing_viscous_loss
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.shaft_bearing import (
-    RIB_ROUGHNESS,
-    STARVATION,
     AxialSpring,
     BearingLoad,
     CatalogueBearing,
-    CylindricalModel,
     PalmgrenModel,
-    SkfModel,
     TableModel,
-    TaperedModel,
-    bearing_types,
-    cylindrical_rolling,
-    drag_variable,
     friction_load,
-    full_film_friction,
     harris_coefficient,
     limiting_speed,
     load_moment,
     minimum_load,
     preload_of,
-    roller_loads,
-    rolling_force,
-    rolling_moment,
-    seal_moment,
-    skf_constants,
-    skf_drag_moment,
-    skf_load_variables,
-    skf_moments,
-    skf_reduction_factors,
-    skf_series,
-    skf_supply,
     static_load,
-    tapered_moments,
     thermal_speed_rating,
 )
+from epicyclic.losses.skf_2018 import SkfModel, seal_moment, skf_constants, skf_moments, skf_supply
+from epicyclic.losses.zhou_hoeprich import RIB_ROUGHNESS, TaperedModel
 from epicyclic.machine.element import LOAD_DEPENDENT, LOAD_INDEPENDENT, State, figures, fluids_at
 from epicyclic.machine.shaft_parts import ShaftBearing
-from epicyclic.oil.oil import Oil, OilState
+from epicyclic.oil.oil import Oil
 from problems import only, problems_of
+from shaft_bearings import BALL, NEEDLE, PRINTED, ROLLER, RPM, TAPER, skf
 
-RPM = math.pi / 30
-BALL = CatalogueBearing("deep-groove", 40e-3, 80e-3, 18e-3, static_load_rating=19e3)
-"""The size of a 6208."""
-ROLLER = CatalogueBearing("cylindrical", 40e-3, 80e-3, 18e-3)
-TAPER = CatalogueBearing("tapered", 40e-3, 80e-3, 18e-3, axial_factor=1.6)
-NEEDLE = CatalogueBearing("needle", 40e-3, 55e-3, 20e-3, dynamic_load_rating=30e3)
 SPHERICAL = CatalogueBearing("spherical", 50e-3, 90e-3, 23e-3, static_load_rating=108e3)
 THRUST = CatalogueBearing("thrust-ball", 35e-3, 52e-3, static_load_rating=51e3)
-SERIES = {"deep-groove": "62", "cylindrical": "2", "tapered": "302"}
-PRINTED = 1e-6
-"""Relative; the expected values were worked out separately and are given to seven digits."""
-
-
-def skf(bearing, **changes):
-    constants = skf_constants(bearing.type, SERIES[bearing.type], bearing.cage)
-    return SkfModel(constants, full_film_friction(bearing.type, "mineral"), **changes)
 
 
 @pytest.fixture(scope="module")
@@ -150,371 +114,6 @@ def test_palmgren_adds_the_viscous_loss(state):
     assert not parts["viscous"].by_load
 
 
-# --- Zhou and Hoeprich ---------------------------------------------------------------------------
-
-
-def lubricant(eta, nu, alpha, beta):
-    return OilState(323.15, nu, eta / nu, eta, alpha, beta, 0.14, 1.0, 0.139, 0.047, 0.065)
-
-
-def fva_3(celsius):
-    """Reference oil FVA 3 as Wingertszahn et al. (2023) have it; alpha by Gold."""
-    eta = 0.062e-3 * math.exp(1021.7 / (celsius + 101.55))
-    nu = eta / (887.6 - 0.65 * (celsius - 15))
-    return lubricant(eta, nu, 9.904e-9 * (nu * 1e6) ** 0.139, 1021.7 / (celsius + 101.55) ** 2)
-
-
-SUPPLY = SkfModel(skf_supply("tapered"), 0.002)
-LARGE = CatalogueBearing("tapered", 80e-3, 140e-3, 33e-3, axial_factor=1.4)
-LARGE_MODEL = TaperedModel(
-    16, 17e-3, 22.7e-3, 1.8e-3, RIB_ROUGHNESS, replace(SUPPLY, oil_level=8.5e-3)
-)
-SMALL = CatalogueBearing(
-    "tapered", 22e-3, 45.2e-3, axial_factor=0.4 / math.tan(math.radians(11 + 32 / 60))
-)
-SMALL_MODEL = TaperedModel(17, 0.26 * 23.2e-3, 10.8e-3, 0.03 * 23.2e-3, RIB_ROUGHNESS, SUPPLY)
-THIN = lubricant(4.6e-3, 5.5e-6, 12.6e-9, 0.023)
-"""An oil of SAE 75W at 80 degC; its viscosity is a guess."""
-
-
-def torque(model, bearing, load, rpm, oil):
-    """[N mm]"""
-    return 1e3 * sum(it.watts for it in model.parts(bearing, load, rpm * RPM, oil)) / (rpm * RPM)
-
-
-def test_rolling_grows_as_the_printed_solutions():
-    # Zhou and Hoeprich, Table 1: 2 F R_e of 0.0623 and 1.1290 at U = 1e-11 and 1e-9, and of 0.5485
-    # and 0.6933 at W = 1e-4 and 3e-4, which their power law (17) smooths
-    fast = rolling_force(1e-9, 3745, 2e-4) / rolling_force(1e-11, 3745, 2e-4)
-    assert fast == pytest.approx(1.1290 / 0.0623, rel=0.10)
-    loaded = rolling_force(3.5e-10, 3745, 3e-4) / rolling_force(3.5e-10, 3745, 1e-4)
-    assert loaded == pytest.approx(0.6933 / 0.5485, rel=0.05)
-    assert rolling_force(1e-10, 3745, 2e-4) == pytest.approx(
-        29.2 * 3.745e-7**0.648 * 2e-4**0.246, rel=1e-12
-    )
-
-
-def test_half_of_the_rollers_carry_at_the_printed_ratio():
-    # line contact, epsilon = 0.5: F_a = 1.260 F_r tan(alpha), Q_max = 4.08 F_r/(z cos(alpha)), NSK
-    loads = roller_loads(1 / 1.260, 2000)
-    assert sum(load > 0 for load in loads) == pytest.approx(1000, abs=10)
-    assert max(loads) == pytest.approx(4.08 / 1.260, rel=0.005)
-    assert sum(loads) == pytest.approx(2000, rel=1e-12)
-
-
-def test_rib_friction_at_creep_is_the_starting_torque():
-    # Aihara (1987), Eq. 11: M = e mu F_a cos(beta), mu = 0.2
-    moments = tapered_moments(LARGE_MODEL, LARGE, BearingLoad(0.0, 6000.0), 1e-9, fva_3(50))
-    assert moments.rib == pytest.approx(1.8e-3 * 0.2 * 6000, rel=0.02)
-    # and 0.15 G_sl of SKF's series 322, from which the height on the rib comes
-    _, sliding = skf_load_variables(
-        skf_constants("tapered", "322"), LARGE, BearingLoad(0.0, 6000.0)
-    )
-    assert moments.rib == pytest.approx(0.15e-3 * sliding, rel=0.12)
-
-
-def test_rib_and_raceways_cross_where_printed():
-    # Zhou and Hoeprich, Fig. 9: the raceways are the larger part above 1600 rpm
-    slow, fast = (
-        tapered_moments(SMALL_MODEL, SMALL, BearingLoad(0.0, 3600.0), rpm * RPM, THIN)
-        for rpm in (1600 / 1.3, 1600 * 1.3)
-    )
-    assert slow.rib > slow.rolling
-    assert fast.rib < fast.rolling
-
-
-def test_measured_torque_of_a_32216():
-    # Wingertszahn et al., Lubricants 11 (2023) 369, read from figures: F_r, degC, rpm, N mm
-    measured = (
-        (0, 50, 500, 1300), (0, 50, 2000, 2950), (0, 50, 4000, 3750), (0, 42, 500, 1700),
-        (6500, 50, 500, 1500), (6500, 50, 1000, 1950), (6500, 50, 2000, 2500),
-        (6500, 50, 4000, 3250), (6500, 42, 500, 2000), (6500, 42, 1000, 2650),
-        (6500, 42, 2000, 3500), (6500, 42, 4000, 4450),
-    )  # fmt: skip
-    errors = [
-        torque(LARGE_MODEL, LARGE, BearingLoad(force, 6000.0), rpm, fva_3(celsius)) / found - 1
-        for force, celsius, rpm, found in measured
-    ]
-    assert np.abs(errors).mean() < 0.12
-    assert abs(np.mean(errors)) < 0.05
-
-
-def test_tapered_moments_vanish_with_the_load_and_grow_with_it():
-    moments = [
-        tapered_moments(LARGE_MODEL, LARGE, BearingLoad(radial, axial), 100.0, fva_3(50))
-        for radial, axial in ((0.0, 0.0), (0.0, 1.0), (0.0, 1e3), (1e3, 0.0), (2e4, 2e4))
-    ]
-    assert moments[0].rolling == moments[0].rib == 0
-    assert 0 < moments[1].rolling < moments[2].rolling < moments[4].rolling
-    assert moments[3].rolling > 0
-
-
-def test_what_no_measured_tapered_bearing_had_is_flagged(state):
-    bearing = ShaftBearing("input.front", ("input", HOUSING), TAPER, TAPER_MODEL)
-    force = BearingLoad(2000.0, 1000.0)
-    assert bearing.evaluate(state(3000, force)).flags == ()
-    (flag,) = bearing.evaluate(state(9000, force)).flags
-    assert flag.use.model == "zhou-hoeprich"
-    other = replace(bearing, model=PalmgrenModel(6.0, 0.0004))
-    result = other.evaluate(state(3000, force))
-    watts = sum(loss.watts for loss in result.losses.values())
-    assert f"{watts:.3g} W after palmgren" in only(result.notes)
-
-
-def test_auto_takes_the_rib_where_the_width_is_known():
-    tapered = {
-        "bearings.output_rear.type": "tapered", "bearings.output_rear.contact_angle": "14 deg"
-    }  # fmt: skip
-    case = ep.load_case("train-eaxle").updated(tapered)
-    without = ep.solve(case)
-    assert any("W after palmgren" in note for note in without.warnings)
-    assert "output_rear.viscous" in without.losses
-    wide = case.updated(
-        {
-            "bearings.output_rear.bore": "200 mm",
-            "bearings.output_rear.outside_diameter": "260 mm",
-            "bearings.output_rear.width": "30 mm",
-        }
-    )
-    result = ep.solve(wide)
-    watts = result.losses["output_rear.mechanical"]
-    (told,) = (note for note in result.warnings if "bore 200 mm" in note)
-    assert f"zhou-hoeprich (output_rear: output_rear) 100 %; {watts:.3g} W in all" in told
-
-
-TAPER_MODEL = TaperedModel(18, 10.4e-3, 12.6e-3, 1.2e-3, RIB_ROUGHNESS, SUPPLY)
-
-
-# --- rolling of cylindrical rollers ---------------------------------------------------------------
-
-NJ = CatalogueBearing("cylindrical", 30e-3, 90e-3, 23e-3)
-NJ_MODEL = CylindricalModel(
-    9, 16.5e-3, 15e-3, 3.0, SkfModel(skf_constants("cylindrical", "4"), 0.02)
-)
-GEAR_OIL = lubricant(40e-3, 47e-6, 17e-9, 0.035)
-
-
-def test_rollers_of_a_cylindrical_bearing_carry_its_force(monkeypatch):
-    given = []
-    monkeypatch.setattr(shaft_bearing, "rolling_moment", lambda *args: given.extend(args[3]) or 0.0)
-    cylindrical_rolling(NJ_MODEL, NJ, 2000.0, 100.0, GEAR_OIL)
-    upright = [force * math.cos(2 * math.pi * k / len(given)) for k, force in enumerate(given)]
-    # 9 rollers in all positions carry 2 kN, the most loaded 4.08 F_r/z of half of them (NSK)
-    assert sum(upright) * 9 / len(given) == pytest.approx(2000.0, rel=1e-12)
-    assert max(given) == pytest.approx(4.08 * 2000.0 / 9, rel=0.005)
-
-
-def test_rolling_of_cylindrical_rollers_on_two_equal_raceways():
-    # one of many small rollers, by hand: both races have nearly the radius of the pitch circle
-    model = replace(NJ_MODEL, rollers=1, roller_diameter=1e-6)
-    speed, force = 100.0, 50.0
-    moment = rolling_moment(model, NJ, 0.0, [force], speed, GEAR_OIL)
-    radius, R, u = 30e-3, 0.5e-6, speed * 15e-3
-    E = 206e9 / (1 - 0.3**2)
-    own = rolling_force(40e-3 * u / (E * R), 17e-9 * E, force / 15e-3 / (E * R))
-    heat = inlet_film_factor(GEAR_OIL.thermal_load(u), hertz_pressure(force / 15e-3, R, E) / E, 0.0)
-    _, starved = skf_reduction_factors(NJ, NJ_MODEL.skf.constants, 3e-8, speed, 47e-6)
-    assert moment == pytest.approx(2 * own * heat * R / 17e-9 * 15e-3 * radius * starved, rel=1e-3)
-
-
-@pytest.mark.parametrize("force", [0.0, 2.0, 2000.0])
-def test_an_idle_cylindrical_bearing_loses_its_viscous_moment(force):
-    speed, load = 1000 * RPM, BearingLoad(force, 0.0)
-    watts = {it.key: it.watts for it in NJ_MODEL.parts(NJ, load, speed, GEAR_OIL)}
-    assert watts["viscous"] == bearing_viscous_loss(3.0, 47e-6, speed, 60e-3)
-    moments = skf_moments(NJ_MODEL.skf, NJ, load, speed, 47e-6)
-    loaded = cylindrical_rolling(NJ_MODEL, NJ, force, speed, GEAR_OIL) + moments.sliding
-    assert sum(watts.values()) == pytest.approx(max(watts["viscous"], loaded * speed), rel=1e-12)
-    assert (watts["mechanical"] > 0) == (force > 100)
-
-
-def test_auto_takes_palmgren_for_what_rollers_are_not_known(oil, tmp_path):
-    def model(**changes):
-        table = bearing_table(type="cylindrical", **changes)
-        element = build_element("bearings", "b", table, shafts=SHAFTS, oil=oil, folder=tmp_path)
-        return element.model.name
-
-    assert model(width="18 mm") == "zhou-hoeprich"
-    assert model(roller_length="11 mm") == "zhou-hoeprich"
-    assert model() == model(width="18 mm", cage="full-complement") == "palmgren"
-    assert model(width="18 mm", palmgren_coefficient=0.0004) == "palmgren"
-
-
-# --- SKF ------------------------------------------------------------------------------------------
-
-
-def test_reduction_factors_at_published_conditions():
-    # bearing 61900 at 30,000 rpm in oil of 1 mm^2/s, starved as with grease; worked out separately
-    bearing = CatalogueBearing("deep-groove", 10e-3, 22e-3, static_load_rating=1270.0)
-    constants = skf_constants("deep-groove", "619")
-    hot, dry = skf_reduction_factors(bearing, constants, STARVATION["grease"], 30_000 * RPM, 1e-6)
-    assert hot == pytest.approx(0.96672563, rel=PRINTED)
-    assert dry == pytest.approx(0.97951150, rel=PRINTED)
-    model = SkfModel(constants, 0.05)
-    moments = skf_moments(model, bearing, BearingLoad(500.0, 0.0), 30_000 * RPM, 1e-6)
-    _, sliding = skf_load_variables(constants, bearing, BearingLoad(500.0, 0.0))
-    share = (moments.sliding * 1e3 / sliding - 0.05) / (0.12 - 0.05)
-    assert share == pytest.approx(0.46254314, rel=PRINTED)
-
-
-@pytest.mark.parametrize(
-    ("bearing", "radial", "axial", "rolling", "sliding"),
-    [
-        (BALL, 2000, 0, 0.07224325, 353.67133),
-        (BALL, 2000, 500, 0.13950637, 599.44721),
-        (ROLLER, 5000, 300, 0.29474857, 2362.3940),
-        (TAPER, 5000, 1000, 0.67039340, 4002.6425),
-    ],
-)
-def test_load_variables(bearing, radial, axial, rolling, sliding):
-    constants = skf_constants(bearing.type, SERIES[bearing.type])
-    found = skf_load_variables(constants, bearing, BearingLoad(radial, axial))
-    assert found == pytest.approx((rolling, sliding), rel=PRINTED)
-
-
-def test_moments_of_a_ball_bearing():
-    moments = skf_moments(skf(BALL), BALL, BearingLoad(2000.0, 0.0), 3000 * RPM, 20e-6)
-    assert moments.rolling * 1e3 == pytest.approx(47.771999, rel=PRINTED)
-    assert moments.sliding * 1e3 == pytest.approx(17.695588, rel=PRINTED)
-    assert moments.seal == moments.drag == 0.0
-
-
-def test_all_moments_become_losses(state):
-    oil, load, speed = state(0).fluids.oil, BearingLoad(2000.0, 300.0), 3000 * RPM
-    model = MODELS["skf-2018"]
-    moments = skf_moments(model, BALL, load, speed, oil.kinematic_viscosity)
-    assert min(moments.rolling, moments.sliding, moments.seal, moments.drag) > 0
-    watts = {part.key: part.watts for part in model.parts(BALL, load, speed, oil)}
-    by_load, others = moments.rolling + moments.sliding, moments.seal + moments.drag
-    assert watts == pytest.approx({"mechanical": by_load * speed, "drag": others * speed})
-
-
-def test_sliding_of_balls_jumps_with_the_first_axial_force():
-    # the two printed branches differ by d_m^(0.26 - 0.145) where they should meet
-    constants = skf_constants("deep-groove", "62")
-    _, alone = skf_load_variables(constants, BALL, BearingLoad(2000.0, 0.0))
-    _, loaded = skf_load_variables(constants, BALL, BearingLoad(2000.0, 1e-9))
-    assert loaded / alone == pytest.approx(60**0.115, rel=1e-9)  # F_a adds less than rounding
-
-
-@pytest.mark.parametrize(
-    ("bearing", "moment"), [(BALL, 12.800758), (ROLLER, 26.064672)], ids=["ball", "roller"]
-)
-def test_drag_in_an_oil_bath(bearing, moment):
-    model = skf(bearing, oil_level=18e-3, drag_variable=0.0004)
-    found = skf_drag_moment(model, bearing, 3000 * RPM, 20e-6)
-    assert found * 1e3 == pytest.approx(moment, rel=PRINTED)
-
-
-@pytest.mark.parametrize("bearing", [BALL, ROLLER, TAPER], ids=lambda b: b.type)
-def test_drag_over_the_oil_level(bearing):
-    levels = [0.0, 1e-6, 5e-3, 20e-3, 40e-3, 60e-3, 72e-3]
-    drags = [skf_drag_moment(skf(bearing, oil_level=h), bearing, 3000 * RPM, 20e-6) for h in levels]
-    assert drags[0] == 0.0
-    assert drags[1] < 1e-4 * drags[-1]
-    assert np.all(np.diff(drags) > 0)
-    deeper = skf_drag_moment(skf(bearing, oil_level=1.0), bearing, 3000 * RPM, 20e-6)
-    assert deeper == drags[-1]
-
-
-def test_estimate_of_the_drag_variable():
-    assert drag_variable(BALL, 0.0) == 0.0
-    # half of 1.2 d_m, and all of it; rounding
-    assert drag_variable(BALL, 36e-3) == pytest.approx(0.0006, rel=1e-12)
-    assert drag_variable(BALL, 72e-3) == pytest.approx(0.0012, rel=1e-12)
-
-
-def test_submerged_bearing_does_not_starve():
-    load = BearingLoad(2000.0, 0.0)
-    deep, dry = (
-        skf_moments(skf(BALL, oil_level=level), BALL, load, 3000 * RPM, 20e-6).rolling
-        for level in (72.1e-3, 0.0)
-    )
-    _, factor = skf_reduction_factors(
-        BALL, skf(BALL).constants, STARVATION["jet"], 3000 * RPM, 20e-6
-    )
-    assert factor < 0.97
-    assert dry / deep == pytest.approx(factor, rel=1e-12)  # rounding
-
-
-def test_moment_of_contact_seals():
-    # 0.028 45^2 N mm + 2 N mm
-    moment = seal_moment(45e-3, 0.028, 2.0, 2e-3)
-    assert moment * 1e3 == pytest.approx(58.7, rel=1e-12)  # rounding
-    model = skf(BALL, seal_moment=moment)
-    assert skf_moments(model, BALL, BearingLoad(0.0, 0.0), 10.0, 20e-6).seal == moment
-
-
-@pytest.mark.parametrize("bearing", [BALL, ROLLER, TAPER], ids=lambda b: b.type)
-def test_no_load_no_load_dependent_friction(bearing):
-    moments = skf_moments(skf(bearing), bearing, BearingLoad(0.0, 0.0), 3000 * RPM, 20e-6)
-    assert moments.rolling == moments.sliding == 0.0
-
-
-@pytest.mark.parametrize("bearing", [BALL, ROLLER, TAPER], ids=lambda b: b.type)
-@pytest.mark.parametrize("axial", [0.0, 500.0])
-def test_friction_grows_with_the_load(bearing, axial):
-    found = [
-        skf_moments(skf(bearing), bearing, BearingLoad(force, axial), 3000 * RPM, 20e-6)
-        for force in (100.0, 1000.0, 5000.0, 20_000.0)
-    ]
-    assert np.all(np.diff([moments.rolling for moments in found]) > 0)
-    assert np.all(np.diff([moments.sliding for moments in found]) > 0)
-
-
-def test_every_row_of_the_table_names_its_grade_and_source():
-    text = resources.files("epicyclic.library").joinpath("bearings", "skf-2018.toml").read_text()
-    table = tomllib.loads(text)
-    for row in table["rows"]:
-        assert row["grade"] in ("read", "second hand")
-        assert row["source"]
-        for series in row["series"]:
-            cage = "full-complement" if series == "full-complement" else "caged"
-            constants = skf_constants(row["type"], series, cage)
-            assert constants.rolling_1 == row["rolling_1"]
-            assert constants.is_read == (row["grade"] == "read")
-    seen = [(row["type"], series) for row in table["rows"] for series in row["series"]]
-    assert len(seen) == len(set(seen))
-
-
-def test_constants_of_the_published_table():
-    # a sample of each type: R1, R2, S1, S2, K_Z, K_L
-    def row(*key):
-        c = skf_constants(*key)
-        return (
-            c.rolling_1,
-            c.rolling_2,
-            c.sliding_1,
-            c.sliding_2,
-            c.bearing_factor,
-            c.roller_length_factor,
-        )
-
-    assert row("deep-groove", "623") == (3.7e-7, 1.7, 2.84e-3, 92.8, 3.1, 0.0)
-    assert row("cylindrical", "23") == (1.48e-6, 0.0, 0.16, 0.0015, 5.1, 0.65)
-    assert row("cylindrical", "2", "full-complement") == (2.13e-6, 0.0, 0.16, 0.0015, 6.2, 0.7)
-    assert row("tapered", "320X") == (2.38e-6, 10.9, 0.014, 2.0, 6.0, 0.7)
-    assert skf_constants("deep-groove", "42").ball_rows == 2
-    with pytest.raises(KeyError):
-        skf_constants("cylindrical", "99")
-
-
-def test_needle_rollers_have_no_row():
-    assert skf_series("needle") == ()
-    assert "needle" not in bearing_types("skf-2018")
-    assert "needle" not in bearing_types("harris")
-    assert "needle" in bearing_types("palmgren")
-    with pytest.raises(ValueError, match="needle"):
-        skf_load_variables(skf(BALL).constants, NEEDLE, BearingLoad(1000.0, 0.0))
-
-
-def test_full_film_friction_by_oil():
-    kinds = ("mineral", "pao", "atf")
-    assert [full_film_friction("deep-groove", kind) for kind in kinds] == [0.05, 0.04, 0.10]
-    assert full_film_friction("cylindrical", "atf") == 0.02
-    assert full_film_friction("tapered", "pao") == 0.002
-
-
 # --- minimum load ---------------------------------------------------------------------------------
 
 
@@ -532,6 +131,7 @@ def test_minimum_loads():
 
 
 # --- the element ----------------------------------------------------------------------------------
+
 
 MODELS = {
     "palmgren": PalmgrenModel(2.0, 0.0003),
@@ -713,7 +313,35 @@ def test_figures_are_labelled(state):
     assert shown["coefficient"].value == pytest.approx(2.5365446e-4, rel=PRINTED)
 
 
+TAPER_MODEL = TaperedModel(
+    18, 10.4e-3, 12.6e-3, 1.2e-3, RIB_ROUGHNESS, SkfModel(skf_supply("tapered"), 0.002)
+)
+
+
+def test_all_moments_become_losses(state):
+    oil, load, speed = state(0).fluids.oil, BearingLoad(2000.0, 300.0), 3000 * RPM
+    model = MODELS["skf-2018"]
+    moments = skf_moments(model, BALL, load, speed, oil.kinematic_viscosity)
+    assert min(moments.rolling, moments.sliding, moments.seal, moments.drag) > 0
+    watts = {part.key: part.watts for part in model.parts(BALL, load, speed, oil)}
+    by_load, others = moments.rolling + moments.sliding, moments.seal + moments.drag
+    assert watts == pytest.approx({"mechanical": by_load * speed, "drag": others * speed})
+
+
+def test_what_no_measured_tapered_bearing_had_is_flagged(state):
+    bearing = ShaftBearing("input.front", ("input", HOUSING), TAPER, TAPER_MODEL)
+    force = BearingLoad(2000.0, 1000.0)
+    assert bearing.evaluate(state(3000, force)).flags == ()
+    (flag,) = bearing.evaluate(state(9000, force)).flags
+    assert flag.use.model == "zhou-hoeprich"
+    other = replace(bearing, model=PalmgrenModel(6.0, 0.0004))
+    result = other.evaluate(state(3000, force))
+    watts = sum(loss.watts for loss in result.losses.values())
+    assert f"{watts:.3g} W after palmgren" in only(result.notes)
+
+
 # --- table of keys --------------------------------------------------------------------------------
+
 
 KEYS = {
     "shaft": "input",
@@ -899,6 +527,18 @@ def test_unknown_shafts_are_found(oil, tmp_path):
     assert first.key == "shaft"
     assert "'input'" in first.remedy
     assert second.key == "against"
+
+
+def test_auto_takes_palmgren_for_what_rollers_are_not_known(oil, tmp_path):
+    def model(**changes):
+        table = bearing_table(type="cylindrical", **changes)
+        element = build_element("bearings", "b", table, shafts=SHAFTS, oil=oil, folder=tmp_path)
+        return element.model.name
+
+    assert model(width="18 mm") == "zhou-hoeprich"
+    assert model(roller_length="11 mm") == "zhou-hoeprich"
+    assert model() == model(width="18 mm", cage="full-complement") == "palmgren"
+    assert model(width="18 mm", palmgren_coefficient=0.0004) == "palmgren"
 
 
 # --- angular contact bearings and pairs -----------------------------------------------------------

@@ -23,30 +23,33 @@ from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
     DEFAULT_FLANGE_COEFFICIENTS,
     DEFAULT_VISCOUS_FACTORS,
-    RIB_HEIGHT,
-    RIB_ROUGHNESS,
-    ROLLER_SHARES,
-    STARVATION,
     AxialSpring,
     BearingLoad,
-    BearingModel,
     CatalogueBearing,
-    CylindricalModel,
     PalmgrenModel,
+    TableModel,
+    preload_of,
+)
+from epicyclic.losses.skf_2018 import (
+    STARVATION,
     SkfConstants,
     SkfModel,
-    TableModel,
-    TaperedModel,
     full_film_friction,
-    preload_of,
     seal_moment,
     skf_constants,
     skf_series,
     skf_supply,
 )
+from epicyclic.losses.zhou_hoeprich import (
+    RIB_HEIGHT,
+    RIB_ROUGHNESS,
+    ROLLER_SHARES,
+    CylindricalModel,
+    TaperedModel,
+)
 from epicyclic.machine.clutch import Clutch
 from epicyclic.machine.element import Element
-from epicyclic.machine.shaft_parts import Seal, ShaftBearing, TableLoss
+from epicyclic.machine.shaft_parts import BearingModel, Seal, ShaftBearing, TableLoss
 from epicyclic.oil.oil import Oil, oil_state
 
 _FORTY_CELSIUS = 313.15  # 40 degC in kelvin.

@@ -25,6 +25,8 @@ _CLUSTERED = 0.9  # Largest eccentricity to which the spacing of points is fitte
 TOUCHING = 1e-3
 """Least film at an edge, over the clearance, down to which a bearing tilts under a moment. [1]"""
 _BALANCED = 1e-7  # Imbalance of forces and heat at which a tilt counts as found. [1]
+_ROUGHLY = 0.01  # The same of one that is only the start of the next. [1]
+_COOLEST = 1e-3  # Rise of the temperature at least, of which a logarithm is taken. [K]
 _REACH = 0.3  # Offset of a load over length times (1 - eps)^0.5, of which tilts are easily found.
 STEEPEST = 14.0  # Largest |ln(eps/(1 - eps))| that is tried: films of 1e-6 of the clearance. [1]
 # Pressure of asperities over E' after J. A. Greenwood and J. H. Tripp (1971), second hand, for
@@ -292,13 +294,13 @@ def _tilted(
     from scipy.optimize import root  # cases that are only read need no algebra
 
     clearance, radius = bearing.diametral_clearance / 2, bearing.inner_diameter / 2
-    arm, warm = bearing.length / 2, max(aligned.temperature - oil.temperature, 1e-3)
+    arm, warm = bearing.length / 2, max(aligned.temperature - oil.temperature, _COOLEST)
     # so that without a moment the film is that of the curves, which are interpolated
     S, phi, leaking = sommerfeld_number(bearing.slenderness, aligned.eccentricity)
     known, _, flowing = film_force(aligned.eccentricity, 0j, bearing.slenderness)
     fitted, leaked = cmath.rect(1 / (6 * math.pi * S), -phi) / known, leaking / flowing
 
-    def at(unknown: FloatArray, share: float) -> tuple[JournalState, complex, complex]:
+    def at(unknown: FloatArray) -> tuple[JournalState, complex, complex]:
         """State, and force and moment of film and asperities.
 
         Eccentricities at the edges are unknown, over what they leave of the clearance there, and
@@ -316,51 +318,55 @@ def _tilted(
         slices = middle + tilt * _POINTS
         size = np.abs(slices)
         along = _WEIGHTS / 2 * asperity_force(bearing, size)
-        place, contact = (bearing, middle, tilt, across), float(along.sum())
-        state = _state(*place, contact, flow * leaked, speed, eta, temperature)
+        contact, leak = float(along.sum()), flow * leaked
+        state = _state(bearing, middle, tilt, across, contact, leak, speed, eta, temperature)
         rubbed = along * slices / size
-        held = film + complex(rubbed.sum()), turning + complex(rubbed @ _POINTS)
-        return replace(state, moment_share=share), *held
+        return state, film + complex(rubbed.sum()), turning + complex(rubbed @ _POINTS)
 
-    def imbalance(unknown: FloatArray, *shares: float) -> FloatArray:
-        (share,) = shares or unknown[5:]
-        state, carried, turning = at(unknown, share)
+    def imbalance(unknown: FloatArray, given: float | None) -> FloatArray:
+        """With a share of the moment; without one it is unknown too, and an edge at `TOUCHING`."""
+        state, carried, turning = at(unknown)
+        share = unknown[5] if given is None else given
         missing = np.array([carried - force, turning - share * moment / arm]) / force
         found = [*missing.real, *missing.imag, excess(state) / state.watts]
-        closest = state.film / (TOUCHING * clearance) - 1
-        return np.array(found if shares else [*found, closest])
+        return np.array(found if given else [*found, state.film / (TOUCHING * clearance) - 1])
 
-    def balanced(start: FloatArray, *shares: float) -> FloatArray | None:
-        # what is only the start of the next is found roughly
-        enough = _BALANCED if not shares or shares[0] == 1 else 0.01
+    def balanced(start: FloatArray, share: float | None) -> FloatArray | None:
+        enough = _ROUGHLY if share and share < 1 else _BALANCED
         options = {"eps": 1e-8, "maxfev": 80}
-        solved = root(imbalance, start, shares, tol=enough / 10, options=options)
+        solved = root(imbalance, start, (share,), tol=enough / 10, options=options)
         return solved.x if np.abs(solved.fun).max() <= enough else None
 
     def from_state(state: JournalState) -> FloatArray:
         middle = cmath.rect(state.eccentricity, state.attitude)
         tilt = cmath.rect(state.tilt * arm / clearance, state.tilt_direction)
         odds = np.array([end / (1 - abs(end)) for end in (middle - tilt, middle + tilt)])
-        rise = max(state.temperature - oil.temperature, 1e-3)
+        rise = max(state.temperature - oil.temperature, _COOLEST)
         return np.array([*odds.real, *odds.imag, math.log(rise / warm)])
 
+    none = replace(aligned, moment_share=0.0)
+    if aligned.film <= TOUCHING * clearance:
+        return none
+    # states, and shares of the moment to go on to from there; the last are tried first
     reach = _REACH * math.sqrt(1 - aligned.eccentricity) * force * bearing.length / abs(moment)
-    tried = [(from_state(aligned), min(1.0, part * reach)) for part in (1.0, 0.5, 0.25)]
+    shares = sorted({min(1.0, part * reach) for part in (0.25, 0.5, 1.0)})
+    tried = [(from_state(aligned), share) for share in shares]
     if last is not None and last.moment_share:
-        tried.insert(0, (from_state(last), last.moment_share))
-    while tried and aligned.film > TOUCHING * clearance:
-        start, share = tried.pop(0)
-        found = start if last and share == last.moment_share < 1 else balanced(start, share)
+        tried.append((from_state(last), last.moment_share))
+    while tried:
+        start, share = tried.pop()
+        at_limit = last is not None and share == last.moment_share < 1
+        found = start if at_limit else balanced(start, share)
         if found is None:
             continue
-        if share == 1 and (state := at(found, share)[0]).film >= TOUCHING * clearance:
+        if share == 1 and (state := at(found)[0]).film >= TOUCHING * clearance:
             return state
-        limit = balanced(np.append(found, share))
+        limit = balanced(np.append(found, share), None)
         if limit is not None and limit[5] <= 1:
-            return at(limit[:5], float(limit[5]))[0]
+            return replace(at(limit)[0], moment_share=float(limit[5]))
         if share < 1:  # the limit is far away, or the whole moment can be held
-            tried.insert(0, (found, min(1.0, 2 * share) if limit is None else 1.0))
-    return replace(aligned, moment_share=0.0)
+            tried.append((found, min(1.0, 2 * share) if limit is None else 1.0))
+    return none
 
 
 def _at(

@@ -314,23 +314,17 @@ class Statics:
 
     def _known_torques(self, frictions: Iterable[Friction]) -> FloatArray:
         """Given torques and those of friction on every body. Theory (T6). [N m]"""
-        own, speeds, place = self.operation, self.speeds, self._place
-        torques = [0.0] * len(place)
-        for body, torque in own.torques.items():
-            if body in place:
-                torques[place[body]] = torque
-        if own.input in place:
-            torques[place[own.input]] += own.torque
+        torques = {body: self._given[body] for body in self._place}
         for friction in frictions:
             one, two = friction.between
-            difference = speeds[one] - speeds[two]
+            difference = self.speeds[one] - self.speeds[two]
             if difference:
                 torque = friction.watts / difference
-                if one in place:
-                    torques[place[one]] -= torque
-                if two in place:
-                    torques[place[two]] += torque
-        return np.array(torques)
+                if one in torques:
+                    torques[one] -= torque
+                if two in torques:
+                    torques[two] += torque
+        return np.array([*torques.values()])
 
 
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:

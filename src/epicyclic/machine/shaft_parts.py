@@ -14,15 +14,17 @@ from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
     TAPERED_ERRORS,
     BearingLoad,
-    BearingModel,
     CatalogueBearing,
-    SkfModel,
+    PalmgrenModel,
+    TableModel,
     friction_load,
     limiting_speed,
     minimum_load,
     thermal_excess,
     thermal_speed_rating,
 )
+from epicyclic.losses.skf_2018 import SkfModel
+from epicyclic.losses.zhou_hoeprich import CylindricalModel, TaperedModel
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
@@ -262,6 +264,10 @@ class Seal:
 # A rolling bearing of a shaft, as a catalogue states it.
 
 
+BearingModel = PalmgrenModel | SkfModel | TaperedModel | CylindricalModel | TableModel
+"""How the friction of a bearing is computed."""
+
+
 @dataclass(frozen=True, eq=False)
 class ShaftBearingFigures(PartFigures):
     """What an engineer checks by eye on a shaft bearing; NaN where unknown or without motion."""
@@ -282,7 +288,7 @@ class ShaftBearing:
     key: str  # First part of the keys of its losses; `State.forces` has its load under this key.
     between: tuple[str, str]  # The bodies of its two rings.
     bearing: CatalogueBearing
-    model: BearingModel  # `PalmgrenModel`, `SkfModel` or `TableModel`.
+    model: BearingModel
     # The load where the user gives it; None to take that of the state.
     force: BearingLoad | None = None
     minimum_load_factor: float | None = None  # k_r of SKF; None for the default of the type. [1]

@@ -565,7 +565,7 @@ def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
 
 
 def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
-    from epicyclic.losses.shaft_bearing import skf_series
+    from epicyclic.losses.skf_2018 import skf_series
 
     known = skf_series(table.type)
     choice = ", ".join(known)
