@@ -336,7 +336,7 @@ class ShaftBearingTable(ElementTable):
     rib_height: Length | None = option("Of the contact on the rib. Default: 0.03 (D - d).")
     rib_roughness: Roughness | None = option("Rms, rib and roller ends. Default: 0.24 um.")
     series: str | None = option("For skf-2018: 62, 160; 2, 10, 22; 302, 320X; ...", max_length=20)
-    dynamic_load_rating: LoadRating | None = option("C; for the least load of tapered and needle.")
+    dynamic_load_rating: LoadRating | None = option("C, for the life and the least load.")
     static_load_rating: LoadRating | None = option(
         "C0, for ball bearings with harris and skf-2018."
     )

@@ -41,13 +41,9 @@ class GearStrength(Table):
     )
 
 
-class StrengthTable(Table):
-    """Loads, lives and strengths, for safeties after ISO 6336 and ISO 281."""
+class MeshStrength(Table):
+    """Factors on the load of one mesh."""
 
-    STAND_INS: ClassVar[dict[str, object]] = {"gears": {}}
-
-    life: Life = option("At the operating point.", "20000 h")
-    application_factor: Factor = option("K_A.", 1.0)
     mesh_load_factor: Factor | None = option(
         "K_gamma. Default: the share of the planet that carries most, as computed."
     )
@@ -56,6 +52,15 @@ class StrengthTable(Table):
         "K_Hbeta. Default: from the computed load along the contact lines."
     )
     transverse_load_factor: Factor | None = option("K_Halpha. Default: after ISO 6336-1.")
+
+
+class StrengthTable(MeshStrength):
+    """Loads, lives and strengths, for safeties after ISO 6336 and ISO 281."""
+
+    STAND_INS: ClassVar[dict[str, object]] = {"gears": {}, "meshes": {}}
+
+    life: Life = option("At the operating point.", "20000 h")
+    application_factor: Factor = option("K_A.", 1.0)
     accuracy_class: int = option(
         "Of ISO 1328-1, for K_v and K_Halpha of gears without one (estimate).", 6, ge=1, le=11
     )
@@ -68,6 +73,9 @@ class StrengthTable(Table):
     contamination_factor: Number = option("e_C of ISO 281 (estimate).", 0.5, gt=0, le=1)
     gears: dict[str, GearStrength] = option(
         'By the name of a gear, "sun", of a train "P1.sun"; those left out have the defaults.', {}
+    )
+    meshes: dict[str, MeshStrength] = option(
+        'Load factors of one mesh, by its name, "sun_mesh", of a train "P1.sun_mesh".', {}
     )
 
     def __hash__(self) -> int:  # a table of names cannot be hashed

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,19 +27,28 @@ from epicyclic.gears.gear import Gear
 from epicyclic.gears.measures import flank_tolerances
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import LineLoads, MeshContact
-from epicyclic.losses.designations import roller_factor
+from epicyclic.losses.designations import RATING_BAND
 from epicyclic.losses.mesh import flash_temperatures
 from epicyclic.losses.planet_bearing import RollerBearing
+from epicyclic.losses.shaft_bearing import CatalogueBearing
 from epicyclic.machine.element import State, joined_key
 from epicyclic.machine.gear_mesh import MeshDuty, contact_under, distribute_load, elastic_loads
 from epicyclic.machine.gear_set import GearSet
+from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.messages import did_you_mean
 from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design import lubricated
+from epicyclic.plugins.design.bearing_life import (
+    BearingRating,
+    bearing_rating,
+    dynamic_load,
+    of_planet,
+)
 from epicyclic.plugins.design.mass import gear_body
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import build_computed
+from epicyclic.units import percent
 
 FloatArray = NDArray[np.float64]
 FACE_BINS = 8  # Parts of the face over which the load is averaged for K_Hbeta.
@@ -51,7 +59,7 @@ AFTER = {
     "loads": "after ISO 6336-1: K_v and K_Halpha of method B, K_Hbeta from the computed load",
     "micropitting": "after ISO/TS 6336-22: its film under the computed pressure and friction",
     "scuffing": "after ISO/TS 6336-20, -21: its limits for the computed flash temperatures",
-    "bearings": "after ISO 281: basic and modified life of cylindrical rollers, 90 %",
+    "bearings": "after ISO 281: basic and modified life, 90 %, without misalignment",
 }
 """What the numbers are, and which parts are covered."""
 
@@ -178,20 +186,6 @@ class MeshRating:
     flanks: FlankRating
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BearingRating:
-    """Life of one planet bearing."""
-
-    key: str
-    load: float  # P. [N]
-    speed: float  # Of the planet on its pin. [rad/s]
-    dynamic_load_rating: float  # C. [N]
-    viscosity_ratio: float  # kappa. [1]
-    life_factor: float  # a_ISO. [1]
-    basic_life: float  # L10. [s]
-    modified_life: float  # L10m. [s]
-
-
 @dataclass(frozen=True, slots=True)
 class Strength:
     """Safeties of a case at its operating point."""
@@ -200,25 +194,24 @@ class Strength:
     bearings: tuple[BearingRating, ...]
     stages: tuple[int, int]  # Failure load stages of the oil, scuffing and micropitting.
     stages_source: str
+    notes: tuple[str, ...]  # What is missing or estimated.
 
     def least(self) -> dict[str, float]:
         """The smallest safety of each kind, and the shortest life of a bearing in hours."""
-        gears = [gear for mesh in self.meshes for gear in mesh.gears]
-        found = {
-            "pitting": min(gear.pitting for gear in gears),
-            "bending": min(gear.bending for gear in gears),
-            **{
-                name: min(getattr(mesh.flanks, name) for mesh in self.meshes)
-                for name in ("micropitting", "scuffing", "integral_scuffing")
-            },
+        values = {
+            name: [getattr(gear, name) for mesh in self.meshes for gear in mesh.gears]
+            for name in ("pitting", "bending")
+        } | {
+            name: [getattr(mesh.flanks, name) for mesh in self.meshes]
+            for name in ("micropitting", "scuffing", "integral_scuffing")
         }
-        if self.bearings:
-            found["bearing_life"] = min(one.modified_life for one in self.bearings) / 3600
-        return found
+        lives = (one.modified_life / 3600 for one in self.bearings)
+        values["bearing_life"] = [life for life in lives if not math.isnan(life)]
+        return {name: min(found) for name, found in values.items() if found}
 
 
 def strength(case: CaseSource) -> Strength:
-    """Safeties of the gears and lives of the planet bearings of a case.
+    """Safeties of the gears and lives of the bearings of a case.
 
     The names say which standards are followed; none is followed in full, see
     ``epicyclic strength --help``.
@@ -254,7 +247,7 @@ def strength(case: CaseSource) -> Strength:
 def rated(case: Case, built: Built) -> Strength:
     """The strength of a case whose machine is there."""
     table = case.strength or StrengthTable()
-    raise_any(_problems(case, table), case.source)
+    raise_any(_problems(case, table, built), case.source)
     state = built.loaded_state()
     assert case.lubricant is not None
     oil = case.lubricant.oil
@@ -268,12 +261,39 @@ def rated(case: Case, built: Built) -> Strength:
             if duty.torque1 != 0:
                 key = duty.gears.key
                 meshes.append(rating.mesh(name, own, duty, abs(mean[key].torque1)))
-        bearings += rating.bearings(name, own)
-    return Strength(tuple(meshes), tuple(bearings), (scuffing, micropitting), source)
+        bearings += rating.planet_bearings(name, own)
+    shafts = [one for one in built.machine.elements if isinstance(one, ShaftBearing)]
+    bearings += rating.shaft_bearings(shafts)
+    notes = list(_about_ratings(shafts))
+    if not meshes:
+        notes.insert(0, "no mesh carries a load here, so none has a safety")
+    return Strength(tuple(meshes), tuple(bearings), (scuffing, micropitting), source, tuple(notes))
 
 
-def _problems(case: Case, table: StrengthTable) -> Iterator[Problem]:
-    """Gears that the case does not have, and hardnesses that no steel of the class has."""
+def _about_ratings(shafts: Sequence[ShaftBearing]) -> Iterator[str]:
+    """Shaft bearings by what their lives lack."""
+    all_of = {
+        "no life without dynamic_load_rating": [
+            one.key for one in shafts if math.isnan(one.bearing.dynamic_load_rating)
+        ],
+        "no modified life without static_load_rating": [
+            one.key for one in shafts if math.isnan(one.bearing.static_load_rating)
+        ],
+        f"ratings estimated, ±{percent(RATING_BAND, 0)}, and lives go with C^3": [
+            one.key for one in shafts if one.bearing.estimated
+        ],
+    }
+    for words, keys in all_of.items():
+        if keys:
+            yield f"{words}: {', '.join(keys)}"
+
+
+def _problems(case: Case, table: StrengthTable, built: Built) -> Iterator[Problem]:
+    """What the case does not have, and hardnesses that no steel of the class has."""
+    meshes = [joined_key(name, mesh.key) for name, own in built.sets.items() for mesh in own.meshes]
+    for name in table.meshes.keys() - set(meshes):
+        remedy = did_you_mean(name, meshes) or f"Name one of {', '.join(meshes)}."
+        yield Problem(f"strength.meshes.{name}", "", "is no mesh of the case.", remedy)
     known = [
         joined_key(name, gear) for name, gearing in case.gearings.items() for gear in gearing.tables
     ]
@@ -319,26 +339,29 @@ class _Rating:
 
     def mesh(self, name: str, own: GearSet, duty: MeshDuty, mean_torque: float) -> MeshRating:
         """One mesh of a set; `mean_torque` of a planet with its mean share."""
-        table, gears = self.table, duty.gears
-        mesh = gears.mesh
+        mesh, key = duty.gears.mesh, joined_key(name, duty.gears.key)
         loads = distribute_load(duty)
         elastic = loads.elastic or elastic_loads(duty)
-        sharing = table.mesh_load_factor or abs(duty.torque1) / mean_torque
+        sharing = self._stated(key, "mesh_load_factor") or abs(duty.torque1) / mean_torque
         nominal = mean_torque / mesh.gear1.reference_radius
         limits = [material_of(self._own(name, gear)) for gear in (mesh.gear1, mesh.gear2)]
         factors = self._factors(name, own, duty, loads, elastic, nominal, sharing, limits)
         scale = mean_torque * factors.common / abs(duty.torque1)
-        key = joined_key(name, gears.key)
         return MeshRating(
             key=key,
             factors=factors,
             nominal_contact_stress=iso.nominal_contact_stress(
-                mesh, nominal, gears.flanks.equivalent_modulus
+                mesh, nominal, duty.gears.flanks.equivalent_modulus
             ),
             tangential_force=nominal,
             gears=self._gears(name, own, duty, nominal, factors, limits),
             flanks=self._flanks(duty, loads, scale, key, own),
         )
+
+    def _stated(self, key: str, factor: str) -> float | None:
+        """A load factor that the case states for this mesh or for all."""
+        own = getattr(self.table.meshes.get(key), factor, None)
+        return cast("float | None", own or getattr(self.table, factor))
 
     def _own(self, name: str, gear: Gear) -> GearStrength:
         return self.table.gears.get(joined_key(name, gear.name), GearStrength())
@@ -355,7 +378,7 @@ class _Rating:
         limits: list[Material],
     ) -> LoadFactors:
         table, gears = self.table, duty.gears
-        mesh = gears.mesh
+        mesh, key = gears.mesh, joined_key(name, gears.key)
         width = mesh.face_width
         tables = self.case.gearings[name].tables
         deviations = [
@@ -388,12 +411,12 @@ class _Rating:
             tip_relief=min(reliefs),
         )
         load = table.application_factor * sharing * nominal / width
-        dynamic = table.dynamic_factor
+        dynamic = self._stated(key, "dynamic_factor")
         if dynamic is None:
             resonance = self._resonance(name, own, duty, moved.stiffness)
             dynamic = moved.dynamic_factor(load, resonance)
         computed = face_load_factor(loads, mesh)
-        face = table.face_load_factor or computed
+        face = self._stated(key, "face_load_factor") or computed
         depth = max(abs(it.tip_radius - it.root_radius) for it in (mesh.gear1, mesh.gear2))
         return LoadFactors(
             application=table.application_factor,
@@ -401,7 +424,7 @@ class _Rating:
             dynamic=dynamic,
             face=face,
             face_computed=computed,
-            transverse=table.transverse_load_factor
+            transverse=self._stated(key, "transverse_load_factor")
             or moved.transverse_share(load * dynamic * face, iso.contact_ratio_factor(mesh)),
             face_bending=iso.face_factor_bending(face, width, depth),
         )
@@ -544,24 +567,37 @@ class _Rating:
             integral_scuffing=lubricated.integral_safety(most, integral),
         )
 
-    def bearings(self, name: str, own: GearSet) -> Iterator[BearingRating]:
+    def planet_bearings(self, name: str, own: GearSet) -> Iterator[BearingRating]:
         """The roller bearings of the planets of a set."""
-        state, fluids = self.state, self.state.fluids
-        assert fluids is not None
+        state = self.state
         carrier = state.speeds[own.carrier]
         duties = {duty.gears.key: duty for duty in own.loaded_duties(state)}
         for planet in own.planets:
             rollers = getattr(planet.bearing, "bearing", None)
-            if not isinstance(rollers, RollerBearing):
-                continue
-            key = joined_key(name, planet.key)
-            load = replace(planet, tilts=False).load(duties, carrier)[1].force
-            load *= self.table.application_factor
-            speed = abs(state.speeds[planet.body] - carrier)
-            if load == 0 or speed == 0:
-                continue
+            if isinstance(rollers, RollerBearing):
+                load = replace(planet, tilts=False).load(duties, carrier)[1].force
+                speed = state.speeds[planet.body] - carrier
+                key = joined_key(name, planet.key)
+                yield from self._bearing(key, of_planet(rollers), load, speed)
+
+    def shaft_bearings(self, shafts: Iterable[ShaftBearing]) -> Iterator[BearingRating]:
+        """The rolling bearings of shafts."""
+        state = self.state
+        for one in shafts:
+            load = dynamic_load(one.bearing, one.force or state.forces[one.key])
+            speed = state.speeds[one.between[0]] - state.speeds[one.between[1]]
+            yield from self._bearing(one.key, one.bearing, load, speed)
+
+    def _bearing(
+        self, key: str, bearing: CatalogueBearing, load: float, speed: float
+    ) -> Iterator[BearingRating]:
+        fluids, table = self.state.fluids, self.table
+        if load and speed and not math.isnan(bearing.dynamic_load_rating):
+            load *= table.application_factor
             viscosity = fluids.at(key).kinematic_viscosity
-            yield bearing_rating(key, rollers, load, speed, viscosity, self.table)
+            yield bearing_rating(
+                key, bearing, load, abs(speed), viscosity, table.contamination_factor
+            )
 
 
 def path_means(contact: MeshContact, values: FloatArray) -> float:
@@ -606,58 +642,6 @@ def root_limit(
     return material.bending * factor * iso.size_factor_bending(material.treatment, root.module)
 
 
-def bearing_rating(
-    key: str,
-    rollers: RollerBearing,
-    load: float,  # Radial. [N]
-    speed: float,  # [rad/s]
-    viscosity: float,  # Kinematic, of the oil at the bearing. [m^2/s]
-    table: StrengthTable,
-) -> BearingRating:
-    """L10 and L10m of cylindrical rollers. ISO 281:2007, 8 and 9; C0 of ISO 76."""
-    diameter, length = iso.MM * rollers.roller_diameter, iso.MM * rollers.roller_length
-    pitch = iso.MM * rollers.pitch_diameter
-    gamma, count = diameter / pitch, rollers.rollers_per_row
-    rating = 1.1 * roller_factor(gamma) * (rollers.rows * length) ** (7 / 9)
-    rating *= count**0.75 * diameter ** (29 / 27)
-    static = 44 * (1 - gamma) * rollers.rows * count * length * diameter
-    fatigue = static / 8.2 * (1.0 if pitch <= 100 else math.pow(100 / pitch, 0.3))
-    rpm = speed * 30 / math.pi
-    needed = 45_000 * math.pow(rpm, -0.83) if rpm < 1000 else 4500 * math.pow(rpm, -0.5)
-    kappa = viscosity * 1e6 / (needed / math.sqrt(pitch))
-    factor = life_modification(kappa, table.contamination_factor * fatigue / load)
-    basic = math.pow(rating / load, 10 / 3) * 1e6 * 2 * math.pi / speed
-    return BearingRating(
-        key=key,
-        load=load,
-        speed=speed,
-        dynamic_load_rating=rating,
-        viscosity_ratio=kappa,
-        life_factor=factor,
-        basic_life=basic,
-        modified_life=factor * basic,
-    )
-
-
-@cache
-def life_modification(kappa: float, load_ratio: float) -> float:
-    """a_ISO of radial roller bearings with e_C C_u/P, at most 50. ISO 281:2007, Eq. 34 to 36. [1]
-
-    Examples
-    --------
-    >>> round(life_modification(1.0, 0.2), 2)
-    0.65
-    """
-    held = min(max(kappa, 0.1), 4.0)
-    scale, exponent = (1.3993, 0.054381) if held < 0.4 else (1.2348, 0.19087)
-    if held >= 1:
-        exponent = 0.071739
-    inner = 1 - (1.5859 - scale / math.pow(held, exponent)) * math.pow(load_ratio, 0.4)
-    if inner <= 0:
-        return 50.0
-    return min(50.0, 0.1 * math.pow(inner, -9.185))
-
-
 JSON_UNITS = {
     "stress": ("MPa", 1e6, 0.0), "contact_limit": ("MPa", 1e6, 0.0),
     "root_limit": ("MPa", 1e6, 0.0), "temperature": ("degC", 1.0, lubricated.ZERO_CELSIUS),
@@ -688,6 +672,7 @@ def as_dict(found: Strength) -> dict[str, Any]:
             for mesh in found.meshes
         },
         "bearings": {one.key: _in_units(one) for one in found.bearings},
+        "notes": list(found.notes),
     }
 
 

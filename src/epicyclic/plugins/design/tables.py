@@ -22,14 +22,15 @@ def strength_tables(case: Case, result: Result | None) -> Iterator[Table | Listi
 
 def tables_of(found: Strength) -> Iterator[Table | Listing]:
     """Safeties, what leads to them, and which standards are followed how far."""
-    yield _gears(found)
-    yield _flanks(found)
-    yield _factors(found.meshes)
+    if found.meshes:
+        yield _gears(found)
+        yield _flanks(found)
+        yield _factors(found.meshes)
     if found.bearings:
         yield _bearings(found)
     yield Listing(
-        (*AFTER.values(), f"load stages of the oil, scuffing {found.stages[0]}, micropitting "
-        f"{found.stages[1]}: {found.stages_source}"),
+        (*found.notes, *AFTER.values(), f"load stages of the oil, scuffing {found.stages[0]}, "
+        f"micropitting {found.stages[1]}: {found.stages_source}"),
         "Safeties: what they follow",
     )  # fmt: skip
 
