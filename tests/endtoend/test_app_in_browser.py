@@ -402,6 +402,15 @@ def test_on_a_phone_results_come_first_and_the_form_takes_their_place(open_app):
     assert not page.wrong
 
 
+@pytest.mark.parametrize("width", [1440, 1024, 390])
+def test_the_page_is_no_wider_than_its_window(open_app, width):
+    page = open_app("train-eaxle")
+    page.set_viewport_size({"width": width, "height": 900})
+    _solved(page)
+    page.locator(".key-figure .unit", has_text="times the input power").wait_for(timeout=SOLVED)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
 def test_values_are_told_where_the_pointer_is_and_bands_stand_on_the_cards(open_app):
     page = open_app("talbot-2012-pair")
     _solved(page)

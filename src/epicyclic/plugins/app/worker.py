@@ -241,11 +241,13 @@ class Doing:
             yield
         finally:
             self._count -= 1
-            if not self._count:
+            if not self._count and not self._row.is_deleted:
                 self._row.classes("idle")
 
     def progress(self, done: int, total: int) -> None:
         """Tell how far it is; without a total, functions that a first run has compiled."""
+        if self._row.is_deleted:  # the page is closed, and the work not yet ended
+            return
         self._bar.set_visibility(total > 0)
         self._bar.set_value(done / total if total else 0)
         first = f"first run of this version, compiling the numerics: {done} functions so far"
