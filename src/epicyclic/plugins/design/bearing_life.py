@@ -51,11 +51,11 @@ def dynamic_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
     3200
     """
     radial, axial, factor = load.radial, load.axial, bearing.axial_factor
+    if bearing.type in THRUST_TYPES:
+        return axial
+    if not axial or bearing.type in ("cylindrical", "needle"):
+        return radial
     match bearing.type:
-        case "thrust-ball" | "thrust-roller":
-            return axial
-        case "cylindrical" | "needle":
-            return radial
         case "spherical":
             cotangent = 1 / math.tan(SPHERICAL_ANGLE)
             light = axial * cotangent <= 1.5 * radial
@@ -66,8 +66,8 @@ def dynamic_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
             angle, limit = math.degrees(bearing.contact_angle), bearing.thrust_ratio
             X = float(np.interp(angle, _ANGLES, _ANGULAR_RADIAL))
             Y = float(np.interp(angle, _ANGLES, _ANGULAR_AXIAL))
-        case "deep-groove":
-            share = STATIC_FACTOR * axial / bearing.static_load_rating if axial else 0.0
+        case _:  # balls in deep grooves
+            share = STATIC_FACTOR * axial / bearing.static_load_rating
             limit = float(np.interp(share, _AXIAL, _GROOVE_RATIO))
             X, Y = 0.56, float(np.interp(share, _AXIAL, _GROOVE_FACTOR))
     return radial if axial <= limit * radial else X * radial + Y * axial
