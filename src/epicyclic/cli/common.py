@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 EVERY = 15.0  # Between two lines, and before the first one. [s]
 COMPILING_EVERY = 5.0  # The same while kernels are compiled. [s]
-COMPILED = 70  # Kernels that a result needs, about.
+COMPILED = 95  # Kernels that a result needs, at most: simple cases need half as many.
 Update = Callable[..., None]
 LONG_SECONDS = 2.0  # After which a command that tells nothing of itself says that it works.
 
@@ -141,7 +141,7 @@ def tell_compilation() -> None:
             return
         told = now
         echo(
-            f"First run of this version: compiling the numerics, {count} of about {COMPILED} "
+            f"First run of this version: compiling the numerics, {count} of up to {COMPILED} "
             f"functions after {_seconds(now - first)}.",
             err=True,
         )
