@@ -24,7 +24,6 @@ import time
 import urllib.request
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
@@ -185,9 +184,9 @@ SAMPLED = 256 * (2 + 20)
 """Points that the command solves for 20 inputs."""
 
 
-def twenty_inputs() -> str:
-    """The case file of the test article with 20 uncertain inputs."""
-    cases = resources.files("epicyclic.library") / "cases"
+def twenty_inputs(sources: Path) -> str:
+    """The case file of the test article, as a version has it, with 20 uncertain inputs."""
+    cases = sources / "epicyclic" / "library" / "cases"
     return (cases / "talbot-2012.toml").read_text(encoding="utf-8") + FURTHER
 
 
@@ -195,7 +194,7 @@ def uncertainty_seconds() -> float:
     """The uncertainty of the test article with 20 inputs, from the command, on two cores."""
     with tempfile.TemporaryDirectory() as folder:
         case = Path(folder) / "twenty.toml"
-        case.write_text(twenty_inputs(), encoding="utf-8")
+        case.write_text(twenty_inputs(Path(ep.__file__).parents[1]), encoding="utf-8")
         return process_seconds("-m", "epicyclic", "uncertainty", str(case), "--jobs", "2")
 
 
@@ -660,13 +659,14 @@ def compare(other: Path, whole: bool) -> None:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         (folder / "CASE.toml").write_text(case_text(gearbox(), [], {}), encoding="utf-8")
-        (folder / "TWENTY.toml").write_text(twenty_inputs(), encoding="utf-8")
 
         def command(work: Work) -> float:
             """Seconds of the command; its largest memory, and the error that a map states."""
             argument, shorter = (work.tenth[0],) * 2 if whole else work.tenth
             given = [shorter if it == argument else it for it in work.command]
             files = [str(folder / f"{it}.toml") if it.isupper() else it for it in given]
+            twenty = twenty_inputs(Path(os.environ["PYTHONPATH"]))
+            (folder / "TWENTY.toml").write_text(twenty, encoding="utf-8")
             files += ["-o", str(folder / "map.nc")] if files[0] == "map" else []
             start = time.perf_counter()
             process = subprocess.Popen(
