@@ -49,7 +49,8 @@ seed_option = click.option(
     "--samples",
     metavar="N",
     type=int,
-    help="Samples in each set, a power of 2; default: 256, for a map 32, for a cycle 64.",
+    help="Samples in each set, a power of 2; two sets, and one more "
+    "for each uncertain input. Default: 256, for a map 32, for a cycle 64.",
 )
 @click.option(
     "--points", metavar="N", type=int, help="Points that represent the CYCLE; default: 16."
