@@ -313,6 +313,15 @@ def test_planets_on_plain_pins_in_a_case(plain):
     assert sum(powers) == pytest.approx(result.total, rel=1e-10)
 
 
+@pytest.mark.slow
+def test_tilted_pins_do_not_depend_on_other_points(plain):
+    torques = ["731 N*m", "113 N*m"]
+    swept = ep.sweep(plain, {"operation.torque": torques}, jobs=1)
+    turned = ep.sweep(plain, {"operation.torque": torques[::-1]}, jobs=1)
+    alone = [ep.solve(plain.updated({"operation.torque": torque})).total for torque in torques]
+    assert swept["total"].values.tolist() == turned["total"].values.tolist()[::-1] == alone
+
+
 def test_heat_network_has_plain_pins(plain):
     warm = plain.updated({"models.temperatures": "network", "thermal.oil_flow": "2 l/min"})
     result = ep.solve(warm)
