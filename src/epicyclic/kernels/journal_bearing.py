@@ -24,8 +24,8 @@ def journal_pressure(
     width: float,  # L/D
     angles: FloatArray,  # of the points around the circumference, rising
     places: FloatArray,  # of the points across the width, from -1 to 1
-    grooves: FloatArray,  # angles of the middle of axial grooves
-    half_groove: float,  # half of the angle that each of them takes
+    closed: NDArray[np.bool_],  # where around there is no pressure
+    P: FloatArray,  # pressure at the points: to start from, and what is found
     tolerance: float,
     most: int,
 ) -> tuple[complex, complex, float, int]:
@@ -40,15 +40,10 @@ def journal_pressure(
     dragged = np.zeros((around, across))
     steps = np.empty(around)
     cells = np.empty(around)
-    closed = np.zeros(around)
     for i in range(around):
         steps[i] = angles[(i + 1) % around] - angles[i] + (2 * math.pi if i == around - 1 else 0.0)
     for i in range(around):
         cells[i] = (steps[i] + steps[i - 1]) / 2
-        for groove in grooves:
-            apart = (angles[i] - groove + math.pi) % (2 * math.pi) - math.pi
-            if abs(apart) <= half_groove:
-                closed[i] = 1.0
         here = complex(math.cos(angles[i]), -math.sin(angles[i]))
         front = here * complex(math.cos(steps[i] / 2), -math.sin(steps[i] / 2))
         for j in range(across - 1):
@@ -65,16 +60,14 @@ def journal_pressure(
             source[i, j] = dragged[i - 1, j] - dragged[i, j]
             share[i, j] = 1 / (ahead[i, j] + ahead[i - 1, j] + side[i, j] + side[i, j - 1])
     relaxed = 2 / (1 + math.pi / max(around / 2, across))
-    P = np.zeros((around, across))
     sweeps = -most
     for sweep in range(1, most + 1):
         change = largest = 0.0
         # as on a chessboard, of which the points of one colour do not wait for each other
         for turn in range(2 * around):
-            i = turn % around
+            i, before, following = turn % around, (turn - 1) % around, (turn + 1) % around
             if closed[i]:
                 continue
-            following, before = (i + 1) % around, (i - 1) % around
             for j in range(1 + (i + turn // around) % 2, across - 1, 2):
                 wanted = share[i, j] * (
                     ahead[i, j] * P[following, j]
@@ -83,9 +76,8 @@ def journal_pressure(
                     + side[i, j - 1] * P[i, j - 1]
                     + source[i, j]
                 )
-                last = P[i, j]
-                new = max(0.0, last + relaxed * (wanted - last))
-                change = max(change, abs(new - last))
+                new = max(0.0, P[i, j] + relaxed * (wanted - P[i, j]))
+                change = max(change, abs(new - P[i, j]))
                 largest = max(largest, new)
                 P[i, j] = new
         if change <= tolerance * largest:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import cmath
 import math
+from bisect import bisect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -17,15 +18,14 @@ from epicyclic.units import CELSIUS, NUMBER
 
 ECCENTRICITIES = (0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.9, 0.94, 0.97, 0.985)
 """Eccentricities that are solved. [1]"""
-AROUND, ACROSS = 48, 20
-"""Points around the circumference, intervals across the width."""
+COARSE, FINE = (24, 11), (48, 21)
+"""Points around the circumference and across the width: of a first guess, and of a film."""
 TOLERANCE, MOST_SWEEPS = 1e-9, 20_000
-_PLACES = -np.cos(np.pi * np.arange(ACROSS + 1) / ACROSS)
 _CLUSTERED = 0.9  # Largest eccentricity to which the spacing of points is fitted. [1]
 TOUCHING = 1e-3
 """Least film at an edge, over the clearance, down to which a bearing tilts under a moment. [1]"""
 _BALANCED = 1e-7  # Imbalance of forces and heat at which a tilt counts as found. [1]
-_ROUGHLY = 0.01  # The same of one that is only the start of the next. [1]
+_ROUGHLY = 0.03  # The same of one that is only the start of the next. [1]
 _COOLEST = 1e-3  # Rise of the temperature at least, of which a logarithm is taken. [K]
 _REACH = 0.3  # Offset of a load over length times (1 - eps)^0.5, of which tilts are easily found.
 STEEPEST = 14.0  # Largest |ln(eps/(1 - eps))| that is tried: films of 1e-6 of the clearance. [1]
@@ -105,26 +105,21 @@ class _Curves:
     ln S and ln tan(phi) are nearly straight over x at both ends, where they go on so.
     """
 
-    x: FloatArray  # Rising.
-    log_sommerfeld: FloatArray
-    log_attitude: FloatArray  # ln tan(phi)
-    flow: FloatArray  # Q/(omega R C L eps)
+    x: tuple[float, ...]  # Rising.
+    log_sommerfeld: tuple[float, ...]
+    log_attitude: tuple[float, ...]  # ln tan(phi)
+    flow: tuple[float, ...]  # Q/(omega R C L eps)
 
     def at(self, x: float) -> tuple[float, float, float]:
         """S, phi and Q/(omega R C L)."""
-        flow = float(np.interp(x, self.x, self.flow)) / (1 + math.exp(-x))
-        S, tangent = (self._straight(x, logs) for logs in (self.log_sommerfeld, self.log_attitude))
-        return math.exp(S), math.atan(math.exp(tangent)), flow
-
-    def _straight(self, x: float, logs: FloatArray) -> float:
-        """Between the known values, and beyond them along the last two."""
-        known, found = self.x, float(np.interp(x, self.x, logs))
-        for end, inner in ((0, 1), (-1, -2)):
-            beyond = x - known[end]
-            if beyond * (known[end] - known[inner]) > 0:
-                slope = (logs[end] - logs[inner]) / (known[end] - known[inner])
-                found += float(slope * beyond)
-        return found
+        known = self.x
+        i = min(max(bisect(known, x) - 1, 0), len(known) - 2)
+        part = (x - known[i]) / (known[i + 1] - known[i])
+        columns = self.log_sommerfeld, self.log_attitude, self.flow
+        shares = part, part, min(max(part, 0.0), 1.0)
+        ends = zip(columns, shares, strict=True)
+        S, tangent, flow = (column[i] + by * (column[i + 1] - column[i]) for column, by in ends)
+        return math.exp(S), math.atan(math.exp(tangent)), flow * _share(x)
 
 
 @lru_cache(maxsize=64)
@@ -135,25 +130,26 @@ def journal_curves(slenderness: float) -> _Curves:
         force, _, flow = film_force(eps, 0j, slenderness)
         S, x = 1 / (6 * math.pi * abs(force)), math.log(eps / (1 - eps))
         found.append((x, math.log(S), math.log(-force.imag / force.real), flow / eps))
-    return _Curves(*(np.array(column) for column in zip(*found, strict=True)))
+    return _Curves(*zip(*found, strict=True))
 
 
-@lru_cache(maxsize=64)
 def film_force(
-    middle: complex, tilt: complex, slenderness: float
+    middle: complex, tilt: complex, slenderness: float, pressure: FloatArray | None = None
 ) -> tuple[complex, complex, float]:
     """Force and moment of a film, and Q/(omega R C L). Theory (Z1), (Z2), (Z7). [1]
 
     Of the clearance, `middle` is the way to the narrowest film in the middle of the length, and
     `tilt` what is added to it up to one edge; angles rise in the sense of rotation. The force is
-    over 6 eta omega R L (R/C)^2, the moment over L/2 times that.
+    over 6 eta omega R L (R/C)^2, the moment over L/2 times that. A `pressure` of nearly this film
+    saves work; it is overwritten.
     """
     # Sommerfeld's substitution: equal steps of it are short where the film is narrow
-    eps = min(abs(middle), _CLUSTERED)
-    halves = (np.arange(AROUND) + 0.5) * math.pi / AROUND - math.pi / 2
+    eps, P = min(abs(middle), _CLUSTERED), np.zeros(FINE) if pressure is None else pressure
+    halves = (np.arange(len(P)) + 0.5) * math.pi / len(P) - math.pi / 2
     angles = cmath.phase(middle) + 2 * np.arctan(math.sqrt((1 - eps) / (1 + eps)) * np.tan(halves))
-    shape = complex(middle), tilt, slenderness, angles, _PLACES, np.zeros(0), 0.0
-    force, moment, flow, sweeps = journal_pressure(*shape, TOLERANCE, MOST_SWEEPS)
+    places = -np.cos(np.linspace(0, np.pi, P.shape[1]))
+    film = complex(middle), tilt, slenderness, angles, places, np.zeros(len(P), dtype=bool), P
+    force, moment, flow, sweeps = journal_pressure(*film, TOLERANCE, MOST_SWEEPS)
     assert sweeps > 0, "the relaxation converges for every film"
     return force, moment, flow
 
@@ -274,7 +270,9 @@ def solve_journal(
     if not (moment and force and speed):
         return aligned
     turned = moment if speed > 0 else moment.conjugate()
-    return _tilted(bearing, force, turned, speed, oil, aligned, excess, last)
+    if last is None:
+        last = _tilted(bearing, force, turned, speed, oil, aligned, excess, None, COARSE)
+    return _tilted(bearing, force, turned, speed, oil, aligned, excess, last, FINE)
 
 
 def _tilted(
@@ -286,6 +284,7 @@ def _tilted(
     aligned: JournalState,
     excess: Callable[[JournalState], float],
     last: JournalState | None,
+    points: tuple[int, int],
 ) -> JournalState:
     """The bearing under a moment, from its state without one.
 
@@ -297,22 +296,24 @@ def _tilted(
     arm, warm = bearing.length / 2, max(aligned.temperature - oil.temperature, _COOLEST)
     # so that without a moment the film is that of the curves, which are interpolated
     S, phi, leaking = sommerfeld_number(bearing.slenderness, aligned.eccentricity)
-    known, _, flowing = film_force(aligned.eccentricity, 0j, bearing.slenderness)
+    pressure = np.zeros(points)
+    film_at = cache(lambda *at: film_force(at[0], at[1], bearing.slenderness, pressure))
+    known, _, flowing = film_at(complex(aligned.eccentricity), 0j)
     fitted, leaked = cmath.rect(1 / (6 * math.pi * S), -phi) / known, leaking / flowing
 
     def at(unknown: FloatArray) -> tuple[JournalState, complex, complex]:
         """State, and force and moment of film and asperities.
 
         Eccentricities at the edges are unknown, over what they leave of the clearance there, and
-        the logarithm of the rise of the temperature.
+        1 and the logarithm of the rise of the temperature.
         """
-        odds = unknown[:2] + 1j * unknown[2:4]
-        first, second = odds / (1 + np.abs(odds))
-        middle, tilt = complex(first + second) / 2, complex(second - first) / 2
-        temperature = oil.temperature + warm * math.exp(min(unknown[4], 10.0))
+        x1, x2, y1, y2, rise, *_ = unknown.tolist()
+        first, second = (odds / (1 + abs(odds)) for odds in (complex(x1, y1), complex(x2, y2)))
+        middle, tilt = (first + second) / 2, (second - first) / 2
+        temperature = oil.temperature + warm * math.exp(min(rise - 1, 10.0))
         eta = film_viscosity(oil, temperature)
         scale = 6 * eta * abs(speed) * bearing.length * radius * (radius / clearance) ** 2
-        film, turning, flow = film_force(middle, tilt, bearing.slenderness)
+        film, turning, flow = film_at(middle, tilt)
         film, turning = scale * fitted * film, scale * fitted * turning
         across = (middle * film.conjugate() + tilt * turning.conjugate()).imag
         slices = middle + tilt * _POINTS
@@ -332,24 +333,28 @@ def _tilted(
         return np.array(found if given else [*found, state.film / (TOUCHING * clearance) - 1])
 
     def balanced(start: FloatArray, share: float | None) -> FloatArray | None:
-        enough = _ROUGHLY if share and share < 1 else _BALANCED
-        options = {"eps": 1e-8, "maxfev": 80}
-        solved = root(imbalance, start, (share,), tol=enough / 10, options=options)
-        return solved.x if np.abs(solved.fun).max() <= enough else None
+        enough = _ROUGHLY if points == COARSE or (share and share < 1) else _BALANCED
+
+        def missing(unknown: FloatArray) -> FloatArray:
+            found = imbalance(unknown, share)
+            return found if np.abs(found).max() > enough else np.zeros(found.size)
+
+        solved = root(missing, start, tol=enough / 10, options={"eps": 1e-8, "maxfev": 80})
+        return None if solved.fun.any() else solved.x
 
     def from_state(state: JournalState) -> FloatArray:
         middle = cmath.rect(state.eccentricity, state.attitude)
         tilt = cmath.rect(state.tilt * arm / clearance, state.tilt_direction)
         odds = np.array([end / (1 - abs(end)) for end in (middle - tilt, middle + tilt)])
         rise = max(state.temperature - oil.temperature, _COOLEST)
-        return np.array([*odds.real, *odds.imag, math.log(rise / warm)])
+        return np.array([*odds.real, *odds.imag, 1 + math.log(rise / warm)])
 
     none = replace(aligned, moment_share=0.0)
     if aligned.film <= TOUCHING * clearance:
         return none
     # states, and shares of the moment to go on to from there; the last are tried first
     reach = _REACH * math.sqrt(1 - aligned.eccentricity) * force * bearing.length / abs(moment)
-    shares = sorted({min(1.0, part * reach) for part in (0.25, 0.5, 1.0)})
+    shares = sorted({min(1.0, part * reach) for part in (0.25, 0.5, 1.2)})
     tried = [(from_state(aligned), share) for share in shares]
     if last is not None and last.moment_share:
         tried.append((from_state(last), last.moment_share))
@@ -395,9 +400,9 @@ def _state(
     """What follows from the place of a planet on its pin."""
     clearance, radius = bearing.diametral_clearance / 2, bearing.inner_diameter / 2
     omega = abs(speed)
-    petroff = 2 * math.pi * eta * omega**2 * radius**3 * bearing.length / clearance
     slices = np.abs(middle + tilt * _POINTS) ** 2
     thinner = float((_WEIGHTS / 2 / np.sqrt(1 - slices)).sum())
+    petroff = 2 * math.pi * eta * omega**2 * radius**3 * bearing.length / clearance
     film = clearance * (1 - max(abs(middle + tilt), abs(middle - tilt)))
     return JournalState(
         eccentricity=abs(middle),
