@@ -601,9 +601,7 @@ def solve_bearing(
     if held:  # on one race each, by slices as long as the roller
         found = _by_load(own, alone, held / bearing.slices, speed, oil, alone=True)
         watts += found.loss * bearing.slices / 2
-    method, source = own.method
-    if loss.rolling and not own.viscous_added:
-        method += ", less the viscous loss that it contains"
+    if not own.viscous_added:
         watts = max(0.0, watts - loss.rolling * viscous_loss)
     if own.model == FULL_COMPLEMENT:
         volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
@@ -615,7 +613,7 @@ def solve_bearing(
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
         {
-            f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * watts, method, source),
+            f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * watts, *own.method),
             f"{key}_viscous": Loss(
                 LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE
             ),
