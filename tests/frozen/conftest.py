@@ -12,7 +12,7 @@ from epicyclic.case.tables import uncertainty
 from epicyclic.gears.flanks import FlankDeviations
 from epicyclic.gears.gearing import Gearing
 from epicyclic.losses.windage import LAMINAR_RIMS
-from epicyclic.machine import planets
+from epicyclic.machine import gear_set, planets
 from epicyclic.study.bands import inputs
 
 BOUNDARY = uncertainty.DistributionTable(uniform=(0.08, 0.13))
@@ -23,6 +23,17 @@ def former_models(monkeypatch):
     """Cases as with the preset talbot-2012, without a key for it."""
     monkeypatch.setattr(models, "GENERAL", {"drag": LAMINAR_RIMS})
     monkeypatch.setattr(uncertainty, "has_rough_flanks", lambda models: False)
+
+
+@pytest.fixture(autouse=True)
+def former_viscous_loss(monkeypatch):
+    """The viscous loss of planet bearings was added to their rolling, as with that preset."""
+    solved = gear_set.solve_bearing
+
+    def as_then(key, own, *args, **others):
+        return solved(key, replace(own, viscous_added=True), *args, **others)
+
+    monkeypatch.setattr(gear_set, "solve_bearing", as_then)
 
 
 @pytest.fixture(autouse=True)

@@ -153,9 +153,32 @@ def test_centrifugal_force_of_the_planets(article):
 def test_losses_that_calibrate_the_oil(article, celsius, watts):
     # Talbot (2012), p. 70: not validation, these three fix the pressure-viscosity coefficient. To
     # 1e-3: the printed whole watts, and coefficients of six digits.
-    case = article.updated({"operation.oil_inlet_temperature": f"{celsius} degC"})
-    loss = ep.solve(case).losses["planet_bearing_mechanical"] / 3
-    assert loss == pytest.approx(watts, rel=1e-3)
+    warm = {"operation.oil_inlet_temperature": f"{celsius} degC"}
+    losses = ep.solve(article.updated(warm | {"models.preset": "talbot-2012"})).losses
+    assert losses["planet_bearing_mechanical"] / 3 == pytest.approx(watts, rel=1e-3)
+
+
+@pytest.mark.parametrize(("newton_metres", "adds"), [(1000, True), (60, True), (0, False)])
+def test_the_load_adds_what_exceeds_the_idle_bearing(article, newton_metres, adds):
+    # (B24): rolling contains the viscous loss, but not Palmgren's coefficient, and not as published
+    alike = {"friction": "schlenk", "rolling": "goksem-hargreaves", "drag": "theodorsen-regier"}
+    case = article.updated({
+        "operation.torque": f"{newton_metres} N*m",
+        "operation.oil_inlet_temperature": "25 degC",
+        **{f"models.{key}": value for key, value in alike.items()},
+    })  # fmt: skip
+
+    def bearing(**models):
+        keys = {f"models.{key}": value for key, value in models.items()}
+        losses = ep.solve(case.updated(keys)).losses
+        return losses["planet_bearing_mechanical"], losses["planet_bearing_viscous"]
+
+    (rolling, viscous), (added, idle) = bearing(preset="talbot-2012"), bearing()
+    assert idle == viscous
+    assert added == pytest.approx(max(0.0, rolling - viscous), rel=2e-3)
+    assert (added > 0) == adds
+    plain = bearing(bearing="palmgren")
+    assert bearing(bearing="palmgren", preset="talbot-2012") == pytest.approx(plain, rel=1e-6)
 
 
 def test_loss_of_smooth_needles(article, atf):

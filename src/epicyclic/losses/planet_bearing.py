@@ -201,6 +201,7 @@ class BearingLoss:
 
     loss: float
     flags: SomeFlags = ()
+    rolling: float = 1.0  # Share found as rolling in oil, of which (V1) is the least. [1]
 
 
 @lru_cache(maxsize=1024)
@@ -413,7 +414,8 @@ def fitted_rolling_loss(
     flags = Flags(partial(check_contacts, use, model.ranges, contacts, local))
     if within == total:
         return BearingLoss(total, flags)
-    return BearingLoss(within + (1 - within / total) * beyond.loss, flags + beyond.flags)
+    share = within / total
+    return BearingLoss(within + (1 - share) * beyond.loss, flags + beyond.flags, share)
 
 
 def _contacts(

@@ -505,6 +505,7 @@ class PlanetBearing:
     palmgren_beyond: bool = False
     roller_density: float = 7850.0  # [kg/m^3]
     aligns_itself: bool = False  # True if it takes no moment.
+    viscous_added: bool = False  # True if (V1) is added to rolling losses, as by Talbot.
 
     @property
     def method(self) -> tuple[str, str]:
@@ -578,7 +579,7 @@ def solve_bearing(
     carrier: float = 0.0,  # Speed of the carrier. [rad/s]
     loaded: bool = True,  # False if no mesh carries torque.
 ) -> BearingResult:
-    """Losses of `count` planet bearings under the same load."""
+    """Losses of `count` planet bearings under the same load. Theory (B24)."""
     bearing, where = own.bearing, key.replace("_", " ")
     if own.aligns_itself:
         load = PlanetLoad(load.force, 0.0, 0.0, load.outward)
@@ -587,30 +588,32 @@ def solve_bearing(
     else:
         loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
     loss = _by_load(own, loads, load.force, speed, oil)
-    notes: tuple[str, ...] = ()
-    if own.model == FULL_COMPLEMENT:
-        volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
-        pull = own.roller_density * volume * pin_radius * carrier**2
-        rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
-        loss = replace(loss, loss=loss.loss + rubbed.between + rubbed.skewed)
-        notes = (_rubbing_note(where, rubbed),)
+    viscous_loss = bearing_viscous_loss(
+        own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
+    )
     forces = centrifugal_forces(
         bearing, loads.azimuth, own.roller_density, pin_radius, carrier, speed, load.outward
     )
     alone = pressed_alone(loads, forces, bearing.roller_length)
     held = float(alone.intensity.sum()) * bearing.roller_length
+    watts = loss.loss
+    notes: tuple[str, ...] = ()
     if held:  # on one race each, by slices as long as the roller
         found = _by_load(own, alone, held / bearing.slices, speed, oil, alone=True)
-        idle = found.loss * bearing.slices / 2
-        loss = replace(loss, loss=loss.loss + idle)
-    notes += _limit_notes(where, bearing, load.force if loaded else math.inf, speed, loss.loss)
-    viscous_loss = bearing_viscous_loss(
-        own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
-    )
-    figures = partial(_bearing_figures, own, loads, load, speed, oil, loss.loss)
+        watts += found.loss * bearing.slices / 2
+    if not own.viscous_added:
+        watts = max(0.0, watts - loss.rolling * viscous_loss)
+    if own.model == FULL_COMPLEMENT:
+        volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
+        pull = own.roller_density * volume * pin_radius * carrier**2
+        rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
+        watts += rubbed.between + rubbed.skewed
+        notes = (_rubbing_note(where, rubbed),)
+    notes += _limit_notes(where, bearing, load.force if loaded else math.inf, speed, watts)
+    figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
         {
-            f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * loss.loss, *own.method),
+            f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * watts, *own.method),
             f"{key}_viscous": Loss(
                 LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE
             ),
@@ -697,7 +700,7 @@ def _by_load(
 def _palmgren(own: PlanetBearing, loads: RollerLoads, force: float, speed: float) -> BearingLoss:
     bearing = own.bearing
     watts = palmgren_loss(own.palmgren_coefficient, force, bearing.pitch_diameter, speed)
-    return BearingLoss(watts, Flags(partial(palmgren_flags, bearing, loads, speed)))
+    return BearingLoss(watts, Flags(partial(palmgren_flags, bearing, loads, speed)), 0.0)
 
 
 def _bearing_figures(
