@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.machine.element import Element
@@ -21,7 +21,6 @@ from epicyclic.units import NEWTON, format_number
 # *on* the shaft.
 
 
-FloatArray = NDArray[np.float64]
 AxialSense = Literal["none", "both", "positive", "negative"]
 
 NEGLIGIBLE = 1e-9

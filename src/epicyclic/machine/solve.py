@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.balance import (
     Balance,
@@ -160,8 +160,6 @@ def _apart(old: list[float], new: list[float]) -> float:
 
 
 # Losses and torques of a machine that agree with each other.
-
-FloatArray = NDArray[np.float64]
 
 AGREEMENT = 5e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""

@@ -8,8 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.result import load_notes
 from epicyclic.errors import one_problem
 from epicyclic.gears.mesh import Mesh
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 # Variables of datasets: values in the units that users see, with label and unit.
 
-Array = NDArray[np.float64] | NDArray[np.bool_]
+Array = FloatArray | BoolArray
 Variable = tuple[tuple[str, ...], Array, dict[str, Any]]
 
 
@@ -61,8 +61,6 @@ def variable(
 
 
 # Everything about the loaded meshes of a case, point by point.
-
-FloatArray = NDArray[np.float64]
 
 _DIMENSIONS = ("mesh_position", "contact_line", "segment")
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, build_case, read_case
 from epicyclic.errors import Problem, Status, one_problem, raise_any
@@ -412,7 +412,7 @@ def _levels(base: PocketVariant, name: str, shares: tuple[float, ...]) -> tuple[
 def _range(duty: MeshDuty, base: PocketVariant, name: str) -> tuple[float, ...]:
     """Values of the source for its example, over those of the case where they have a unit."""
     module = duty.gears.mesh.gear1.rack.transverse_module
-    values: Mapping[str, NDArray[np.float64]] = {
+    values: Mapping[str, FloatArray] = {
         "speed": base.speed * np.linspace(0.1, 1.0, 10),
         "helix-angle": np.radians(np.arange(0.0, 36.0, 5.0)),
         "face-width": base.face_width * np.linspace(1.0, 7 / 3, 5),
@@ -536,7 +536,7 @@ def _dataset(plan: StudyPlan, name: str, rows: Rows, own: list[int]) -> xr.Datas
     return dataset
 
 
-def _coordinate(axis: StudyAxis) -> tuple[str, NDArray[np.float64], dict[str, str]]:
+def _coordinate(axis: StudyAxis) -> tuple[str, FloatArray, dict[str, str]]:
     parameter = PARAMETERS[axis.name]
     scale, _ = parameter.quantity.scale_and_offset()
     attributes = {"long_name": parameter.label, "units": parameter.quantity.display or "1"}

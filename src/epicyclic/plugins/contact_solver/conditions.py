@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
@@ -254,9 +254,6 @@ def line_contact(contacts: LineContacts, index: int, oil: ContactOil) -> LineCon
 
 
 # Heat of sliding: thinner inlet film, warmer film. An estimate beside an isothermal solution.
-
-
-FloatArray = NDArray[np.float64]
 
 FILM_EXPONENT = 0.694  # Exponent of the viscosity in the film of Pan and Hamrock (1989). [1]
 SMALLEST_CHANGE = 1e-3  # To which the temperature of a node is found. [K]

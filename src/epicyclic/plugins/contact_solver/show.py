@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.animation import FuncAnimation
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.fitted_models import FORMS, REGIMES, OilModel, QuantityFit
 from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.errors import Status
@@ -169,9 +169,6 @@ def _domain(title: str, model: OilModel, quantity: str) -> Table:
 
 
 # Pressure, film, shear stress and temperature of a line contact, still or in motion.
-
-
-FloatArray = NDArray[np.float64]
 
 GIGAPASCAL, MEGAPASCAL, _MICROMETRE, MILLIMETRE = 1e9, 1e6, 1e-6, 1e-3
 MICROSECOND = 1e-6

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import Status
 from epicyclic.plugins.contact_solver.conditions import (
     Heating,
@@ -26,9 +26,6 @@ from epicyclic.plugins.contact_solver.kernels_steady import (
 )
 
 # Nodes of the steady solver: dense where the inlet ends and where the film ruptures.
-
-
-FloatArray = NDArray[np.float64]
 
 MIDDLE_SHARE, INLET_SHARE, EXIT_SHARE = 0.25, 0.375, 0.375
 """Shares of the nodes around x = 0, x = -b and x = b. [1]"""

@@ -11,15 +11,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import check_archive, read_bytes, read_text, refuse
 
 # Surface profiles: generated with given statistics; filtered.
-
-
-FloatArray = NDArray[np.float64]
 
 POINTS_PER_CORRELATION = 8  # Points of a generated profile within one correlation length.
 PERIOD = 4000.0

@@ -14,8 +14,8 @@ from importlib import resources
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.units import Quantity
@@ -322,7 +322,6 @@ class Model:
 # Where parts stand.
 
 
-FloatArray = NDArray[np.float64]
 USUAL_AXIS: FloatArray = np.array([1.0, 0.0, 0.0])
 """Axis of a gear unit that states none."""
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks
@@ -28,7 +29,6 @@ from epicyclic.plugins.rexs.model import (
     ROUNDED,
     USUAL_AXIS,
     Component,
-    FloatArray,
     Model,
     vector,
 )

@@ -9,9 +9,9 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from epicyclic import library
+from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
@@ -37,7 +37,7 @@ class Known:
     unit: str  # Unit of the total and its parts.
     nominal: Mapping[str, float]  # Results of the case.
     ends: Mapping[str, tuple[float, float]]  # Ends of the symmetric 95 % interval of each result.
-    draws: Mapping[str, NDArray[np.float64]]  # What each result may be.
+    draws: Mapping[str, FloatArray]  # What each result may be.
     shares: Mapping[str, float]  # Shares of drivers in the variance of the total, each alone. [1]
     names: Mapping[str, str]  # What each input is called, and how to know it better.
     advice: Mapping[str, str]  # What each input is called, and how to know it better.

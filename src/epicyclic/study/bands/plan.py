@@ -10,8 +10,8 @@ from functools import cache
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
 from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise_any
@@ -27,9 +27,6 @@ from epicyclic.study.sweeps.run import AS_TESTED, CasePlan
 from epicyclic.study.sweeps.runner import Row, Rows, Runner
 
 # From losses and factors of models to the results that have a band.
-
-
-FloatArray = NDArray[np.float64]
 
 SUMS = ("load_dependent", "load_independent", "total", "efficiency")
 """Results beside the single losses."""
@@ -63,7 +60,7 @@ class Outputs:
     """How results follow from the losses of one case."""
 
     losses: tuple[str, ...]  # Names of those that are included.
-    load_dependent: NDArray[np.bool]  # Which of them depend on the load.
+    load_dependent: BoolArray  # Which of them depend on the load.
     kinds: tuple[str, ...]  # Kind of each, see `model_form_of`.
     # True if they are grouped as a test rig does: what torque adds, and the rest.
     tested: bool = False
