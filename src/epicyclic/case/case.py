@@ -836,9 +836,6 @@ def _element_problems(
     return problems
 
 
-# A whole case, and how it is read, checked and changed.
-
-
 class _SetTables(CaseTable):
     """What a set or pair has in common with a train, and with a set of a train."""
 

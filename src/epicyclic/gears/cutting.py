@@ -14,8 +14,6 @@ from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import Gear, half_angle_from_profile_shift, inverse_involute, involute
 from epicyclic.gears.mesh import Mesh
 
-# Tools that generate gears: a rack for external gears, a pinion-type cutter for internal ones.
-
 
 @dataclass(frozen=True, slots=True)
 class RackTool:
@@ -61,9 +59,6 @@ class ShaperTool:
 
 
 Tool = RackTool | ShaperTool
-
-
-# Zero of a function of one argument.
 
 
 def zero_between(function: Callable[[float], float], low: float, high: float) -> float:

@@ -36,8 +36,6 @@ from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, solve_machine, start_of
 from epicyclic.units import CELSIUS
 
-# Temperatures and losses that agree with each other.
-
 AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
 QUICK = 0.15

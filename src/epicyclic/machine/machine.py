@@ -204,9 +204,6 @@ def mesh_force(
     return tangential * along + radial * outward + axial * np.array([0.0, 0.0, 1.0])
 
 
-# Forces on the bearings of shafts, from the loads of the meshes.
-
-
 @dataclass(frozen=True, slots=True)
 class GearSeat:
     """A gear on a shaft, in one of its meshes."""
@@ -272,8 +269,6 @@ def forces_of(
             forces[key] = reaction.force
     return forces
 
-
-# What a machine consists of, and how it is driven.
 
 Terms = tuple[tuple[str, float], ...]
 """Bodies with the coefficients of their speeds in a constraint."""

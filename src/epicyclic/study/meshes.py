@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Variables of datasets: values in the units that users see, with label and unit.
-
 Array = FloatArray | BoolArray
 Variable = tuple[tuple[str, ...], Array, dict[str, Any]]
 
@@ -59,8 +57,6 @@ def variable(
         attributes,
     )
 
-
-# Everything about the loaded meshes of a case, point by point.
 
 _DIMENSIONS = ("mesh_position", "contact_line", "segment")
 
@@ -229,9 +225,6 @@ def _contact(duty: MeshDuty, key: str, fluids: Fluids, loads: LineLoads) -> dict
         "flash_temperature": _points(spread(flash), "flash temperature", KELVIN),
         "friction_power": _points(spread(power), "friction power per length", WATT_PER_MM),
     }
-
-
-# Load and pressure of every roller of a planet bearing, slice by slice, as a dataset.
 
 
 def bearing_details(

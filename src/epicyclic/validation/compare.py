@@ -116,8 +116,6 @@ def _computed(figure: Mapping[str, Any], **more: Any) -> float:
     return FIGURES[figure["compute"]](**figure["with"], **more)
 
 
-# Compare the published figures with what is computed.
-
 Verdict = Literal["agrees", "differs", "calibrated", "no verdict", "not computed"]
 _TOPICS = {
     "Planet bearings": (

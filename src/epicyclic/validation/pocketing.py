@@ -175,9 +175,6 @@ def _varied_mesh(mesh: Mesh, variant: PocketVariant) -> Mesh:
     )
 
 
-# What the parametric study of pocketing losses varies. Talbot (2012), section 4.4.
-
-
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """What a study varies: its name in print, its unit and range."""
@@ -445,9 +442,6 @@ def _geometry(point: PocketVariant) -> tuple[Any, ...]:
     return (point.teeth, point.backlash, point.helix_angle, point.face_width)
 
 
-# The parametric study of pocketing losses of Talbot (2012), section 4.4, for any mesh.
-
-
 def pocketing_study(
     case: CaseSource,
     what: Iterable[str] = tuple(STUDIES),
@@ -563,8 +557,6 @@ def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
         **origin(plan.case),
     }
 
-
-# What is published of the parametric study of pocketing losses. Talbot (2012), section 4.4.
 
 EXAMPLE = "talbot-2012-pair"
 _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")

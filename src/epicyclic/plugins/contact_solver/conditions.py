@@ -37,8 +37,6 @@ from epicyclic.plugins.contact_solver.kernels_fluid import (
     mean_shear,
 )
 
-# Expected film of a smooth contact in all regimes, from a fit.
-
 
 def moes_central_film(
     load: float,  # M. [1]
@@ -77,10 +75,6 @@ a contact does not become dry. [m/s]"""
 FEWEST_KEPT = 0.95  # Share of Rq that a grid must resolve. [1]
 VALIDATED_FILM_RATIO = 0.7
 """Film ratio below which friction of rough contacts is not validated. [1]"""
-
-
-# What a line contact and the oil in it are given by, and the scales that follow.
-
 
 STIFFENING, PACKING = 1.34 / 5.9e8, 1.0 / 5.9e8
 """Constants of Dowson and Higginson's density. [1/Pa]"""

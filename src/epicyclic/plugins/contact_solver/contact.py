@@ -81,9 +81,6 @@ from epicyclic.units import (
     percent,
 )
 
-# The tables of a line contact, and how it is built from them.
-
-
 LineLoad = Annotated[
     float, Quantity("a line load", "N/m", "N/mm", low=0.0, high=1e5, open_low=True)
 ]
@@ -464,8 +461,6 @@ def _profile_notes(
             f"contact, {shown['width']} mm wide. Give a longer profile."
         )
 
-
-# One line contact: solved, and its figures.
 
 FRAMES = 60  # Moments kept for an animation.
 

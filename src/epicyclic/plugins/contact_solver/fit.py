@@ -154,9 +154,6 @@ def _rounded(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
 
 
-# From the table of a campaign to the models of an oil.
-
-
 LARGEST_ERROR = 0.10  # Standard error of a simulated mean over it above which it is not fitted. [1]
 LARGEST_UNSOLVED_SHARE = 0.01
 """Share of time steps without convergence above which a simulation is not fitted. [1]"""

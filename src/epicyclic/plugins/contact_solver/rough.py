@@ -165,9 +165,6 @@ def next_plan(
     return Plan(more, aided)
 
 
-# Transient contact of two moving rough surfaces: averages of friction, contact and film.
-
-
 NODES = 512  # Nodes by default: some 125 in a half-width.
 TOLERANCE = 1e-2
 """Largest change of a pressure in the last Newton step of a time step, over the largest pressure or

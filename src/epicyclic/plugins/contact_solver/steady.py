@@ -110,9 +110,6 @@ def graded_nodes(count: int, grid: Grid) -> FloatArray:
     return x
 
 
-# Steady smooth contact: pressure, film, friction and rolling loss.
-
-
 NODES = 256  # Nodes by default: the central film is then within 0.7 % of its limit up to M = 200.
 COARSE_NODES = 96  # Nodes of the first solution, from which the others start.
 REFINEMENT = 3  # Largest ratio of the nodes of one solution to those it starts from.

@@ -16,8 +16,6 @@ from epicyclic.arrays import FloatArray
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import check_archive, read_bytes, read_text, refuse
 
-# Surface profiles: generated with given statistics; filtered.
-
 POINTS_PER_CORRELATION = 8  # Points of a generated profile within one correlation length.
 PERIOD = 4000.0
 """Length of a generated profile over its correlation length: that of 200 has a friction of its own,

@@ -20,9 +20,6 @@ from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.units import Quantity
 
-# Ids, units and versions of REXS, from the one file that has them.
-
-
 CUSTOM = "custom_epicyclic_"  # Start of the ids of attributes that the standard does not have.
 
 

@@ -22,8 +22,6 @@ from epicyclic.result.result import in_words
 from epicyclic.show.plots.mesh import scale_of
 from epicyclic.show.plots.style import COLOUR_MAP, COLOURS, label_of, legend_below, styled_figure
 
-# Drawings to scale: the gear set in the transverse plane, and the teeth of a mesh in contact.
-
 FILLS = {
     "sun": ("#F6D58A", "#E3B24C", "#FBEBC8", "#C08F2F"),
     "planet": ("#BFD9EA", "#8DB7D5", "#DFECF5", "#6496BB"),

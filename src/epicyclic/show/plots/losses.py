@@ -22,8 +22,6 @@ from epicyclic.units import decimals_of, format_number, percent, power_unit
 if TYPE_CHECKING:
     import xarray as xr
 
-# Losses of one result: how large each component is, and how they add up.
-
 
 GROUP_COLOURS = {"load-dependent": COLOURS[0], "load-independent": COLOURS[4]}
 EDGE: Any = {"edgecolor": "black", "linewidth": 0.5}

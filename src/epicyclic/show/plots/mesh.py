@@ -29,8 +29,6 @@ from epicyclic.show.plots.style import (
 from epicyclic.study.friction import FrictionComparison, recommended
 from epicyclic.units import decimals_of
 
-# Planet bearing: which rollers carry, and where along their length.
-
 CIRCLES = 4  # Most circles that the scale of loads has.
 SEEN = 0.02  # Share of the highest load from which on a bar is seen. [1]
 STEP = 7.5  # Between the directions that are tried for the scale of loads. [deg]
@@ -261,9 +259,6 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
         ylabel=label_of(mesh[name]),
     )
     return ax
-
-
-# Friction models of a case side by side.
 
 
 ROW_HEIGHT = 0.3  # Height of one bar. [inch]

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# How well a result is known: what sentences about it need, however it was found.
-
 MOST_DRIVERS = 3  # Inputs and models that are named after a band.
 
 
@@ -72,8 +70,6 @@ def known_of(data: xr.Dataset) -> Known:
         remarks=tuple(str(data.attrs["remarks"]).splitlines()),
     )
 
-
-# What limits the trust in a result, and what would raise it most.
 
 _KEY = re.compile(r"[\w.-]+\.[\w.-]+")
 _OF_ALL = ("sets", "gears", "operation", "models")  # Tables that the name of a key needs not.

@@ -139,8 +139,6 @@ def factors_of(values: Sequence[UncertainValue], points: FloatArray) -> dict[str
     }
 
 
-# Losses where each uncertain input is one standard deviation up and down.
-
 HALF_WIDTH = math.sqrt(3.0)
 """Half the width of a uniform distribution over its standard deviation. [1]"""
 
@@ -257,9 +255,6 @@ def at_deviations(value: UncertainValue, deviations: Any) -> Any:
         low, high = value.spread
         found = (low + high) / 2 + deviations * (high - low) / 2 / HALF_WIDTH
     return np.clip(found, value.low, value.high)
-
-
-# Samples of what is uncertain in a case, solved at one operating point or at several.
 
 
 Point = Mapping[str, Any]

@@ -353,9 +353,6 @@ class CycleStudy(Study):
         return found
 
 
-# How well losses are known: of a case, over a map, over a duty cycle.
-
-
 def uncertainty(
     source: CaseSource | xr.Dataset,
     cycle: Any = None,

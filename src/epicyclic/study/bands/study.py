@@ -50,8 +50,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# The distribution of a result, from samples of all that is uncertain.
-
 SAMPLES = 256  # Points in each of the two sets.
 UNIT_OF_RESULT = "see unit"  # Unit of what is stated for all results, which have different ones.
 LABELS = {

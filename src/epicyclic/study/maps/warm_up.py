@@ -212,8 +212,6 @@ def _coefficients(knots: FloatArray, values: Sequence[Sequence[Sequence[float]]]
     return found
 
 
-# Warming up: temperatures and losses over time, at a constant operating point or over a cycle.
-
 START = quantity_of(Temperature) or CELSIUS
 DURATION = Quantity("a time", "s", "s", low=0.0, high=1e9, open_low=True)
 HEADROOM = 80.0

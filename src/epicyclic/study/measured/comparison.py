@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-# A calibrated case: fitted values, and how well they are known, as its table [uncertainty].
-
 SHRUNK = 1 - 1e-6
 """Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
 DIGITS = 8  # Decimals of coefficients of correlation.
@@ -95,8 +93,6 @@ def _without(table: dict[str, Any], keys: Collection[str]) -> dict[str, Any]:
     others = {key: value for key, value in table.items() if key != "correlated"}
     return others | ({"correlated": left} if left else {})
 
-
-# How far computed losses are from measured ones, by set of points and by group.
 
 AS_GIVEN, CALIBRATED = "as given", "CALIBRATED"  # State of the case behind computed losses.
 ALL, USED, HELD_OUT = "all points", "fitted points", "held-out points"

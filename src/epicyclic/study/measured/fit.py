@@ -26,8 +26,6 @@ from epicyclic.study.measured.intervals import (
 from epicyclic.study.measured.residuals import MeasuredPoints, Residuals
 from epicyclic.units import format_number
 
-# What to know before using calibrated values.
-
 CURVED = 2.0
 """Growth of the sum of squares over that of a linear model beyond which a warning says so. [1]"""
 ALIKE = 0.95  # Magnitude of a correlation from which a warning names it. [1]

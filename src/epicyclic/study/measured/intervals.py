@@ -321,8 +321,6 @@ def _between(inner: tuple[float, float], outer: tuple[float, float]) -> float:
     return near + (far - near) * min(max(part, 0.1), 0.9)
 
 
-# What a calibration found.
-
 Noise = Literal["stated", "constant", "relative"]
 
 

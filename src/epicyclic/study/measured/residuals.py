@@ -101,8 +101,6 @@ class NearbyPoints(PointList):
                 continue  # the point reports it
 
 
-# The losses that the model gives at measured points, for any values of some keys.
-
 _EXACT = {"numerics.pocket_interpolation": 0.0}
 """Flows through pockets are solved at every point: the derivatives of a fit would show the error of
 tables."""
@@ -178,8 +176,6 @@ class MeasuredPoints:
             return as_tested(rows, unloaded)
         return rows.numbers(name)
 
-
-# Deviations of computed from measured losses over weights, for any values of some keys.
 
 STEP = 1e-2
 """Step of the differences that give the derivatives, over the start value: flows through pockets

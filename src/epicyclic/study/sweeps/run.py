@@ -688,9 +688,6 @@ def as_tested(rows: Rows, unloaded: IntArray) -> FloatArray:
     return total[: unloaded.size] - total[unloaded]
 
 
-# Run a sweep.
-
-
 def sweep(
     case: CaseSource,
     vary: Mapping[str, Iterable[Any]] | None = None,
