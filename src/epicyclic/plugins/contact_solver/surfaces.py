@@ -90,13 +90,6 @@ class Profile:
 SMOOTH = Profile(np.zeros(4), 1.0)  # No roughness.
 
 
-def sinusoidal_profile(amplitude: float, wavelength: float) -> Profile:
-    """One wave. `amplitude` from its mean line. [m]"""
-    points = 64
-    phase = np.arange(points) * (2 * math.pi / points)
-    return Profile(amplitude * np.cos(phase), wavelength / points)
-
-
 def generate_profile(
     rms: float,  # Rq. [m]
     correlation_length: float,  # Where the autocorrelation exp(-(x/l)^2) has fallen to 1/e. [m]
