@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +13,7 @@ from epicyclic.contact.line_contact import Flanks
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact, load_shape, mesh_contact
 from epicyclic.oil.oil import OilState
+from epicyclic.plugins.contact_solver.surfaces import Profile
 
 STEEL = 227.47e9
 """Equivalent modulus of two steel flanks. [Pa]"""
@@ -113,3 +115,10 @@ def with_overlap_ratio(mesh: Mesh, overlap: float) -> Mesh:
         gear1=replace(mesh.gear1, face_width=width),
         gear2=replace(mesh.gear2, face_width=width),
     )
+
+
+def sinusoidal_profile(amplitude: float, wavelength: float) -> Profile:
+    """One wave. `amplitude` from its mean line. [m]"""
+    points = 64
+    phase = np.arange(points) * (2 * math.pi / points)
+    return Profile(amplitude * np.cos(phase), wavelength / points)

@@ -7,14 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from contacts import sinusoidal_profile
 from epicyclic.errors import InputError
-from epicyclic.plugins.contact_solver.surfaces import (
-    SMOOTH,
-    Profile,
-    generate_profile,
-    mean_line,
-    sinusoidal_profile,
-)
+from epicyclic.plugins.contact_solver.surfaces import SMOOTH, Profile, generate_profile, mean_line
 
 
 @pytest.mark.parametrize(("skewness", "kurtosis"), [(0.0, 3.0), (-1.0, 5.0), (0.5, 4.0), (0, 2.5)])

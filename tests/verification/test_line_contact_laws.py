@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from contacts import sinusoidal_profile
 from epicyclic.errors import InputError, Status
 from epicyclic.oil.rheology import Barus, Carreau, LimitingStress, Newtonian, ReeEyring, Roelands
 from epicyclic.plugins.contact_solver import rough
@@ -22,7 +23,7 @@ from epicyclic.plugins.contact_solver.kernels_rough import face_terms
 from epicyclic.plugins.contact_solver.kernels_steady import deflection_matrix, solve_steady
 from epicyclic.plugins.contact_solver.rough import AsperityContact, solve_rough
 from epicyclic.plugins.contact_solver.steady import solve_smooth
-from epicyclic.plugins.contact_solver.surfaces import SMOOTH, generate_profile, sinusoidal_profile
+from epicyclic.plugins.contact_solver.surfaces import SMOOTH, generate_profile
 
 RADIUS, MODULUS = 0.01, 2.2e11
 LAWS = (

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from contacts import sinusoidal_profile
 from epicyclic.errors import Status
 from epicyclic.oil.rheology import Roelands
 from epicyclic.plugins.contact_solver import kernels_linear, kernels_rough, rough
@@ -19,12 +20,7 @@ from epicyclic.plugins.contact_solver.conditions import (
 from epicyclic.plugins.contact_solver.kernels_rough import Column
 from epicyclic.plugins.contact_solver.rough import AsperityContact, solve_rough
 from epicyclic.plugins.contact_solver.steady import solve_smooth
-from epicyclic.plugins.contact_solver.surfaces import (
-    SMOOTH,
-    Profile,
-    generate_profile,
-    sinusoidal_profile,
-)
+from epicyclic.plugins.contact_solver.surfaces import SMOOTH, Profile, generate_profile
 
 pytestmark = pytest.mark.slow
 

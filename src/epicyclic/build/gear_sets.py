@@ -82,9 +82,6 @@ def _sump(case: SetCase, name: str, body: str, part: Dipped) -> Sump | None:
     return Sump(replace(part, depth=depth), volume, table.churning, smooth)
 
 
-# From the tables of a set to the element that loses its power.
-
-
 CAGED_PALMGREN = 0.0003
 """f1 of a caged roller bearing, middle of 0.0002-0.0004. Talbot (2012), p. 56. [1]"""
 FULL_COMPLEMENT_PALMGREN = 0.00055

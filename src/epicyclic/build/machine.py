@@ -67,9 +67,6 @@ from epicyclic.machine.train_shape import mesh_rows
 from epicyclic.oil.oil import Oil, mixture_state, oil_state
 from epicyclic.result.result import Layout, in_words
 
-# From the tables of a case to the model of its temperatures.
-
-
 IN_BATH = ("dip", "submerged")
 
 
@@ -558,9 +555,6 @@ def _layout(case: TrainCase, elements: list[Element]) -> Layout:
 def pin_figures(own: GearSet) -> list[tuple[str, type[Any]]]:
     """The figures of the films on plain pins, which other planets do not have."""
     return [(key, kind) for key, kind in own.figure_types if issubclass(kind, PinFigures)]
-
-
-# From any case to the machine that it describes.
 
 
 NO_TABLES: FlowTables = MappingProxyType({})

@@ -66,8 +66,6 @@ from epicyclic.machine.gear_set import LossChoice
 from epicyclic.machine.pocket_flow import PocketSettings
 from epicyclic.registry import load, offered
 
-# A gear set with computed losses as the builders see it, whichever case it is part of.
-
 GENERAL = {
     "friction": "mixed-lubrication",
     "rolling": "goksem-hargreaves",

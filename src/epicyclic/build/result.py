@@ -49,8 +49,6 @@ from epicyclic.result.result import (
 )
 from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
 
-# How oil gets to the gears of a case, and what follows from it.
-
 
 def oil_supplies(
     cases: Mapping[str, SetCase],
@@ -352,9 +350,6 @@ def _arrangement_notes(case: SetCase) -> Iterator[str]:
             f"{planets} planets cannot be equally spaced, because {number}/{planets} is not an "
             f"integer; they stand at {placed} deg."
         )
-
-
-# From the solution of a machine to the result that the user sees.
 
 
 def assemble(case: Case, built: Built, settled: Settled) -> Result:

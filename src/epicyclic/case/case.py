@@ -15,10 +15,9 @@ from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.changes import Changes, with_changes
 from epicyclic.case.expand import expand, gearing_of
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
-from epicyclic.case.keys import field_at, known_keys, value_of
+from epicyclic.case.keys import Changes, field_at, known_keys, value_of, with_changes
 from epicyclic.case.rules import (
     bearing_force_problems,
     check_listed_bearings,
@@ -835,9 +834,6 @@ def _element_problems(
         advice = 'Add oil_inlet_temperature = "... degC" to [operation].'
         problems.append(Problem("operation.oil_inlet_temperature", "", reason, advice))
     return problems
-
-
-# A whole case, and how it is read, checked and changed.
 
 
 class _SetTables(CaseTable):

@@ -14,6 +14,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.gears.cutting import Tool, default_tool, tooth_outline
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
@@ -61,8 +62,6 @@ def _blas() -> ThreadpoolController:
 # deformation of an elastic half-plane under the moment and the shear force of the tooth (C. Weber,
 # 1949; R. W. Cornell, J. Mech. Des. 103 (1981) 447). Because the thickness does not change along
 # the tooth, the stiffness matrix is a sum of Kronecker products of one-dimensional integrals.
-
-FloatArray = NDArray[np.float64]
 
 SHEAR_FACTOR = 5 / 6  # k of Mindlin's plate for a rectangular section. [1]
 ROOT_TANGENT = math.radians(30.0)
@@ -497,7 +496,7 @@ class LoadedMesh:
     normal_stiffness: FloatArray
 
     @property
-    def pattern(self) -> NDArray[np.bool_]:
+    def pattern(self) -> BoolArray:
         """Which segments carry load, shape (positions, lines, segments)."""
         return self.line_load > 0
 

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from packaging.version import InvalidVersion, Version
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from epicyclic import library
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, sealed, unsealed
@@ -36,7 +36,6 @@ from epicyclic.oil.oil import Oil
 # The regressions of Talbot (2012) as forms: his groups and products, coefficients to be fitted.
 
 
-FloatArray = NDArray[np.float64]
 Columns = Callable[[LineContacts], Sequence[FloatArray | float]]
 
 SMALLEST_SLIP = 1e-4  # Slide-to-roll ratio put into the logarithms. [1]

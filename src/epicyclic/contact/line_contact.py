@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.kernels.line_contact import (
     hertz_half_width,
     hertz_pressure,
@@ -19,7 +19,6 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.oil.oil import OilState
 
-FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 
 STEEL_EFFUSIVITY = 12.4e3

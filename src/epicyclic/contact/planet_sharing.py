@@ -12,11 +12,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.errors import ConvergenceError
-
-FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-9
 """Share of the mean branch force below which a force or its imbalance is rounding. [1]"""
@@ -84,7 +82,7 @@ def _balance(
     branches: Branches,
     displacement: FloatArray,
     stiffness: FloatArray,
-    loaded: NDArray[np.bool_],
+    loaded: BoolArray,
 ) -> FloatArray:
     """Forces with the branches `loaded` in contact.
 
@@ -108,7 +106,7 @@ def _balance(
 
 def _loaded(
     force: float, branches: Branches, displacement: FloatArray, stiffness: FloatArray
-) -> NDArray[np.bool_]:
+) -> BoolArray:
     """Which branches are in contact.
 
     Of all forces that balance, those of (S3) and (S4) have the least energy of branches and
@@ -138,7 +136,7 @@ def _loaded(
     multipliers, distance = nnls(rows, target)
     if distance <= ROUNDING:
         raise _gives_way()
-    found: NDArray[np.bool_] = multipliers <= 0.0
+    found: BoolArray = multipliers <= 0.0
     return found
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
+
+from epicyclic.arrays import FloatArray
 
 # Solids that store and conduct heat.
 
@@ -39,7 +40,6 @@ class Solid:
 
 # Flash temperature of sliding line contacts, and how its heat is shared, after Blok.
 
-FloatArray = NDArray[np.float64]
 Numbers = FloatArray | float
 
 

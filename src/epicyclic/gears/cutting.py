@@ -9,12 +9,10 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import Gear, half_angle_from_profile_shift, inverse_involute, involute
 from epicyclic.gears.mesh import Mesh
-
-# Tools that generate gears: a rack for external gears, a pinion-type cutter for internal ones.
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +61,6 @@ class ShaperTool:
 Tool = RackTool | ShaperTool
 
 
-# Zero of a function of one argument.
-
-
 def zero_between(function: Callable[[float], float], low: float, high: float) -> float:
     """Zero of `function` between two arguments, by the Illinois variant of regula falsi.
 
@@ -98,8 +93,6 @@ def zero_between(function: Callable[[float], float], low: float, high: float) ->
 # generating pressure angle where the rounding of the tool goes over into its flank. Where no source
 # is named, the formula was derived from this law. Symbols follow ISO 21771; angles in radians,
 # lengths in metres.
-
-Floats = NDArray[np.float64]
 
 RACK_ROUNDING = 0.38  # rho_fP / m_n of the default rack. ISO 53, profile A. [1]
 
@@ -134,7 +127,7 @@ class RackCut:
     center_offset: float
     root_angle: float  # Half the angle of the root arc. [rad]
 
-    def fillet(self, normal: Floats) -> tuple[Floats, Floats]:
+    def fillet(self, normal: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Radius, and angle from the middle of the space, where the contact normal has `normal`.
 
         Theory (G30).
@@ -166,7 +159,7 @@ class ShaperCut:
     ratio: float  # z_0/z: turn of the ring for one of the cutter. [1]
     root_angle: float  # Half the angle of the root arc. [rad]
 
-    def fillet(self, normal: Floats) -> tuple[Floats, Floats]:
+    def fillet(self, normal: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Radius, and angle from the middle of the space, where the contact normal has `normal`.
 
         Theory (G33).
@@ -404,9 +397,9 @@ class ToothOutline:
     internal: bool  # True for a ring gear.
     # Radius of each point, from root to tip: rising for external gears, falling for internal ones.
     # Read-only. [m]
-    radius: Floats
+    radius: FloatArray
     # Angle of each point from the centre line of the tooth, from pi/z to zero. Read-only. [rad]
-    half_angle: Floats
+    half_angle: FloatArray
     # Indices of the four points that end the root arc, the fillet, the involute and the tip
     # chamfer. A section without length has no points of its own, so two joints may be equal.
     joints: tuple[int, int, int, int]
@@ -429,7 +422,7 @@ class ToothOutline:
         # How many teeth, each from the middle of one space to the middle of the next; all if not
         # given, and the last point is then the first again.
         teeth: int | None = None,
-    ) -> Floats:
+    ) -> FloatArray:
         """Outline of the whole gear, or of some teeth side by side.
 
         x and y about the gear axis, counter-clockwise. The first tooth points along y. [m]
@@ -555,7 +548,9 @@ def _undercut_start(gear: Gear, cut: Cut) -> tuple[float, float]:
     return max(gear.base_radius, radius_at(normal)), normal
 
 
-def _fillet(gear: Gear, cut: Cut, end: tuple[float, float], points: int) -> tuple[Floats, Floats]:
+def _fillet(
+    gear: Gear, cut: Cut, end: tuple[float, float], points: int
+) -> tuple[FloatArray, FloatArray]:
     """Radii and half angles of the fillet up to `_involute_start`, its first point left out."""
     start_radius, last_normal = end
     # Equal steps of the normal would crowd the points at the root: a finer curve tells the steps
@@ -574,7 +569,7 @@ def _fillet(gear: Gear, cut: Cut, end: tuple[float, float], points: int) -> tupl
     return radius, half_angle
 
 
-def _involute(gear: Gear, start_radius: float, points: int) -> tuple[Floats, Floats]:
+def _involute(gear: Gear, start_radius: float, points: int) -> tuple[FloatArray, FloatArray]:
     """Radii and half angles of the involute by even steps of roll angle, the first left out."""
     base = gear.base_radius
     start = math.sqrt(max(0.0, start_radius**2 - base**2))
@@ -586,7 +581,7 @@ def _involute(gear: Gear, start_radius: float, points: int) -> tuple[Floats, Flo
     return radius, half_angle
 
 
-def _steps(first: float, last: float, points: int) -> Floats:
+def _steps(first: float, last: float, points: int) -> FloatArray:
     """Even steps from `first`, itself left out; none if both are the same."""
     return np.linspace(first, last, points)[1:] if first != last else np.empty(0)
 

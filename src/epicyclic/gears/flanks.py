@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import Mesh
 
@@ -19,9 +19,6 @@ from epicyclic.gears.mesh import Mesh
 # The plane of action is unrolled: `x` runs along the path of contact and is the transverse radius
 # of curvature of member 1, `y` runs across the common face. A contact line leans by the base helix
 # angle: x = x0 - y tan(beta_b). Lines follow each other at the transverse base pitch.
-
-
-FloatArray = NDArray[np.float64]
 
 # A line leaning less than this over the whole face, in base pitches, counts as straight (spur).
 _SPUR_OVERLAP = 1e-9

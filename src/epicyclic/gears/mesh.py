@@ -7,9 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
+from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import BasicRack, Gear, inverse_involute, involute
 
 # The mesh of two gears: operating pressure angle, path of contact, contact ratios, clearances.
@@ -19,7 +17,7 @@ from epicyclic.gears.gear import BasicRack, Gear, inverse_involute, involute
 # member 1, measured on the line of action from its base circle. Symbols follow ISO 21771.
 
 
-Real = TypeVar("Real", float, NDArray[np.float64])
+Real = TypeVar("Real", float, FloatArray)
 
 TOUCHING = 0.5e-9
 """Flanks with less backlash, or thicker by less, touch: no drawing tells that from none. [m]"""

@@ -267,8 +267,6 @@ def tolerances_of(gear: Gear, table: StatedGear) -> FlankTolerances | None:
     )
 
 
-# From the tables of a case to the deviations of its flanks.
-
 Tables = tuple[StatedGear, StatedGear]
 
 

@@ -20,10 +20,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.kernels.compiling import kernel
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 LINEAR_SHARE = 1e-3
 """Share of the mean line load below which delta_c is a parabola: ln(q) has no value at 0. [1]"""

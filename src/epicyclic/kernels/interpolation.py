@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.kernels.compiling import kernel
 
 # Sums over the neighbours of each place, near ones counting more.
 #
 # They are what `scipy.interpolate.RBFInterpolator` gives, which a test compares. Contacts are asked
 # for tens of thousands of times in a solution, so that its time is felt.
-
-
-FloatArray = NDArray[np.float64]
 
 
 @kernel
@@ -110,11 +107,9 @@ def _sum(row: FloatArray) -> float:
 
 # Tables over the pressure, and over the place on a path of contact: cubics through four points.
 
-Floats = NDArray[np.float64]
-
 
 @kernel
-def _cubic(place: float, size: int, weights: Floats) -> int:
+def _cubic(place: float, size: int, weights: FloatArray) -> int:
     """Write the weights of four points next to a place among `size` ones; their first one.
 
     Lagrange's; places count the points from 0 and are held among them.
@@ -129,7 +124,7 @@ def _cubic(place: float, size: int, weights: Floats) -> int:
 
 
 @kernel
-def _weighted(weights: Floats, row: Floats, k: int) -> float:
+def _weighted(weights: FloatArray, row: FloatArray, k: int) -> float:
     """Sum of the four weighted values from the k-th one."""
     total = 0.0
     for a in range(4):
@@ -139,11 +134,11 @@ def _weighted(weights: Floats, row: Floats, k: int) -> float:
 
 @kernel
 def over_pressure(
-    pressure: Floats,  # p_h, held within `pressures`. [Pa]
+    pressure: FloatArray,  # p_h, held within `pressures`. [Pa]
     # Lowest and highest one of the points, which are even in the logarithm. [Pa]
-    pressures: Floats,
-    values: Floats,
-) -> Floats:
+    pressures: FloatArray,
+    values: FloatArray,
+) -> FloatArray:
     """A quantity under a pressure, shape (n,). Theory (O16)."""
     found, weights = np.empty(pressure.size), np.empty(4)
     low = math.log(pressures[0])
@@ -156,9 +151,9 @@ def over_pressure(
 
 @kernel
 def along_path(
-    path: Floats, pressure: Floats, ends: Floats, crowding: Floats, pressures: Floats,
-    values: Floats,
-) -> Floats:  # fmt: skip
+    path: FloatArray, pressure: FloatArray, ends: FloatArray, crowding: FloatArray,
+    pressures: FloatArray, values: FloatArray,
+) -> FloatArray:  # fmt: skip
     """A quantity at places on the path of contact under a pressure, shape (n,). Theory (O16).
 
     Parameters
@@ -200,7 +195,7 @@ def along_path(
 
 
 @kernel
-def _slope(values: Floats, n: int, column: int) -> float:
+def _slope(values: FloatArray, n: int, column: int) -> float:
     """Slope at point `n`, in units of the spacing."""
     last = values.shape[0] - 1
     left = values[n, column] - values[n - 1, column] if n > 0 else 0.0
@@ -216,9 +211,9 @@ def _slope(values: Floats, n: int, column: int) -> float:
 def monotone_cubic(
     first: float,  # Place of the first point, and spacing of all.
     spacing: float,  # Place of the first point, and spacing of all.
-    values: Floats,
-    at: Floats,
-) -> tuple[Floats, Floats]:
+    values: FloatArray,
+    at: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
     """Values and slopes at some places; beyond the points their last value, slope zero.
 
     Returns

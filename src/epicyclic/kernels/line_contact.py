@@ -6,8 +6,8 @@ import math
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.kernels.compiling import kernel
 
 # Hertz line contact, film thickness and rolling traction: closed forms for numbers and arrays.
@@ -16,7 +16,7 @@ from epicyclic.kernels.compiling import kernel
 # twice Johnson's E*). Speeds are mean surface speeds, (u1 + u2)/2.
 
 
-Real = TypeVar("Real", float, NDArray[np.float64])
+Real = TypeVar("Real", float, FloatArray)
 
 
 def equivalent_modulus(e1: float, nu1: float, e2: float, nu2: float) -> float:
@@ -143,9 +143,6 @@ def martin_force(w: Real, speed: Real, viscosity: float) -> Real:
 
 
 # Mean shear stress of an Eyring fluid under an elliptic pressure in an even film.
-
-
-FloatArray = NDArray[np.float64]
 
 CUBIC_START, CUBIC_END = 0.7, 1.4
 """Where the cubic between the two slopes starts and ends, over the transition pressure."""

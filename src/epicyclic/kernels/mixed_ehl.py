@@ -11,11 +11,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.kernels.compiling import kernel
-
-FloatArray = NDArray[np.float64]
 
 # Talbot (2012), limits of the branches of Eq. 5.8 and 5.10. [1]
 FRICTION_BOUNDARY_LIMIT = 0.7

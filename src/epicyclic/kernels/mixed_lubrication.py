@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.kernels.compiling import kernel
-
-FloatArray = NDArray[np.float64]
 
 SMALL = 0.01  # From here on arsinh is a logarithm that keeps 14 digits. [1]
 LARGE = 20.0  # From here on arsinh(exp(x)) is x + ln 2 to the last digit. [1]

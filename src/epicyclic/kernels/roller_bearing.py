@@ -19,12 +19,10 @@ enters with the power 0.11 only.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.kernels.compiling import kernel
 from epicyclic.kernels.contact_load import eliminate
-
-FloatArray = NDArray[np.float64]
 
 DEFLECTION_EXPONENT = 1.11  # Exponent of the line contact, Talbot (2012) Eq. 3.3a. [1]
 LENGTH_EXPONENT = 0.11  # Exponent of the loaded length, Talbot (2012) Eq. 3.3a. [1]

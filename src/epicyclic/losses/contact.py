@@ -9,8 +9,8 @@ from functools import cached_property, lru_cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray, IntArray
 from epicyclic.contact.elastic_teeth import (
     UNMODIFIED,
     GearBody,
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 # Surface speeds across the contact line are omega times the *transverse* radius of curvature: the
 # sliding velocity is perpendicular to the plane of action. Curvatures are those of the normal
 # section of the helicoid, rho_n = rho_t/cos(beta_b).
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +89,7 @@ class MeshContact(LineContacts):
 class _Touching(NamedTuple):
     """What of the contact lines can carry load, whatever the load is, each of shape (n,)."""
 
-    place: NDArray[np.intp]  # Among all segments.
+    place: IntArray  # Among all segments.
     curvature1: FloatArray  # Transverse, of member 1 and member 2. [m]
     curvature2: FloatArray
     radius: FloatArray  # The others as of `MeshContact`.

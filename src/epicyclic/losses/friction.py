@@ -30,9 +30,9 @@ from functools import lru_cache
 from typing import ClassVar, Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from epicyclic import library
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.fitted_models import OilModel, read_oil_model, regression_groups
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
@@ -74,9 +74,6 @@ from epicyclic.units import (
 # Table 5.1, and the pressure, along which the formulas go on smoothly, at half the lowest and twice
 # the highest. Beyond a held load or speed, rolling losses go on as `beyond_data` says. Every use
 # outside Table 5.1 is flagged.
-
-
-FloatArray = NDArray[np.float64]
 
 TALBOT_FLUID = RegressionFluid(
     "talbot-2012", "the automatic transmission fluid of Talbot (2012), atf-talbot-2012"

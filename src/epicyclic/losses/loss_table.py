@@ -11,15 +11,14 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import InputError, Problem, first_of, raise_any, rising_problems
 from epicyclic.files import csv_rows, read_text, refuse
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.units import CELSIUS, NEWTON, NEWTON_METRE, RPM, WATT, Quantity
 
-FloatArray = NDArray[np.float64]
 LossQuantity = Literal["torque", "power"]
 
 AXES: Mapping[str, tuple[str, Quantity]] = {

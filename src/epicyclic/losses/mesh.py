@@ -8,8 +8,8 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
@@ -18,9 +18,6 @@ from epicyclic.losses.ranges import Flags, SomeFlags
 from epicyclic.losses.rolling import RollingModel
 
 # Flash temperature along the contact lines of a mesh, and which gear the heat goes to.
-
-
-FloatArray = NDArray[np.float64]
 
 
 def heat_share1(

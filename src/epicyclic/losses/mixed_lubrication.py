@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.contact.temperatures import flash_temperature
 from epicyclic.gears.flanks import (
@@ -36,8 +36,6 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.kernels.mixed_lubrication import film_stress
 from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState
-
-FloatArray = NDArray[np.float64]
 
 MEAN_FLASH = 2 / 3
 """Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""

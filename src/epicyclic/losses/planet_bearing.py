@@ -12,8 +12,8 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure, line_load_at_pressure
@@ -43,8 +43,6 @@ from epicyclic.units import (
     NEWTON,
     format_number,
 )
-
-FloatArray = NDArray[np.float64]
 
 FULL_COMPLEMENT = "full-complement"
 """Name of the rolling loss with what rollers without a cage rub on each other and on races."""
@@ -526,7 +524,7 @@ def rubbing(
     )
 
 
-def _pressed(loaded: NDArray[np.bool_], along: FloatArray, angle: FloatArray) -> FloatArray:
+def _pressed(loaded: BoolArray, along: FloatArray, angle: FloatArray) -> FloatArray:
     """Forces between the rollers of a row. Theory (B22). [N]
 
     Loaded rollers are held by their races. Between them the others lean on each other, and part

@@ -8,8 +8,8 @@ from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.pocket_flow import periodic_flow
 from epicyclic.kernels.pocket_network import periodic_network
@@ -21,9 +21,6 @@ from epicyclic.oil.oil import MixtureState
 #
 # What has no sound waves is a network of openings between cells. Its flow is found once for a
 # geometry and multiplied by density and powers of the speed, as long as no pocket holds a void.
-
-
-Floats = NDArray[np.float64]
 
 POCKETS_PER_PITCH = 2  # A tooth of either gear.
 PERIODS_MOST = 60
@@ -43,11 +40,11 @@ class NetworkFlow:
     power_from_flow: float  # As for `PocketFlow`, over density and cube of the speed. [m^5]
     mass_error: float  # [1]
     periods: int  # Negative if the flow did not repeat.
-    pressure: Floats  # Over density and square of the speed. [m^2]
-    axial_speed: Floats  # Over the speed. [m]
-    gap_speed: Floats  # Over the speed. [m]
-    instant_power: Floats  # [m^5]
-    damped: Floats  # Work of each step that the method of time stepping damps. [m^5]
+    pressure: FloatArray  # Over density and square of the speed. [m^2]
+    axial_speed: FloatArray  # Over the speed. [m]
+    gap_speed: FloatArray  # Over the speed. [m]
+    instant_power: FloatArray  # [m^5]
+    damped: FloatArray  # Work of each step that the method of time stepping damps. [m^5]
 
 
 def void_number(geometry: PocketGeometry, slices: int, steps: int, end_length: float) -> float:
@@ -121,7 +118,7 @@ class _Network:
         cell = (steps, pockets + 2, slices + 2)
         self._history = tuple(map(np.zeros, (cell, cell, faces, gaps, faces, gaps, faces)))
 
-    def _solve(self, lowest: float, carries: bool, eased: bool) -> tuple[int, Floats]:
+    def _solve(self, lowest: float, carries: bool, eased: bool) -> tuple[int, FloatArray]:
         """Periods, and the boundary work of each step; fills the history."""
         periods = periodic_network(
             self._volume,
@@ -137,7 +134,7 @@ class _Network:
         pressure = self._history[0][:, 1:-1, 1:-1]
         return int(periods), -(pressure * self._growth).sum(axis=(1, 2))
 
-    def flow(self, lowest: float, damped: Floats | None = None) -> NetworkFlow:
+    def flow(self, lowest: float, damped: FloatArray | None = None) -> NetworkFlow:
         """Eased births, kinetic energy carried on, power from the boundary work. Theory (Q27).
 
         `damped` is of the flow without voids, if this is not the one.
@@ -176,7 +173,9 @@ class _Network:
             works += np.where(one != other, power, 0.0).sum(axis=(1, 2)) * self._turn
         return self._made(periods, works, float(inside.sum()), np.zeros(len(q)))
 
-    def _made(self, periods: int, works: Floats, other: float, damped: Floats) -> NetworkFlow:
+    def _made(
+        self, periods: int, works: FloatArray, other: float, damped: FloatArray
+    ) -> NetworkFlow:
         period = self._turn * len(works)
         # what comes in less what goes out, over what comes in, in a period
         live = np.pad(self._cells.live, ((0, 0), (1, 1), (1, 1)))
@@ -269,20 +268,20 @@ class PocketFlow:
     # Speed of sound of the mixture in the model at ambient pressure; infinite for an incompressible
     # one. [m/s]
     sound_speed: float
-    angle: Floats  # Rotation of gear 1 at the end of each step, one pitch in all. [rad]
+    angle: FloatArray  # Rotation of gear 1 at the end of each step, one pitch in all. [rad]
     # Angle of each pocket at the beginning, at the first end of the face: of its tooth or space of
     # gear 1 from the line of centres. [rad]
-    place: Floats
+    place: FloatArray
     # Angle that the helix turns from the first end of the face to both ends of each slice. [rad]
-    station: Floats
-    face: Floats  # Distance from the first end of the face to both ends of each slice. [m]
+    station: FloatArray
+    face: FloatArray  # Distance from the first end of the face to both ends of each slice. [m]
     # Which cells are pockets. Pockets follow each other along the mesh: a tooth of gear 1 in a
     # space of gear 2 at even places, a tooth of gear 2 in a space of gear 1 at odd ones.
-    live: NDArray[np.bool_]
-    pressure: Floats  # Above ambient; zero where there is no pocket. [Pa]
-    axial_speed: Floats  # [m/s]
-    gap_speed: Floats  # Through the gaps between pockets. [m/s]
-    instant_power: Floats  # Mean power of the teeth during each step. [W]
+    live: BoolArray
+    pressure: FloatArray  # Above ambient; zero where there is no pocket. [Pa]
+    axial_speed: FloatArray  # [m/s]
+    gap_speed: FloatArray  # Through the gaps between pockets. [m/s]
+    instant_power: FloatArray  # Mean power of the teeth during each step. [W]
 
     @property
     def speed_max(self) -> float:
@@ -445,7 +444,7 @@ def _places(cells: Cells, geometry: PocketGeometry) -> dict[str, Any]:
 
 def _fluid(
     model: PocketModel, mixture: MixtureState, pressure: float
-) -> tuple[float, float, Floats, bool]:
+) -> tuple[float, float, FloatArray, bool]:
     """What the kernel takes of the fluid: see `kernels.pocket_stage.solve_stage`."""
     xi = min(mixture.oil_fraction, 1 - LEAST_AIR)
     central = model == "central-differences"

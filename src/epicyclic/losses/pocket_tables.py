@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.files import sealed, unsealed
 from epicyclic.gears.cutting import Tool
@@ -39,9 +39,6 @@ from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
 # Viscosity takes no part in the flow. For given pockets, share of oil and resolution its equations
 # hold speed, density and ambient pressure in one number, so that one curve over it serves all
 # speeds and temperatures.
-
-
-Floats = NDArray[np.float64]
 
 LEAST_NUMBER = 1e-3
 """Number below which the scaled figures are those at it: there the fluid is incompressible to 1e-6,
@@ -127,7 +124,7 @@ class FlowFamily:
                 return from_scaled(scaled, speed, mixture.density)
         return flow_figures(self.flow(speed, mixture, pressure))
 
-    def scaled(self, number: float) -> Floats:
+    def scaled(self, number: float) -> FloatArray:
         """Scaled figures of the flow at a number; NaN if it does not repeat or is not found."""
         try:
             # not kept: only its figures are needed again
@@ -161,7 +158,7 @@ def flow_figures(flow: PocketFlow) -> FlowFigures:
     )
 
 
-def scaled_figures(figures: FlowFigures, speed: float, density: float) -> Floats:
+def scaled_figures(figures: FlowFigures, speed: float, density: float) -> FloatArray:
     """Power, difference, pressures and speed as functions of the number alone. Theory (Q22)."""
     head = density * speed**2
     return np.array(
@@ -176,7 +173,7 @@ def scaled_figures(figures: FlowFigures, speed: float, density: float) -> Floats
 
 
 def from_scaled(
-    scaled: Floats, speed: float, density: float, nodes: int = 0, error: float = math.nan
+    scaled: FloatArray, speed: float, density: float, nodes: int = 0, error: float = math.nan
 ) -> FlowFigures:
     """The reverse of `scaled_figures`."""
     power, difference, highest, lowest, fastest = map(float, scaled)
@@ -208,9 +205,9 @@ KEPT_MOST = 10_000  # Flows remembered for the next tables.
 class FlowTable:
     """Scaled figures of a family of flows over its number."""
 
-    number: Floats  # Rising. [1/m]
-    scaled: Floats  # As from `scaled_figures`; NaN where the flow does not repeat.
-    readable: NDArray[np.bool_]  # Whether the table may be read between two of its numbers.
+    number: FloatArray  # Rising. [1/m]
+    scaled: FloatArray  # As from `scaled_figures`; NaN where the flow does not repeat.
+    readable: BoolArray  # Whether the table may be read between two of its numbers.
     # Largest error of the power in what is readable, each measured at a number before that was
     # added to the table. [1]
     error: float
@@ -225,10 +222,10 @@ class FlowTable:
         figures = from_scaled(scaled, speed, mixture.density, self.number.size, self.error)
         return replace(figures, file=self.file)
 
-    def _at(self, number: float) -> Floats | None:
+    def _at(self, number: float) -> FloatArray | None:
         nearest = int(np.abs(self.number - number).argmin())
         if abs(self.number[nearest] / number - 1) <= SAME:
-            node: Floats = self.scaled[nearest]
+            node: FloatArray = self.scaled[nearest]
             return node
         interval = int(np.searchsorted(self.number, number)) - 1
         if not (0 <= interval < self.readable.size and self.readable[interval]):
@@ -239,7 +236,7 @@ class FlowTable:
 FlowTables = Mapping[FlowFamily, FlowTable]
 
 
-def table_around(number: float, scaled: Floats, reach: float) -> FlowTable:
+def table_around(number: float, scaled: FloatArray, reach: float) -> FlowTable:
     """One flow for all numbers that differ from its own by `reach` at most, relatively.
 
     The error is not known: scaled figures change about as much as their number.
@@ -248,7 +245,7 @@ def table_around(number: float, scaled: Floats, reach: float) -> FlowTable:
     return FlowTable(numbers, np.tile(scaled, (3, 1)), np.ones(2, dtype=np.bool_), math.nan)
 
 
-def interpolate(place: Floats, values: Floats, at: float) -> Floats:
+def interpolate(place: FloatArray, values: FloatArray, at: float) -> FloatArray:
     """Cubic through the two nearest points on either side; at the ends the nearest four."""
     first = int(np.searchsorted(place, at)) - 2
     first = max(0, min(first, place.size - 4))
@@ -286,7 +283,7 @@ def make_tables(
 
 
 @lru_cache(maxsize=KEPT_MOST)
-def kept_figures(family: FlowFamily, number: float) -> Floats:
+def kept_figures(family: FlowFamily, number: float) -> FloatArray:
     """As `FlowFamily.scaled`, solved once."""
     return family.scaled(number)
 
@@ -303,7 +300,7 @@ class _Growing:
         self._number = np.array(distinct)
         self._place = np.log(self._number)
         self._bound = bound
-        self._solved: dict[int, Floats] = {}
+        self._solved: dict[int, FloatArray] = {}
         self._open: list[tuple[int, int]] = []
         self._readable: set[tuple[int, int]] = set()
         self._error = 0.0
@@ -314,7 +311,7 @@ class _Growing:
             return [float(self._number[i]) for i in self._first()]
         return [float(self._number[self._middle(gap)]) for gap in self._open]
 
-    def take(self, flows: Mapping[float, Floats]) -> None:
+    def take(self, flows: Mapping[float, FloatArray]) -> None:
         """Scaled figures at the numbers that were wanted."""
         places = {
             int(np.searchsorted(self._number, number)): flow for number, flow in flows.items()
@@ -390,8 +387,8 @@ class KnownFlows:
     """Solved flows of some families."""
 
     # By family and ln(number): scaled figures, and the figures themselves.
-    flows: Mapping[tuple[FlowFamily, float], tuple[Floats, FlowFigures]] = field(
-        default_factory=dict[tuple[FlowFamily, float], tuple[Floats, FlowFigures]]
+    flows: Mapping[tuple[FlowFamily, float], tuple[FloatArray, FlowFigures]] = field(
+        default_factory=dict[tuple[FlowFamily, float], tuple[FloatArray, FlowFigures]]
     )
 
     def figures(

@@ -9,14 +9,13 @@ from functools import cached_property, lru_cache
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
 
 
-FloatArray = NDArray[np.float64]
 Real = TypeVar("Real", float, FloatArray)
 Item = TypeVar("Item")
 

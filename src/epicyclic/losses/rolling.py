@@ -9,8 +9,8 @@ from functools import cached_property, lru_cache
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.fitted_models import OilModel, regression_groups, rolling_scale
 from epicyclic.contact.line_contact import CONDITIONS, Flanks, LineContacts
 from epicyclic.gears.mesh import Mesh
@@ -57,9 +57,6 @@ from epicyclic.units import (
 )
 
 # Rolling loss per contact length of a mesh: a new model is a function with an entry below.
-
-
-FloatArray = NDArray[np.float64]
 
 
 class RollingModel(LossModel, Protocol):

@@ -10,15 +10,12 @@ from functools import cached_property
 from itertools import combinations, islice
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.machine import Machine, Operation, Terms
 
 # Systems of as many linear equations as unknowns.
-
-
-FloatArray = NDArray[np.float64]
 
 
 def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:

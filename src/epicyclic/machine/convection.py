@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.oil.oil import AIR_GAS_CONSTANT, MixtureState, air_viscosity
 
 # How oil, air and their mixture conduct and store heat.
@@ -127,8 +127,6 @@ def mixture(oil: Fluid, air: Fluid, state: MixtureState) -> Fluid:
 
 
 # Heat transfer from what turns: discs, shafts, gears in an oil bath; through loaded rollers.
-
-FloatArray = NDArray[np.float64]
 
 TRANSITION_REYNOLDS = 2.4e5  # omega r^2/nu at which the flow on a disc turns turbulent. [1]
 

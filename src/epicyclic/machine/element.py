@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 
-# The oil at a temperature, and its mixture with air.
-
 _VISCOSITY_SOURCE = "ASTM D341, form for 2 mm^2/s and more"
 _VISCOSITY = Range(
     "kinematic_viscosity", "kinematic viscosity", 2.0, 2e7, SQUARE_MM_PER_SECOND, _VISCOSITY_SOURCE
@@ -184,8 +182,6 @@ class FluidFigures:
         "dynamic viscosity of the air-oil mixture", MILLIPASCAL_SECOND
     )
 
-
-# What an element of a gearbox sees, and what it answers.
 
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"

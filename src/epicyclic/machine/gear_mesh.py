@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.contact.temperatures import Solid
@@ -68,8 +68,6 @@ from epicyclic.units import (
     NUMBER,
     WATT,
 )
-
-FloatArray = NDArray[np.float64]
 
 PEAK_SHARE = 0.01
 """Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.temperatures import bulk_rise_of_flash, bulk_rise_of_loss
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
@@ -35,11 +35,6 @@ from epicyclic.machine.machine import Machine, Operation
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, solve_machine, start_of
 from epicyclic.units import CELSIUS
-
-# Temperatures and losses that agree with each other.
-
-
-FloatArray = NDArray[np.float64]
 
 AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""

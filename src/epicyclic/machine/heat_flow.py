@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 
 # Nodes that heat flows between, and the temperatures at which they settle.
@@ -18,9 +18,6 @@ from epicyclic.errors import ConvergenceError
 # it to a third node, which mostly is the cold one. Oil that a jet throws on a gear is the
 # exception: it arrives with the temperature of the inlet, and leaves with its heat for the oil of
 # the gearbox.
-
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,9 +16,6 @@ from epicyclic.machine.heat_flow import Link
 from epicyclic.machine.planets import BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
 
-# Paths of the heat of gears, planets, pins, carriers and bearings: to the oil, to each other.
-
-
 INLET = "oil_inlet"  # The oil before it meets anything.
 WIDTH_OF_HEIGHT = 1.2
 """Width of a bearing over the height of its section, if it is not given: an estimate. [1]"""
@@ -190,8 +187,6 @@ def bearing_width(own: ShaftBearing) -> float:
         return bearing.width
     return WIDTH_OF_HEIGHT * (bearing.outside_diameter - bearing.bore) / 2
 
-
-# Heat that gears, pins, carriers and bearings store, from their sizes.
 
 STEEL = Solid(conductivity=46.0, heat_capacity=460.0, density=7850.0)
 """Material of parts for which no case states one: pins, carriers, shaft bearings."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.machine.element import Element
@@ -21,7 +21,6 @@ from epicyclic.units import NEWTON, format_number
 # *on* the shaft.
 
 
-FloatArray = NDArray[np.float64]
 AxialSense = Literal["none", "both", "positive", "negative"]
 
 NEGLIGIBLE = 1e-9
@@ -205,9 +204,6 @@ def mesh_force(
     return tangential * along + radial * outward + axial * np.array([0.0, 0.0, 1.0])
 
 
-# Forces on the bearings of shafts, from the loads of the meshes.
-
-
 @dataclass(frozen=True, slots=True)
 class GearSeat:
     """A gear on a shaft, in one of its meshes."""
@@ -273,8 +269,6 @@ def forces_of(
             forces[key] = reaction.force
     return forces
 
-
-# What a machine consists of, and how it is driven.
 
 Terms = tuple[tuple[str, float], ...]
 """Bodies with the coefficients of their speeds in a constraint."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.planet_sharing import (
     Branches,
     branch_directions,
@@ -189,8 +189,6 @@ def _branches(
 # Axes, right-handed: t along the circle of the planets; r outward from the centre of the set; y
 # along the planet's axis, from the middle of the bearing. They are turned about r so that the first
 # mesh turns the planet from t to r: for a sun, t is then the sense in which it pushes the planet.
-
-FloatArray = NDArray[np.float64]
 
 TILT_TOLERANCE = 1e-9
 """Imbalance over the tilt at which the latter counts as found: under next to no load, teeth give

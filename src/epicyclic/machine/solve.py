@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.balance import (
     Balance,
@@ -158,10 +158,6 @@ def _apart(old: list[float], new: list[float]) -> float:
         return 0.0
     return max(abs(two - one) for one, two in zip(old, new, strict=True)) / largest
 
-
-# Losses and torques of a machine that agree with each other.
-
-FloatArray = NDArray[np.float64]
 
 AGREEMENT = 5e-10
 """Relative change of each load from one pass to the next at which torques and losses agree. [1]"""
@@ -612,9 +608,6 @@ def effects_of(
                     Friction((one, two), share * loss.watts) for one, two, share in loss.brakes
                 ]
     return efficiencies, frictions
-
-
-# Which part of a machine takes how much torque from which shaft.
 
 
 def stage_torques(machine: Machine, solution: Solution) -> dict[str, dict[str, float]]:

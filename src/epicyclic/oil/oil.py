@@ -11,10 +11,10 @@ from itertools import pairwise
 from typing import Annotated, Any, Literal, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.units import (
     CELSIUS,
     SQUARE_MM_PER_SECOND,
@@ -269,7 +269,7 @@ def _fault(place: tuple[str | int, ...], given: str, what: str, remedy: str) -> 
 # ==================== =========================================================================
 
 
-Real = TypeVar("Real", float, NDArray[np.float64])
+Real = TypeVar("Real", float, FloatArray)
 
 ROELANDS_PRESSURE = 1.96e8  # Pole pressure of Roelands' viscosity law. [Pa]
 ROELANDS_OFFSET = 9.67

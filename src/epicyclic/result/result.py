@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 
-# Temperatures of a result, and the paths of its heat.
-
-
 @dataclass(frozen=True, slots=True)
 class HeatPath:
     """Heat from one part to another.
@@ -116,9 +113,6 @@ class HeatBalance:
         return found
 
 
-# How oil gets to the gears of a set, and what follows from it.
-
-
 @dataclass(frozen=True, slots=True)
 class OilSupply:
     """The share of oil around the gears of a set, and their churning.
@@ -177,9 +171,6 @@ class OilSupply:
             "oil_share_in_meshes": plain(self.meshes, NUMBER),
             "churning": plain(self.churning, WATT),
         }
-
-
-# Results: what `solve` returns, and its JSON form.
 
 
 LOSSES_OF_ROLES = {

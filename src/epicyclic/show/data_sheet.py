@@ -29,9 +29,6 @@ from epicyclic.units import (
     unit_text,
 )
 
-# What `check` shows: the gears of a case as on a data sheet, its oil, and what was found.
-
-
 MM, UM = 1e3, 1e6
 _GearRow = tuple[str, str, Callable[[GearSheet], str]]
 _MeshRow = tuple[str, str, Callable[[MeshSheet], str]]
@@ -189,9 +186,6 @@ def _oil(case: Case) -> str | None:
         f"nu {UM * state.kinematic_viscosity:.4g} mm²/s, rho {state.density:.4g} kg/m³, "
         f"alpha {1e9 * state.pressure_viscosity:.4g} 1/GPa {law}."
     )
-
-
-# Shafts of a train and the ratio of every state, for a terminal.
 
 
 def state_tables(case: TrainCase) -> RenderableType:

@@ -36,9 +36,6 @@ from epicyclic.study.maps.tables import map_inputs
 from epicyclic.study.operating import operating_line
 from epicyclic.study.sweeps.run import is_sweep
 
-# Reports as one HTML file that needs nothing else: style, figures and script lie within it.
-
-
 KINDS = {
     "planetary": "Power losses of a planetary gear set",
     "gear_pair": "Power losses of a gear pair",

@@ -37,9 +37,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# A result with all that a report shows: every mesh, pocket and roller, shapes, inputs.
-
-
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ResultRecord:
     """A result and the fields behind it, as `save_result` keeps them.

@@ -41,8 +41,6 @@ from epicyclic.study.maps.tables import map_case, map_inputs, statements
 from epicyclic.study.operating import AXES
 from epicyclic.units import format_number, percent, unit_text
 
-# The report of one result: its chapters.
-
 
 def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
     """All chapters for which the record has content."""

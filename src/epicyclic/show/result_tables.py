@@ -58,8 +58,6 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-# Tables of a result, for pages and terminals: losses, power flow, figures of all parts.
-
 
 Unit = tuple[str, float]  # Its name in print and its size.
 _FLOW_NOTE = (
@@ -669,9 +667,6 @@ def _beyond_text(beyond: BeyondRange, free: Result | str) -> str:
     if isinstance(free, str):
         return f"{text}there is no result: {free}"
     return f"{text}the total would be {free.total:.0f} W."
-
-
-# Two results beside each other: what differs in their inputs, and what that changes.
 
 
 def side_by_side(

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from rich.console import Group, JustifyMethod, RenderableType
 from rich.table import Column, Table
 from rich.text import Text
 
+from epicyclic.arrays import FloatArray
 from epicyclic.messages import one_line
 from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.page import MISSING, error_text, shown
@@ -128,9 +128,6 @@ def _unit(mesh: xr.Dataset, name: str) -> str:
 
 
 # The pockets of the meshes in tables: power and its balance, extremes with their place.
-
-
-FloatArray = NDArray[np.float64]
 
 _BALANCE = (
     "power",

@@ -21,9 +21,6 @@ from rich.text import Text
 from epicyclic.errors import printable_lines
 from epicyclic.show import page
 
-# Tables of a terminal that keep their numbers whole, however narrow it is.
-
-
 GAP = 3  # Between two columns, the spaces on both sides of a line that is not drawn.
 LONGEST_WORD = 24
 """Longest word that stays whole; what is longer is an address, or a key with its table."""

@@ -31,8 +31,6 @@ from epicyclic.units import efficiency_text, format_number, known_text, percent,
 if TYPE_CHECKING:
     import xarray as xr
 
-# What limits the trust in a result, in sentences.
-
 
 LIMITS = "Limits of confidence"
 FEW = 2  # Limits that a short list names.
@@ -116,9 +114,6 @@ def driver_name(key: str) -> str:
     return key
 
 
-# Tables over the speeds and torques of a map.
-
-
 MOST_COLUMNS = 9
 """Most columns of a table of values; larger maps are shown at evenly spaced points."""
 
@@ -145,9 +140,6 @@ def _some(count: int) -> list[int]:
     """Numbers of some `MOST_COLUMNS` of `count` points, evenly spaced but for the last."""
     step = max(1, math.ceil((count - 1) / (MOST_COLUMNS - 1)))
     return sorted({*range(0, count, step), count - 1})
-
-
-# How well the losses of a map are known, in tables.
 
 
 LEAST = 0.02  # Largest share in the variance at any point, from which an input is shown. [1]
@@ -240,9 +232,6 @@ def _value(value: xr.DataArray) -> str:
     if value.dtype.kind not in "if":
         return str(value.item())
     return f"{format_number(value.item())} {unit_text(str(value.attrs.get('units', '')))}".rstrip()
-
-
-# How well a result is known, in tables: for terminals and pages.
 
 
 NO_SHARE = 1e-3

@@ -25,9 +25,6 @@ from epicyclic.result.result import Result
 from epicyclic.study.solve import build_computed, solve
 from epicyclic.units import known_text, percent
 
-# Friction models side by side on one case, and which of them suits it.
-
-
 MOSTLY = 0.5
 """Share of the loss outside its range up to which a model made for the oil is preferred. [1]"""
 UNEQUAL = 0.01
@@ -208,9 +205,6 @@ def _sliding(result: Result) -> float:
         for term in result.terms
         if term.group == LOAD_DEPENDENT and term.name.endswith("_sliding")
     )
-
-
-# The methods that a case asks for and where they are printed, without solving it.
 
 
 def methods_of(case: Case) -> dict[str, tuple[str, str]]:

@@ -8,8 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.result import load_notes
 from epicyclic.errors import one_problem
 from epicyclic.gears.mesh import Mesh
@@ -41,9 +41,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Variables of datasets: values in the units that users see, with label and unit.
-
-Array = NDArray[np.float64] | NDArray[np.bool_]
+Array = FloatArray | BoolArray
 Variable = tuple[tuple[str, ...], Array, dict[str, Any]]
 
 
@@ -59,10 +57,6 @@ def variable(
         attributes,
     )
 
-
-# Everything about the loaded meshes of a case, point by point.
-
-FloatArray = NDArray[np.float64]
 
 _DIMENSIONS = ("mesh_position", "contact_line", "segment")
 
@@ -231,9 +225,6 @@ def _contact(duty: MeshDuty, key: str, fluids: Fluids, loads: LineLoads) -> dict
         "flash_temperature": _points(spread(flash), "flash temperature", KELVIN),
         "friction_power": _points(spread(power), "friction power per length", WATT_PER_MM),
     }
-
-
-# Load and pressure of every roller of a planet bearing, slice by slice, as a dataset.
 
 
 def bearing_details(

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.build.elements import build_element
 from epicyclic.build.machine import oil_medium
 from epicyclic.case.tables.elements import Force, ShaftBearingTable
@@ -54,7 +54,6 @@ from epicyclic.units import (
     Torque,
 )
 
-FloatArray = NDArray[np.float64]
 OilName = str | Mapping[str, Any]
 STEEL = equivalent_modulus(206e9, 0.3, 206e9, 0.3)  # E_eq of two bodies of steel. [Pa]
 ALPHA = math.radians(20)  # Pressure angle of the basic rack (ISO 53). [rad]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, one_problem
@@ -48,8 +49,7 @@ from epicyclic.units import (
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = NDArray[np.float64] | NDArray[np.bool_]
-FloatArray = NDArray[np.float64]
+Array = FloatArray | BoolArray
 
 _LIFE = ("tooth", "roll")
 _AXIS = "axis"
@@ -144,7 +144,7 @@ class _Life:
         return np.stack([life.reshape(-1, *life.shape[2:]) for life in lives])
 
     @property
-    def living(self) -> NDArray[np.bool_]:
+    def living(self) -> BoolArray:
         """Which sections are pockets, at every station."""
         birth, death = (self.geometry.life[:, k, None, None] for k in (0, 1))
         return (self.section >= birth) & (self.section <= death)
@@ -296,7 +296,7 @@ def _flows(life: _Life) -> dict[str, Variable]:
     beside = np.pad(alive, ((0, 0), (0, 0), (1, 1)))
     opening = beside[..., 1:] | beside[..., :-1]
 
-    def known(values: FloatArray, where: NDArray[np.bool_] = alive) -> FloatArray:
+    def known(values: FloatArray, where: BoolArray = alive) -> FloatArray:
         return np.where(where, values, math.nan)
 
     contact, backlash = life.gap_speeds

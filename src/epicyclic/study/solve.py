@@ -20,8 +20,6 @@ from epicyclic.result.result import Result
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES
 
-# The sets of a case whose losses are computed.
-
 
 def build_computed(case: Case) -> Built:
     """The machine of a case with gears.

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.files import check_archive, read_bytes, refuse
 from epicyclic.messages import one_line, sentence
@@ -657,7 +658,7 @@ def plain_numbers(source: Source, header: str, column: pa.Array) -> pa.Array:
     return pc.if_else(fits, bare, column)
 
 
-def _seconds(cells: Sequence[str], form: str) -> NDArray[np.float64]:
+def _seconds(cells: Sequence[str], form: str) -> FloatArray:
     """Dates and times in seconds; NaN for other text."""
     import pandas as pd
 

@@ -13,9 +13,6 @@ from epicyclic.case.train_tables import StateTable
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import freedom, speeds_of
 
-# Losses of a train summed by what loses and how.
-
-
 LOSS_KINDS = ("given", "sliding", "rolling", "pocketing", "bearings", "seals", "drag")
 """In the order of their columns; ``"given"`` are those of meshes of given efficiency."""
 _OF_PARTS = {"bearings": "bearings", "seals": "seals"}  # Losses of all other parts are drag.
@@ -51,8 +48,6 @@ def _kind_of(term: str) -> str:
         return "bearings"
     return last if last in LOSS_KINDS else "given"
 
-
-# The kinematics of every state of a train: which ratio it has, or why it has none.
 
 AT_REST = 1e-10  # Speed, relative to that of the input, of a shaft that stands still. [1]
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build
 from epicyclic.build.models import fluids_of
 from epicyclic.errors import ConvergenceError
@@ -40,7 +40,6 @@ from epicyclic.validation.pocketing import FIGURES_AGAIN
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 PLANETS = 3  # Planets of the set whose planet bearing chapter 3 studies.
 ROLLER_FIGURES = {"3.3": "branch", "3.7": "roller", "3.9": "clearance", "3.12": "helix"}
 """Figures of roller loads, and what varies in them."""

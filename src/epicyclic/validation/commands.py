@@ -35,9 +35,6 @@ if TYPE_CHECKING:
     from epicyclic.validation.pocketing import StudyPlan
 
 
-# The command validate: published figures beside computed ones.
-
-
 @click.command()
 @click.option(
     "--temperatures",
@@ -145,8 +142,6 @@ def scores(path: str, plot: Path | None, json_file: str | None, *, models: bool)
         draw(plots.scores_figure(found), plot)
 
 
-# The command reproduce: a chapter of the dissertation computed again.
-
 PAGE = "index.html"
 
 
@@ -212,9 +207,6 @@ def reproduce(
     if (table := influence_table(found)).rows:
         terminal().print(as_on_page(table))
     echo(summary(rows))
-
-
-# The command study: pocketing loss over its main parameters.
 
 
 STUDY = "study"  # With which files of unfinished studies begin in their folder.

@@ -11,8 +11,8 @@ from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.bands.plan import nearby_at
 from epicyclic.study.bands.samples import sample_summary
@@ -115,8 +115,6 @@ def _computed(figure: Mapping[str, Any], **more: Any) -> float:
         return math.nan
     return FIGURES[figure["compute"]](**figure["with"], **more)
 
-
-# Compare the published figures with what is computed.
 
 Verdict = Literal["agrees", "differs", "calibrated", "no verdict", "not computed"]
 _TOPICS = {
@@ -284,8 +282,6 @@ def _compare(figure: dict[str, Any]) -> Comparison:
 
 
 # Published measurements beside the band that the shipped distributions give. Nothing is fitted.
-
-FloatArray = NDArray[np.float64]
 
 DRAWS = 1024  # Draws from the distributions, the same in all tests.
 MEASURED = "measured"  # What the names of measured figures end with.

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.machine import Built, build
 from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, read_case
@@ -336,13 +336,13 @@ def azimuth_of_gained_rollers(low: int, high: int, couple: bool) -> float:
     return float(np.minimum(azimuth, 360 - azimuth)[gained].min())
 
 
-def _loaded_rollers(branch_torque: int, couple: bool) -> NDArray[np.bool_]:
+def _loaded_rollers(branch_torque: int, couple: bool) -> BoolArray:
     """Which rollers carry load in either row."""
     built = build(_published_case(operation__torque=f"{3 * branch_torque} N*m"))
     load = built.planet_loads()["planet_bearing"]
     moments = (load.moment_x, load.moment_y) if couple else (0.0, 0.0)
     loads = roller_loads(planet_bearing(built), load.force, 0.0, *moments)
-    loaded: NDArray[np.bool_] = loads.intensity.sum(axis=(0, 2)) > 0
+    loaded: BoolArray = loads.intensity.sum(axis=(0, 2)) > 0
     return loaded
 
 
@@ -379,7 +379,7 @@ def branch_slope(
     return 100 * slopes(power, loss)[line]
 
 
-def slopes(over: NDArray[np.float64], values: NDArray[np.float64]) -> dict[str, float]:
+def slopes(over: FloatArray, values: FloatArray) -> dict[str, float]:
     """Those of two straight lines through points."""
     return {
         "with intercept": float(np.polyfit(over, values, 1)[0]),

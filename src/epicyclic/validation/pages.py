@@ -44,9 +44,6 @@ from epicyclic.validation.compare import (
 from epicyclic.validation.plots import Reproduced, deviations_size, plot_deviations
 from epicyclic.validation.scoreboard import DEFAULTS, GRADES, Score, in_band
 
-# Published against computed, for a terminal.
-
-
 _STYLES = {
     "agrees": "green",
     "differs": "bold red",
@@ -263,8 +260,6 @@ def published_text(row: Published) -> str:
     low, high = shown(row.low), shown(row.high)
     return low if low == high else f"{low} to {high}"
 
-
-# The report of the comparison with published figures: one page for all of them.
 
 MOST_ROWS = 8  # Most rows of one picture.
 _HEAD = (

@@ -35,9 +35,6 @@ from epicyclic.validation.compare import Comparison
 from epicyclic.validation.pocketing import PublishedStudy, published_study, study_again
 from epicyclic.validation.scoreboard import DEFAULTS, Score
 
-# The figures of the chapters of Talbot (2012), drawn from what was computed for them.
-
-
 STARS = ("*", "P", "X", "D", "h")  # Markers of published numbers.
 SOURCE = "Talbot (2012)"
 MOST_COLUMNS = 3
@@ -410,8 +407,6 @@ def _number(row: Comparison) -> str:
     value = low if low == high else f"{low} to {high}"
     return f"{value} {unit_text(row.unit)}".rstrip()
 
-
-# Measured sets: computed against measured, and the error over speed.
 
 NEAR = 15  # Errors up to which a model is near, as the picture shows. [%]
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, build_case, read_case
 from epicyclic.errors import Problem, Status, one_problem, raise_any
@@ -173,9 +173,6 @@ def _varied_mesh(mesh: Mesh, variant: PocketVariant) -> Mesh:
         gear1=varied(one, z1, mesh.operating_radius1, operating1),
         gear2=varied(two, z2, mesh.operating_radius2, operating1 * z2 / z1),
     )
-
-
-# What the parametric study of pocketing losses varies. Talbot (2012), section 4.4.
 
 
 @dataclass(frozen=True, slots=True)
@@ -412,7 +409,7 @@ def _levels(base: PocketVariant, name: str, shares: tuple[float, ...]) -> tuple[
 def _range(duty: MeshDuty, base: PocketVariant, name: str) -> tuple[float, ...]:
     """Values of the source for its example, over those of the case where they have a unit."""
     module = duty.gears.mesh.gear1.rack.transverse_module
-    values: Mapping[str, NDArray[np.float64]] = {
+    values: Mapping[str, FloatArray] = {
         "speed": base.speed * np.linspace(0.1, 1.0, 10),
         "helix-angle": np.radians(np.arange(0.0, 36.0, 5.0)),
         "face-width": base.face_width * np.linspace(1.0, 7 / 3, 5),
@@ -443,9 +440,6 @@ def _variants(base: PocketVariant, axes: Sequence[StudyAxis]) -> Iterator[Pocket
 def _geometry(point: PocketVariant) -> tuple[Any, ...]:
     """Equal for points of the same geometry."""
     return (point.teeth, point.backlash, point.helix_angle, point.face_width)
-
-
-# The parametric study of pocketing losses of Talbot (2012), section 4.4, for any mesh.
 
 
 def pocketing_study(
@@ -536,7 +530,7 @@ def _dataset(plan: StudyPlan, name: str, rows: Rows, own: list[int]) -> xr.Datas
     return dataset
 
 
-def _coordinate(axis: StudyAxis) -> tuple[str, NDArray[np.float64], dict[str, str]]:
+def _coordinate(axis: StudyAxis) -> tuple[str, FloatArray, dict[str, str]]:
     parameter = PARAMETERS[axis.name]
     scale, _ = parameter.quantity.scale_and_offset()
     attributes = {"long_name": parameter.label, "units": parameter.quantity.display or "1"}
@@ -563,8 +557,6 @@ def _attributes(plan: StudyPlan, name: str) -> dict[str, str]:
         **origin(plan.case),
     }
 
-
-# What is published of the parametric study of pocketing losses. Talbot (2012), section 4.4.
 
 EXAMPLE = "talbot-2012-pair"
 _SAME = ("gears", "pinion", "gear", "lubricant", "surroundings")

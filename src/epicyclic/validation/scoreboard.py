@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case, TrainCase, read_case
 from epicyclic.case.keys import value_of
 from epicyclic.case.tables.elements import ShaftBearingTable
@@ -39,7 +39,6 @@ from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, PointList, as_tested
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import NEWTON_METRE, NUMBER, WATT, Quantity
 
-FloatArray = NDArray[np.float64]
 Keys = dict[str, Any]
 """Keys of a case and their values, as a case file has them."""
 

@@ -314,9 +314,6 @@ def number_in(text: str) -> float | None:
     return number if math.isfinite(2 * number) else None
 
 
-# A case that is being edited: where it came from, what has been changed, what is wrong with it.
-
-
 ENDINGS = (".toml", ".rexs", ".rexsj", ".rexsz")  # Endings of files that hold a case.
 _HEAD = "A case file of epicyclic, saved by its app. Commented-out keys have defaults."
 

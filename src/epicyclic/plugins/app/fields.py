@@ -12,9 +12,6 @@ from epicyclic.plugins.app.case_form import Desk, Entry, Group, number_in, owner
 from epicyclic.result.result import in_words
 from epicyclic.show.template import toml_key
 
-# Asking for the name of what the user adds to a case, and for what it stands.
-
-
 Take = Callable[[str], Awaitable[str]]  # Takes what was typed; what is wrong with it, or nothing.
 
 
@@ -82,9 +79,6 @@ def _buttons(dialog: ui.dialog, done: Callable[[], Awaitable[str]]) -> None:
     with ui.row():
         ui.button("OK", on_click=finish).props("unelevated no-caps dense")
         ui.button("Cancel", on_click=dialog.close).props("flat no-caps dense")
-
-
-# The form on the page: groups that open, a field for each key, its problem beside it.
 
 
 _OPEN = "operation"  # The table that is open at first.

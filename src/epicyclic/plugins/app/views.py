@@ -701,9 +701,6 @@ _DESIGNS = (
 )
 
 
-# The tabs of the page: chapters of the result, and views that stand beside them.
-
-
 class View(Protocol):
     """What a tab shows that is no chapter of the result."""
 

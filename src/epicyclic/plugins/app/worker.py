@@ -55,8 +55,6 @@ from epicyclic.study.sweeps.run import parse_vary
 if TYPE_CHECKING:
     from epicyclic.plugins.design.front import Front
 
-# Work that follows what changes faster than it can be done.
-
 
 class Latest:
     """Does work again after each change, for the last one: what comes meanwhile never queues.

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.elastic_teeth import one_thread
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.files import make_folder, read_bytes, read_text, write_file
@@ -199,7 +199,7 @@ def parse_ranges(options: Iterable[str]) -> dict[str, tuple[float, float]]:
 
 
 @lru_cache(maxsize=8)
-def _points(design: Design) -> NDArray[np.float64]:
+def _points(design: Design) -> FloatArray:
     """All points, shape (count, axes)."""
     if design.size is None:
         grids = np.meshgrid(*(values for _, values in design.axes), indexing="ij")

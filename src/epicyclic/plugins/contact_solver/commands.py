@@ -33,9 +33,6 @@ if TYPE_CHECKING:
     from epicyclic.study.sweeps.runner import Rows, Runner
 
 
-# The command contact: one lubricated line contact.
-
-
 ANIMATION = ".gif"
 
 CONTACT_OPTIONS = {
@@ -110,9 +107,6 @@ def contact(
         echo(f"Wrote {plot}.", err=json_file == "-")
     if result.status is not Status.CONVERGED:
         sys.exit(EXIT_NO_SOLUTION)
-
-
-# Commands on oils to be characterised: characterise, fit, show.
 
 
 plot_models = plot_option("Draw the models against the simulations (.png, .svg, .pdf).")

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.errors import InputError, Problem
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
@@ -36,8 +36,6 @@ from epicyclic.plugins.contact_solver.kernels_fluid import (
     ScaledFluid,
     mean_shear,
 )
-
-# Expected film of a smooth contact in all regimes, from a fit.
 
 
 def moes_central_film(
@@ -77,10 +75,6 @@ a contact does not become dry. [m/s]"""
 FEWEST_KEPT = 0.95  # Share of Rq that a grid must resolve. [1]
 VALIDATED_FILM_RATIO = 0.7
 """Film ratio below which friction of rough contacts is not validated. [1]"""
-
-
-# What a line contact and the oil in it are given by, and the scales that follow.
-
 
 STIFFENING, PACKING = 1.34 / 5.9e8, 1.0 / 5.9e8
 """Constants of Dowson and Higginson's density. [1/Pa]"""
@@ -254,9 +248,6 @@ def line_contact(contacts: LineContacts, index: int, oil: ContactOil) -> LineCon
 
 
 # Heat of sliding: thinner inlet film, warmer film. An estimate beside an isothermal solution.
-
-
-FloatArray = NDArray[np.float64]
 
 FILM_EXPONENT = 0.694  # Exponent of the viscosity in the film of Pan and Hamrock (1989). [1]
 SMALLEST_CHANGE = 1e-3  # To which the temperature of a node is found. [K]

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.models import contact_modulus, solid_of
 from epicyclic.case.tables.base import NamedMaterial, NamedOil, Roughness
 from epicyclic.case.tables.models import (
@@ -80,9 +80,6 @@ from epicyclic.units import (
     format_number,
     percent,
 )
-
-# The tables of a line contact, and how it is built from them.
-
 
 LineLoad = Annotated[
     float, Quantity("a line load", "N/m", "N/mm", low=0.0, high=1e5, open_low=True)
@@ -465,11 +462,6 @@ def _profile_notes(
         )
 
 
-# One line contact: solved, and its figures.
-
-
-FloatArray = NDArray[np.float64]
-
 FRAMES = 60  # Moments kept for an animation.
 
 
@@ -581,11 +573,9 @@ class ContactResult:
         friction = model.asperities.friction if contact.sliding_speed else 0.0
         return np.where(self.touching(frame), friction * frame.pressure, fluid)
 
-    def touching(self, frame: Frame) -> NDArray[np.bool_]:
+    def touching(self, frame: Frame) -> BoolArray:
         """Where surfaces touch at a moment of the rough contact, shape (n,). Theory (H23)."""
-        touching: NDArray[np.bool_] = (frame.film < self.model.asperities.film) & (
-            frame.pressure > 0
-        )
+        touching: BoolArray = (frame.film < self.model.asperities.film) & (frame.pressure > 0)
         return touching
 
     def to_json(self) -> str:

@@ -13,8 +13,8 @@ from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray, IntArray
 from epicyclic.build.models import SetCase, solid_of
 from epicyclic.case.tables.models import oil_laws
 from epicyclic.contact.elastic_teeth import one_thread
@@ -44,9 +44,6 @@ from epicyclic.plugins.contact_solver.rough import (
 from epicyclic.plugins.contact_solver.steady import solve_smooth
 from epicyclic.plugins.contact_solver.surfaces import PERIOD, generate_profile
 from epicyclic.units import GIGAPASCAL, METRE_PER_SECOND, MILLIMETRE, NUMBER, Quantity, percent
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 BATCH = 12  # Contacts solved before the error is looked at, and each time it is too large.
 CHECKS = 8  # Contacts that only tell the error.

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.fitted_models import (
     FORMAT,
     FORMS,
@@ -45,9 +45,6 @@ if TYPE_CHECKING:
 
 
 # Fits of all forms of a quantity, with errors at contacts that they had not seen.
-
-
-FloatArray = NDArray[np.float64]
 
 BEYOND = 3  # Mean distances of the values of a condition by which its domain goes beyond them. [1]
 FOLDS = 10  # Parts of the contacts, each of which is predicted from the others.
@@ -155,9 +152,6 @@ def _limits(values: FloatArray) -> tuple[float, float]:
 
 def _rounded(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
-
-
-# From the table of a campaign to the models of an oil.
 
 
 LARGEST_ERROR = 0.10  # Standard error of a simulated mean over it above which it is not fitted. [1]

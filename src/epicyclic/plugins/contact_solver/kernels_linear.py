@@ -12,10 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.kernels.compiling import kernel
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 GROUP = 12  # Nodes summed into one unknown of the coarse level.
 BAND = 4  # Nodes to either side whose deflection the banded matrix holds.

@@ -11,8 +11,8 @@ import math
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.kernels.compiling import kernel
 from epicyclic.plugins.contact_solver.kernels_fluid import (
     ScaledFluid,
@@ -36,9 +36,6 @@ from epicyclic.plugins.contact_solver.kernels_linear import (
     space_for,
     update_groups,
 )
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 
 class Column(IntEnum):

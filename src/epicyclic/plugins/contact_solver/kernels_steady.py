@@ -11,8 +11,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.kernels.compiling import kernel
 from epicyclic.plugins.contact_solver.kernels_fluid import (
     ScaledFluid,
@@ -22,8 +22,6 @@ from epicyclic.plugins.contact_solver.kernels_fluid import (
     mean_shear,
     thinning_factor,
 )
-
-FloatArray = NDArray[np.float64]
 
 SMALLEST_FILM_SHARE = 0.2  # Share of its film that every node keeps in one Newton step. [1]
 LARGEST_PRESSURE_SHARE = 0.5
@@ -141,7 +139,7 @@ def _assemble(
     d_film: FloatArray,
     d_pressure: FloatArray,
     matrix: FloatArray,
-    active: NDArray[np.bool_],
+    active: BoolArray,
     weights: FloatArray,
 ) -> FloatArray:
     """Jacobian of balance and load in (P, H_0), shape (n + 1, n + 1)."""
@@ -180,11 +178,7 @@ def _step_length(film: FloatArray, change: FloatArray, limit: float) -> float:
 
 @kernel
 def _balance_errors(
-    flow: FloatArray,
-    pressure: FloatArray,
-    active: NDArray[np.bool_],
-    weights: FloatArray,
-    load: float,
+    flow: FloatArray, pressure: FloatArray, active: BoolArray, weights: FloatArray, load: float
 ) -> FloatArray:
     """What flows, pressures of ruptured nodes and the load lack, shape (n + 1,).
 

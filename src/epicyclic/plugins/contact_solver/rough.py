@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import Status
 from epicyclic.oil.rheology import DEFAULT, PRESETS
 from epicyclic.plugins.contact_solver.conditions import Heating, LineContact, flow_easing, thinning
@@ -28,9 +28,6 @@ from epicyclic.units import percent
 # the coarse one, and a long one on the coarse grid alone averages over the roughness: a regression
 # estimator, as in multilevel Monte Carlo methods. The mean is that of the fine grid whatever the
 # coarse one is worth; only the error depends on it.
-
-
-FloatArray = NDArray[np.float64]
 
 GROWTH = 1.5
 """Largest growth of the number of fine blocks between looks at the error: an early look tells
@@ -166,9 +163,6 @@ def next_plan(
         longer, aided = (math.ceil(SOME_MORE * number) for number in (blocks, aid_blocks))
         return Plan(min(most, longer), min(aided, highest))
     return Plan(more, aided)
-
-
-# Transient contact of two moving rough surfaces: averages of friction, contact and film.
 
 
 NODES = 512  # Nodes by default: some 125 in a half-width.

@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.animation import FuncAnimation
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.fitted_models import FORMS, REGIMES, OilModel, QuantityFit
 from epicyclic.contact.line_contact import LineContacts, contacts_at
 from epicyclic.errors import Status
@@ -35,8 +35,6 @@ from epicyclic.show.plots.style import (
 )
 from epicyclic.show.terminal import number_table, plain_table
 from epicyclic.units import MICROMETRE, Quantity, percent, unit_text
-
-# Table of one line contact.
 
 
 def contact_tables(result: ContactResult) -> RenderableType:
@@ -83,9 +81,6 @@ def _ending(result: ContactResult) -> str:
         return f"Converged in {result.smooth.iterations} Newton steps."
     rough = result.rough
     return f"Converged; {rough.steps} time steps, {rough.unsolved_steps} of them not solved."
-
-
-# Tables of a fitted oil model: what was simulated, where it holds, how well each form fits.
 
 
 INPUTS = (
@@ -167,11 +162,6 @@ def _domain(title: str, model: OilModel, quantity: str) -> Table:
         table.add_row(item.label, low, high, unit_text(item.unit.display))
     return table
 
-
-# Pressure, film, shear stress and temperature of a line contact, still or in motion.
-
-
-FloatArray = NDArray[np.float64]
 
 GIGAPASCAL, MEGAPASCAL, _MICROMETRE, MILLIMETRE = 1e9, 1e6, 1e-6, 1e-3
 MICROSECOND = 1e-6
@@ -315,9 +305,6 @@ def _over_x(result: ContactResult, ax: Axes, label: str) -> Axes:
     ax.set_xlabel("position along the rolling direction, mm")
     ax.set_ylabel(label)
     return ax
-
-
-# A fitted oil model against the simulations behind it, and over the film ratio.
 
 
 Simulated = Mapping[str, tuple[LineContacts, FloatArray]]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import Status
 from epicyclic.plugins.contact_solver.conditions import (
     Heating,
@@ -26,9 +26,6 @@ from epicyclic.plugins.contact_solver.kernels_steady import (
 )
 
 # Nodes of the steady solver: dense where the inlet ends and where the film ruptures.
-
-
-FloatArray = NDArray[np.float64]
 
 MIDDLE_SHARE, INLET_SHARE, EXIT_SHARE = 0.25, 0.375, 0.375
 """Shares of the nodes around x = 0, x = -b and x = b. [1]"""
@@ -111,9 +108,6 @@ def graded_nodes(count: int, grid: Grid) -> FloatArray:
         x -= (position(x) - wanted) / density(x)
     x[0], x[-1] = grid.inlet, grid.outlet
     return x
-
-
-# Steady smooth contact: pressure, film, friction and rolling loss.
 
 
 NODES = 256  # Nodes by default: the central film is then within 0.7 % of its limit up to M = 200.

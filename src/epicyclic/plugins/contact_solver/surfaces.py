@@ -11,15 +11,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import check_archive, read_bytes, read_text, refuse
-
-# Surface profiles: generated with given statistics; filtered.
-
-
-FloatArray = NDArray[np.float64]
 
 POINTS_PER_CORRELATION = 8  # Points of a generated profile within one correlation length.
 PERIOD = 4000.0
@@ -93,13 +88,6 @@ class Profile:
 
 
 SMOOTH = Profile(np.zeros(4), 1.0)  # No roughness.
-
-
-def sinusoidal_profile(amplitude: float, wavelength: float) -> Profile:
-    """One wave. `amplitude` from its mean line. [m]"""
-    points = 64
-    phase = np.arange(points) * (2 * math.pi / points)
-    return Profile(amplitude * np.cos(phase), wavelength / points)
 
 
 def generate_profile(

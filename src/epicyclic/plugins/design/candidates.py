@@ -17,6 +17,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.case.tables.strength import GearStrength, StrengthTable
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.gear import BasicRack
@@ -25,7 +26,6 @@ from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design.strength import Material, material_of
 from epicyclic.plugins.design.task import DutyPoint, Task
 
-FloatArray = NDArray[np.float64]
 Gears = dict[str, FloatArray]
 Row = Mapping[str, Any]
 

@@ -17,13 +17,12 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.gears.cutting import RackTool, ShaperTool, Tool
 from epicyclic.gears.gear import Gear, involute
 from epicyclic.gears.mesh import Mesh
 
-FloatArray = NDArray[np.float64]
 Numbers = FloatArray | float
 MM, MPA = 1e3, 1e-6
 Treatment = Literal["case-hardened", "through-hardened", "nitrided"]

@@ -14,8 +14,8 @@ from functools import cache
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     bulk_rise_of_loss,
@@ -29,7 +29,6 @@ from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.losses.mesh import ohlendorf_loss_factor
 from epicyclic.oil.oil import Oil, oil_state
 
-FloatArray = NDArray[np.float64]
 Numbers = FloatArray | float
 ZERO_CELSIUS, REFERENCE = 273.15, 38.0 + 273.15
 SCUFFING_TORQUES = (

@@ -8,8 +8,8 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.machine.element import joined_key
@@ -21,7 +21,6 @@ from epicyclic.study.sweeps.runner import Rows, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 OBJECTIVES: Mapping[str, str] = {
     "loss": "total",
     "transmission_error": "transmission_error_range",

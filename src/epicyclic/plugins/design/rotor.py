@@ -9,8 +9,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
 from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.errors import one_problem
@@ -18,7 +18,6 @@ from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.plugins.design.mass import as_list, parts
 from epicyclic.study.solve import build_computed
 
-FloatArray = NDArray[np.float64]
 HARMONICS = 10  # Of the mesh frequency, at most.
 POSITIONS = 4  # Mesh positions over one wave of the highest harmonic, at least.
 ENDINGS = (".json", ".csv")

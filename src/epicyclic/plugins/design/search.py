@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case, read_case
 from epicyclic.errors import EpicyclicError, InputError, Problem, Status, raise_any
 from epicyclic.messages import did_you_mean
@@ -42,7 +42,6 @@ from epicyclic.study.sweeps.runner import Plan, Row, Rows, Runner, failed_row
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 SAFETIES = ("pitting", "bending", "micropitting", "scuffing", "bearing_life")
 KNOWN = ("mass", "diameter", "width", "backlash")  # Without solving.
 SCREENS = {
@@ -182,7 +181,7 @@ class Found:
         return data
 
 
-def dominated(values: FloatArray, others: FloatArray) -> NDArray[np.bool_]:
+def dominated(values: FloatArray, others: FloatArray) -> BoolArray:
     """Which rows any of `others` beats or equals in all columns and beats in one."""
     found = np.zeros(len(values), dtype=bool)
     for own in others:

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from epicyclic import library
+from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import Built
 from epicyclic.case.case import Case
 from epicyclic.case.tables.strength import GearStrength, StrengthTable
@@ -50,7 +50,6 @@ from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import build_computed
 from epicyclic.units import percent
 
-FloatArray = NDArray[np.float64]
 FACE_BINS = 8  # Parts of the face over which the load is averaged for K_Hbeta.
 MATERIAL_STIFFNESS = 0.8  # C_M of ISO 6336-1: measured over theoretical stiffness. [1]
 AFTER = {

@@ -27,8 +27,6 @@ from epicyclic.show.terminal import plain_table
 if TYPE_CHECKING:
     from epicyclic.plugins.rexs.importing import RexsImport
 
-# What an import from REXS took, and what the file lacks.
-
 
 def import_tables(
     found: RexsImport,
@@ -55,9 +53,6 @@ def import_tables(
     parts += [Text(f"Problem: {problem}") for problem in others]
     parts += [Text(f"Note: {note}") for note in (*found.notes, *notes)]
     return Group(*parts)
-
-
-# The commands rexs import and rexs export.
 
 
 component_option = click.option(

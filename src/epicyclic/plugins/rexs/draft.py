@@ -14,9 +14,6 @@ from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, fixed_by, rigid_pa
 from epicyclic.schema.read import with_value
 from epicyclic.units import format_number
 
-# A case in the making: what a file gives, with its origin, and what it lacks.
-
-
 DIGITS = 15  # Significant digits that a number has in REXS at most.
 
 SAME = 1e-9  # Relative difference up to which numbers of a file are the same.
@@ -178,9 +175,6 @@ class Draft:
         )
 
 
-# The oil of a REXS file to a table of properties.
-
-
 _KINDS = (
     "lubricant_type_iso_6336_2019",
     "lubricant_type_iso_6336_2006",
@@ -272,9 +266,6 @@ def temperature(draft: Draft, model: Model, stages: Sequence[Component]) -> None
     name, key = "temperature_lubricant", "operation.oil_inlet_temperature"
     if draft.take(key, name, stages, None) is None:
         draft.take(key, name, model.of_type("gear_casing") or stages)
-
-
-# The operating point of a REXS file: who drives, who is held, torque and speed.
 
 
 _WATTS = {"W": 1.0, "kW": 1e3}

@@ -335,9 +335,6 @@ def _bearing(builder: Builder, bearing: PlanetBearing, pin: int, shaft: int, nam
         builder.relate("ordered_assembly", 1, assembly=row, part=roller)
 
 
-# A train as the parts of a new REXS file: sets, shafts, clutches, bearings.
-
-
 _TYPES = {
     "deep-groove": "radial_grooved_ball_bearing",
     "cylindrical": "radial_roller_bearing",
@@ -689,9 +686,6 @@ def _custom(key: str, value: float, unit: str) -> Attribute:
 def _rounded(value: float) -> float:
     """A computed number with the digits that it may have."""
     return float(format_number(value, DIGITS)) + 0.0
-
-
-# Results to REXS files: into a file that is there, or into a new one.
 
 
 def write_rexs(

@@ -653,9 +653,6 @@ def shift_notes(
         )
 
 
-# The tables of a planetary set or a pair from a REXS file: gears, bearing, carrier.
-
-
 ROUNDING = 1e-3
 """Sum of the profile shifts of a mesh, as printed with three decimals, less the exact sum. [1]"""
 

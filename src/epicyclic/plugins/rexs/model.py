@@ -14,14 +14,11 @@ from importlib import resources
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.units import Quantity
-
-# Ids, units and versions of REXS, from the one file that has them.
-
 
 CUSTOM = "custom_epicyclic_"  # Start of the ids of attributes that the standard does not have.
 
@@ -322,7 +319,6 @@ class Model:
 # Where parts stand.
 
 
-FloatArray = NDArray[np.float64]
 USUAL_AXIS: FloatArray = np.array([1.0, 0.0, 0.0])
 """Axis of a gear unit that states none."""
 

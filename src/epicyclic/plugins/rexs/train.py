@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks
@@ -28,7 +29,6 @@ from epicyclic.plugins.rexs.model import (
     ROUNDED,
     USUAL_AXIS,
     Component,
-    FloatArray,
     Model,
     vector,
 )
@@ -315,9 +315,6 @@ def _supports(draft: Draft, train: Train, shaft: Shaft, names: Sequence[str]) ->
         draft.need(f"bearings.{name}.radial_force", "force that is read here", [], hint)
 
 
-# How the train of a REXS file runs: clutches and brakes, who drives, who is driven.
-
-
 _LOAD = "external_load"
 
 
@@ -521,9 +518,6 @@ def _definers(shaft: Shaft) -> Sequence[Component]:
 def _is_true(part: Component) -> bool:
     defines = part.get("defines_speed")
     return defines is not None and defines.text().lower() == "true"
-
-
-# The train of a REXS file as the tables of a case.
 
 
 _OTHER_STAGES = ("bevel_stage", "worm_stage")

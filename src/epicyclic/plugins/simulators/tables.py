@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import Problem, printable
 from epicyclic.messages import one_line
 from epicyclic.study.maps.formats import Format
@@ -92,9 +92,9 @@ def _table(name: str, array: xr.DataArray, order: tuple[str, ...], about: str) -
 _LEAST_VECTO_ROWS = 4
 
 
-def _single(data: xr.Dataset, name: str) -> NDArray[np.float64]:
+def _single(data: xr.Dataset, name: str) -> FloatArray:
     """A variable over speed and torque; all other axes have one value."""
-    values: NDArray[np.float64] = data[name].transpose("speed", "torque", ...).values
+    values: FloatArray = data[name].transpose("speed", "torque", ...).values
     return values.reshape(values.shape[:2])
 
 
@@ -170,7 +170,7 @@ def modelica_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
     return problems
 
 
-def loss_table(data: xr.Dataset) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def loss_table(data: xr.Dataset) -> tuple[FloatArray, FloatArray]:
     """The table `lossTable` of LossyGear, and how far the torque loss that it gives is off.
 
     At each speed by least squares over all torques: tau_loss = (1 - eta_mf1) tau + tau_bf for

@@ -11,15 +11,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.drawing import fills_of, plot_gear_set
 from epicyclic.show.plots.style import AROUND, PANEL, SMALL_CHARACTERS
 from epicyclic.units import MILLIMETRE
-
-Floats = NDArray[np.float64]
 
 SHAFT = 9.0  # Diameter of a shaft of which no bearing is known. [mm]
 GAP = 0.15  # Between sets whose places are not given, over the width of the gears. [1]
@@ -32,7 +30,7 @@ class Arrangement:
     """Where the shafts and sets of a train are. Lengths in mm."""
 
     gears: Mapping[str, xr.Dataset]  # All gears about the axis of the input.
-    axes: Mapping[str, Floats]  # Axis of each shaft, seen along them.
+    axes: Mapping[str, FloatArray]  # Axis of each shaft, seen along them.
     middles: Mapping[str, float]  # Place of each set along the axes.
     starts: Mapping[str, float]  # Place along the axes from which those on a shaft are counted.
     widths: Mapping[str, float]  # Of the faces of the gears.
@@ -49,7 +47,7 @@ def arrangement_of(
         return None
     on = {member: shaft for shaft, members in shafts.items() for member in members}
     centers = _centers(inputs, gears, on)
-    origins: dict[str, Floats] = {}
+    origins: dict[str, FloatArray] = {}
     axes = {inputs["operation"]["input"]: np.zeros(2)}
     while grown := list(_next_to(axes, origins, centers, on)):
         for name, shaft, place in grown:
@@ -84,7 +82,7 @@ def _face_width(inputs: Mapping[str, Any], gear: str) -> float:
 
 def _centers(
     inputs: Mapping[str, Any], gears: Mapping[str, xr.Dataset], on: Mapping[str, str]
-) -> dict[str, Floats]:
+) -> dict[str, FloatArray]:
     """Axis of each member of a set, by its name on shafts, about the origin of the set."""
     found = {member: np.zeros(2) for member in on}
     for name, gear in gears.items():
@@ -96,11 +94,11 @@ def _centers(
 
 
 def _next_to(
-    axes: Mapping[str, Floats],
-    origins: Mapping[str, Floats],
-    centers: Mapping[str, Floats],
+    axes: Mapping[str, FloatArray],
+    origins: Mapping[str, FloatArray],
+    centers: Mapping[str, FloatArray],
     on: Mapping[str, str],
-) -> Iterator[tuple[str, str, Floats]]:
+) -> Iterator[tuple[str, str, FloatArray]]:
     """Sets, and shafts, whose places follow from what is known."""
     for member, shaft in on.items():
         name = member.partition(".")[0]

@@ -16,16 +16,11 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.mesh import scale_of
 from epicyclic.show.plots.style import COLOUR_MAP, COLOURS, label_of, legend_below, styled_figure
-
-# Drawings to scale: the gear set in the transverse plane, and the teeth of a mesh in contact.
-
-
-Floats = NDArray[np.float64]
 
 FILLS = {
     "sun": ("#F6D58A", "#E3B24C", "#FBEBC8", "#C08F2F"),
@@ -162,7 +157,7 @@ def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     return ax
 
 
-def _stands(gear: xr.Dataset) -> Floats:
+def _stands(gear: xr.Dataset) -> FloatArray:
     """Places in the housing, in rows. [mm]"""
     return np.column_stack([gear["stands_x"], gear["stands_y"]])
 
@@ -199,7 +194,7 @@ def fills_of(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
     }
 
 
-def _frame(ax: Axes, middle: Floats, half: Floats) -> None:
+def _frame(ax: Axes, middle: FloatArray, half: FloatArray) -> None:
     """Millimetres of equal length on both axes; the wider side shows more."""
     ax.set(xlabel="x, mm", ylabel="y, mm")
     ax.set_xlim(middle[0] - half[0], middle[0] + half[0], auto=True)
@@ -217,28 +212,28 @@ def _centers(gear: xr.Dataset) -> list[list[float]]:
     return centers
 
 
-def _place(gear: xr.Dataset, number: int) -> tuple[Floats, float]:
+def _place(gear: xr.Dataset, number: int) -> tuple[FloatArray, float]:
     """Centre of a gear, and by how much it is turned from a tooth that points along y. [rad]"""
     center = np.array([gear["center_x"][number], gear["center_y"][number]])
     return center, math.radians(float(gear["direction"][number])) - math.pi / 2
 
 
-def _rotation(angle: float) -> Floats:
+def _rotation(angle: float) -> FloatArray:
     """For points in rows."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[cosine, sine], [-sine, cosine]])
 
 
-def _circle(radius: float) -> Floats:
+def _circle(radius: float) -> FloatArray:
     angle = np.linspace(0, 2 * math.pi, CIRCLE_POINTS)
     return radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def _path(points: Floats) -> Path:
+def _path(points: FloatArray) -> Path:
     return Path(points, closed=False)
 
 
-def _whole_outline(gear: xr.Dataset, step: int) -> Floats:
+def _whole_outline(gear: xr.Dataset, step: int) -> FloatArray:
     """All teeth, of their points every `step`-th, or the tip circle if there is no outline."""
     if "x" not in gear:
         return _circle(_scalar(gear, "tip_diameter") / 2)
@@ -246,14 +241,14 @@ def _whole_outline(gear: xr.Dataset, step: int) -> Floats:
     return _teeth(thinned, range(int(gear.attrs["teeth"])))
 
 
-def _teeth(gear: xr.Dataset, numbers: range) -> Floats:
+def _teeth(gear: xr.Dataset, numbers: range) -> FloatArray:
     """Outline of some teeth side by side; tooth 0 points along y."""
     tooth = np.column_stack([gear["x"], gear["y"]])
     pitch = 2 * math.pi / int(gear.attrs["teeth"])
     return np.concatenate([tooth @ _rotation(number * pitch) for number in numbers])
 
 
-def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> Floats:
+def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> FloatArray:
     """The teeth within `half` of the origin, closed to a solid, turned by `turn`."""
     if "x" not in gear:
         return _circle(_scalar(gear, "tip_diameter") / 2)
@@ -391,14 +386,14 @@ def turning_mesh(
     return Turning(figure, teeth, layers, tuple(phases.tolist()))
 
 
-def _nearest(phases: Floats, phase: float) -> int:
+def _nearest(phases: FloatArray, phase: float) -> int:
     """The number of the position nearest to a phase, round the period."""
     away = np.abs(phases - phase)
     return int(np.argmin(np.minimum(away, 1 - away)))
 
 
 def _mesh_turns(
-    view: xr.Dataset, gears: Mapping[str, xr.Dataset], mesh: xr.Dataset, phases: Floats
+    view: xr.Dataset, gears: Mapping[str, xr.Dataset], mesh: xr.Dataset, phases: FloatArray
 ) -> list[tuple[float, float]]:
     """How far each gear is turned from touching at the pitch point: at phase 0, for each period."""
     number, path = next(
@@ -436,7 +431,7 @@ def _middle(mesh: xr.Dataset) -> float:
     return (low + high) / 2
 
 
-def _values(mesh: xr.Dataset, name: str, number: int) -> Floats:
+def _values(mesh: xr.Dataset, name: str, number: int) -> FloatArray:
     """At one position, by line and segment."""
     at = mesh[name].isel(mesh_position=number).transpose("contact_line", "segment")
     return at.to_numpy().astype(float)

@@ -397,9 +397,6 @@ def _legend(ax: Axes, layout: _Layout) -> None:
     )
 
 
-# Temperatures and losses of a gearbox that warms up.
-
-
 _MINUTE, _HOUR = 60.0, 3600.0
 _PANEL = (7.0, 3.2)
 _MOST_NODES = 7

@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import FuncNorm, Normalize
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
@@ -27,7 +27,6 @@ from epicyclic.show.plots.style import (
 from epicyclic.study.operating import AXES, PLANE, STATE
 from epicyclic.units import format_number, unit_text
 
-FloatArray = NDArray[np.float64]
 Limits = tuple[float, float] | None
 
 HALF_WIDTH = "half_width"

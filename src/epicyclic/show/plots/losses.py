@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.plots.style import COLOURS, legend_below, write_beside
@@ -21,10 +21,6 @@ from epicyclic.units import decimals_of, format_number, percent, power_unit
 
 if TYPE_CHECKING:
     import xarray as xr
-
-FloatArray = NDArray[np.float64]
-
-# Losses of one result: how large each component is, and how they add up.
 
 
 GROUP_COLOURS = {"load-dependent": COLOURS[0], "load-independent": COLOURS[4]}

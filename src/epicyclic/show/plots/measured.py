@@ -11,13 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.show.plots.style import COLOURS, styled_figure
 from epicyclic.study.measured.comparison import AS_GIVEN, CALIBRATED, MeasuredComparison
 from epicyclic.study.operating import OPERATING
 from epicyclic.units import format_number, percent, unit_text
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 PANEL = (3.8, 3.1)  # Width and height of one of the Axes. [inch]
 COLUMNS = 4  # Most columns that the legend has.

@@ -14,8 +14,8 @@ from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
     COLOURS,
@@ -28,11 +28,6 @@ from epicyclic.show.plots.style import (
 )
 from epicyclic.study.friction import FrictionComparison, recommended
 from epicyclic.units import decimals_of
-
-# Planet bearing: which rollers carry, and where along their length.
-
-
-Floats = NDArray[np.float64]
 
 CIRCLES = 4  # Most circles that the scale of loads has.
 SEEN = 0.02  # Share of the highest load from which on a bar is seen. [1]
@@ -72,8 +67,8 @@ def plot_roller_loads(bearing: xr.Dataset, ax: Axes) -> Axes:
 
 
 def _emptiest(
-    azimuth: Floats,  # [rad]
-    load: Floats,  # [N]
+    azimuth: FloatArray,  # [rad]
+    load: FloatArray,  # [N]
 ) -> float:
     """The direction that is farthest from all rollers that carry, in doubt downwards. [deg]"""
     carrying = azimuth[(load > SEEN * load.max()).any(axis=0)]
@@ -110,9 +105,6 @@ def plot_roller_profile(bearing: xr.Dataset, ax: Axes) -> Axes:
 #
 # All functions take one mesh as `epicyclic.mesh_details` returns it, draw on given Axes and return
 # them.
-
-
-FloatArray = NDArray[np.float64]
 
 FRICTION = "friction_coefficient"
 MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power", "film_ratio")
@@ -267,9 +259,6 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
         ylabel=label_of(mesh[name]),
     )
     return ax
-
-
-# Friction models of a case side by side.
 
 
 ROW_HEIGHT = 0.3  # Height of one bar. [inch]

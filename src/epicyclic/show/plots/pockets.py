@@ -17,8 +17,8 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure, FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
@@ -170,9 +170,6 @@ def _over_roll(mesh: xr.Dataset, ax: Axes, title: str, label: str) -> Axes:
 # The transverse section through a mesh: teeth as they are cut, and the pockets between them.
 #
 # Member 1 is below and turns counter-clockwise, about an axis straight below the mesh.
-
-
-FloatArray = NDArray[np.float64]
 
 PANELS, COLUMNS = 6, 3  # Moments in the life of a pocket that a figure shows.
 PANEL_WIDTH = 4.2  # [inches]

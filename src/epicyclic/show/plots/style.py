@@ -21,14 +21,12 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.units import format_number, unit_text
 
 if TYPE_CHECKING:
     from matplotlib.animation import Animation
-
-FloatArray = NDArray[np.float64]
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """Colours of M. Okabe and K. Ito, Color Universal Design (2008)."""

@@ -15,8 +15,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.show.plots.loss_map import draw_lines
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
@@ -34,8 +34,6 @@ from epicyclic.study.bands.advice import in_few_words
 from epicyclic.study.operating import CASE_KEY, key_of, operating_line
 from epicyclic.study.sweeps.run import is_sweep
 from epicyclic.units import format_number, unit_text
-
-FloatArray = NDArray[np.float64]
 
 RESULTS = ("total", "efficiency")  # That pictures of a sweep show.
 MOST_LINES = len(COLOURS)

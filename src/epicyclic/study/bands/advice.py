@@ -9,9 +9,9 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from epicyclic import library
+from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# How well a result is known: what sentences about it need, however it was found.
-
 MOST_DRIVERS = 3  # Inputs and models that are named after a band.
 
 
@@ -37,7 +35,7 @@ class Known:
     unit: str  # Unit of the total and its parts.
     nominal: Mapping[str, float]  # Results of the case.
     ends: Mapping[str, tuple[float, float]]  # Ends of the symmetric 95 % interval of each result.
-    draws: Mapping[str, NDArray[np.float64]]  # What each result may be.
+    draws: Mapping[str, FloatArray]  # What each result may be.
     shares: Mapping[str, float]  # Shares of drivers in the variance of the total, each alone. [1]
     names: Mapping[str, str]  # What each input is called, and how to know it better.
     advice: Mapping[str, str]  # What each input is called, and how to know it better.
@@ -72,8 +70,6 @@ def known_of(data: xr.Dataset) -> Known:
         remarks=tuple(str(data.attrs["remarks"]).splitlines()),
     )
 
-
-# What limits the trust in a result, and what would raise it most.
 
 _KEY = re.compile(r"[\w.-]+\.[\w.-]+")
 _OF_ALL = ("sets", "gears", "operation", "models")  # Tables that the name of a key needs not.

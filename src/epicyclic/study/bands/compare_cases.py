@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import ConvergenceError
@@ -35,7 +35,6 @@ from epicyclic.study.sweeps.runner import Progress, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 OWN = "B: "  # Before the key of a value of the second case that the first does not share.
 PAIRS = 256
 

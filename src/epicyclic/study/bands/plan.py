@@ -10,8 +10,8 @@ from functools import cache
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
 from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise_any
@@ -27,9 +27,6 @@ from epicyclic.study.sweeps.run import AS_TESTED, CasePlan
 from epicyclic.study.sweeps.runner import Row, Rows, Runner
 
 # From losses and factors of models to the results that have a band.
-
-
-FloatArray = NDArray[np.float64]
 
 SUMS = ("load_dependent", "load_independent", "total", "efficiency")
 """Results beside the single losses."""
@@ -63,7 +60,7 @@ class Outputs:
     """How results follow from the losses of one case."""
 
     losses: tuple[str, ...]  # Names of those that are included.
-    load_dependent: NDArray[np.bool]  # Which of them depend on the load.
+    load_dependent: BoolArray  # Which of them depend on the load.
     kinds: tuple[str, ...]  # Kind of each, see `model_form_of`.
     # True if they are grouped as a test rig does: what torque adds, and the rest.
     tested: bool = False
@@ -141,8 +138,6 @@ def factors_of(values: Sequence[UncertainValue], points: FloatArray) -> dict[str
         if value.is_model_form
     }
 
-
-# Losses where each uncertain input is one standard deviation up and down.
 
 HALF_WIDTH = math.sqrt(3.0)
 """Half the width of a uniform distribution over its standard deviation. [1]"""
@@ -260,9 +255,6 @@ def at_deviations(value: UncertainValue, deviations: Any) -> Any:
         low, high = value.spread
         found = (low + high) / 2 + deviations * (high - low) / 2 / HALF_WIDTH
     return np.clip(found, value.low, value.high)
-
-
-# Samples of what is uncertain in a case, solved at one operating point or at several.
 
 
 Point = Mapping[str, Any]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.study.bands.plan import (
@@ -52,8 +53,6 @@ if TYPE_CHECKING:
 
 
 # How well the losses of a map are known: the same samples of all inputs at each of its points.
-
-FloatArray = NDArray[np.float64]
 
 SAMPLES = 32  # Points in each of the two sets.
 TORQUE_LOSS = "torque_loss"
@@ -352,9 +351,6 @@ class CycleStudy(Study):
         ]  # fmt: skip
         found: FloatArray = np.array([(above - below) / 2 for below, above in ends])
         return found
-
-
-# How well losses are known: of a case, over a map, over a duty cycle.
 
 
 def uncertainty(

@@ -9,14 +9,11 @@ from statistics import NormalDist
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.tables.uncertainty import UncertainValue
 
 # Distributions of uncertain values, cut off where a case has no such values.
-
-
-FloatArray = NDArray[np.float64]
 
 
 def _frozen(value: UncertainValue) -> Any:
@@ -253,7 +250,7 @@ ROUNDING = 1e-9  # Standard deviation over the largest value below which a loss 
 class Curves:
     """Every loss as a product of one curve for each input and model. Theory (U9)."""
 
-    dependent: NDArray[np.bool]  # Which of them depend on the load.
+    dependent: BoolArray  # Which of them depend on the load.
     values: tuple[UncertainValue, ...]
     slopes: FloatArray  # Slopes of the logarithm of each loss, over the columns of `_columns`.
     # Means of losses that do not vary, or are 0 in some samples; NaN for all others.
@@ -275,7 +272,7 @@ class Curves:
         return np.array([self.at(drawn) for drawn in (samples.a, samples.b, *mixed)])
 
 
-def fit_curves(dependent: NDArray[np.bool], samples: Samples, losses: FloatArray) -> Curves:
+def fit_curves(dependent: BoolArray, samples: Samples, losses: FloatArray) -> Curves:
     """Curves through losses, shape (t, 2 n), at the points A, then B; NaN where there is none.
 
     `dependent`, shape (t,), tells which depend on the load.

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import ConvergenceError
@@ -49,11 +49,6 @@ from epicyclic.study.sweeps.runner import Rows
 if TYPE_CHECKING:
     import xarray as xr
 
-
-# The distribution of a result, from samples of all that is uncertain.
-
-
-FloatArray = NDArray[np.float64]
 
 SAMPLES = 256  # Points in each of the two sets.
 UNIT_OF_RESULT = "see unit"  # Unit of what is stated for all results, which have different ones.
@@ -196,7 +191,7 @@ def about_study(
     }
 
 
-def _sound(total: FloatArray, messages: Sequence[str]) -> NDArray[np.bool]:
+def _sound(total: FloatArray, messages: Sequence[str]) -> BoolArray:
     """Which samples have a result; raises `ConvergenceError` if hardly any has."""
     sound = np.isfinite(total)
     if sound.sum() < FEWEST:

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, layout_of, operation_of
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 # sum of x over all points, with the variance (1 - p) x^2/p^2 of each, uncorrelated (Cohen and
 # Kaplan, PODC 2007, 225). A cycle of no more points than the sample is summed exactly.
 
-Array = NDArray[np.float64]
 _SEED = 0  # The same cycle and map give the same sample.
 
 
@@ -68,7 +67,7 @@ class Sample:
         self._keys = np.empty(0)
         self._rows = np.empty((0, 0))
 
-    def add(self, point: Sequence[Array], power: Array, energy: Array) -> None:
+    def add(self, point: Sequence[FloatArray], power: FloatArray, energy: FloatArray) -> None:
         """Offer points as the axes of the map, in their units; W and J."""
         losing = energy > 0
         rows = np.stack([*point, power, energy], axis=1)[losing]
@@ -78,7 +77,7 @@ class Sample:
         stay = np.argsort(self._keys)[: self._size + 1]
         self._keys, self._rows = self._keys[stay], self._rows[stay]
 
-    def drawn(self) -> tuple[Array, Array]:
+    def drawn(self) -> tuple[FloatArray, FloatArray]:
         """Rows of the values of the axes, power, energy; and the probability of each."""
         rows = self._rows[: self._size]
         threshold = self._keys[self._size] if self._keys.size > self._size else math.inf
@@ -138,7 +137,7 @@ def changes_at(lookup: Lookup, row: Sequence[float]) -> dict[str, str]:
     return changes
 
 
-def leave_out(lookup: Lookup, node_work: Array) -> Deviation:
+def leave_out(lookup: Lookup, node_work: FloatArray) -> Deviation:
     """The deviation of a map of every second node from the whole one: more than that of the latter.
 
     `node_work` is the angle turned through at each node. [rad]
@@ -155,8 +154,6 @@ def leave_out(lookup: Lookup, node_work: Array) -> Deviation:
 #
 # Near zero torque the rolling loss rises like a root, and at the torque that just drives the drag
 # behind a mesh the loss has a kink. A map that is read linearly needs torques there that crowd.
-
-FloatArray = NDArray[np.float64]
 
 RATIO = 2.0
 """Between torques that crowd at zero: a loss that rises like a root is then met to 2 % of the part

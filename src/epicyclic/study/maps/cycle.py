@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.errors import Problem, first_of, raise_any
 from epicyclic.messages import one_line
 from epicyclic.study.operating import OPERATING, STATE
@@ -34,8 +34,6 @@ from epicyclic.units import SECOND, Quantity
 # A cycle is a time series (a column of time) or a histogram (a column of durations or shares). It
 # is read once to check it, which finds every problem, and once more for each use; it is never in
 # memory as a whole.
-
-Array = NDArray[np.float64]
 
 TIME, DURATION, SHARE = "time", "duration", "share"
 _WEIGHTINGS = (TIME, DURATION, SHARE)
@@ -71,11 +69,11 @@ class Column:
 class Piece:
     """Some points of a cycle, with the time for which each stands."""
 
-    speed: Array  # In rpm, N m.
-    torque: Array  # In rpm, N m.
-    temperature: Array | None  # In degC; None if there is none.
-    state: NDArray[np.intp] | None  # Numbers in `Cycle.states`; None if there is no such column.
-    duration: Array  # [s]
+    speed: FloatArray  # In rpm, N m.
+    torque: FloatArray  # In rpm, N m.
+    temperature: FloatArray | None  # In degC; None if there is none.
+    state: IntArray | None  # Numbers in `Cycle.states`; None if there is no such column.
+    duration: FloatArray  # [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +105,7 @@ class Cycle:
         Of a time series each stands for half of the time to each neighbour, the trapezoidal rule.
         Rows at which two pieces meet are in both, each time with a part of their time.
         """
-        last: dict[str, Array] = {}
+        last: dict[str, FloatArray] = {}
         for batch in self.source.batches([column.header for column in self.columns.values()]):
             rows = {
                 name: column.factor * _numbers(self.source, column.header, batch) + column.offset
@@ -129,7 +127,7 @@ class Cycle:
             state = rows[STATE].astype(np.intp) if self.states else None
             yield Piece(speed, rows["torque"], temperature, state, duration)
 
-    def _state_numbers(self, column: Any) -> Array:
+    def _state_numbers(self, column: Any) -> FloatArray:
         """Numbers of the states in a column."""
         place = {name: float(number) for number, name in enumerate(self.states)}
         codes, texts = _texts(column)
@@ -231,7 +229,7 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
 # --- values ---------------------------------------------------------------------------------------
 
 
-def _numbers(source: Source, header: str, piece: TablePiece) -> Array:
+def _numbers(source: Source, header: str, piece: TablePiece) -> FloatArray:
     """A column as numbers, NaN for what is not a finite number."""
     import pyarrow as pa
     import pyarrow.compute as pc
@@ -251,7 +249,7 @@ def _numbers(source: Source, header: str, piece: TablePiece) -> Array:
     return values
 
 
-def _texts(column: Any) -> tuple[NDArray[np.intp], list[str]]:
+def _texts(column: Any) -> tuple[IntArray, list[str]]:
     """A column of `pyarrow` as numbers of texts, and these; whole numbers without decimals."""
     import pyarrow as pa
 
@@ -345,7 +343,7 @@ class _Checks:
         self.rows += len(lines)
 
     def _note(
-        self, bad: NDArray[np.bool_], column: Any, lines: Any, name: str, allowed: str, remedy: str
+        self, bad: BoolArray, column: Any, lines: Any, name: str, allowed: str, remedy: str
     ) -> None:
         """Count rows with a mistake, and keep the first."""
         count = int(bad.sum())

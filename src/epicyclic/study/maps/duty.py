@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import did_you_mean, refused, written
@@ -52,8 +52,6 @@ if TYPE_CHECKING:
 # Linear interpolation is a weighted sum of the values at the nodes of the map. The weights of all
 # points are added up first, each times the angle turned through; multiplied by the torque losses at
 # the nodes they give the energy of every component at once.
-
-Array = NDArray[np.float64]
 
 MODES = ("driving", "coasting", "idling")
 """The reference shaft drives, is driven, or passes no power: no torque or no speed."""
@@ -208,7 +206,7 @@ def cycle_plan(case: Case, cycle: Cycle, celsius: tuple[float, ...] | None) -> M
     )
 
 
-def crowded(low: float, high: float, count: int) -> Array:
+def crowded(low: float, high: float, count: int) -> FloatArray:
     """About `count` values from `low` to `high`, and zero, where they crowd."""
     ends = [end for end in (min(low, 0.0), max(high, 0.0)) if end]
     steps = np.linspace(0, 1, (count - 1) // max(len(ends), 1) + 1) ** _CROWDING
@@ -223,10 +221,10 @@ def texts_of(values: Iterable[float], quantity: Quantity) -> list[str]:
 class Totals:
     """Sums over a cycle; arrays have a row for each of `MODES`, a column for each state or one."""
 
-    node_work: Array  # Angle turned through at each node of the map. [rad]
-    duration: Array  # [s]
-    energy_in: Array  # [J]
-    energy_out: Array  # [J]
+    node_work: FloatArray  # Angle turned through at each node of the map. [rad]
+    duration: FloatArray  # [s]
+    energy_in: FloatArray  # [J]
+    energy_out: FloatArray  # [J]
     outside: float = 0.0  # Duration outside of the map. [s]
 
 
@@ -335,7 +333,7 @@ def check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
     raise_any(problems, cycle.source.name)
 
 
-def point_of(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[Array, ...]:
+def point_of(lookup: Lookup, cycle: Cycle, piece: Piece) -> tuple[FloatArray, ...]:
     """The points of a piece as the axes of the map."""
     point = {"speed": piece.speed, "torque": piece.torque, "temperature": piece.temperature}
     if piece.state is not None and lookup.states:
@@ -452,7 +450,7 @@ def _to_dataset(lookup: Lookup, totals: Totals, error: Deviation) -> xr.Dataset:
 
 def _of_states(
     lookup: Lookup, totals: Totals
-) -> Iterator[tuple[str, tuple[str, ...], Array, str, str]]:
+) -> Iterator[tuple[str, tuple[str, ...], FloatArray, str, str]]:
     """Sums over each state, as `_to_dataset` has the others; none without states."""
     if not lookup.states:
         return

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.case.case import Case, read_case
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import one_line
@@ -181,8 +181,6 @@ def write_parquet(data: xr.Dataset, path: Path) -> None:
 # its share of the torque loss, and not the power. Over the speed it is nearer to a straight line,
 # and its limit at rest is in the map.
 
-Array = NDArray[np.float64]
-
 _SUMS = ("load_dependent", "load_independent", "total", "input_power")
 """Variables in W of a map that are no component."""
 _ROUNDING = 1e-9  # Part of an axis by which a point may leave the map, from conversions of units.
@@ -195,10 +193,10 @@ class Lookup:
     # Names of the axes: speed, torque, temperature if there is an oil, state if there are any.
     names: tuple[str, ...]
     # Rising values of speed [rpm], torque [N m], temperature [degC]; states are numbered from 1.
-    axes: tuple[Array, ...]
+    axes: tuple[FloatArray, ...]
     states: tuple[str, ...]  # Names of the states, none if there are none.
     components: tuple[str, ...]  # Names of the losses.
-    torques: Array  # Loss of each component over the magnitude of the speed. [N m]
+    torques: FloatArray  # Loss of each component over the magnitude of the speed. [N m]
 
     @property
     def size(self) -> int:
@@ -206,15 +204,15 @@ class Lookup:
         return int(np.prod(self.torques.shape[1:]))
 
     @property
-    def total(self) -> Array:
+    def total(self) -> FloatArray:
         """Torque loss at all nodes, in one row. [N m]"""
-        sums: Array = self.torques.sum(axis=0).ravel()
+        sums: FloatArray = self.torques.sum(axis=0).ravel()
         return sums
 
     def corners(
         self,
-        *point: Array,  # As the axes, in their units.
-    ) -> tuple[NDArray[np.intp], Array]:
+        *point: FloatArray,  # As the axes, in their units.
+    ) -> tuple[IntArray, FloatArray]:
         """The nodes around points, and their weights. A point outside is taken at the border.
 
         Returns
@@ -235,7 +233,7 @@ class Lookup:
             weights.append(np.prod(parts, axis=0))
         return np.array(nodes), np.array(weights)
 
-    def outside(self, *point: Array) -> NDArray[np.bool_]:
+    def outside(self, *point: FloatArray) -> BoolArray:
         """Which points lie outside of the map. Parameters as for `corners`."""
         found = np.zeros(point[0].shape, dtype=bool)
         for axis, values in zip(self.axes, point, strict=True):
@@ -260,7 +258,7 @@ class Lookup:
         return replace(self, torques=values.reshape(self.torques.shape))
 
 
-def _bracket(axis: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
+def _bracket(axis: FloatArray, values: FloatArray) -> tuple[IntArray, FloatArray]:
     """Number of the value of `axis` below each of `values`, and the part of the way to the next."""
     if axis.size == 1:
         return np.zeros(values.shape, dtype=np.intp), np.zeros(values.shape)
@@ -268,20 +266,20 @@ def _bracket(axis: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
     return low, np.clip((values - axis[low]) / np.diff(axis)[low], 0, 1)
 
 
-def _every_second(count: int) -> NDArray[np.intp]:
+def _every_second(count: int) -> IntArray:
     """Every second of `count` numbers from 0, and the last."""
     return np.unique(np.append(np.arange(0, count, 2), count - 1))
 
 
-def slack(axis: Array) -> float:
+def slack(axis: FloatArray) -> float:
     """By how much a point may leave an axis before it lies outside."""
     return _ROUNDING * max(float(np.ptp(axis)), float(np.abs(axis).max()))
 
 
-def loss_power(torque_loss: Array, speed: Array) -> Array:
+def loss_power(torque_loss: FloatArray, speed: FloatArray) -> FloatArray:
     """Power in W of a torque loss in N m at a speed in rpm."""
     to_rpm, _ = RPM.scale_and_offset()
-    power: Array = torque_loss * np.abs(speed) / to_rpm
+    power: FloatArray = torque_loss * np.abs(speed) / to_rpm
     return power
 
 
@@ -318,11 +316,11 @@ def make_lookup(data: xr.Dataset) -> Lookup:
     return Lookup(names, axes, states, tuple(components), shares * torque_loss)
 
 
-def _nearest_moving(speed: Array) -> NDArray[np.intp]:
+def _nearest_moving(speed: FloatArray) -> IntArray:
     """For each speed its own number, for rest that of the nearest, rather the positive one."""
     moving = np.flatnonzero(speed)[::-1]
     distance = np.abs(moving[:, None] - np.arange(speed.size))
-    nearest: NDArray[np.intp] = moving[distance.argmin(axis=0)]
+    nearest: IntArray = moving[distance.argmin(axis=0)]
     return nearest
 
 

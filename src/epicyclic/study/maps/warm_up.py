@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 from scipy.interpolate import PchipInterpolator
 
+from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, term_nodes
 from epicyclic.case.case import Case
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
@@ -55,8 +55,6 @@ if TYPE_CHECKING:
 #
 # The machine is solved with all of its parts equally hot, at a few temperatures. Over time each
 # loss is then read at the temperature of its own parts.
-
-Array = NDArray[np.float64]
 
 SPACING = 10.0
 """Between the temperatures at which losses are solved: with 20 K a train ended 0.12 K from its
@@ -110,7 +108,7 @@ def heat_samples(
     return samples
 
 
-def _between(knots: Sequence[float]) -> Array:
+def _between(knots: Sequence[float]) -> FloatArray:
     """Temperatures at which conductances are computed. [K]"""
     steps = SPACING / WAYS * np.arange(WAYS)
     return np.concatenate([knot + steps for knot in knots])
@@ -175,8 +173,9 @@ class HeatTables:
 
     def transient(
         self,
-        heating: Array,  # With which the heat, and the conductances, of the points are added up.
-        flowing: Array,  # With which the heat, and the conductances, of the points are added up.
+        # With which the heat, and the conductances, of the points are added up.
+        heating: FloatArray,
+        flowing: FloatArray,
     ) -> Transient:
         """The gearbox at a mixture of the points."""
         return Transient(
@@ -184,17 +183,17 @@ class HeatTables:
             Curves(self._between, self._conductances @ flowing, self._conductances_at), self.taken,
         )  # fmt: skip
 
-    def heat(self, heating: Array) -> Curves:
+    def heat(self, heating: FloatArray) -> Curves:
         """Curves of the heat of every source."""
         return Curves(self.knots, self._heat @ heating, self._heat_at)
 
-    def losses(self, heat: Array) -> Array:
+    def losses(self, heat: FloatArray) -> FloatArray:
         """Every loss from the heat of every source. [W]"""
         place = {term: index for index, term in enumerate(self.terms)}
         into = [place[source.term] for source in self.sources]
         return np.array(np.bincount(into, heat, len(place)), float)
 
-    def _weights(self, at: Sequence[Sequence[str]]) -> Array:
+    def _weights(self, at: Sequence[Sequence[str]]) -> FloatArray:
         place = {node: index for index, node in enumerate(self.capacities)}
         found = np.zeros((len(at), len(place)))
         for row, nodes in enumerate(at):
@@ -207,13 +206,11 @@ def _conductance(links: Mapping[str, Link], key: str) -> float:
     return links[key].conductance if key in links else 0.0
 
 
-def _coefficients(knots: Array, values: Sequence[Sequence[Sequence[float]]]) -> Array:
+def _coefficients(knots: FloatArray, values: Sequence[Sequence[Sequence[float]]]) -> FloatArray:
     """Monotone cubic curves over the first axis of `values`; the second one comes last."""
-    found: Array = PchipInterpolator(knots, np.array(values)).c.swapaxes(2, 3)
+    found: FloatArray = PchipInterpolator(knots, np.array(values)).c.swapaxes(2, 3)
     return found
 
-
-# Warming up: temperatures and losses over time, at a constant operating point or over a cycle.
 
 START = quantity_of(Temperature) or CELSIUS
 DURATION = Quantity("a time", "s", "s", low=0.0, high=1e9, open_low=True)
@@ -363,9 +360,11 @@ class _Step:
     duration: float  # [s]
     # With which the losses, and the conductances, at the points of the grid add up to their means.
     # [1]
-    heating: Array
-    coasting: Array  # The part of `heating` for which power enters at the output, or nowhere. [1]
-    flowing: Array
+    heating: FloatArray
+    coasting: (
+        FloatArray  # The part of `heating` for which power enters at the output, or nowhere. [1]
+    )
+    flowing: FloatArray
     # Mean power that enters and leaves at the reference shaft; NaN if two are driven. [W]
     entering: float
     leaving: float
@@ -385,7 +384,7 @@ class _Drive:
     plan: SweepPlan  # The grid.
 
     @property
-    def mean(self) -> tuple[Array, Array]:
+    def mean(self) -> tuple[FloatArray, FloatArray]:
         """Weights of the heat and of the conductances over all steps."""
         durations = np.array([step.duration for step in self.steps])
         shares = durations / durations.sum()
@@ -504,12 +503,12 @@ class _Told:
     """A course, with what is lost on it; arrays over time come last."""
 
     course: Course
-    losses: Array  # [W]
-    efficiency: Array  # [1]
+    losses: FloatArray  # [W]
+    efficiency: FloatArray  # [1]
 
 
 def _run(
-    tables: HeatTables, drive: _Drive, begin: Array, seconds: float, progress: Progress | None
+    tables: HeatTables, drive: _Drive, begin: FloatArray, seconds: float, progress: Progress | None
 ) -> _Told:
     """The steps of a drive, repeated until the end."""
     if len(drive.steps) == 1:
@@ -537,14 +536,14 @@ def _run(
     return _told(course, rows)
 
 
-def _lost(tables: HeatTables, step: _Step, temperatures: Array) -> tuple[Array, float]:
+def _lost(tables: HeatTables, step: _Step, temperatures: FloatArray) -> tuple[FloatArray, float]:
     """Every loss [W], and the efficiency."""
     heat, _ = tables.heat(step.heating).read(temperatures)
     coasting, _ = tables.heat(step.coasting).read(temperatures)
     return tables.losses(heat), step.efficiency(float(heat.sum()), float(coasting.sum()))
 
 
-def _told(course: Course, rows: Sequence[tuple[Array, float]]) -> _Told:
+def _told(course: Course, rows: Sequence[tuple[FloatArray, float]]) -> _Told:
     losses, efficiencies = zip(*rows, strict=True)
     return _Told(course, np.transpose(losses), np.array(efficiencies))
 
@@ -565,7 +564,7 @@ def _to_dataset(
     drive: _Drive,
     told: _Told,
     seconds: float,
-    settled: Array | None,
+    settled: FloatArray | None,
 ) -> xr.Dataset:
     import xarray as xr
 
@@ -620,7 +619,7 @@ def _to_dataset(
     )
 
 
-def _times_reached(course: Course, ends: Array) -> Array:
+def _times_reached(course: Course, ends: FloatArray) -> FloatArray:
     """When each node has come `REACHED` of the way from its start to the end; NaN if never. [s]"""
     start = course.temperatures[:, 0]
     way = (course.temperatures - start[:, None]) / np.where(ends == start, np.nan, ends - start)[

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray
 from epicyclic.case.case import Case, CaseTable, build_case
 from epicyclic.case.keys import OFF_OPEN_BOUND, Parameter, no_start, parameter_of
 from epicyclic.case.tables.uncertainty import MODEL_FORM, model_forms
@@ -46,8 +46,6 @@ if TYPE_CHECKING:
 
 
 # What a comparison asks: a case at measured points; also as a plan whose points shards share.
-
-BoolArray = NDArray[np.bool_]
 
 _GROUPS = ("temperature", "state", "speed")
 _OUTLET = "thermal.oil_outlet_temperature"

@@ -11,8 +11,8 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.result import NOT_INCLUDED
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
@@ -29,8 +29,6 @@ from epicyclic.units import CELSIUS, format_number
 if TYPE_CHECKING:
     import pandas as pd
 
-
-# A calibrated case: fitted values, and how well they are known, as its table [uncertainty].
 
 SHRUNK = 1 - 1e-6
 """Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
@@ -95,11 +93,6 @@ def _without(table: dict[str, Any], keys: Collection[str]) -> dict[str, Any]:
     others = {key: value for key, value in table.items() if key != "correlated"}
     return others | ({"correlated": left} if left else {})
 
-
-# How far computed losses are from measured ones, by set of points and by group.
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 AS_GIVEN, CALIBRATED = "as given", "CALIBRATED"  # State of the case behind computed losses.
 ALL, USED, HELD_OUT = "all points", "fitted points", "held-out points"

@@ -9,8 +9,8 @@ from dataclasses import replace
 from statistics import NormalDist
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.keys import Parameter
 from epicyclic.errors import ConvergenceError, Problem, one_problem, raise_any
 from epicyclic.study.measured.intervals import (
@@ -25,11 +25,6 @@ from epicyclic.study.measured.intervals import (
 )
 from epicyclic.study.measured.residuals import MeasuredPoints, Residuals
 from epicyclic.units import format_number
-
-# What to know before using calibrated values.
-
-
-FloatArray = NDArray[np.float64]
 
 CURVED = 2.0
 """Growth of the sum of squares over that of a linear model beyond which a warning says so. [1]"""
@@ -158,7 +153,7 @@ NEAR_BOUND = 1e-4  # Distance from a bound, over the start value, that counts as
 def fit_parameters(
     points: MeasuredPoints,
     parameters: Sequence[Parameter],
-    used: NDArray[np.bool_],
+    used: BoolArray,
     confidence: float,
     reach: FloatArray | None = None,
     tell: Tell = lambda text: None,
@@ -289,7 +284,7 @@ def _inside(place: FloatArray, ends: FloatArray) -> FloatArray:
 
 
 def _last_step(
-    residuals: Residuals, start: FloatArray, slopes: FloatArray, at_bound: NDArray[np.bool_]
+    residuals: Residuals, start: FloatArray, slopes: FloatArray, at_bound: BoolArray
 ) -> FloatArray:
     """To where a linear model puts the least squares."""
     deviations = residuals(start)

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.case.case import Case
 from epicyclic.case.keys import Parameter
 from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
@@ -19,9 +19,6 @@ from epicyclic.study.measured.residuals import STEP, Residuals
 from epicyclic.units import format_number
 
 # What a least-squares solution says about its parameters, the model taken as linear there.
-
-
-FloatArray = NDArray[np.float64]
 
 SINGULAR = 1e-7
 """Ratio of singular values of the derivatives below which parameters cannot be told apart. [1]"""
@@ -34,7 +31,7 @@ class Linearised:
     solution: FloatArray
     deviations: FloatArray  # Computed less measured, over the uncertainty if `weighted`.
     derivatives: FloatArray  # Derivatives of the deviations.
-    at_bound: NDArray[np.bool_]  # Parameters that cannot move freely; they have no interval.
+    at_bound: BoolArray  # Parameters that cannot move freely; they have no interval.
     weighted: bool
     confidence: float  # [1]
 
@@ -49,14 +46,14 @@ class Linearised:
         return self.deviations.size - self.solution.size
 
     @cached_property
-    def is_idle(self) -> NDArray[np.bool_]:
+    def is_idle(self) -> BoolArray:
         """Parameters that change nothing at the solution."""
         lengths = np.linalg.norm(self.derivatives, axis=0)
-        idle: NDArray[np.bool_] = ~self.at_bound & (lengths <= SINGULAR * lengths.max())
+        idle: BoolArray = ~self.at_bound & (lengths <= SINGULAR * lengths.max())
         return idle
 
     @cached_property
-    def free(self) -> NDArray[np.intp]:
+    def free(self) -> IntArray:
         """Parameters that have an interval, unless they cannot be told apart."""
         return np.flatnonzero(~self.at_bound & ~self.is_idle)
 
@@ -231,10 +228,10 @@ class _Valley:
             distance = _between(inner, outer)
         return math.nan
 
-    def others(self, parameter: int) -> NDArray[np.intp]:
+    def others(self, parameter: int) -> IntArray:
         """Free parameters beside one."""
         free = self.found.free
-        others: NDArray[np.intp] = free[free != parameter]
+        others: IntArray = free[free != parameter]
         return others
 
     def _guess(self, parameter: int, sign: float) -> float:
@@ -323,8 +320,6 @@ def _between(inner: tuple[float, float], outer: tuple[float, float]) -> float:
     part = -below / (above - below)
     return near + (far - near) * min(max(part, 0.1), 0.9)
 
-
-# What a calibration found.
 
 Noise = Literal["stated", "constant", "relative"]
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.case.case import Case
 from epicyclic.case.keys import Parameter
 from epicyclic.errors import ConvergenceError, InputError
@@ -36,9 +36,6 @@ from epicyclic.study.sweeps.runner import HERE, Rows, Runner
 # other losses, and their own error of some 1e-3 hides how the loss depends on what is fitted. Read
 # between numbers that do not depend on what was asked before they are a smooth function.
 
-
-Floats = NDArray[np.float64]
-
 PER_OCTAVE = 16
 """Flows for each doubling of the number: between them the loss is found within 0.3 % to 0.6 % of
 the pockets of an e-axle with voids."""
@@ -48,7 +45,7 @@ the pockets of an e-axle with voids."""
 class FlowLattice:
     """Scaled figures of flows by family and place, the number being 2^(place / PER_OCTAVE)."""
 
-    _solved: dict[tuple[FlowFamily, int], Floats] = field(default_factory=dict)
+    _solved: dict[tuple[FlowFamily, int], FloatArray] = field(default_factory=dict)
 
     def tables(self, cases: Iterable[Case], threads: int | None = None) -> FlowTables:
         """Tables that hold the flows of some cases; those of models without similarity are not."""
@@ -104,10 +101,6 @@ class NearbyPoints(PointList):
                 continue  # the point reports it
 
 
-# The losses that the model gives at measured points, for any values of some keys.
-
-FloatArray = NDArray[np.float64]
-
 _EXACT = {"numerics.pocket_interpolation": 0.0}
 """Flows through pockets are solved at every point: the derivatives of a fit would show the error of
 tables."""
@@ -148,9 +141,7 @@ class MeasuredPoints:
         )
         return self.losses(self.runner.within(plan).run(plan), unloaded)
 
-    def asked(
-        self, *settings: Mapping[str, Any]
-    ) -> tuple[tuple[dict[str, Any], ...], NDArray[np.intp]]:
+    def asked(self, *settings: Mapping[str, Any]) -> tuple[tuple[dict[str, Any], ...], IntArray]:
         """The keys that each point changes, and numbers of the points without torque, if asked."""
         changes = self.measured.changes
         points = tuple({**_EXACT, **change, **keys} for keys in settings for change in changes)
@@ -158,12 +149,12 @@ class MeasuredPoints:
             return with_unloaded(points)
         return points, np.arange(len(points))
 
-    def losses(self, rows: Rows, unloaded: NDArray[np.intp]) -> list[Computed]:
+    def losses(self, rows: Rows, unloaded: IntArray) -> list[Computed]:
         """The losses for each of the settings, of the rows of all points that were `asked` for."""
         count = len(self.measured)
         return [self._computed(rows, unloaded, i) for i in range(0, unloaded.size, count)]
 
-    def _computed(self, rows: Rows, unloaded: NDArray[np.intp], first: int) -> Computed:
+    def _computed(self, rows: Rows, unloaded: IntArray, first: int) -> Computed:
         """The points of one of the settings, from number `first` on."""
         component = self.measured.component
         own = slice(first, first + len(component))
@@ -179,14 +170,12 @@ class MeasuredPoints:
         )
         return Computed(losses, tuple(messages), tuple(rows.warnings[own]))
 
-    def _loss(self, rows: Rows, unloaded: NDArray[np.intp], name: str) -> FloatArray:
+    def _loss(self, rows: Rows, unloaded: IntArray, name: str) -> FloatArray:
         """A loss of all points."""
         if name == LOAD_DEPENDENT and self.load_dependent == AS_TESTED:
             return as_tested(rows, unloaded)
         return rows.numbers(name)
 
-
-# Deviations of computed from measured losses over weights, for any values of some keys.
 
 STEP = 1e-2
 """Step of the differences that give the derivatives, over the start value: flows through pockets
@@ -200,7 +189,7 @@ class Residuals:
     points: MeasuredPoints
     # Their values are given as ratios to the start values, "scaled".
     parameters: Sequence[Parameter]
-    used: NDArray[np.bool_]  # Points of the table that the fit sees.
+    used: BoolArray  # Points of the table that the fit sees.
     # Scatter of the points, in place of that of the table; `known` in W, else over its mean.
     scatter: FloatArray | None = None
     known: bool = True

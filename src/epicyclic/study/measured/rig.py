@@ -7,15 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.errors import InputError, Problem, first_of, one_problem
 from epicyclic.messages import one_line
 from epicyclic.study.measured.comparison import near_values
 from epicyclic.study.measured.table import LOAD_DEPENDENT, SENSOR, Grid, Measurements
 from epicyclic.study.operating import AXES, STATE_KEY
-
-BoolArray = NDArray[np.bool_]
 
 EQUAL = {"speed": (0.01, 0.0), "torque": (0.02, 0.1), "temperature": (0.0, 2.0)}
 """How much conditions that are meant to be equal differ at most: relatively, and absolutely in
@@ -113,7 +111,7 @@ def _same(cell: str, wanted: str) -> bool:
         return False
 
 
-def _scaled(table: Measurements, factor: NDArray[np.float64]) -> Measurements:
+def _scaled(table: Measurements, factor: FloatArray) -> Measurements:
     known = table.uncertainty
     return replace(
         table, loss=factor * table.loss, uncertainty=None if known is None else factor * known

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys
@@ -80,8 +80,6 @@ def read_grid(table: Any, form: TableForm = AS_IT_IS) -> Grid:
 
 
 # Measurements as a table states them: conditions, loss, which loss it is, uncertainty.
-
-FloatArray = NDArray[np.float64]
 
 LOAD_DEPENDENT = "load_dependent"  # Sum of the losses that depend on the load, as a component.
 

@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-# Axes of a sweep: keys and their values, alone or changing together.
-
 MOST_POINTS = 1_000_000  # Rows of more points do not fit into memory.
 ROW = "row"  # Dimension of a table of points, which counts its rows from 1.
 _LARGEST_WHOLE = 2**53  # Larger whole numbers are no exact coordinates.
@@ -230,9 +228,6 @@ def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
     raise PydanticCustomError(
         "axis", "is not a value of one key", {"remedy": "give numbers, text or names"}
     )
-
-
-# Tables of points: a column for each key, a row for each point.
 
 
 def columns_of(points: str | Path | pd.DataFrame) -> dict[str, list[Any]]:

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from epicyclic.arrays import FloatArray, IntArray
 from epicyclic.build.machine import layout_of
 from epicyclic.case.case import FILE_KEYS, Case, TrainCase, build_case
 from epicyclic.case.keys import field_at
@@ -658,7 +658,7 @@ COMPUTED: LoadDependent = "computed"
 AS_TESTED: LoadDependent = "as-tested"
 
 
-def with_unloaded(points: Sequence[Mapping[str, Any]]) -> tuple[Points, NDArray[np.intp]]:
+def with_unloaded(points: Sequence[Mapping[str, Any]]) -> tuple[Points, IntArray]:
     """Points, behind them the same without torque, each once.
 
     Returns
@@ -679,16 +679,13 @@ def with_unloaded(points: Sequence[Mapping[str, Any]]) -> tuple[Points, NDArray[
     return (*map(dict, points), *behind), np.array(numbers, dtype=np.intp)
 
 
-def as_tested(rows: Rows, unloaded: NDArray[np.intp]) -> NDArray[np.float64]:
+def as_tested(rows: Rows, unloaded: IntArray) -> FloatArray:
     """Load-dependent losses of points from `with_unloaded`. Theory (P9).
 
     NaN where a point or its partner failed. [W]
     """
     total = rows.numbers("total")
     return total[: unloaded.size] - total[unloaded]
-
-
-# Run a sweep.
 
 
 def sweep(

@@ -22,9 +22,9 @@ from pathlib import Path
 from typing import Any, BinaryIO, ClassVar, Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
+from epicyclic.arrays import FloatArray
 from epicyclic.errors import (
     EpicyclicError,
     InputError,
@@ -79,7 +79,7 @@ class Rows:
         self.status = [NOT_COMPUTED] * size
         self.message = [""] * size
         self.warnings = [""] * size
-        self._numbers: dict[str, NDArray[np.float64]] = {}
+        self._numbers: dict[str, FloatArray] = {}
 
     def __len__(self) -> int:
         return len(self.status)
@@ -104,7 +104,7 @@ class Rows:
                 self._numbers[name] = np.full(len(self), np.nan)
             self._numbers[name][point] = value
 
-    def numbers(self, name: str) -> NDArray[np.float64]:
+    def numbers(self, name: str) -> FloatArray:
         """One number of all points; NaN where there is none."""
         return self._numbers.get(name, np.full(len(self), np.nan))
 
