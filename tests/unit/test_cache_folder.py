@@ -14,6 +14,7 @@ import pytest
 from epicyclic import cache_folder
 from epicyclic.cache_folder import private_folder
 from epicyclic.kernels import compiling as _jit
+from epicyclic.kernels.mixed_lubrication import eyring_stress
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX permissions")
 
@@ -71,6 +72,8 @@ def test_a_folder_that_others_can_write_to_is_not_taken(places, mode, which):
 def test_the_kernels_of_this_run_are_kept():
     assert _jit._CACHE_DIR is not None
     assert Path(_jit._CACHE_DIR).is_dir()
+    cached = eyring_stress._cache
+    assert cached.cache_path == str(_jit._CACHE_DIR)  # wherever the package is
 
 
 KERNEL = """\
@@ -197,10 +200,16 @@ print(3.5, len(told), len(copies), hits, sep="\\n")
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
 def test_kernels_are_compiled_in_a_copy_of_the_process(tmp_path):
     """The copy keeps the memory of the compiler; this process reads what it has put on the disk."""
-    program = tmp_path / "program.py"
+    program = tmp_path / "one" / "program.py"
+    program.parent.mkdir()
     program.write_text(TWO)
     assert printed(program) == ["3", "2", "[0, 1, 1]"]
     assert printed(program) == ["0", "0", "[0, 1, 1]"]
+    elsewhere = program.parent.rename(tmp_path / "two") / "program.py"  # and another time
+    elsewhere.write_text(TWO)
+    assert printed(elsewhere) == ["0", "0", "[0, 1, 1]"]
+    elsewhere.write_text(TWO.replace("x - 3", "x - 2 - 1"))
+    assert printed(elsewhere)[0] == "3"
 
 
 @pytest.mark.slow

@@ -15,11 +15,11 @@ from epicyclic.kernels.compiling import kernel
 # for tens of thousands of times in a solution, so that its time is felt.
 
 
-FloatArray = NDArray[np.float64]
+Floats = NDArray[np.float64]
 
 
 @kernel
-def _add_squares(place: FloatArray, others: FloatArray, first: int, row: FloatArray) -> None:
+def _add_squares(place: Floats, others: Floats, first: int, row: Floats) -> None:
     """Add half the squared distance along four coordinates to `row`: one pass is quicker."""
     a, b, c, d = place[first], place[first + 1], place[first + 2], place[first + 3]
     along_a, along_b = others[first], others[first + 1]
@@ -31,9 +31,9 @@ def _add_squares(place: FloatArray, others: FloatArray, first: int, row: FloatAr
 
 @kernel
 def covariances(
-    place: FloatArray,  # In units of the length over which things are alike.
-    others: FloatArray,  # One neighbour in each column: inner loops run along rows.
-    row: FloatArray,
+    place: Floats,  # In units of the length over which things are alike.
+    others: Floats,  # One neighbour in each column: inner loops run along rows.
+    row: Floats,
 ) -> None:
     """Write 1/(1 + r^2/2) of a place with each of its neighbours to `row`. Theory (O15). [1]
 
@@ -49,10 +49,10 @@ def covariances(
 @kernel
 def covariance_sums(
     # The first four coordinates often stay as they are from one place to the next.
-    places: FloatArray,
-    others: FloatArray,
-    shares: FloatArray,  # What each neighbour adds at its own place.
-) -> FloatArray:
+    places: Floats,
+    others: Floats,
+    shares: Floats,  # What each neighbour adds at its own place.
+) -> Floats:
     """Sum of the shares of all neighbours times their `covariances`, shape (n,). [1]"""
     sums = np.empty(places.shape[0])
     held, row = np.empty(shares.size), np.empty(shares.size)
@@ -68,7 +68,7 @@ def covariance_sums(
 
 
 @kernel
-def _same(place: FloatArray, other: FloatArray) -> bool:
+def _same(place: Floats, other: Floats) -> bool:
     """Whether the first four coordinates are equal."""
     return bool(
         place[0] == other[0]
@@ -79,7 +79,7 @@ def _same(place: FloatArray, other: FloatArray) -> bool:
 
 
 @kernel
-def _sum_of_quotients(shares: FloatArray, row: FloatArray, parts: FloatArray) -> float:
+def _sum_of_quotients(shares: Floats, row: Floats, parts: Floats) -> float:
     """Sum of shares over `row`, four to one division, which takes longer than all the rest."""
     q = parts.size
     for j in range(q):
@@ -94,7 +94,7 @@ def _sum_of_quotients(shares: FloatArray, row: FloatArray, parts: FloatArray) ->
 
 
 @kernel
-def _sum(row: FloatArray) -> float:
+def _sum(row: Floats) -> float:
     """In four parts, which do not wait for each other."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     whole = row.size - row.size % 4
@@ -109,8 +109,6 @@ def _sum(row: FloatArray) -> float:
 
 
 # Tables over the pressure, and over the place on a path of contact: cubics through four points.
-
-Floats = NDArray[np.float64]
 
 
 @kernel

@@ -112,8 +112,6 @@ def plot_roller_profile(bearing: xr.Dataset, ax: Axes) -> Axes:
 # them.
 
 
-FloatArray = NDArray[np.float64]
-
 FRICTION = "friction_coefficient"
 MAPS = ("line_load", "hertz_pressure", "sliding_speed", "friction_power", "film_ratio")
 """Variables drawn over the plane of action."""
@@ -163,7 +161,7 @@ def plot_plane_of_action(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
     return ax
 
 
-def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, label: str) -> None:
+def _draw_map(ax: Axes, path: Floats, face: Floats, values: Floats, label: str) -> None:
     # triangles between the points, in coordinates of like size so that they are not slivers
     scale = np.ptp(path) / np.ptp(face)
     triangles = Triangulation(path, face * scale).triangles
@@ -175,7 +173,7 @@ def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, 
     ax.figure.colorbar(drawn, ax=ax, label=label)
 
 
-def scale_of(values: FloatArray, low: float) -> Normalize:
+def scale_of(values: Floats, low: float) -> Normalize:
     """A scale of colours to the highest value; where that is a peak, it has half the colours."""
     highest, limit = float(values.max()), float(np.quantile(values, NO_PEAK))
     if highest > PEAKED * limit > PEAKED * max(0.0, low):

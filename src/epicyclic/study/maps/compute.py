@@ -156,8 +156,6 @@ def leave_out(lookup: Lookup, node_work: Array) -> Deviation:
 # Near zero torque the rolling loss rises like a root, and at the torque that just drives the drag
 # behind a mesh the loss has a kink. A map that is read linearly needs torques there that crowd.
 
-FloatArray = NDArray[np.float64]
-
 RATIO = 2.0
 """Between torques that crowd at zero: a loss that rises like a root is then met to 2 % of the part
 that rises. [1]"""
@@ -253,7 +251,7 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     }
 
 
-def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
+def _checked(torques: Array, total: Array) -> Array:
     """Middles of the intervals next to zero, of those at whose ends the loss bends most, and of
     some others; and more of the first on each side.
 
@@ -275,7 +273,7 @@ def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
     inner = np.where(backwards, high[first], low[first])
     outer = np.where(backwards, low[first], high[first])
     closer = [inner + part * (outer - inner) for part in CLOSER_TO_ZERO]
-    found: FloatArray = np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
+    found: Array = np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
     return found
 
 

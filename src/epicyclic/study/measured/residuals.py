@@ -106,8 +106,6 @@ class NearbyPoints(PointList):
 
 # The losses that the model gives at measured points, for any values of some keys.
 
-FloatArray = NDArray[np.float64]
-
 _EXACT = {"numerics.pocket_interpolation": 0.0}
 """Flows through pockets are solved at every point: the derivatives of a fit would show the error of
 tables."""
@@ -117,7 +115,7 @@ tables."""
 class Computed:
     """Computed losses."""
 
-    loss: FloatArray  # Computed loss where one was measured; NaN where the point failed. [W]
+    loss: Floats  # Computed loss where one was measured; NaN where the point failed. [W]
     messages: tuple[str, ...]  # Why a point failed, and what to know about it.
     warnings: tuple[str, ...]  # Why a point failed, and what to know about it.
 
@@ -179,7 +177,7 @@ class MeasuredPoints:
         )
         return Computed(losses, tuple(messages), tuple(rows.warnings[own]))
 
-    def _loss(self, rows: Rows, unloaded: NDArray[np.intp], name: str) -> FloatArray:
+    def _loss(self, rows: Rows, unloaded: NDArray[np.intp], name: str) -> Floats:
         """A loss of all points."""
         if name == LOAD_DEPENDENT and self.load_dependent == AS_TESTED:
             return as_tested(rows, unloaded)
@@ -202,12 +200,12 @@ class Residuals:
     parameters: Sequence[Parameter]
     used: NDArray[np.bool_]  # Points of the table that the fit sees.
     # Scatter of the points, in place of that of the table; `known` in W, else over its mean.
-    scatter: FloatArray | None = None
+    scatter: Floats | None = None
     known: bool = True
-    _known: dict[tuple[float, ...], FloatArray] = field(default_factory=dict)
-    _offset: FloatArray | float = 0.0
+    _known: dict[tuple[float, ...], Floats] = field(default_factory=dict)
+    _offset: Floats | float = 0.0
 
-    def correct(self, exact: Residuals, scaled: FloatArray) -> None:
+    def correct(self, exact: Residuals, scaled: Floats) -> None:
         """From now on, agree with others at one place."""
         self._offset = 0.0
         offset = exact(scaled) - self(scaled)
@@ -220,7 +218,7 @@ class Residuals:
         return len(self._known) * len(self.points.measured)
 
     @property
-    def uncertainty(self) -> FloatArray | None:
+    def uncertainty(self) -> Floats | None:
         """Uncertainty of the losses at the points used; None if they have none. [W]"""
         if self.scatter is not None:
             return self.scatter if self.known else None
@@ -228,32 +226,32 @@ class Residuals:
         return None if whole is None or not self.known else whole[self.used]
 
     @property
-    def weight(self) -> FloatArray | float:
+    def weight(self) -> Floats | float:
         """What deviations are multiplied by. [1/W], or 1"""
         scatter = self.uncertainty if self.scatter is None else self.scatter
         return 1.0 if scatter is None else 1 / scatter
 
-    def losses(self, scaled: FloatArray) -> FloatArray:
+    def losses(self, scaled: Floats) -> Floats:
         """Computed losses of the points used. [W]"""
-        measured: FloatArray = self.points.measured.loss[self.used]
+        measured: Floats = self.points.measured.loss[self.used]
         return self(scaled) / self.weight + measured
 
     @property
-    def bounds(self) -> FloatArray:
+    def bounds(self) -> Floats:
         """Bounds of the scaled parameters, shape (p, 2). [1]"""
         return np.array([item.ends for item in self.parameters])
 
-    def settings(self, scaled: FloatArray) -> dict[str, Any]:
+    def settings(self, scaled: Floats) -> dict[str, Any]:
         """The values of the keys as a case file has them."""
         found: dict[str, Any] = {}
         for item, z in zip(self.parameters, scaled, strict=True):
             found |= item.settings(float(z))
         return found
 
-    def __call__(self, scaled: FloatArray) -> FloatArray:
+    def __call__(self, scaled: Floats) -> Floats:
         return self.at([scaled])[0]
 
-    def derivatives(self, scaled: FloatArray, *, central: bool = False) -> FloatArray:
+    def derivatives(self, scaled: Floats, *, central: bool = False) -> Floats:
         """d(residual)/d(scaled parameter), all from one batch of points, shape (n, p).
 
         By differences to one side, or to both, `central`, where bounds leave room for them.
@@ -283,7 +281,7 @@ class Residuals:
             )
         return table.T
 
-    def at(self, scaled: Sequence[FloatArray]) -> list[FloatArray]:
+    def at(self, scaled: Sequence[Floats]) -> list[Floats]:
         """Deviations for each of several parameter sets; those that are not known in one batch."""
         sets = [tuple(map(float, one)) for one in scaled]
         new = [one for one in dict.fromkeys(sets) if one not in self._known]
