@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import math
 
 import pytest
 from hypothesis import settings
 
 import epicyclic as ep
+from epicyclic.files import look_seldom
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.gears.mesh import Mesh
 from epicyclic.oil.oil import oil_state
@@ -15,9 +17,16 @@ from epicyclic.oil.oil import oil_state
 settings.register_profile("epicyclic", derandomize=True, deadline=None, max_examples=30)
 settings.load_profile("epicyclic")
 
+look_seldom()
+
 CELSIUS = 273.15
 COARSE = {"numerics.pocket_slices": 6, "numerics.pocket_steps": 10}
 """For tests to which the figures of the pockets do not matter."""
+
+
+def pytest_collection_finish():
+    """What is loaded by then stays: Python need not look through it for garbage again and again."""
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

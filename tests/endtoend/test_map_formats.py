@@ -351,7 +351,7 @@ def test_a_case_needs_speeds_and_torques(tmp_path, epicyclic):
 def test_the_command_says_why_points_are_missing(tmp_path, epicyclic):
     done = epicyclic(
         "map", "talbot-2012", "--speed", "0,1000 rpm", "--torque", "-100,100 N*m",
-        "--vary", "planet.count=12", "-o", str(tmp_path / "map.vtlm"),
+        "--vary", "planet.count=12", "--jobs", "1", "-o", str(tmp_path / "map.vtlm"),
     )  # fmt: skip
     assert done.returncode == 2
     assert "overlap" in done.stderr

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import gc
 import io
 import json
 import os
@@ -13,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 from epicyclic.__main__ import main
 
@@ -35,7 +35,7 @@ def run_command(arguments: Sequence[str], folder: Path) -> Done:
     """Run the command in a folder, as a user would."""
     before = Path.cwd()
     settings = {key: os.environ.get(key) for key in SETTINGS}
-    argv, handler, threshold = sys.argv, signal.getsignal(signal.SIGINT), gc.get_threshold()
+    argv, handler = sys.argv, signal.getsignal(signal.SIGINT)
     program = sys.modules["__main__"]
     package = program.__package__
     output, errors = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2))
@@ -45,7 +45,11 @@ def run_command(arguments: Sequence[str], folder: Path) -> Done:
     sys.argv = ["epicyclic", *arguments]
     program.__package__ = None  # from which its help would take another name
     try:
-        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+        with (
+            contextlib.redirect_stdout(output),
+            contextlib.redirect_stderr(errors),
+            mock.patch("gc.freeze"),  # for a process that is about to end, as this one is not
+        ):
             main()
     except SystemExit as end:
         code = int(end.code or 0)
@@ -54,8 +58,6 @@ def run_command(arguments: Sequence[str], folder: Path) -> Done:
         program.__package__ = package
         os.chdir(before)
         signal.signal(signal.SIGINT, handler)
-        gc.set_threshold(*threshold)
-        gc.unfreeze()  # the command freezes what is in memory, as its process is about to end
         for key, value in settings.items():
             if value is None:
                 del os.environ[key]

@@ -5,11 +5,14 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import pytest
+
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 
 import house
 
 
+@pytest.mark.slow
 def test_every_figure_is_below_its_ceiling():
     figures = house.figures()
     assert figures.keys() == house.CEILINGS.keys()

@@ -14,6 +14,7 @@ import pytest
 from epicyclic import cache_folder
 from epicyclic.cache_folder import private_folder
 from epicyclic.kernels import compiling as _jit
+from epicyclic.kernels.mixed_lubrication import eyring_stress
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX permissions")
 
@@ -38,12 +39,21 @@ def places(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("added", ["kernels/two.py", "plugins/solver/kernels_two.py"])
-def test_the_folder_changes_with_any_kernel(source, places, added):
-    before = _jit.cache_directory(source)
+def test_the_folder_changes_with_any_kernel(source, added):
+    before = _jit.cache_name(source)
     (source / added).write_text("y = 2\n")
-    after = _jit.cache_directory(source)
-    assert before != after
-    assert before.parent == after.parent == places[0]
+    assert before != _jit.cache_name(source)
+
+
+@pytest.mark.parametrize("given", [None, "shared"])
+def test_every_version_has_a_folder_of_its_own(places, tmp_path, monkeypatch, given):
+    parent = places[0]
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    if given is not None:
+        parent = tmp_path / given
+        monkeypatch.setenv("NUMBA_CACHE_DIR", str(parent))
+    package = Path(_jit.__file__).parents[1]
+    assert _jit._chosen_directory() == parent / _jit.cache_name(package)
 
 
 def test_without_a_home_the_folder_of_temporary_files_serves(places):
@@ -71,6 +81,8 @@ def test_a_folder_that_others_can_write_to_is_not_taken(places, mode, which):
 def test_the_kernels_of_this_run_are_kept():
     assert _jit._CACHE_DIR is not None
     assert Path(_jit._CACHE_DIR).is_dir()
+    cached = eyring_stress._cache
+    assert cached.cache_path == str(_jit._CACHE_DIR)  # wherever the package is
 
 
 KERNEL = """\
@@ -197,10 +209,16 @@ print(3.5, len(told), len(copies), hits, sep="\\n")
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
 def test_kernels_are_compiled_in_a_copy_of_the_process(tmp_path):
     """The copy keeps the memory of the compiler; this process reads what it has put on the disk."""
-    program = tmp_path / "program.py"
+    program = tmp_path / "one" / "program.py"
+    program.parent.mkdir()
     program.write_text(TWO)
     assert printed(program) == ["3", "2", "[0, 1, 1]"]
     assert printed(program) == ["0", "0", "[0, 1, 1]"]
+    elsewhere = program.parent.rename(tmp_path / "two") / "program.py"  # and another time
+    elsewhere.write_text(TWO)
+    assert printed(elsewhere) == ["0", "0", "[0, 1, 1]"]
+    elsewhere.write_text(TWO.replace("x - 3", "x - 2 - 1"))
+    assert printed(elsewhere)[0] == "3"
 
 
 @pytest.mark.slow

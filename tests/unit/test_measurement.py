@@ -13,6 +13,7 @@ from scipy.optimize import curve_fit
 
 import epicyclic as ep
 from epicyclic.case.keys import Parameter
+from epicyclic.show.plots.measured import measured_figure
 from epicyclic.study.measured.fit import fit_parameters
 from epicyclic.study.measured.residuals import MeasuredPoints
 from epicyclic.study.measured.table import Measurements, parse_measurements, read_grid
@@ -80,6 +81,17 @@ def test_error_figures_are_those_of_the_table(case, tests):
     assert figures.largest == pytest.approx(error[worst], rel=1e-9)
     assert figures.largest_line == worst + 1
     assert figures.chi_squared == pytest.approx((error**2).sum() * 1e24, rel=1e-6)
+
+
+def test_residuals_are_drawn_as_computed_less_measured(case, tests):
+    comparison = ep.compare_measured(case, tests)
+    axes = {ax.get_title("left"): ax for ax in measured_figure(comparison).axes}
+    error = comparison.computed - comparison.measured.loss
+    for title in ("Residuals over speed", "Residuals over torque", "Residuals by point"):
+        ax = axes[title]
+        lines = [it[0] for it in ax.containers] or ax.lines[:2]
+        drawn = np.concatenate([line.get_ydata() for line in lines])
+        np.testing.assert_allclose(np.sort(drawn), np.sort(error), rtol=1e-12)
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import json
 import re
+from functools import cache
 from html.parser import HTMLParser
 
 import numpy as np
@@ -50,6 +51,10 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
 
+parsed = cache(Page)
+"""Each page is read once."""
+
+
 @pytest.fixture(scope="module")
 def page(talbot_record):
     return ep.report_html(talbot_record)
@@ -72,31 +77,31 @@ def any_page(request):
 
 
 def test_every_tag_is_closed_and_every_id_is_unique(any_page):
-    parsed = Page(any_page)
-    assert parsed.open == []
-    assert len(set(parsed.ids)) == len(parsed.ids)
+    content = parsed(any_page)
+    assert content.open == []
+    assert len(set(content.ids)) == len(content.ids)
 
 
 def test_nothing_is_loaded_from_elsewhere(any_page):
-    for link in Page(any_page).links:
+    for link in parsed(any_page).links:
         assert link.startswith(("#", "data:")), link[:80]
     assert "default-src 'none'" in any_page  # the browser enforces it too
     assert not re.search(r"@import|url\((?!#)", any_page)
 
 
 def test_every_reference_within_the_page_has_its_target(any_page):
-    parsed = Page(any_page)
-    targets = {link[1:] for link in parsed.links if link.startswith("#")}
+    content = parsed(any_page)
+    targets = {link[1:] for link in content.links if link.startswith("#")}
     targets |= set(re.findall(r"url\(#([^)]+)\)", any_page))
-    assert targets <= set(parsed.ids)
+    assert targets <= set(content.ids)
 
 
 def test_the_chapters_hold_what_an_engineer_asks_for(page, map_page):
-    assert Page(page).sections == [
+    assert parsed(page).sections == [
         "losses", "uncertainty", "validity", "gears", "load", "friction", "bearing", "pockets",
         "oil", "methods", "inputs", "versions",
     ]  # fmt: skip
-    assert Page(map_page).sections == [
+    assert parsed(map_page).sections == [
         "explorer", "efficiency", "losses", "lines", "tables", "validity", "gears", "methods",
         "conventions", "inputs", "versions",
     ]  # fmt: skip
@@ -125,7 +130,7 @@ def value_in(result, key):
 
 def test_all_numbers_are_those_of_the_json(talbot, page):
     result = json.loads(ep.solve(talbot).to_json())
-    shown = Page(page).numbers
+    shown = parsed(page).numbers
     for key, value in shown.items():
         assert value == value_in(result, key), key
     for part in ("losses", "members", "fluid", "planet_bearing"):
@@ -140,7 +145,7 @@ def test_all_numbers_are_those_of_the_json(talbot, page):
 
 
 def test_all_numbers_of_a_map_are_those_of_the_map(pair_map, map_page):
-    shown = Page(map_page).numbers
+    shown = parsed(map_page).numbers
     dims = ("speed", "torque", "temperature")
     for key, value in shown.items():
         name, place = key[:-1].split("[")
@@ -176,7 +181,7 @@ def test_text_of_the_user_stays_text():
     page = ep.report_html(ep.record(case))
     assert "<script>alert" not in page
     assert html.escape(title, quote=False) in page
-    assert Page(page).open == []
+    assert parsed(page).open == []
 
 
 @pytest.mark.slow

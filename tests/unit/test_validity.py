@@ -20,6 +20,7 @@ from epicyclic.losses.ranges import (
     held_in_range,
     weight_of,
 )
+from epicyclic.show.summary import first_remarks
 from epicyclic.units import CELSIUS, GIGAPASCAL, MILLIMETRE
 
 PRESSURE = Range("pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, "a table")
@@ -224,6 +225,16 @@ def test_leaving_a_range_is_flagged_and_said(talbot, changes, quantity):
     for flag in result.flags:
         assert 0 <= flag.share <= 1
         assert math.isfinite(flag.found_low)
+
+
+def test_the_first_screen_says_how_much_of_the_loss_is_only_an_estimate(talbot):
+    result = ep.solve(talbot.updated({"operation.speed": "100 rpm"}))
+    *others, largest = sorted(watts for watts, _ in result.flags_with_loss)
+    assert max(others) < 0.2 * result.total
+    (told,) = (it for it in first_remarks(result, None) if it.endswith("is only an estimate."))
+    assert float(told.partition(" % of the loss")[0]) == pytest.approx(
+        100 * largest / result.total, abs=0.5
+    )
 
 
 def test_own_oil_of_the_regression_is_told_apart(talbot):

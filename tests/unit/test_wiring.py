@@ -16,7 +16,9 @@ from click.testing import CliRunner
 
 import asymmetric
 import epicyclic as ep
+from epicyclic.cli.compare import _share
 from epicyclic.cli.main import cli
+from epicyclic.kernels.interpolation import monotone_cubic
 
 MEMBERS = ("sun", "ring", "carrier")
 THRUST = ("sun-carrier", "sun-ring", "ring-carrier", "sun-housing", "carrier-housing")
@@ -303,3 +305,16 @@ def test_gears_take_up_heat_by_conductivity_capacity_and_density():
     assert sliding(conductivity=80, capacity=225) == pytest.approx(once, rel=1e-9)
     assert once < sliding(densities=(15680, 7120)) < twice
     assert once < sliding(densities=(7840, 14240)) < twice
+
+
+def test_monotone_cubics_take_the_slope_of_their_ends_and_are_straight_where_values_are():
+    values = np.array([[1.0, 4.0], [3.0, 4.5], [5.0, 7.0], [7.0, 7.2]])
+    read, slope = monotone_cubic(10.0, 0.5, values, np.array([10.2, 11.4, 12.0]))
+    assert read[:, 0] == pytest.approx([1.8, 6.6, 7.0], rel=1e-12)
+    assert slope[:2, 0] == pytest.approx([4.0, 4.0], rel=1e-12)
+    assert slope[2] == pytest.approx([0.0, 0.0])  # beyond the points
+
+
+def test_a_relative_uncertainty_is_a_share_or_per_cent():
+    assert _share("0.03") == pytest.approx(0.03)
+    assert _share("3 %") == _share("3%") == pytest.approx(0.03)

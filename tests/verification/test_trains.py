@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
+from epicyclic.show.power_flow import power_flow
 from trains import double_planet, one_set, plus, published, simple, stepped, turned_round, wolfrom
 
 ROUNDING = 1e-11  # relative; a few roundings of a small linear system
@@ -237,6 +238,9 @@ def test_torques_from_outside_on_further_shafts_take_part():
     # 10 N m times 4.5, less 4 N m, times 5.1
     assert result.flow.members["out"].torque == pytest.approx(-(10 * 4.5 - 4) * 5.1, rel=1e-12)
     assert result.total == pytest.approx(0.0, abs=1e-9)
+    assert power_flow(result).lines["between"].role == "loaded"
+    driven = solved(train, **{"operation.torques": {"between": "3 N*m"}})
+    assert power_flow(driven).lines["between"].role == "driven"
 
 
 def test_an_input_shaft_that_only_clutches_join():

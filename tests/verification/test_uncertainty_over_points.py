@@ -14,7 +14,7 @@ from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.cli.main import cli
 from epicyclic.errors import InputError
 from epicyclic.show.html import report_html
-from epicyclic.show.uncertainty_tables import LIMITS, uncertainty_items
+from epicyclic.show.uncertainty_tables import LIMITS, map_band_tables, uncertainty_items
 from epicyclic.study.bands.plan import Outputs
 from epicyclic.study.bands.points import Energies
 from epicyclic.study.bands.samples import fit_curves, index_values, make_samples
@@ -234,6 +234,39 @@ def test_groups_are_those_of_a_test_rig_where_the_case_says_so(case):
         for it, seconds in zip(watts, CYCLE["duration [s]"], strict=False)
     )
     assert float(energy["nominal"].sel(result="load_independent")) == pytest.approx(alone, rel=1e-9)
+
+
+def test_causes_of_the_band_of_a_map_are_told_where_they_are_largest():
+    plane = {"speed": ("speed", [900.0, 2700.0], {"units": "rpm"}),
+             "torque": ("torque", [40.0, 190.0], {"units": "N*m"})}  # fmt: skip
+    total = [[30.0, 110.0], [70.0, 260.0]]
+    data = xr.Dataset(
+        {
+            "total": (("speed", "torque"), total),
+            "low": (("result", "speed", "torque"), [[[20.0, 90.0], [60.0, 210.0]]]),
+            "high": (("result", "speed", "torque"), [[[41.0, 130.0], [85.0, 320.0]]]),
+            "first_order": (
+                ("driver", "speed", "torque"),
+                [[[0.9, 0.25], [0.3, 0.1]], [[0.05, 0.6], [0.5, 0.8]], [[0.01, 0.0], [0.02, 0.01]]],
+            ),
+            "explained": (("speed", "torque"), [[0.99, 0.98], [0.97, 0.995]]),
+            "input_name": ("input", ["oil level", "friction", "play"]),
+            "input_advice": ("input", ["measure it", "test it", "leave it"]),
+        },
+        {**plane, "result": ["total"], "driver": ["a", "b", "c"], "input": ["a", "b", "c"]},
+    )
+    band, causes, limits = map_band_tables(data)
+    assert [cell.text for cell in band.rows[1]] == ["2700", "60 to 85", "210 to 320"]
+    rows = [[cell.text for cell in row] for row in causes.rows]  # c is nowhere worth a row
+    assert [(row[0], row[2], row[3]) for row in rows] == [
+        ("b", "80.0 %", "speed 2700 rpm, torque 190 N·m"),
+        ("a", "90.0 %", "speed 900 rpm, torque 40 N·m"),
+    ]
+    assert "97.0 % or more" in causes.note
+    assert limits.items[0] == (
+        f"friction: up to {110 * 0.8**0.5:.3g} W of the band, at speed 2700 rpm, torque 190 N·m; "
+        "test it."
+    )
 
 
 def value(key, kind, spread):

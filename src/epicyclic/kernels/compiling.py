@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import os
 import pickle
@@ -11,6 +12,7 @@ import threading
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar, cast
 
@@ -93,6 +95,7 @@ def _work_and_end(work: Callable[[], object], reader: int, writer: int) -> NoRet
         _can_be_copied, _is_copy = False, True
         listeners[:] = [lambda: _tell(writer)]
         ahead.clear()
+        gc.disable()  # a fifteenth of the time: a copy ends before it needs the memory
         warnings.simplefilter("ignore")  # the original meets the same
         code = 0 if work() else 1
     finally:
@@ -107,8 +110,9 @@ def _tell(writer: int) -> None:
 #
 # numba's own cache looks at the file that defines a kernel, not at the kernels it calls, so an
 # edited callee in another file would leave stale physics in its callers. The cache folder is
-# therefore named after the content of every kernel file. Machine code that was damaged on the disk
-# is compiled again, and what cannot be kept is compiled at every start; `cache_notes` tells.
+# therefore named after the content of every kernel file, wherever that is: all copies of a version
+# share it. Machine code that was damaged on the disk is compiled again, and what cannot be kept is
+# compiled at every start; `cache_notes` tells.
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -121,25 +125,25 @@ def cache_notes() -> list[str]:
     return list(_notes)
 
 
-def cache_directory(package: Path) -> Path | None:
-    """Folder for the machine code of the kernels now in a package; None if there is none."""
-    digest = hashlib.sha256()
+def cache_name(package: Path) -> str:
+    """Name of the folder for the machine code of the kernels now in a package."""
+    digest = hashlib.sha256(numba.__version__.encode())
     for pattern in ("kernels/*.py", "plugins/*/kernels_*.py"):
         for source in sorted(package.glob(pattern)):
             digest.update(source.read_bytes())
-    return private_folder(f"kernels-{digest.hexdigest()[:16]}")
+    return f"kernels-{digest.hexdigest()[:16]}"
 
 
 def _chosen_directory() -> Path | None:
-    """The folder of NUMBA_CACHE_DIR, or one of our own."""
-    given = os.environ.get("NUMBA_CACHE_DIR")
+    """A folder in that of NUMBA_CACHE_DIR, or in one of our own; None if there is none."""
+    given, name = os.environ.get("NUMBA_CACHE_DIR"), cache_name(Path(__file__).parents[1])
     if given is None:
-        return cache_directory(Path(__file__).parents[1])
+        return private_folder(name)
     folder = Path(given)
     if folder.exists() and not is_private(folder):
         _notes[f"NUMBA_CACHE_DIR is not used, because others may write to {folder}."] = None
         return None
-    return folder
+    return folder / name  # versions that share the folder do not call each other's code
 
 
 _CACHE_DIR = _chosen_directory()
@@ -176,6 +180,11 @@ class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]
             _notes[text] = None
 
 
+@cache
+def _content(file: str) -> str:
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+
+
 class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
     """The cache of one kernel, without which the kernel runs as well."""
 
@@ -183,10 +192,11 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
         super().__init__(compiled.py_func)
         self._compiled = compiled
         self._locked: int | None = None
+        self._cache_path = self._impl.locator._cache_path = str(_CACHE_DIR)
         self._cache_file = _CheckedFile(
             cache_path=self._cache_path,
             filename_base=self._impl.filename_base,
-            source_stamp=self._impl.locator.get_source_stamp(),
+            source_stamp=_content(compiled.py_func.__code__.co_filename),
         )
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:

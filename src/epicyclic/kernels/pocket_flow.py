@@ -70,7 +70,7 @@ def _euler_steps(
     rates = np.zeros(3)
     work = np.zeros(3)
     largest, smallest = SMALLEST // parts[0], SMALLEST // parts[1]
-    iterations, done, part = 0, 0, largest
+    iterations, done, part = 0, largest - largest, largest  # for a literal 0 it is compiled twice
     while done < SMALLEST:
         found = _euler_step(
             start, end, fields, numbers, live, fluid, fresh, step, (done, part), rates
