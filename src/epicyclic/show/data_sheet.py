@@ -41,10 +41,6 @@ def _mm(value: float) -> str:
     return f"{MM * value:.3f}"
 
 
-def _alteration(one: GearSheet) -> str:
-    return _mm(one.tip_alteration) if one.tip_alteration else MISSING
-
-
 def _allowance(one: GearSheet, which: int) -> str:
     return MISSING if one.allowances is None else f"{UM * one.allowances[which]:.1f}"
 
@@ -61,7 +57,11 @@ _GEAR_ROWS: tuple[_GearRow, ...] = (
     ("reference diameter d", "mm", lambda one: _mm(2 * one.gear.reference_radius)),
     ("base diameter d_b", "mm", lambda one: _mm(2 * one.gear.base_radius)),
     ("tip diameter d_a", "mm", lambda one: _mm(2 * one.gear.tip_radius)),
-    ("tip alteration k m_n", "mm", lambda one: _alteration(one)),
+    (
+        "tip alteration k m_n",
+        "mm",
+        lambda one: _mm(one.tip_alteration) if one.tip_alteration else MISSING,
+    ),
     ("root diameter d_f", "mm", lambda one: _mm(2 * one.gear.root_radius)),
     ("tip thickness s_a", "mm", lambda one: _mm(one.gear.thickness_at(one.gear.tip_radius))),
     ("face width b", "mm", lambda one: _mm(one.gear.face_width)),

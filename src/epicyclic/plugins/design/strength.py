@@ -203,17 +203,16 @@ class Strength:
 
     def least(self) -> dict[str, float]:
         """The smallest safety of each kind, and the shortest life of a bearing in hours."""
-        gears = [gear for mesh in self.meshes for gear in mesh.gears]
-        found = {
-            "pitting": min(gear.pitting for gear in gears),
-            "bending": min(gear.bending for gear in gears),
-            **{
-                name: min(getattr(mesh.flanks, name) for mesh in self.meshes)
-                for name in ("micropitting", "scuffing", "integral_scuffing")
-            },
-        }
-        if self.bearings:
-            found["bearing_life"] = min(one.modified_life for one in self.bearings) / 3600
+        rows: list[tuple[Any, tuple[str, ...]]] = []
+        for mesh in self.meshes:
+            rows += [(gear, ("pitting", "bending")) for gear in mesh.gears]
+            rows += [(mesh.flanks, ("micropitting", "scuffing", "integral_scuffing"))]
+        values = [(name, getattr(row, name)) for row, names in rows for name in names]
+        values += [("bearing_life", one.modified_life / 3600) for one in self.bearings]
+        found: dict[str, float] = {}
+        for name, value in values:
+            if not math.isnan(value):  # as of flanks at rest
+                found[name] = min(value, found.get(name, value))
         return found
 
 

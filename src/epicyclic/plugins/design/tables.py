@@ -22,9 +22,10 @@ def strength_tables(case: Case, result: Result | None) -> Iterator[Table | Listi
 
 def tables_of(found: Strength) -> Iterator[Table | Listing]:
     """Safeties, what leads to them, and which standards are followed how far."""
-    yield _gears(found)
-    yield _flanks(found)
-    yield _factors(found.meshes)
+    if not found.meshes:
+        yield Listing(("No mesh carries load, so there are no safeties.",), "Strength")
+        return
+    yield from (_gears(found), _flanks(found), _factors(found.meshes))
     if found.bearings:
         yield _bearings(found)
     yield Listing(
