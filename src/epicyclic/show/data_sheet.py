@@ -117,19 +117,19 @@ LEAST_CLEARANCE = 0.1
 def reservations(case: Case) -> Iterator[str]:
     """What a designer would correct, although the case can be computed: backlash and clearance."""
     for name, sheet in data_sheets(case).items():
-        where = f"{name}: " if name else ""
+        where = f"{name}: the" if name else "The"
         for one in sheet.meshes:
             mesh, found, least = one.mesh, one.mesh.normal_backlash, one.recommended_backlash
             if found < (1 - _ROUNDING) * least:
                 yield (
-                    f"{where}the normal backlash of the {mesh.name} is {UM * found:z.1f} µm, less "
+                    f"{where} normal backlash of the {mesh.name} is {UM * found:z.1f} µm, less "
                     f"than the {UM * least:.1f} µm that ISO/TR 10064-2 recommends."
                 )
             module = mesh.gear1.rack.normal_module
             for gear, clearance in zip((mesh.gear1, mesh.gear2), mesh.tip_clearances, strict=True):
                 if clearance < LEAST_CLEARANCE * module:
                     yield (
-                        f"{where}the tip clearance of the {gear.name} in the {mesh.name} is "
+                        f"{where} tip clearance of the {gear.name} in the {mesh.name} is "
                         f"{_mm(clearance)} mm, {clearance / module:z.2f} normal modules; ISO 53 "
                         "has 0.25."
                     )
