@@ -245,7 +245,9 @@ def _plain_errors(path: Path, option: str) -> Iterator[None]:
     except BrokenPipeError:  # of a pipe whose reader has seen enough
         raise
     except OSError as error:
-        raise _error(path, option, f"cannot be written: {_reason(error)}.", REMEDY) from None
+        raise _error(
+            path, option, f"cannot be written: {error.strerror or error}.", REMEDY
+        ) from None
     except RuntimeError as error:
         if not str(error).startswith("NetCDF: "):
             raise
@@ -256,10 +258,6 @@ def _plain_errors(path: Path, option: str) -> Iterator[None]:
 def _check_name(path: Path) -> None:
     if "\0" in str(path):
         raise OSError(errno.EINVAL, "a name has no zero character")
-
-
-def _reason(error: OSError) -> str:
-    return error.strerror or str(error)
 
 
 def _error(path: Path, option: str, allowed: str, remedy: str) -> InputError:

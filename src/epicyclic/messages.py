@@ -31,7 +31,8 @@ def dotted(path: Sequence[str | int]) -> str:
             text += f"[{part}]"
         else:
             bare = part.isascii() and part.replace("-", "").replace("_", "").isalnum()
-            text += ("." if text else "") + (part if bare else f'"{one_line(_escaped(part))}"')
+            escaped = re.sub(r'["\\]', r"\\\g<0>", part)
+            text += ("." if text else "") + (part if bare else f'"{one_line(escaped)}"')
     return text
 
 
@@ -53,10 +54,6 @@ def key_parts(key: str) -> list[str]:
         return key.split(".")
     parts = re.findall(rf"{_QUOTED}|([^.]+)", key)
     return [bare.strip('"') or _plain(name) for name, bare in parts]
-
-
-def _escaped(name: str) -> str:
-    return re.sub(r'["\\]', r"\\\g<0>", name)
 
 
 def _plain(name: str) -> str:

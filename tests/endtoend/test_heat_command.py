@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
@@ -24,7 +25,7 @@ def test_heat_prints_temperatures_and_where_the_heat_goes(epicyclic):
     assert "models.temperatures = network instead of inlet" in done.stderr
     for words in ("pinion", "above the oil, K", "Where the heat leaves", "flow of oil", "100.0 %"):
         assert words in done.stdout, words
-    assert "pinion-jet" in done.stdout
+    assert re.search(r"\npinion-jet +\S+ +\S+ +oil from a jet\n", done.stdout)
     assert "Sources of the conductances" in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 100
 

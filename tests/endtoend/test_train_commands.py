@@ -54,12 +54,33 @@ def test_the_states_of_a_gearbox_are_listed(epicyclic):
     assert "-3.2968" in done.stdout
 
 
-@pytest.mark.parametrize("command", ["friction", "mesh", "pockets"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("mesh",),
+        ("pockets",),
+        ("friction", "--plot", "f.png"),
+        ("strength", "--rotor-dynamics", "r.csv"),
+    ],
+)
 def test_given_efficiencies_end_in_one_clear_error(epicyclic, command):
-    done = epicyclic(command, "train-8hp70")
+    done = epicyclic(command[0], "train-8hp70", *command[1:])
     assert done.returncode == 2
-    assert done.stderr.startswith("1 problem in train-8hp70:")
+    assert "1 problem in train-8hp70:" in done.stderr
     assert "given efficiencies only" in done.stderr
+
+
+@pytest.mark.parametrize(("command", "verb"), [("friction", "compare"), ("strength", "rate")])
+def test_sets_of_given_efficiencies_are_named_in_one_line(epicyclic, command, verb):
+    done = epicyclic(command, "train-8hp70")
+    line = f"Sets with a given efficiency, without teeth to {verb}: P1, P2, P3, P4."
+    assert (done.returncode, done.stdout.strip(), done.stderr) == (0, line, "")
+
+
+def test_the_strength_of_given_efficiencies_is_empty_in_json(epicyclic):
+    done = epicyclic("strength", "train-8hp70", "--json", "-")
+    assert done.returncode == 0
+    assert json.loads(done.stdout) == {"least": {}, "meshes": {}, "bearings": {}, "parts": []}
 
 
 @pytest.mark.slow

@@ -211,3 +211,8 @@ def test_thrust_bearing_by_designation():
     wrong = {"thrust_bearing": {"designation": "51199"}}
     problem = only(problems_of(ep.load_case(TALBOT).updated, wrong))
     assert problem.key == "thrust_bearing.designation"
+
+
+def test_a_needle_bearing_of_another_bore_is_answered_with_the_bores():
+    with pytest.raises(KeyError, match="NKI has the bores 15, 17, 20,"):
+        designated("NKI 12/16")

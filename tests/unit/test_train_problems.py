@@ -341,3 +341,49 @@ def test_a_key_that_is_no_text_is_a_problem():
     (problem,) = problems_of(ep.load_case, tables)
     assert str(problem).isprintable()
     assert "\\ud800" in str(problem)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "others"),
+    [
+        ("sun.face_width", {"planet.tip_diameter"}),
+        ("planet.count", {"sun.tip_diameter"}),
+        ("ring.teeth", {"planet.tip_diameter", "sun.tip_diameter"}),
+    ],
+)
+def test_a_gear_that_cannot_be_read_hides_no_mistake_of_the_others(wrong, others):
+    case = ep.load_case("talbot-2012").given()
+    case["sun"] |= {"tip_diameter": "120 mm", "root_diameter": "131 mm"}
+    case["planet"] |= {"tip_diameter": "60 mm"}
+    table, key = wrong.split(".")
+    case[table] |= {key: "a lot"}
+    keys = {key for together in told(case) for key in together.split(", ")}
+    assert keys >= {wrong, *others}
+    assert not any(key.startswith(f"{table}.") and key != wrong for key in keys)
+
+
+def test_a_listed_gear_that_cannot_be_read_hides_no_mistake_of_the_others():
+    gears = {
+        "normal_module": "1 mm", "normal_pressure_angle": "20 deg", "helix_angle": "0 deg",
+        "sun": {"teeth": 18, "face_width": "12 kg"},
+        "wide": {"teeth": 36, "face_width": "11 mm", "body": "planet"},
+        "still": {"teeth": 90, "face_width": "13 mm", "internal": True},
+        "narrow": {"teeth": 33, "face_width": "14 mm", "body": "planet", "tip_diameter": "30 mm"},
+        "turning": {"teeth": 87, "face_width": "15 mm", "internal": True},
+    }  # fmt: skip
+    for number, gear in enumerate(list(gears.values())[3:], 1):
+        gear |= {"roughness": "0.4 um", "profile_shift_coefficient": number / 20}
+    case = {
+        "kind": "train",
+        "sets": {"w": {"planets": 3, "gears": gears, "meshes": [
+            ["sun", "wide"], ["wide", "still"], ["narrow", "turning"]]}},
+        "shafts": {"in": ["w.sun"], "out": ["w.turning"], "housing": ["w.still"]},
+        "lubricant": {"oil": "iso-vg-220-mineral"},
+        "operation": {"input": "in", "output": "out", "torque": "40 N*m", "speed": "1500 rpm",
+                      "oil_inlet_temperature": "60 degC"},
+    }  # fmt: skip
+    keys = {key for together in told(case) for key in together.split(", ")}
+    assert keys >= {"sets.w.gears.sun.face_width", "sets.w.gears.narrow.tip_diameter"}
+    assert not any(
+        key.startswith("sets.w.gears.sun.") for key in keys - {"sets.w.gears.sun.face_width"}
+    )

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from html import escape
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self, cast
 
 from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
@@ -76,7 +77,7 @@ from epicyclic.case.train_tables import (
 from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.assembly import place_problems, rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
-from epicyclic.gears.sizing import Found, complete
+from epicyclic.gears.sizing import Found, complete, problems_of_some
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
 from epicyclic.messages import (
     PART_NAME,
@@ -373,11 +374,15 @@ def with_sizes(
     gearing = gearing_of(sections) if known is None else known[0]
     if gearing is None:
         # something follows from gears of which some are not valid
-        tables = [table for table in sections.values() if isinstance(table, GearTable)]
-        if gears.center_distance is None or not all(table.states_thickness for table in tables):
+        tables = {key: it for key, it in sections.items() if isinstance(it, GearTable)}
+        if gears.center_distance is None or not all(it.states_thickness for it in tables.values()):
             del sections["gears"]
-            return Validation(None, sections, validation.problems), told, None
-        return validation, told, None
+        pair = bool({"pinion", "gear"} & raw.keys())
+        stand_in = SimpleNamespace(teeth=1, internal=False, count=1, angles=None)
+        others = dict.fromkeys(("pinion", "gear") if pair else ("sun", "planet", "ring"), stand_in)
+        whole = expand({"gears": gears, **others, **tables})[0]
+        some = (as_given(it, dict(raw)) for it in problems_of_some(whole, tables, raw))
+        return Validation(None, sections, [*validation.problems, *some]), told, None
     whole, found, problems = complete(gearing, raw) if known is None else (*known, [])
     if problems:
         del sections["gears"]
@@ -740,7 +745,20 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
     read: Validation[Any]
     read, told, gearing = with_sizes(validate(form, raw), raw)
-    problems = [_with_gears(problem) for problem in read.problems]
+    problems = [
+        replace(
+            it,
+            **{key: getattr(it, key).replace("members", "gears", 1) for key in ("key", "remedy")},
+        )
+        for it in read.problems  # with the keys that the user wrote
+    ]
+    if form is ListedSet and read.case is None:
+        bad = {str(path_of(it.key)[1]) for it in read.problems if it.key.startswith("members.")}
+        part = validate(ListedSet, {key: _without(bad, item) for key, item in raw.items()}).case
+        if part is not None and bad:
+            whole = expand(dict(part))[0]
+            some = problems_of_some(whole, whole.tables, given.raw)
+            problems += [as_given(it, given.raw) for it in some]
     if issubclass(form, ComputedSet):
         tables = {*raw, *given.shared}
         checked = {k: v for k, v in read.sections.items() if k != "lubrication" or k in given.raw}
@@ -757,10 +775,12 @@ def _read_set_cached(given: _Given) -> _ReadSet:
     return _ReadSet(read.case, list(dict.fromkeys(problems)), told)
 
 
-def _with_gears(problem: Problem) -> Problem:
-    """A problem of a gear of a listed set with the key that the user wrote."""
-    key, remedy = (text.replace("members", "gears", 1) for text in (problem.key, problem.remedy))
-    return replace(problem, key=key, remedy=remedy)
+def _without(gears: set[str], item: Any) -> Any:
+    """Members, meshes or tables of meshes without those of some gears."""
+    if isinstance(item, dict):
+        return {key: value for key, value in item.items() if gears.isdisjoint(key.split("-"))}
+    pairs = isinstance(item, tuple) and all(isinstance(it, tuple) for it in item)
+    return tuple(it for it in item if gears.isdisjoint(it)) if pairs else item
 
 
 def _complete(

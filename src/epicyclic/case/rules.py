@@ -596,7 +596,12 @@ def operation_problems(train: TrainCase, complete: bool) -> list[Problem]:
         *named,
         *check_outlet(train.thermal, train.operation.oil_inlet_temperature),
         *_temperature_problems(train),
-        *_oil_model_problems(train),
+        *(
+            replace(problem, key=f"sets.{name}.{problem.key}")
+            for name, table in train.computed_sets
+            if table.models.oil_model is None  # those with a file have told
+            for problem in check_oil_model(table.models, Path(), train.lubricant)
+        ),
     ]
     if complete:
         problems += [*_position_problems(train), *lubrication_problems(train)]
@@ -626,16 +631,6 @@ def _temperature_problems(train: TrainCase) -> list[Problem]:
         remedy = 'Give both, or use "inlet".'
         found.append(Problem("models.temperatures", shown, allowed, remedy))
     return found
-
-
-def _oil_model_problems(train: TrainCase) -> list[Problem]:
-    """Sets that ask for fitted models of an oil that has none; those with a file have told."""
-    return [
-        replace(problem, key=f"sets.{name}.{problem.key}")
-        for name, table in train.computed_sets
-        if table.models.oil_model is None
-        for problem in check_oil_model(table.models, Path(), train.lubricant)
-    ]
 
 
 def _position_problems(train: TrainCase) -> Iterator[Problem]:

@@ -24,6 +24,7 @@ from epicyclic.cli.common import (
     point_of,
     set_option,
     show,
+    tell_given,
 )
 from epicyclic.errors import EXIT_NO_SOLUTION, InputError, Problem, Status
 from epicyclic.messages import either
@@ -149,12 +150,11 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     from epicyclic.study.friction import compare_friction
 
     loaded = load_with(case, changes)
+    if tell_given(loaded, "compare") and plot is None:
+        return
     with telling_contacts(loaded):
         rows = compare_friction(loaded)
     terminal().print(friction_table(rows))
-    given = [name for name, gearing in loaded.gearings.items() if not gearing.computed]
-    if given:
-        echo(f"Not compared, because their efficiency is given: {', '.join(given)}.")
     if plot is not None:
         from epicyclic.show.plots.mesh import friction_figure
 

@@ -216,6 +216,15 @@ def show(
     terminal().print(tables())
 
 
+def tell_given(case: Case, doing: str, err: bool = False) -> bool:
+    """Name the sets of which only the efficiency is given; True if no other is left."""
+    given = [name for name, gearing in case.gearings.items() if not gearing.computed]
+    if given:
+        names = ", ".join(given)
+        echo(f"Sets with a given efficiency, without teeth to {doing}: {names}.", err)
+    return len(given) == len(case.gearings)
+
+
 def parse_size(text: str) -> tuple[float, float]:
     """Width and height of a picture, ``"160x90 mm"``. [mm]"""
     low, high = SIZES

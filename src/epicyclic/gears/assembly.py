@@ -102,7 +102,8 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
     distances = gearing.distances
     for mesh in gearing.meshes:
         # that of gears of one module is computed, or reported where it cannot be
-        if distances[mesh.key] is None and not _alike(gearing, mesh):
+        modules = (gearing.racks[it].normal_module for it in (mesh.first, mesh.second))
+        if distances[mesh.key] is None and not math.isclose(*modules):
             one, two = mesh.pair
             own = f"mesh.{one}-{two}.center_distance"
             remedy = f"Give gears.center_distance, or {own}."
@@ -126,10 +127,6 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
         yield Problem(", ".join(keys), "", allowed, remedy)
     if None not in distances.values():
         yield from _triangle_problems(gearing)
-
-
-def _alike(gearing: Gearing, mesh: GearPairing) -> bool:
-    return math.isclose(*(gearing.racks[it].normal_module for it in (mesh.first, mesh.second)))
 
 
 def _shifts_for(gearing: Gearing, mesh: GearPairing, distance: float) -> str:

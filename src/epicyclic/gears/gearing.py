@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
@@ -414,6 +414,17 @@ class Gearing:
             owned = {owners[gear]: count for gear, count in teeth.items()}
             closures.append((owned, -turned if mesh.internal else turned))
         return closing_number(closures)
+
+    def only(self, gears: Collection[str]) -> Gearing:
+        """Some of its gears, and the meshes between them; planets have no number."""
+        return replace(
+            self,
+            bodies={gear: body for gear, body in self.bodies.items() if gear in gears},
+            meshes=tuple(it for it in self.meshes if {it.first, it.second} <= {*gears}),
+            tables={gear: table for gear, table in self.tables.items() if gear in gears},
+            count=None,
+            stated_angles=None,
+        )
 
     def changed(
         self,

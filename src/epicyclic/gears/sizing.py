@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from epicyclic.errors import InputError, Problem, one_problem
-from epicyclic.gears.assembly import rack_problems
+from epicyclic.gears.assembly import rack_problems, set_problems
 from epicyclic.gears.gear import BasicRack, Gear
 from epicyclic.gears.gearing import Gearing, GearPairing
 from epicyclic.gears.mesh import (
@@ -108,6 +108,26 @@ def complete(
         allowed = "is missing, and no mesh with a gear of the same basic rack gives it."
         return gearing, named, [Problem(keys, "", allowed, "Add it.")]
     return _completed(gearing, solver), (*named, *solver.found), []
+
+
+def problems_of_some(
+    gearing: Gearing, gears: Collection[str], raw: Mapping[str, Any]
+) -> list[Problem]:
+    """Problems of `gears` and their meshes, where the tables of the others cannot be used.
+
+    Of default tips, which a mate that is left out may shorten, nothing is said.
+    """
+    thick = {gear for gear in gears if gearing.tables[gear].states_thickness}
+    if not thick:
+        return []
+    some, _, problems = complete(gearing.only(thick), raw)
+    open_tips = {
+        f"{gearing.key(gear)}.tip_diameter"
+        for mesh in gearing.meshes if mesh.key not in {it.key for it in some.meshes}
+        for gear in thick & {mesh.first, mesh.second} if some.tables[gear].tip_diameter is None
+    }  # fmt: skip
+    problems += [] if problems else set_problems(some)
+    return [it for it in problems if open_tips.isdisjoint(it.key.split(", "))]
 
 
 def _with_named_rack(gearing: Gearing) -> tuple[Gearing, tuple[Found, ...]]:

@@ -115,7 +115,9 @@ def designated(text: str) -> DesignatedBearing:
     """
     name = re.sub(r"[\s.\-]", "", text.upper())
     by_size, cage = _BY_SIZE.match(name), _CAGE.match(name)
-    if by_size and by_size["bore"] in _tables()["needle"][by_size["kind"]]:
+    if by_size and by_size["bore"] not in (bores := _tables()["needle"][by_size["kind"]]):
+        raise KeyError(f"{by_size['kind']} has the bores {', '.join(bores)}")
+    if by_size:
         bore, width = int(by_size["bore"]), int(by_size["width"])
         outside = _tables()["needle"]["NKI"][by_size["bore"]]
         return with_elements(DesignatedBearing(text, "needle", bore, outside, width))

@@ -192,7 +192,8 @@ def _parse(text: str, source: str) -> LossTable:
     ragged = [line for line, cells in body if len(cells) != len(header)]
     if ragged:
         allowed = f"must have {len(header)} cells, like the header."
-        problems.append(Problem(_lines(ragged), "", allowed, "Complete or delete these lines."))
+        lines = f"line{'s' if len(ragged) > 1 else ''} {first_of([*map(str, ragged)])}"
+        problems.append(Problem(lines, "", allowed, "Complete or delete these lines."))
         raise InputError(problems)
     data = {}
     for number, (name, unit) in columns.items():
@@ -302,10 +303,6 @@ def _gridded(data: Mapping[str, FloatArray], lines: Sequence[int], source: str) 
         values[place] = number
     raise_any(table_problems(quantity, axes, values))
     return LossTable(quantity, axes, values, source)
-
-
-def _lines(numbers: Sequence[int]) -> str:
-    return f"line{'s' if len(numbers) > 1 else ''} {first_of([str(number) for number in numbers])}"
 
 
 def _shown(text: str) -> str:

@@ -20,8 +20,8 @@ INLET = "oil_inlet"  # The oil before it meets anything.
 WIDTH_OF_HEIGHT = 1.2
 """Width of a bearing over the height of its section, if it is not given: an estimate. [1]"""
 SEAT_LENGTH = 1.0  # Length of a pin in both of its seats over its diameter: an estimate. [1]
-FACES = "faces as discs that turn in the mixture"
-BATH = "faces and flanks in an oil bath"
+FACES = "rotating faces"
+BATH = "gear in an oil bath"
 JET = "oil from a jet"
 SEAT = "press fit"
 ROLLERS = "loaded rollers"

@@ -38,10 +38,6 @@ def _mm(value: float) -> str:
     return f"{MM * value:.3f}"
 
 
-def _alteration(one: GearSheet) -> str:
-    return _mm(one.tip_alteration) if one.tip_alteration else MISSING
-
-
 def _allowance(one: GearSheet, which: int) -> str:
     return MISSING if one.allowances is None else f"{UM * one.allowances[which]:.1f}"
 
@@ -58,7 +54,11 @@ _GEAR_ROWS: tuple[_GearRow, ...] = (
     ("reference diameter d", "mm", lambda one: _mm(2 * one.gear.reference_radius)),
     ("base diameter d_b", "mm", lambda one: _mm(2 * one.gear.base_radius)),
     ("tip diameter d_a", "mm", lambda one: _mm(2 * one.gear.tip_radius)),
-    ("tip alteration k m_n", "mm", lambda one: _alteration(one)),
+    (
+        "tip alteration k m_n",
+        "mm",
+        lambda one: _mm(one.tip_alteration) if one.tip_alteration else MISSING,
+    ),
     ("root diameter d_f", "mm", lambda one: _mm(2 * one.gear.root_radius)),
     ("tip thickness s_a", "mm", lambda one: _mm(one.gear.thickness_at(one.gear.tip_radius))),
     ("face width b", "mm", lambda one: _mm(one.gear.face_width)),
@@ -114,19 +114,19 @@ LEAST_CLEARANCE = 0.1
 def reservations(case: Case) -> Iterator[str]:
     """What a designer would correct, although the case can be computed: backlash and clearance."""
     for name, sheet in data_sheets(case).items():
-        where = f"{name}: " if name else ""
+        where = f"{name}: the" if name else "The"
         for one in sheet.meshes:
             mesh, found, least = one.mesh, one.mesh.normal_backlash, one.recommended_backlash
             if found < (1 - _ROUNDING) * least:
                 yield (
-                    f"{where}the normal backlash of the {mesh.name} is {UM * found:z.1f} µm, less "
+                    f"{where} normal backlash of the {mesh.name} is {UM * found:z.1f} µm, less "
                     f"than the {UM * least:.1f} µm that ISO/TR 10064-2 recommends."
                 )
             module = mesh.gear1.rack.normal_module
             for gear, clearance in zip((mesh.gear1, mesh.gear2), mesh.tip_clearances, strict=True):
                 if clearance < LEAST_CLEARANCE * module:
                     yield (
-                        f"{where}the tip clearance of the {gear.name} in the {mesh.name} is "
+                        f"{where} tip clearance of the {gear.name} in the {mesh.name} is "
                         f"{_mm(clearance)} mm, {clearance / module:z.2f} normal modules; ISO 53 "
                         "has 0.25."
                     )

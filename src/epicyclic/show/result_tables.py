@@ -577,8 +577,6 @@ def heat_path_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
     rows = tuple(
         (
             Cell(path.key),
-            Cell(in_words(path.hot)),
-            Cell(in_words(path.into)),
             tenths(path.watts, f"heat.ways.{path.key}.heat"),
             number(
                 None if math.isnan(path.conductance) else path.conductance,
@@ -592,7 +590,7 @@ def heat_path_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
     for path in heat.ways:
         methods.setdefault(path.method, set()).add(path.source or "given")
     return (
-        Table(("", "from", "to", "W", "W/K", "method"), rows, "Heat paths", note=_SIGN),
+        Table(("from-to", "W", "W/K", "method"), rows, "Heat paths", note=_SIGN),
         Listing(
             tuple(f"{method}: {'; '.join(sorted(found))}" for method, found in methods.items()),
             "Sources of the conductances",
@@ -601,7 +599,7 @@ def heat_path_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
 
 
 _SIGN = (
-    "Negative heat flows in the other direction. thermal.conductances changes a path by the name "
+    "Negative heat flows in the other direction. thermal.conductances changes a path by its name "
     "in the first column."
 )
 

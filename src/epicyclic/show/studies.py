@@ -396,7 +396,7 @@ def _in_other_units(data: xr.Dataset) -> str:
     text = (
         f"Lost: {shown(lost / KILOJOULES_PER_KWH, 4)} kWh, {shown(1e3 * lost / seconds, 4)} W on "
     )
-    text += f"average over {shown(seconds / 3600, 4)} h"
+    text += f"average over {duration_text(seconds)}"
     if "distance" not in data:
         return f"{text}."
     per_km, distance = float(data["lost_per_distance"]), float(data["distance"])
@@ -447,14 +447,15 @@ def _error_text(data: xr.Dataset, lost: float) -> str:
     error, spread = (
         float(data[name]) for name in ("interpolation_error", "interpolation_standard_error")
     )
-    scatter = "" if math.isnan(spread) else f" ± {shown(spread, 2)}"
+    scatter = "" if math.isnan(spread) or not spread else f" ± {shown(spread, 2)}"
     part = f" ({percent(error / lost, 2, signed=True)} of the energy lost)" if lost else ""
-    largest = float(data["largest_deviation"])
+    largest, outside = float(data["largest_deviation"]), float(data["share_outside"])
+    how = f", {data.attrs['points_outside']}" if outside else ""
     return (
         f"Interpolation adds {shown(error, 3)}{scatter} kJ{part}; largest deviation of a point "
-        f"{'-' if math.isnan(largest) else percent(largest, 2)}. By: "
-        f"{data.attrs['interpolation_error_method']}.\nOutside of the map: "
-        f"{percent(float(data['share_outside']))} of the duration, {data.attrs['points_outside']}."
+        f"{'-' if math.isnan(largest) else percent(largest, 2)} ("
+        f"{data.attrs['interpolation_error_method']}).\n{percent(outside)} of the duration lies "
+        f"outside of the map{how}."
     )
 
 

@@ -36,6 +36,7 @@ MOST_OF_SET = 10  # Losses of a single set; smaller ones are in the sums alone.
 MOST_ROWS = 20  # Of the losses of a train; smaller ones are put together.
 _BROAD = 0.5  # Part of the loss outside the ranges of its models from which that is said first. [1]
 WIDTH = 80  # Characters of its lines at most.
+LEAST_SHARE = 0.005  # Of the band, of a cause that is named. [1]
 _NEXT = "More: run --details (all figures and warnings), friction, uncertainty, report."
 _LABEL, _VALUE = 14, 12  # Characters.
 _END_OF_SENTENCE = re.compile(r"(?<=\w[\w)])\. (?=[A-Z])")
@@ -112,6 +113,7 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
     drivers = ", ".join(
         f"{in_few_words(called(known, driver))} {percent(share, 0)}"
         for driver, share in known.drivers[:MOST_DRIVERS]
+        if share >= LEAST_SHARE
     )
     yield f"Main causes of the band: {drivers}."
     yield from filter(is_on_first_screen, known.remarks)
@@ -151,7 +153,7 @@ def _notes(result: Result) -> Iterator[tuple[float, str]]:
         owners.setdefault(text, []).append(owner)
         watts[text] = watts.get(text, 0.0) + note_watts(note)
     for text, names in owners.items():
-        yield watts[text], f"{', '.join(names)}: {text}" if any(names) else text
+        yield watts[text], f"{', '.join(names)}: {text}" if any(names) else sentence(text)
 
 
 def first_warnings(result: Result) -> Listing:

@@ -80,15 +80,12 @@ class FittedTable(Table):
 
 def _need_of(column: Column) -> _Need:
     """Room for the longest word and for the longest line of a column."""
-    texts = [_plain(one) for one in (column.header, *column.cells)]
+    cells = (column.header, *column.cells)
+    texts = [one.plain if isinstance(one, Text) else str(one) for one in cells]
     words = [cell_len(word) for text in texts for word in text.split()]
     lines = [cell_len(line) for text in texts for line in text.splitlines()]
     most = max(lines, default=1)
     return _Need(min(most if column.no_wrap else max(words, default=1), LONGEST_WORD, most), most)
-
-
-def _plain(cell: object) -> str:
-    return cell.plain if isinstance(cell, Text) else str(cell)
 
 
 def _blocks(needs: Sequence[_Need], room: int) -> Iterator[list[int]]:

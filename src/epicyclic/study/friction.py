@@ -116,7 +116,8 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
     any_oil = by_name[_ANY_OIL]
     own = any_oil if any_oil.chosen else by_name[_REGRESSION]
     if own.own_oil and own.outside <= MOSTLY:
-        if _differ(own, paired := by_name[PAIRED]):
+        paired = by_name[PAIRED]
+        if abs(paired.sliding - own.sliding) > UNEQUAL * own.sliding:
             why = "it was made for this oil and accounts for unequal roughness of the flanks"
             return paired, f"{why}; {_inside(paired)}"
         return own, f"it was made for this oil, and {_inside(own)}"
@@ -146,11 +147,6 @@ def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str |
     low = min(mesh.film_ratio_min for mesh in result.meshes.values())
     high = max(mesh.film_ratio_max for mesh in result.meshes.values())
     return f"{told}; its friction does not follow the film ratio, {low:.2g} to {high:.2g} here."
-
-
-def _differ(row: FrictionComparison, paired: FrictionComparison) -> bool:
-    """Whether the pairing of the flanks matters."""
-    return abs(paired.sliding - row.sliding) > UNEQUAL * row.sliding
 
 
 def _inside(row: FrictionComparison) -> str:

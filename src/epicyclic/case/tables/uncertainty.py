@@ -195,8 +195,10 @@ def _spread(
         low, high = (_difference(limit, value, quantity) for limit in table.tolerance)
         return "uniform", (value + low, value + high)
     assert table.uniform is not None
-    one, other = (_absolute(limit, quantity) for limit in table.uniform)
-    return "uniform", (one, other)
+    limits = table.uniform
+    if quantity is None:
+        return "uniform", (_number(limits[0]), _number(limits[1]))
+    return "uniform", tuple(quantity.to_display(quantity.parse(limit)) for limit in limits)
 
 
 def _difference(stated: str | float, value: float, quantity: Quantity | None) -> float:
@@ -210,10 +212,6 @@ def _difference(stated: str | float, value: float, quantity: Quantity | None) ->
     free = replace(quantity, noun=f"a deviation of {quantity.noun}", display=unit, low=None,
                    high=None)  # fmt: skip
     return free.parse(stated) * scale
-
-
-def _absolute(stated: str | float, quantity: Quantity | None) -> float:
-    return _number(stated) if quantity is None else quantity.to_display(quantity.parse(stated))
 
 
 def _number(stated: str | float) -> float:

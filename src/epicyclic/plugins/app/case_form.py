@@ -161,7 +161,9 @@ def _group(table: type[BaseModel], key: str, name: str, given: Mapping[str, Any]
         if inner is None:
             entries.append(_entry(full, own, info, value))
         elif key and not inner.groups and not inner.kinds and len(inner.entries) <= _SHORT:
-            entries += [_renamed(entry, full, own) for entry in inner.entries]
+            entries += [
+                replace(it, name=f"{own}{it.key.removeprefix(full)}") for it in inner.entries
+            ]
         else:
             groups.append(inner)
     if _MEMBERS in table.model_fields:
@@ -185,10 +187,6 @@ def _with_members(
     named = _names(key, _GEARS, table.model_fields[_MEMBERS], listed)
     about = "The gears and their common properties." if shared else "The gears."
     return [replace(named, about=about, entries=shared.entries if shared else ()), *others]
-
-
-def _renamed(entry: Entry, key: str, name: str) -> Entry:
-    return replace(entry, name=f"{name}{entry.key.removeprefix(key)}")
 
 
 def _inner(key: str, name: str, field: FieldInfo, value: Any) -> Group | None:

@@ -460,7 +460,8 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
     """
     found = _stored(study, progress)
     with tempfile.TemporaryDirectory() as folder, contact_progress(progress):
-        path = Path(folder) / f"result{_suffix(name)}"
+        suffix = name if name.startswith(".") else formats()[name].suffix
+        path = Path(folder) / f"result{suffix}"
         if is_rexs(path):
             return path.suffix, rexs_bytes(path, _result(study.case, progress), original, None)
         if path.suffix in PAGES:
@@ -482,7 +483,3 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
             for file in files:
                 archive.write(file, file.name)
         return ".zip", packed.getvalue()
-
-
-def _suffix(name: str) -> str:
-    return name if name.startswith(".") else formats()[name].suffix

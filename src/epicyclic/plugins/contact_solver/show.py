@@ -108,12 +108,14 @@ def oil_model_tables(model: OilModel) -> RenderableType:
         ),
         _inputs(model),
     ]
+    shown: list[Any] = []
     for quantity, fit in model.fits.items():
         title = f"{quantity.replace('_', ' ').capitalize()}, {fit.contacts} contacts"
         parts += [_errors(f"{title}: errors at contacts not used in the fit", quantity, fit)]
         parts += [Text(f"{name} left out: {why}.\n") for name, why in fit.left_out.items()]
-        if fit.domain not in [other.domain for other in _before(model, quantity)]:
+        if fit.domain not in shown:
             parts.append(_domain(f"Domain of these {fit.contacts} contacts", model, quantity))
+        shown.append(fit.domain)
     return Group(*parts, *(Text(note) for note in model.notes))
 
 
@@ -127,11 +129,6 @@ def _inputs(model: OilModel) -> Table:
         if value is not None:
             table.add_row(key, str(value))
     return table
-
-
-def _before(model: OilModel, quantity: str) -> list[QuantityFit]:
-    """Fits of the quantities that come first."""
-    return list(model.fits.values())[: list(model.fits).index(quantity)]
 
 
 def _errors(title: str, quantity: str, fit: QuantityFit) -> Table:

@@ -25,6 +25,7 @@ from epicyclic.cli.common import (
     set_option,
     show,
     tell,
+    tell_given,
 )
 from epicyclic.files import check_folder, make_folder, write_file
 
@@ -60,6 +61,8 @@ def strength(
     epicyclic strength talbot-2012 --set "strength.life=500 h"
     epicyclic strength talbot-2012 --set "strength.gears.ring.material=nitrided-mq" --json -
     """
+    from rich.console import Group
+
     from epicyclic.plugins.design import rotor as dynamics
     from epicyclic.plugins.design.mass import as_list, parts
     from epicyclic.plugins.design.strength import as_dict
@@ -70,6 +73,9 @@ def strength(
     if rotor is not None:
         check_ending("--rotor-dynamics", rotor, dynamics.ENDINGS)
     loaded = load_with(case, changes)
+    if tell_given(loaded, "rate", json_file is not None) and rotor is None:
+        show(Group, lambda: '{"least": {}, "meshes": {}, "bearings": {}, "parts": []}', json_file)
+        return
     found = rate(loaded)
     if rotor is not None:
         write_file(rotor, dynamics.rotor_text(dynamics.rotor_dynamics(loaded), rotor.suffix))

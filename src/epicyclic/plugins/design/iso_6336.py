@@ -292,15 +292,11 @@ def speed_factor(strength: float, speed: float) -> float:
     return least + 2 * (1 - least) / math.sqrt(0.8 + 32 / max(speed, 1e-3))
 
 
-def _rz10(height: float, radius: float) -> float:
-    """R_z of both flanks as on gears with a radius of curvature of 10 mm. [um]"""
-    return height * 1e6 * math.pow(10 / (radius * MM), 1 / 3)
-
-
 def roughness_factor(strength: float, height: float, radius: float) -> float:
     """Z_R with the mean peak-to-valley height of both flanks. ISO 6336-2, Eq. 42. [1]"""
     exponent = _between(strength, 0.15, 0.08, (-0.0002, 0.32))
-    return math.pow(3 / _rz10(height, radius), exponent)
+    rz10 = height * 1e6 * math.pow(10 / (radius * MM), 1 / 3)
+    return math.pow(3 / rz10, exponent)
 
 
 def hardening_factor(

@@ -204,9 +204,10 @@ class Strength:
             name: [getattr(mesh.flanks, name) for mesh in self.meshes]
             for name in ("micropitting", "scuffing", "integral_scuffing")
         }
-        lives = (one.modified_life / 3600 for one in self.bearings)
-        values["bearing_life"] = [life for life in lives if not math.isnan(life)]
-        return {name: min(found) for name, found in values.items() if found}
+        values["bearing_life"] = [one.modified_life / 3600 for one in self.bearings]
+        # NaN as of flanks at rest and of bearings without a static load rating
+        known = {name: [it for it in own if not math.isnan(it)] for name, own in values.items()}
+        return {name: min(own) for name, own in known.items() if own}
 
 
 def strength(case: CaseSource) -> Strength:

@@ -581,11 +581,12 @@ def _of_train(model: Model, train: Train, result: Result) -> Iterator[tuple[Comp
     yield train.unit, Attribute(f"{CUSTOM}version", "none", version("epicyclic"))
     owners = {name: one.component for name, one in train.sets.items()}
     owners |= {name: joint.component for name, joint in train.bearings.items()}
+    of_shafts = {f"{name}_{what}" for name in result.flow.members for what in ("speed", "torque")}
     for figure in _known(result):
         name, dot, key = figure.key.partition(".")
         if dot and name in owners:
             yield owners[name], _custom(key, figure.value, figure.unit)
-        elif not dot and not _is_of_shaft(figure.key, result):
+        elif not dot and figure.key not in of_shafts:
             yield train.unit, _custom(key or name, figure.value, figure.unit)
     for name, member in result.flow.members.items():
         for shaft in train.shafts[name].components if name in train.shafts else ():
@@ -609,10 +610,6 @@ def _known(result: Result) -> Iterator[Figure]:
     for figure in result.numbers():
         if figure.key not in left_out and not math.isnan(figure.value):
             yield figure
-
-
-def _is_of_shaft(key: str, result: Result) -> bool:
-    return any(key in (f"{name}_speed", f"{name}_torque") for name in result.flow.members)
 
 
 def _meshes(

@@ -54,7 +54,7 @@ def arrangement_of(
             (axes if shaft else origins).setdefault(shaft or name, place)
     if sets - origins.keys():
         return None
-    widths = {name: _face_width(inputs, name) for name in gears}
+    widths = {name: _millimetres(_table(inputs, name)["face_width"]) for name in gears}
     middles, starts, assumed = _along(
         inputs, sorted(sets, key=list(inputs["sets"]).index), on, widths
     )
@@ -74,10 +74,6 @@ def _table(inputs: Mapping[str, Any], gear: str) -> Mapping[str, Any]:
     table = inputs["sets"][name]
     found: Mapping[str, Any] = table.get(own) or table["gears"][own]
     return found
-
-
-def _face_width(inputs: Mapping[str, Any], gear: str) -> float:
-    return _millimetres(_table(inputs, gear)["face_width"])
 
 
 def _centers(

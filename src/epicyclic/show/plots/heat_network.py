@@ -127,7 +127,8 @@ def plot_heat_network(heat: HeatBalance, ax: Axes) -> Axes:
     ax.set_axis_off()
     ax.set(xlim=(0, SLIDE[0]), ylim=(0, SLIDE[1]))
     whole = _power(sum(heat.sources.values()))
-    ax.set_title(f"Heat: oil at {_degrees(heat.oil)}, losses {whole}", fontsize=13, x=0.008)
+    oil = unit_text(f"{CELSIUS.to_display(heat.oil):.1f} {CELSIUS.display}")
+    ax.set_title(f"Heat: oil at {oil}, losses {whole}", fontsize=13, x=0.008)
     parts, rail, shell = layout.rows
     _rail(ax, layout, OIL, (LEFT, RIGHT), rail)
     if layout.has_housing:
@@ -144,10 +145,6 @@ def plot_heat_network(heat: HeatBalance, ax: Axes) -> Axes:
         _draw(ax, layout, flow)
     _legend(ax, layout)
     return ax
-
-
-def _degrees(kelvin: float) -> str:
-    return unit_text(f"{CELSIUS.to_display(kelvin):.1f} {CELSIUS.display}")
 
 
 def _power(watts: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import matplotlib as mpl
@@ -120,7 +120,7 @@ def plot_over_life(
     across = str(values.dims[-1])
     place = mesh[f"{across}_position"]
     colours = _face_colours(mesh).to_rgba(place.to_numpy())
-    for number in _spread(place.size):
+    for number in np.unique(np.linspace(0, place.size - 1, DRAWN_SLICES).round()).astype(int):
         ax.plot(mesh["roll_angle"][kind], values[:, number], color=colours[number], lw=1.0)
     title = f"{str(mesh[name].attrs['long_name']).capitalize()}: {_name(mesh, kind)}"
     return _over_roll(mesh, ax, title, label_of(mesh[name]))
@@ -130,11 +130,6 @@ def _face_colours(mesh: xr.Dataset) -> ScalarMappable:
     """Colours of the places across the face."""
     width = float(mesh["station_position"][-1])
     return ScalarMappable(Normalize(0.0, width), mpl.colormaps[COLOUR_MAP])
-
-
-def _spread(count: int) -> Sequence[int]:
-    """Numbers of some of `count` lines, the outer ones among them."""
-    return [int(n) for n in np.unique(np.linspace(0, count - 1, DRAWN_SLICES).round())]
 
 
 def plot_power(mesh: xr.Dataset, ax: Axes) -> Axes:

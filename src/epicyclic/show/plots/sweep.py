@@ -199,7 +199,7 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
             write_beside(ax, text, (place, height), fontsize="small", bbox=_BACKGROUND)
     labels = [_axis_label(data, dim) for dim in dims]
     labels += [label_of(array) for array in arrays[len(dims) :]]
-    ax.set_xticks(places, [_wrapped(label) for label in labels], fontsize="small")
+    ax.set_xticks(places, [textwrap.fill(it, LABEL_WIDTH) for it in labels], fontsize="small")
     ax.set_yticks([])
     ax.grid(visible=False)
     ax.spines["left"].set_visible(False)
@@ -209,11 +209,6 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     ax.set(title=title, xlim=(-0.1, places[-1] + 0.3), ylim=(-0.05, 1.05))
     ax.figure.colorbar(lines, ax=ax, label=label_of(data["total"]))
     return ax
-
-
-def _wrapped(label: str) -> str:
-    """A label on short lines."""
-    return textwrap.fill(label, LABEL_WIDTH)
 
 
 def _column(values: xr.DataArray) -> tuple[FloatArray, list[tuple[float, str]]]:

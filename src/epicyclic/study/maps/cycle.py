@@ -370,7 +370,8 @@ class _Checks:
         found = [fault.problem() for fault in self._faults.values()]
         least = 2 if TIME in self.columns else 1
         if self.rows < least:
-            allowed = f"There are {self.rows} rows; a cycle needs {least} or more."
+            there = "is 1 row" if self.rows == 1 else f"are {self.rows} rows"
+            allowed = f"There {there}; a cycle needs {least} or more."
             found.append(Problem("", "", allowed, "Give more rows."))
         for name in (DURATION, SHARE):
             whole = self.sums.get(name, 0.0)

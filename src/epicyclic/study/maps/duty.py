@@ -302,8 +302,9 @@ def _temperatures(
         return celsius
     axis = lookup.axes[lookup.names.index("temperature")]
     if axis.size > 1:
-        allowed = f"is not a column of the cycle, but the map has {axis.size} values of it."
-        remedy = f'Choose one or more, as "{format_number(float(axis[0]))} degC".'
+        low, high = (format_number(float(axis[place])) for place in (0, -1))
+        allowed = f"is not a column of the cycle, and the map covers {low} to {high} degC."
+        remedy = f'Choose one or more, as in --temperature "{high} degC".'
         raise one_problem("temperature", "", allowed, remedy, "the command")
     return (float(axis[0]),)
 

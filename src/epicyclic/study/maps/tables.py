@@ -243,7 +243,9 @@ class Lookup:
     def thinned(self) -> Lookup:
         """The same with every second node of each axis left out, interpolated at all nodes."""
         kept = [
-            np.arange(axis.size) if name == STATE else _every_second(axis.size)
+            np.arange(axis.size)
+            if name == STATE
+            else np.unique(np.append(np.arange(0, axis.size, 2), axis.size - 1))
             for name, axis in zip(self.names, self.axes, strict=True)
         ]
         count = len(self.components)
@@ -264,11 +266,6 @@ def _bracket(axis: FloatArray, values: FloatArray) -> tuple[IntArray, FloatArray
         return np.zeros(values.shape, dtype=np.intp), np.zeros(values.shape)
     low = np.clip(np.searchsorted(axis, values, side="right") - 1, 0, axis.size - 2)
     return low, np.clip((values - axis[low]) / np.diff(axis)[low], 0, 1)
-
-
-def _every_second(count: int) -> IntArray:
-    """Every second of `count` numbers from 0, and the last."""
-    return np.unique(np.append(np.arange(0, count, 2), count - 1))
 
 
 def slack(axis: FloatArray) -> float:

@@ -339,7 +339,9 @@ def notes_on(table: Measurements, computed: Computed) -> Iterator[str]:
     }
     missing = (note for notes in warned.values() for note in notes if note.startswith(NOT_INCLUDED))
     yield from dict.fromkeys(missing)
-    flagged = [line for line, notes in warned.items() if any(map(_is_flag, notes))]
+    flagged = [
+        line for line, notes in warned.items() if any(it.startswith(OUT_OF_RANGE) for it in notes)
+    ]
     if flagged:
         yield (
             f"{len(flagged)} of {len(table)} points use a model outside its range, the first in "
@@ -347,10 +349,6 @@ def notes_on(table: Measurements, computed: Computed) -> Iterator[str]:
         )
     if (table.loss < 0).any():
         yield "some measured losses are negative."
-
-
-def _is_flag(note: str) -> bool:
-    return note.startswith(OUT_OF_RANGE)
 
 
 def _fit_dict(fit: Fit) -> dict[str, Any]:

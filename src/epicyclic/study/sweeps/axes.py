@@ -271,17 +271,14 @@ def _point_columns(table: dict[str, Any]) -> dict[str, list[Any]]:
         key, unit = (match["name"], match["unit"] or "") if match else (header, "")
         if key in columns:
             problems.append(Problem(key, "", "has two columns.", "Keep one of them."))
-        empty = [str(number) for number, cell in enumerate(cells, 1) if _is_empty(cell)]
+        # a cell that is not itself is NaN of a frame
+        empty = [str(n) for n, it in enumerate(cells, 1) if it is None or it == "" or it != it]
         if empty:
             allowed = f"has no value in row {', '.join(empty[:5])}{' ...' * (len(empty) > 5)}."
             problems.append(Problem(key, "", allowed, "Give every row a value."))
         columns[key] = [_value(cell, unit) for cell in cells]
     raise_any(problems, "the table of points")
     return columns
-
-
-def _is_empty(cell: Any) -> bool:
-    return cell is None or cell == "" or cell != cell  # NaN of a frame
 
 
 def _value(cell: Any, unit: str) -> Any:
