@@ -53,10 +53,11 @@ def former_boundary_friction(monkeypatch):
 
 
 @pytest.fixture(autouse=True)
-def former_models_of_shaft_bearings(monkeypatch):
-    """Their factor was 1.25 before the residuals of tapered bearings became smaller."""
+def former_factors_of_models(monkeypatch):
+    """They were larger before the residuals of tapered bearings and of slopes became smaller."""
     forms = uncertainty.model_forms()
-    then = forms | {"shaft-bearings": (1.25, forms["shaft-bearings"][1])}
+    former = {"shaft-bearings": 1.25, "sliding": 1.15}
+    then = forms | {kind: (factor, forms[kind][1]) for kind, factor in former.items()}
     for module in (uncertainty, inputs):
         monkeypatch.setattr(module, "model_forms", lambda: then)
 
