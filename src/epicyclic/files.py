@@ -245,9 +245,8 @@ def _plain_errors(path: Path, option: str) -> Iterator[None]:
     except BrokenPipeError:  # of a pipe whose reader has seen enough
         raise
     except OSError as error:
-        raise _error(
-            path, option, f"cannot be written: {error.strerror or error}.", REMEDY
-        ) from None
+        reason = f"cannot be written: {error.strerror or error}."
+        raise _error(path, option, reason, REMEDY) from None
     except RuntimeError as error:
         if not str(error).startswith("NetCDF: "):
             raise

@@ -208,7 +208,6 @@ def _settings(
 ) -> HeatSettings:
     table = with_lubrication(case.thermal, case.lubrication, to_gears)
     gear_sets = [own for own in machine.elements if isinstance(own, GearSet)]
-    walls = table.housing
     return HeatSettings(
         inlet=inlet,
         outlet=table.oil_outlet_temperature,
@@ -227,12 +226,12 @@ def _settings(
         coolant=table.coolant_temperature,
         cooler_power=table.cooler_power,
         cooler=table.cooler_conductance,
-        housing=None if walls is None else _housing(walls),
+        housing=None if table.housing is None else _housing(table.housing),
         changes={
             name: Change(change.value, change.scale) for name, change in table.conductances.items()
         },
         oil_volume=table.oil_volume,
-        housing_mass=walls.mass * walls.heat_capacity_ratio if walls and walls.mass else None,
+        housing_mass=None if table.housing is None else _steel_mass(table.housing),
         capacity_changes={
             name: Change(change.value, change.scale) for name, change in table.capacities.items()
         },
@@ -270,6 +269,11 @@ def _effectiveness(table: ThermalTable, to_gears: float | None) -> float:
     if to_gears is None or not table.oil_flow or table.jet_shares:
         return table.jet_effectiveness
     return table.jet_effectiveness * min(1.0, to_gears / table.oil_flow)
+
+
+def _steel_mass(table: HousingTable) -> float | None:
+    """Steel that stores as much heat as the housing. [kg]"""
+    return None if table.mass is None else table.mass * table.heat_capacity_ratio
 
 
 def _housing(table: HousingTable) -> Housing:

@@ -1,4 +1,4 @@
-"""Keys of one case: those of its schema, with the names that the user chose in it; changed ones."""
+"""Keys of one case: those of its schema, with names that the user chose; changes of them."""
 
 from __future__ import annotations
 

@@ -149,7 +149,7 @@ def _chosen_directory() -> Path | None:
 _CACHE_DIR = _chosen_directory()
 
 
-class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]
+class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]  # numba has no types
     """Machine code of one kernel with a checksum: what is damaged counts as absent."""
 
     def _load_index(self) -> Any:
@@ -185,7 +185,7 @@ def _content(file: str) -> str:
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
 
-class _KernelCache(caching.FunctionCache):  # type: ignore[misc]
+class _KernelCache(caching.FunctionCache):  # type: ignore[misc]  # numba has no types
     """The cache of one kernel, without which the kernel runs as well."""
 
     def __init__(self, compiled: Any) -> None:

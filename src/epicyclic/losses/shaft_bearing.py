@@ -84,10 +84,10 @@ MINIMUM_LOAD_SHARE = 0.02
 MINIMUM_BALL_SHARE = 0.01
 """The same of angular contact ball bearings, SKF's rule of thumb for balls; second hand. Of
 spherical roller bearings over their static load rating. [1]"""
-_ANGLES = (15, 20, 25, 30, 35, 40, 45)
-_STATIC_AXIAL = _ANGLES, (0.46, 0.42, 0.38, 0.33, 0.29, 0.26, 0.22)
+CONTACT_ANGLES = (15, 20, 25, 30, 35, 40, 45)
+_STATIC_AXIAL = CONTACT_ANGLES, (0.46, 0.42, 0.38, 0.33, 0.29, 0.26, 0.22)
 """Y0 of angular contact ball bearings by their angle in degrees, ISO 76. [1]"""
-_THRUST_RATIOS = _ANGLES, (0.46, 0.57, 0.68, 0.8, 0.95, 1.14, 1.34)
+_THRUST_RATIOS = CONTACT_ANGLES, (0.46, 0.57, 0.68, 0.8, 0.95, 1.14, 1.34)
 """e of angular contact ball bearings by their angle in degrees, ISO 281; at 15 degrees, where it
 depends on the load, its middle. [1]"""
 PALMGREN_METHOD = "load-dependent moment after Palmgren"

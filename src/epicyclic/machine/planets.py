@@ -53,6 +53,7 @@ from epicyclic.losses.planet_bearing import (
 from epicyclic.losses.ranges import Flags
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.losses.shaft_bearing import (
+    BearingType,
     CatalogueBearing,
     minimum_load,
     thermal_excess,
@@ -607,7 +608,8 @@ def solve_bearing(
         rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
         watts += rubbed.between + rubbed.skewed
         notes = (_rubbing_note(where, rubbed),)
-    notes += _limit_notes(where, bearing, load.force if loaded else math.inf, speed, watts)
+    known, carried = rated(bearing, own.aligns_itself), load.force if loaded else math.inf
+    notes += _limit_notes(where, known, carried, speed, watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
         {
@@ -634,15 +636,16 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
 
 
 @lru_cache(maxsize=64)
-def rated(bearing: RollerBearing) -> CatalogueBearing:
+def rated(bearing: RollerBearing, aligns_itself: bool = False) -> CatalogueBearing:
     """A planet bearing between pin and race of the planet with the ratings of its rollers.
 
-    Theory (J27), (J28).
+    Cylindrical ones count as needles. Theory (J27), (J28).
     """
     sizes = bearing.inner_diameter, bearing.outer_diameter, 2 * bearing.half_width
+    kind: BearingType = "spherical" if aligns_itself else "needle"
     rollers = DesignatedBearing(
         "",
-        "needle",
+        kind,
         *sizes,
         rows=bearing.rows,
         pitch_diameter=bearing.pitch_diameter,
@@ -651,18 +654,18 @@ def rated(bearing: RollerBearing) -> CatalogueBearing:
         elements=bearing.rollers_per_row,
     )
     ratings = rollers.dynamic_load_rating, rollers.static_load_rating
-    return CatalogueBearing("needle", *sizes, "caged", *ratings)
+    return CatalogueBearing(kind, *sizes, "caged", *ratings)
 
 
 def _limit_notes(
-    where: str, bearing: RollerBearing, force: float, speed: float, watts: float
+    where: str, known: CatalogueBearing, force: float, speed: float, watts: float
 ) -> tuple[Note, ...]:
-    known, notes = rated(bearing), []
+    notes, share = [], "0.01 C0" if known.type == "spherical" else "0.02 C"
     least = minimum_load(known, 0.0, 0.0)
     if speed and force < least:
         text = (
             f"{where}: the load of {NEWTON.text(force, 3)} is below the minimum load of "
-            f"{NEWTON.text(least, 3)}, 0.02 C by its rollers (SKF, second hand). They may slip; "
+            f"{NEWTON.text(least, 3)}, {share} by its rollers (SKF, second hand). They may slip; "
             "the loss is that of the actual load without slip."
         )
         notes.append(Note(text, watts))

@@ -8,9 +8,13 @@ from functools import cache
 
 import numpy as np
 
-from epicyclic.losses.designations import SPHERICAL_ANGLE, roller_factor
-from epicyclic.losses.planet_bearing import RollerBearing
-from epicyclic.losses.shaft_bearing import THRUST_TYPES, BearingLoad, CatalogueBearing
+from epicyclic.losses.designations import SPHERICAL_ANGLE
+from epicyclic.losses.shaft_bearing import (
+    CONTACT_ANGLES,
+    THRUST_TYPES,
+    BearingLoad,
+    CatalogueBearing,
+)
 from epicyclic.plugins.design import iso_6336 as iso
 
 BALLS = ("deep-groove", "angular-contact", "thrust-ball")
@@ -18,9 +22,8 @@ STATIC_FACTOR = 14.0  # f_0 of deep groove ball bearings, 12 to 16; estimate. [1
 _AXIAL = (0.172, 0.345, 0.689, 1.03, 1.38, 2.07, 3.45, 5.17, 6.89)  # f_0 F_a/C_0.
 _GROOVE_RATIO = (0.19, 0.22, 0.26, 0.28, 0.30, 0.34, 0.38, 0.42, 0.44)  # e.
 _GROOVE_FACTOR = (2.30, 1.99, 1.71, 1.55, 1.45, 1.31, 1.15, 1.04, 1.00)  # Y; X is 0.56.
-_ANGLES = (15, 20, 25, 30, 35, 40, 45)  # Of angular contact balls [deg], with their X and Y.
-_ANGULAR_RADIAL = (0.44, 0.43, 0.41, 0.39, 0.37, 0.35, 0.33)
-_ANGULAR_AXIAL = (1.23, 1.00, 0.87, 0.76, 0.66, 0.57, 0.50)
+_ANGULAR_RADIAL = CONTACT_ANGLES, (0.44, 0.43, 0.41, 0.39, 0.37, 0.35, 0.33)  # X.
+_ANGULAR_AXIAL = CONTACT_ANGLES, (1.23, 1.00, 0.87, 0.76, 0.66, 0.57, 0.50)  # Y.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,27 +67,13 @@ def dynamic_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
             limit, X, Y = 0.6 / factor, 0.4, factor
         case "angular-contact":
             angle, limit = math.degrees(bearing.contact_angle), bearing.thrust_ratio
-            X = float(np.interp(angle, _ANGLES, _ANGULAR_RADIAL))
-            Y = float(np.interp(angle, _ANGLES, _ANGULAR_AXIAL))
+            X = float(np.interp(angle, *_ANGULAR_RADIAL))
+            Y = float(np.interp(angle, *_ANGULAR_AXIAL))
         case _:  # balls in deep grooves
             share = STATIC_FACTOR * axial / bearing.static_load_rating
             limit = float(np.interp(share, _AXIAL, _GROOVE_RATIO))
             X, Y = 0.56, float(np.interp(share, _AXIAL, _GROOVE_FACTOR))
     return radial if axial <= limit * radial else X * radial + Y * axial
-
-
-def of_planet(rollers: RollerBearing) -> CatalogueBearing:
-    """Rollers of a planet as a catalogue states them. C of ISO 281:2007, 8; C0 of ISO 76."""
-    diameter, length = iso.MM * rollers.roller_diameter, iso.MM * rollers.roller_length
-    gamma, count = rollers.roller_diameter / rollers.pitch_diameter, rollers.rollers_per_row
-    dynamic = 1.1 * roller_factor(gamma) * (rollers.rows * length) ** (7 / 9)
-    return CatalogueBearing(
-        "cylindrical",
-        rollers.pitch_diameter - rollers.roller_diameter,
-        rollers.pitch_diameter + rollers.roller_diameter,
-        dynamic_load_rating=dynamic * count**0.75 * diameter ** (29 / 27),
-        static_load_rating=44 * (1 - gamma) * rollers.rows * count * length * diameter,
-    )
 
 
 def bearing_rating(

@@ -29,22 +29,17 @@ from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import LineLoads, MeshContact
 from epicyclic.losses.designations import RATING_BAND
 from epicyclic.losses.mesh import flash_temperatures
-from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.losses.shaft_bearing import CatalogueBearing
 from epicyclic.machine.element import State, joined_key
 from epicyclic.machine.gear_mesh import MeshDuty, contact_under, distribute_load, elastic_loads
 from epicyclic.machine.gear_set import GearSet
+from epicyclic.machine.planets import PlanetBearing, rated
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.messages import did_you_mean
 from epicyclic.oil.oil import Oil, oil_state
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design import lubricated
-from epicyclic.plugins.design.bearing_life import (
-    BearingRating,
-    bearing_rating,
-    dynamic_load,
-    of_planet,
-)
+from epicyclic.plugins.design.bearing_life import BearingRating, bearing_rating, dynamic_load
 from epicyclic.plugins.design.mass import gear_body
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import build_computed
@@ -241,10 +236,10 @@ def strength(case: CaseSource) -> Strength:
     ['sun_mesh', 'ring_mesh']
     """
     case = as_case(case)
-    return rated(case, build_computed(case))
+    return strength_of(case, build_computed(case))
 
 
-def rated(case: Case, built: Built) -> Strength:
+def strength_of(case: Case, built: Built) -> Strength:
     """The strength of a case whose machine is there."""
     table = case.strength or StrengthTable()
     raise_any(_problems(case, table, built), case.source)
@@ -573,12 +568,12 @@ class _Rating:
         carrier = state.speeds[own.carrier]
         duties = {duty.gears.key: duty for duty in own.loaded_duties(state)}
         for planet in own.planets:
-            rollers = getattr(planet.bearing, "bearing", None)
-            if isinstance(rollers, RollerBearing):
+            bearing = planet.bearing
+            if isinstance(bearing, PlanetBearing):
                 load = replace(planet, tilts=False).load(duties, carrier)[1].force
                 speed = state.speeds[planet.body] - carrier
-                key = joined_key(name, planet.key)
-                yield from self._bearing(key, of_planet(rollers), load, speed)
+                known = rated(bearing.bearing, bearing.aligns_itself)
+                yield from self._bearing(joined_key(name, planet.key), known, load, speed)
 
     def shaft_bearings(self, shafts: Iterable[ShaftBearing]) -> Iterator[BearingRating]:
         """The rolling bearings of shafts."""

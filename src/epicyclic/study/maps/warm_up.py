@@ -159,10 +159,7 @@ class HeatTables:
         self.terms = tuple(dict.fromkeys(source.term for source in self.sources))
         heat = [[[one.heat.get(it, 0.0) for it in self.sources] for one in row] for row in samples]
         conductances = [
-            [
-                [getattr(one.links[step].get(key), "conductance", 0.0) for key in links]
-                for one in row
-            ]
+            [[_conductance(one.links[step], key) for key in links] for one in row]
             for row in samples
             for step in range(WAYS)
         ]
@@ -203,6 +200,10 @@ class HeatTables:
             for node in nodes:
                 found[row, place[node]] += 1 / len(nodes)
         return found
+
+
+def _conductance(links: Mapping[str, Link], key: str) -> float:
+    return links[key].conductance if key in links else 0.0
 
 
 def _coefficients(knots: FloatArray, values: Sequence[Sequence[Sequence[float]]]) -> FloatArray:
