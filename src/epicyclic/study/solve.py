@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 from epicyclic.build.machine import Built, build
@@ -62,14 +63,27 @@ def solve(
     if case.models.load_dependent == "as-tested":
         unloaded = solve(without_torque(case), flow_tables=flow_tables)
         result = replace(result, unloaded=unloaded.total)
-    bad = [term.name for term in result.terms if not math.isfinite(term.watts)]
+    _check_finite(result.losses)
+    return judged(result)
+
+
+def losses_and_power(case: Case, flow_tables: FlowTables) -> tuple[dict[str, float], float]:
+    """Losses and input power alone of a case whose losses are not formed as tested. [W]"""
+    built = build(case, flow_tables)
+    solution = built.solve().solution
+    losses = {name: solution.losses[name].watts for name in built.layout.losses}
+    _check_finite(losses)
+    return losses, solution.input_power
+
+
+def _check_finite(losses: Mapping[str, float]) -> None:
+    bad = [name for name, watts in losses.items() if not math.isfinite(watts)]
     if bad:
         raise ConvergenceError(
             f"{', '.join(bad)} did not give a finite number, because the case is far outside the "
             "range of the models. Choose others (models.friction, models.rolling, "
             "models.bearing)."
         )
-    return judged(result)
 
 
 def without_torque(case: Case) -> Case:
