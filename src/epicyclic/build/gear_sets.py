@@ -311,6 +311,7 @@ def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBea
         palmgren_beyond=name == FITTED_OR_PALMGREN,
         roller_density=table.material.density,
         aligns_itself=table.type == "spherical",
+        cage=table.cage,
         viscous_added=case.models.preset != "general",
     )
 

@@ -154,16 +154,20 @@ class Planet:
         )
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
-        contacts = []
-        for own in self.meshes:
-            duty = duties[own.mesh]
-            # the mesh turns both of its external gears against the torque that gear 1 brings in
-            sense = -1 if duty.torque1 > 0 else 1
-            contacts.append(
-                PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
+        # a mesh turns both of its external gears against the torque that gear 1 brings in
+        senses = [-1 if duties[own.mesh].torque1 > 0 else 1 for own in self.meshes]
+        turn = senses[0]  # axes turned about r by half a turn if -1; no -0.0, which prints oddly
+        return [
+            PlanetContact(
+                duties[own.mesh],
+                own.member,
+                (turn * own.outward[0] + 0.0, own.outward[1]),
+                turn * sense,
+                own.hand,
+                turn * own.position + 0.0,
             )
-        first = contacts[0].sense
-        return contacts if first > 0 else [contact.turned_round() for contact in contacts]
+            for own, sense in zip(self.meshes, senses, strict=True)
+        ]
 
 
 class Drags(NamedTuple):

@@ -54,7 +54,9 @@ from epicyclic.losses.ranges import Flags
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.losses.shaft_bearing import (
     BearingType,
+    Cage,
     CatalogueBearing,
+    limiting_speed,
     minimum_load,
     thermal_excess,
     thermal_speed_rating,
@@ -224,15 +226,6 @@ class PlanetContact:
     sense: int  # +1 if the mesh turns the planet from t to r, else -1.
     hand: int = 1  # +1 if a positive `sense` pushes the planet along y, else -1.
     position: float = 0.0  # Position of the middle of the face, along y. [m]
-
-    def turned_round(self) -> PlanetContact:
-        """The same in axes turned about r by half a turn."""
-        t, r = self.outward
-        # not -0.0, which prints oddly
-        outward = (0.0 - t, r)
-        return PlanetContact(
-            self.duty, self.member, outward, -self.sense, self.hand, 0.0 - self.position
-        )
 
     @property
     def face_sense(self) -> int:
@@ -504,6 +497,7 @@ class PlanetBearing:
     palmgren_beyond: bool = False
     roller_density: float = 7850.0  # [kg/m^3]
     aligns_itself: bool = False  # True if it takes no moment.
+    cage: Cage = "caged"
     viscous_added: bool = False  # True if (V1) is added to rolling losses, as by Talbot.
 
     @property
@@ -608,7 +602,7 @@ def solve_bearing(
         rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
         watts += rubbed.between + rubbed.skewed
         notes = (_rubbing_note(where, rubbed),)
-    known, carried = rated(bearing, own.aligns_itself), load.force if loaded else math.inf
+    known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
     notes += _limit_notes(where, known, carried, speed, watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
@@ -636,7 +630,9 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
 
 
 @lru_cache(maxsize=64)
-def rated(bearing: RollerBearing, aligns_itself: bool = False) -> CatalogueBearing:
+def rated(
+    bearing: RollerBearing, aligns_itself: bool = False, cage: Cage = "caged"
+) -> CatalogueBearing:
     """A planet bearing between pin and race of the planet with the ratings of its rollers.
 
     Cylindrical ones count as needles. Theory (J27), (J28).
@@ -654,7 +650,7 @@ def rated(bearing: RollerBearing, aligns_itself: bool = False) -> CatalogueBeari
         elements=bearing.rollers_per_row,
     )
     ratings = rollers.dynamic_load_rating, rollers.static_load_rating
-    return CatalogueBearing(kind, *sizes, "caged", *ratings)
+    return CatalogueBearing(kind, *sizes, "caged" if aligns_itself else cage, *ratings)
 
 
 def _limit_notes(
@@ -674,7 +670,14 @@ def _limit_notes(
         text = (
             f"{where}: {RPM.text(abs(speed), 4)} against the carrier exceed the thermal reference "
             f"speed of {RPM.text(rating, 2)}, an estimate after ISO 15312 by its rollers. Above it "
-            "the bearing needs oil that cools it; check the limiting speed of rollers and cage."
+            "the bearing needs oil that cools it."
+        )
+        notes.append(Note(text, watts))
+    if abs(speed) > (limit := limiting_speed(known)):
+        text = (
+            f"{where}: {RPM.text(abs(speed), 4)} against the carrier exceed the limiting speed of "
+            f"{RPM.text(limit, 2)}, an estimate by SKF's tables, which cage and rollers stand. "
+            "Beyond it no loss is known; compare the speed that the catalogue allows."
         )
         notes.append(Note(text, watts))
     return tuple(notes)

@@ -407,7 +407,7 @@ class ShaftBearingTable(ElementTable):
         "Of the catalogue; for the minimum load of cylindrical rollers, and a note above it."
     )
     limiting_speed: ReferenceSpeed | None = option(
-        "Of the catalogue; a note above it. Default: that of small bearings of the type."
+        "Of the catalogue; a note above it. Default: that of its type."
     )
     table: LossTableTable | None = option("Loss table for model = table.")
 
