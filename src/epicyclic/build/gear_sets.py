@@ -244,6 +244,7 @@ def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
         mass_estimated=not stated,
         bearing=own,
         no_bearing=f"the case has no {no_bearing}",
+        diameter=2 * max(gear.reference_radius for gear, _ in made),
         tilts=case.models.planet_tilt == "coupled",
         nodes=(joined_key(key, planet), joined_key(key, pin)),
     )

@@ -96,6 +96,7 @@ class Planet:
     mass_estimated: bool = False  # True if no case states it.
     bearing: PlanetBearing | PlanetPin | None = None
     no_bearing: str = ""  # Why there is none.
+    diameter: float = 0.0  # Of the reference circle of its largest gear. [m]
     tilts: bool = False  # True if the planet tilts in its bearing and misaligns its meshes.
     nodes: tuple[str, str] = (OIL, OIL)  # The thermal nodes of the planets and of their pins.
 
@@ -448,7 +449,8 @@ class GearSet:
             oil = state.fluids.at(joined_key(self.key, planet.key))
             last = last_rollers.get((planet.key, share))
             if planet.bearing is None:
-                bearing = missing_bearing(planet.key, planet.no_bearing)
+                moment = load.force * planet.diameter / 4 / share if share else 0.0
+                bearing = missing_bearing(planet.key, planet.no_bearing, moment, speed)
             elif isinstance(planet.bearing, PlanetPin):
                 # in the axes of the load, in which the first mesh turns the planet from t to r
                 driven = -speed if duties[planet.meshes[0].mesh].torque1 > 0 else speed

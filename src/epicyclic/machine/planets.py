@@ -550,13 +550,29 @@ class BearingResult(ElementResult):
     loads: Carried = None  # On its rollers or film: what the next pass goes on from.
 
 
-def missing_bearing(key: str, reason: str) -> BearingResult:
-    """The losses of a bearing that is not there."""
+ROLLER_FRICTION = 0.0003, 0.002
+"""f1 of caged rollers, and the largest of catalogues of needle bearings. Theory (B16). [1]"""
+MAY_LOSE = "not given; its rollers may lose"
+"""In the note on what a missing planet bearing may cost."""
+
+
+def missing_bearing(key: str, reason: str, moment: float, speed: float) -> BearingResult:
+    """The losses of a bearing that is not there, with a note on what rollers may lose (B16).
+
+    `moment` is the force on all of them times their pitch radius. [N m]
+    """
+    least, most = (abs(2 * moment * speed * factor) for factor in ROLLER_FRICTION)
+    text = (
+        f"{key.replace('_', ' ')}: {MAY_LOSE} {format_number(least, 2)} to {WATT.text(most, 2)}, "
+        "which the band does not contain. By Palmgren, f1 = 0.0003 to 0.002, on a pitch diameter "
+        "of half that of the planet."
+    )
     return BearingResult(
         {
             f"{key}_mechanical": Loss(LOAD_DEPENDENT, left_out=reason),
             f"{key}_viscous": Loss(LOAD_INDEPENDENT, left_out=reason),
-        }
+        },
+        notes=(Note(text, most),) if most else (),
     )
 
 
