@@ -452,3 +452,6 @@ def test_limiting_speed_of_planets_is_told(talbot):
             speed = f"{share * limit / ratio} rpm"
             warnings = ep.solve(talbot.updated({**changes, "operation.speed": speed})).warnings
             assert any("exceed the limiting speed of" in it for it in warnings) == (share > 1)
+    stated = quick | {"planet_bearing.limiting_speed": f"{3900 * ratio} rpm"}
+    told = [it for it in ep.solve(talbot.updated(stated)).warnings if "limiting speed of" in it]
+    assert [("SKF" in note) for note in told] == [False]

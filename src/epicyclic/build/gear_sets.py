@@ -313,6 +313,7 @@ def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBea
         roller_density=table.material.density,
         aligns_itself=table.type == "spherical",
         cage=table.cage,
+        limiting_speed=table.limiting_speed,
         viscous_added=case.models.preset != "general",
     )
 

@@ -498,6 +498,7 @@ class PlanetBearing:
     roller_density: float = 7850.0  # [kg/m^3]
     aligns_itself: bool = False  # True if it takes no moment.
     cage: Cage = "caged"
+    limiting_speed: float | None = None  # None for that of the type. [rad/s]
     viscous_added: bool = False  # True if (V1) is added to rolling losses, as by Talbot.
 
     @property
@@ -619,7 +620,8 @@ def solve_bearing(
         watts += rubbed.between + rubbed.skewed
         notes = (_rubbing_note(where, rubbed),)
     known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
-    notes += _limit_notes(where, known, carried, speed, watts)
+    limit = own.limiting_speed or limiting_speed(known)
+    notes += _limit_notes(where, known, carried, abs(speed), limit, watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
         {
@@ -670,7 +672,7 @@ def rated(
 
 
 def _limit_notes(
-    where: str, known: CatalogueBearing, force: float, speed: float, watts: float
+    where: str, known: CatalogueBearing, force: float, speed: float, limit: float, watts: float
 ) -> tuple[Note, ...]:
     notes, share = [], "0.01 C0" if known.type == "spherical" else "0.02 C"
     least = minimum_load(known, 0.0, 0.0)
@@ -681,19 +683,20 @@ def _limit_notes(
             "the loss is that of the actual load without slip."
         )
         notes.append(Note(text, watts))
-    if thermal_excess(known, abs(speed)) > 0:
+    if thermal_excess(known, speed) > 0:
         rating = thermal_speed_rating(known)
         text = (
-            f"{where}: {RPM.text(abs(speed), 4)} against the carrier exceed the thermal reference "
+            f"{where}: {RPM.text(speed, 4)} against the carrier exceed the thermal reference "
             f"speed of {RPM.text(rating, 2)}, an estimate after ISO 15312 by its rollers. Above it "
             "the bearing needs oil that cools it."
         )
         notes.append(Note(text, watts))
-    if abs(speed) > (limit := limiting_speed(known)):
+    if speed > limit:
+        whose = ", an estimate by SKF's tables" if limit == limiting_speed(known) else ""
         text = (
-            f"{where}: {RPM.text(abs(speed), 4)} against the carrier exceed the limiting speed of "
-            f"{RPM.text(limit, 2)}, an estimate by SKF's tables, which cage and rollers stand. "
-            "Beyond it no loss is known; compare the speed that the catalogue allows."
+            f"{where}: {RPM.text(speed, 4)} against the carrier exceed the limiting speed of "
+            f"{RPM.text(limit, 2)}{whose}, which cage and rollers stand. Beyond it no loss is "
+            "known; give limiting_speed of the catalogue, or take another bearing."
         )
         notes.append(Note(text, watts))
     return tuple(notes)
