@@ -17,7 +17,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.messages import one_line
 from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.page import MISSING, error_text, shown
-from epicyclic.show.terminal import number_table, plain_table, spaced, titled
+from epicyclic.show.terminal import Sentence, number_table, plain_table, spaced, titled
 from epicyclic.study.measured.comparison import CALIBRATED, ErrorFigures, MeasuredComparison
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.operating import OPERATING
@@ -50,7 +50,7 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
         title = Text(str(mesh.attrs["title"]), style="bold")
         parts += [title, _over_period(mesh), _figures(mesh)]
     notes = _notes(meshes)
-    parts += [Text(f"• {note}") for note in notes]
+    parts += map(Sentence, notes)
     if any(mesh["transmission_error"].isnull().all() for mesh in meshes.values()):
         parts.append(
             Text(f'"{MISSING}": this load distribution gives no deflection; compliance does.')
@@ -160,7 +160,7 @@ def pocket_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
         title = Text(str(mesh.attrs["title"]), style="bold")
         parts += [title, _balance(mesh), _extremes(mesh)]
     models = dict.fromkeys(f"Model: {mesh.attrs['model']}." for mesh in meshes.values())
-    parts.append(Text("\n".join(f"• {line}" for line in (*models, *_notes(meshes)))))
+    parts.append(Group(*map(Sentence, (*models, *_notes(meshes)))))
     return spaced(*parts)
 
 

@@ -25,7 +25,14 @@ from epicyclic.show.page import (
     tenths,
 )
 from epicyclic.show.terminal import as_on_page, titled
-from epicyclic.study.bands.advice import MOST_DRIVERS, Known, known_of, limits_of, measurements_of
+from epicyclic.study.bands.advice import (
+    MOST_DRIVERS,
+    Known,
+    known_of,
+    limits_of,
+    main_causes,
+    measurements_of,
+)
 from epicyclic.units import efficiency_text, format_number, known_text, percent, unit_text
 
 if TYPE_CHECKING:
@@ -46,12 +53,9 @@ def band_texts(known: Known | None) -> list[str | Listing]:
     ends = known.ends["efficiency"]
     if ends[1] > 0:  # neither unknown nor without any efficiency
         text += f", efficiency {efficiency_text(*ends, ends=ends)}"
-    drivers = ", ".join(
-        f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST_DRIVERS]
-    )
     return [
-        f"{text}, mainly from {drivers}. Inputs without an entry in [uncertainty] are estimated: "
-        "'epicyclic uncertainty' shows all.",
+        f"{text}, mainly from {main_causes(known)}. Inputs without an entry in [uncertainty] are "
+        "estimated: 'epicyclic uncertainty' shows all.",
         Listing(tuple(advice_texts(known, brief=True)), LIMITS),
     ]
 

@@ -195,10 +195,10 @@ class LossTableTable(PointsTable):
     AXES: ClassVar = ("speed", "temperature", "radial_force")
 
     speed: tuple[SpeedDifference, ...] | None = option(
-        "Magnitudes of the speed difference, rising."
+        "Magnitudes of the speed difference, increasing."
     )
-    temperature: tuple[Temperature, ...] | None = option("Temperatures of the oil, rising.")
-    radial_force: tuple[Force, ...] | None = option("On a bearing, rising.")
+    temperature: tuple[Temperature, ...] | None = option("Temperatures of the oil, increasing.")
+    radial_force: tuple[Force, ...] | None = option("On a bearing, increasing.")
     torque: Torques | None = option(
         "Friction torque, with one value or one row for each value of the first axis."
     )
@@ -437,7 +437,7 @@ class ShaftBearingTable(ElementTable):
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
         if (kind, self.cage) not in DEFAULT_VISCOUS_FACTORS:
             remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
-            yield Problem("cage", written(self.cage), f"is not made as a {kind} bearing.", remedy)
+            yield Problem("cage", written(self.cage), f"is not made for {kind} bearings.", remedy)
         yield from _angle_problems(self)
         yield from _pair_problems(self)
         yield from super().problems()
@@ -554,7 +554,7 @@ def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
         return
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
-        yield Problem("radial_force", "", "is missing with axial_force.", remedy)
+        yield Problem("radial_force", "", "is missing, but axial_force is given.", remedy)
     if table.type == "needle":
         reason = "is not possible with a needle roller bearing, which carries no axial force."
         remedy = "Locate the shaft by another bearing."
