@@ -51,8 +51,8 @@ def _gears(found: Strength) -> Table:
     head = ("gear", "S_H", "sigma_H, MPa", "limit", "S_F", "sigma_F, MPa", "limit", "Y_F", "Y_S")
     rows = [
         (f"{in_words(it.gear)}, {in_words(mesh.key.rpartition('.')[2])}", it.pitting,
-         it.contact_stress * MPA, it.contact_limit * MPA, it.bending, it.root_stress * MPA, it.root_limit * MPA,
-         it.form_factor, it.stress_correction)
+         it.contact_stress * MPA, it.contact_limit * MPA, it.bending,
+         it.root_stress * MPA, it.root_limit * MPA, it.form_factor, it.stress_correction)
         for mesh in found.meshes for it in mesh.gears
     ]  # fmt: skip
     return _table("Pitting and bending after ISO 6336-2, -3", head, (3, 4, 4, 3, 4, 4, 3, 3), rows)
