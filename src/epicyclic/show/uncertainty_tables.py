@@ -311,10 +311,10 @@ def _results(data: xr.Dataset) -> Table:
             for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
                         "low", "high", "shortest_low", "shortest_high")
         )  # fmt: skip
-        further = ", %" if name == "efficiency" else ""
+        label = in_words(name) + (", %" if name == "efficiency" else "")
         if name in ("load_dependent", "load_independent"):
-            further = data.attrs["grouping"]
-        rows.append((Cell(in_words(name) + further), *values))
+            label = name.replace("_", "-") + data.attrs["grouping"]
+        rows.append((Cell(label), *values))
     strong = frozenset({names.index("total"), names.index("efficiency")})
     head = ("", "case", "mean", "u_c", "U", "95 % from", "to", "shortest", "to")
     what = "Losses" if _unit(data) == "W" else "Energies"
