@@ -146,7 +146,7 @@ def in_few_words(name: str) -> str:
     if not _KEY.fullmatch(name):
         return name
     *owners, last = name.replace("_", " ").split(".")
-    owner = " ".join(one for one in owners if one not in _OF_ALL)
+    owner = ": ".join(one for one in owners if one not in _OF_ALL)
     return f"{last} of {owner}" if owner else last
 
 
