@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import RenderableType
 
-from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.messages import one_line
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import (
@@ -28,6 +27,7 @@ from epicyclic.show.terminal import as_on_page, titled
 from epicyclic.study.bands.advice import (
     MOST_DRIVERS,
     Known,
+    in_few_words,
     known_of,
     limits_of,
     main_causes,
@@ -111,11 +111,10 @@ def _known(known: Known) -> dict[str, Any]:
     }
 
 
-def driver_name(key: str) -> str:
-    """What an uncertain value is called."""
-    if key.startswith(MODEL_FORM):
-        return f"model of {in_words(key.removeprefix(MODEL_FORM)).replace('-', ' ')}"
-    return key
+def _names(data: xr.Dataset) -> dict[str, str]:
+    """What uncertain values are called, by their keys."""
+    names = map(in_few_words, map(str, data["input_name"].values))
+    return dict(zip(map(str, data["input"].values), names, strict=True))
 
 
 MOST_COLUMNS = 9
@@ -206,14 +205,14 @@ def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
 
 def _drivers(data: xr.Dataset) -> Table:
     """Shares of the variance of the total loss: where the loss is, and where they are largest."""
-    shares, mean = data["first_order"], _mean_shares(data)
+    shares, mean, names = data["first_order"], _mean_shares(data), _names(data)
     rows = []
     for driver in mean["driver"].values:
         own = shares.sel(driver=driver)
         if not (own > LEAST).any():
             continue
         largest = own.isel(own.argmax(own.dims))
-        name = " + ".join(map(driver_name, str(driver).split(" + ")))
+        name = " + ".join(names[key] for key in str(driver).split(" + "))
         rows.append(
             (
                 Cell(name),
@@ -342,7 +341,7 @@ def _budget(data: xr.Dataset) -> Table:
     orders = [name for name in ("first_order", "total_order") if name in data]
     largest = total[orders[-1]]
     order = largest.sortby(-largest)["driver"].values
-    rows = []
+    rows, names = [], _names(data)
     for driver in map(str, order):
         keys = driver.split(" + ")
         if not total["contribution"].sel(input=keys).any():
@@ -353,7 +352,7 @@ def _budget(data: xr.Dataset) -> Table:
             own = total.sel(input=key)
             rows.append(
                 (
-                    Cell(driver_name(key)),
+                    Cell(names[key]),
                     Cell(str(own["distribution"].values)),
                     _input_value(own),
                     _shown(float(own["contribution"]), _unit(data)),
@@ -407,9 +406,10 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
         yield f"Without effect here: {', '.join(idle)}."
     yield from _of_points(data)
     sources: dict[str, list[str]] = {}
+    names = _names(data)
     for key in sorted(set(map(str, data["input"].values)) - set(idle)):
         source = str(data["distribution_source"].sel(input=key).values)
-        sources.setdefault(source, []).append(driver_name(key))
+        sources.setdefault(source, []).append(f"{names[key]} ({key})")
     for source, keys in sources.items():
         yield f"{', '.join(keys)}: {source}."
 
