@@ -12,17 +12,7 @@ from rich.console import RenderableType
 
 from epicyclic.messages import one_line
 from epicyclic.result.result import Result, in_words
-from epicyclic.show.page import (
-    MISSING,
-    Cell,
-    KeyFigure,
-    Listing,
-    Table,
-    aligned,
-    number,
-    shown,
-    tenths,
-)
+from epicyclic.show.page import MISSING, Cell, KeyFigure, Listing, Table, aligned, number, shown
 from epicyclic.show.terminal import as_on_page, titled
 from epicyclic.study.bands.advice import (
     MOST_DRIVERS,
@@ -33,7 +23,14 @@ from epicyclic.study.bands.advice import (
     main_causes,
     measurements_of,
 )
-from epicyclic.units import efficiency_text, format_number, known_text, percent, unit_text
+from epicyclic.units import (
+    decimals_of,
+    efficiency_text,
+    format_number,
+    known_text,
+    percent,
+    unit_text,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -303,10 +300,11 @@ def band_figures(data: xr.Dataset) -> list[KeyFigure]:
 def _results(data: xr.Dataset) -> Table:
     rows = []
     names = [str(name) for name in data["result"].values]
+    total = float(data["nominal"].sel(result="total"))
     for name in names:
         one = data.sel(result=name)
         values = (
-            _shown(float(one[key]), str(one["unit"].values))
+            _shown(float(one[key]), str(one["unit"].values), total)
             for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
                         "low", "high", "shortest_low", "shortest_high")
         )  # fmt: skip
@@ -326,12 +324,13 @@ def _unit(data: xr.Dataset) -> str:
     return str(data["unit"].sel(result="total").values)
 
 
-def _shown(value: float, unit: str) -> Cell:
-    """A number as precise as such numbers are."""
+def _shown(value: float, unit: str, total: float = math.inf) -> Cell:
+    """A number as precise as such numbers are, beside a `total` of losses."""
     if math.isnan(value):
         return number(None, "")
     if unit == "W":
-        return tenths(value)
+        decimals = max(1, decimals_of(total)) if math.isfinite(total) else 1
+        return number(value, "", text=f"{value:z.{decimals}f}")
     return number(value, "", text=f"{100 * value:z.3f}" if unit == "1" else shown(value, 5))
 
 
@@ -355,7 +354,7 @@ def _budget(data: xr.Dataset) -> Table:
                     Cell(names[key]),
                     Cell(str(own["distribution"].values)),
                     _input_value(own),
-                    _shown(float(own["contribution"]), _unit(data)),
+                    _shown(float(own["contribution"]), _unit(data), float(total["nominal"])),
                     *(aligned("" if place else text) for text in shares),
                 )
             )
