@@ -224,7 +224,7 @@ def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
                 yield (
                     f"{name.capitalize()}: {percent(idle, 0)} of the length of the most loaded "
                     f"roller carries none of its {NEWTON.text(found.roller_load_max, 3)}, "
-                    f"because {torque_text(found.moment, 3)} tilt the planet."
+                    f"because a moment of {torque_text(found.moment, 3)} tilts the planet."
                 )
 
 

@@ -208,8 +208,8 @@ def _friction(case: Case, result: Result, brief: bool) -> Iterator[str]:
         return
     best, why = recommended(rows)
     does = "suits" if best.chosen else BETTER
-    if best.outside > MOSTLY:
-        does = "is only the nearest; no model covers most of the loss"
+    if best.chosen and best.outside > MOSTLY:
+        does = "is only the nearest, because no model covers most of the loss"
     yield f"Friction: {best.name} {does}; {why}."
     beside = standard_beside(rows, result)
     if beside:
