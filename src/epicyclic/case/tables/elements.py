@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field, Tag, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.tables.base import (
@@ -49,9 +49,12 @@ def _filled(kind: str, raw: dict[str, Any]) -> dict[str, Any]:
     return designations.KEYS[kind](raw) | raw
 
 
-ShaftDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "shaft"))]
-PlanetDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "planet"))]
-ThrustDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "thrust"))]
+# 6208 without quotes, as on a command line, is text too
+_FromDigits = BeforeValidator(lambda given: str(given) if type(given) is int else given)
+_Designation = Annotated[str, Field(max_length=40), _FromDigits]
+ShaftDesignation = Annotated[_Designation, AfterValidator(partial(_known, "shaft"))]
+PlanetDesignation = Annotated[_Designation, AfterValidator(partial(_known, "planet"))]
+ThrustDesignation = Annotated[_Designation, AfterValidator(partial(_known, "thrust"))]
 
 
 class PlanetBearing(Table):
