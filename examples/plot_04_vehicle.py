@@ -43,8 +43,8 @@ data = ep.loss_map(
 warm = data.torque_loss.sel(temperature=60)
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 for torque in (0, 15, 60, 120):
-    axes.plot(data.speed, warm.sel(torque=torque), "o-", label=f"{torque} N m")
-axes.set(xlabel="speed of the pinion [rpm]", ylabel="torque loss [N m]", title="Oil at 60 °C")
+    axes.plot(data.speed, warm.sel(torque=torque), "o-", label=f"{torque} N·m")
+axes.set(xlabel="speed of the pinion [rpm]", ylabel="torque loss [N·m]", title="Oil at 60 °C")
 axes.set_ylim(-0.05, 2.2)
 axes.legend(title="torque", ncols=4, loc="upper center")
 
@@ -98,5 +98,5 @@ ep.write_map(ep.with_temperature_state(data, case), folder / "warming.fmu")
 point = {"speed": 2000 * np.pi / 30, "torque": 40.0, "temperature": 333.15}
 simulated = fmpy.simulate_fmu(str(folder / "reduction.fmu"), start_values=point, stop_time=1.0)
 table = data.torque_loss.sel(temperature=60).interp(speed=2000, torque=40)
-print(f"torque loss of the FMU {simulated['torque_loss'][-1]:.6f} N m, "
-      f"of the map {float(table):.6f} N m")  # fmt: skip
+print(f"torque loss of the FMU {simulated['torque_loss'][-1]:.6f} N·m, "
+      f"of the map {float(table):.6f} N·m")  # fmt: skip

@@ -19,7 +19,7 @@ case = ep.load_case("talbot-2012")
 # The measurements
 # ----------------
 # Losses of the set with three planets at 4000 rpm: Talbot (2012), Fig. 2.4 and p. 31; the
-# differences to 40 °C are from p. 37. The source has a torque sensor of 225 N m with a resolution
+# differences to 40 °C are from p. 37. The source has a torque sensor of 225 N·m with a resolution
 # of 0.05 % (p. 23), which is 47 W at this speed; 60 W are assumed, for all that is uncertain.
 
 measured = pd.DataFrame(

@@ -16,7 +16,7 @@ from scipy.optimize import minimize
 import epicyclic as ep
 
 DISTANCE, RATIO, WIDTH = 91.5, 2.6, 30.0  # mm, 1, mm
-TORQUE = 130.0  # N m
+TORQUE = 130.0  # N·m
 TANGENTIAL = 1e3 * TORQUE * (1 + RATIO) / DISTANCE  # at the pitch circle [N]
 AXIAL = 1800.0  # what the bearings take [N]
 UNIT_LOAD = 105.0  # tangential force over face width and module [N/mm2]

@@ -122,7 +122,7 @@ def rising_problems(axes: Mapping[str, Collection[float]], prefix: str = "") -> 
         Problem(
             f"{prefix}{name}",
             f"{len(points)} values",
-            "must be two or more rising values.",
+            "must be two or more increasing values.",
             "Give two or more, the smallest first.",
         )
         for name, points in axes.items()

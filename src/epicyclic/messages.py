@@ -114,7 +114,8 @@ def _joined(parts: Iterator[str]) -> str:
 
 def sentence(text: str, *, capital: bool = True) -> str:
     """`text` with a full stop, and with a capital letter at its start unless told otherwise."""
-    start = text[:1].upper() if capital else text[:1]
+    is_key = "." in text.partition(" ")[0].rstrip(".:")
+    start = text[:1].upper() if capital and not is_key else text[:1]
     return f"{start}{text[1:]}" + ("" if text.endswith((".", "?")) else ".")
 
 

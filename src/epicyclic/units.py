@@ -294,12 +294,11 @@ def _divided(text: str) -> tuple[str, str]:
     number = match[0] if match else ""
     plain = plain_number(number)
     if plain:
-        what = (
-            "has a decimal comma" if _DECIMAL_COMMA.fullmatch(number) else "has marks of thousands"
-        )
+        comma = _DECIMAL_COMMA.fullmatch(number)
+        what = "has a decimal comma" if comma else "has separators of thousands"
         return what, f"write {plain}" + (", with a decimal point" if "." in plain else "")
-    what = "has marks that may divide thousands or decimals"
-    return what, "write it with a decimal point, and without marks of thousands"
+    what = "has separators of thousands or of decimals"
+    return what, "write it with a decimal point and without separators of thousands"
 
 
 @lru_cache(maxsize=4096)

@@ -51,7 +51,7 @@ def measured(tmp_path):
 def test_tables_are_printed(call, measured):
     done = call("talbot-2012", measured, *QUICK)
     assert done.returncode == 0, done.stderr
-    assert re.search(r"as given: all points +6 ", done.stdout)
+    assert re.search(r"as given: all +6 ", done.stdout)
     assert re.search(r"  temperature 40 +2 ", done.stdout)
     assert "CALIBRATED" not in done.stdout
     assert "Not included: thrust_bearing_viscous" in done.stdout

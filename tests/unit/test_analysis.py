@@ -221,7 +221,7 @@ def test_a_turning_ring_of_unknown_rim_is_noted(case):
 def test_oil_outside_its_range_is_flagged(case):
     result = solve(case, operation__oil_inlet_temperature="120 degC")
     assert any("temperature" in flag.quantity for flag in result.flags)
-    assert any("25 to 100 degC" in warning for warning in result.warnings)
+    assert any("25 to 100 °C" in warning for warning in result.warnings)
 
 
 def test_range_warnings_are_one_a_quantity(case):

@@ -146,4 +146,4 @@ def test_a_mesh_without_load_has_no_safety():
     assert idle.meshes == ()
     assert "no mesh carries a load" in idle.notes[0]
     assert idle.least() == {}
-    assert [item.title for item in tables_of(idle)] == ["Safeties: what they follow"]
+    assert [item.title for item in tables_of(idle)] == ["Safeties: methods and limits"]

@@ -306,7 +306,7 @@ def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil()
     case = ep.load_case("talbot-2012")
     best, why = recommended(compare_friction(case))
     assert best.name == "mixed-lubrication"
-    assert "nearer to measured gears" in why
+    assert "best with measured gears" in why
     rows = compare_friction(case.updated(FORMER))
     best, why = recommended(rows)
     assert best.name == "mixed-ehl"
@@ -321,7 +321,7 @@ def test_recommendation_for_the_fluid_of_the_regression_and_for_an_unknown_oil()
     best, why = recommended(compare_friction(other))
     assert best.name == "mixed-lubrication"
     assert not best.chosen
-    assert "nearer to measured gears" in why
+    assert "best with measured gears" in why
 
 
 SHIPPED = [name for name in library.names("oils") if library.oil_model_file(name)]

@@ -151,6 +151,11 @@ def _planets(**keys):
     return case.updated({"planet_bearing": keys})
 
 
+def test_designation_of_digits_alone_needs_no_quotes():
+    case = ep.load_case("train-eaxle", {"bearings.motor_front.designation": 6207})
+    assert case.bearings["motor_front"].designation == "6207"
+
+
 def test_planet_bearing_by_designation():
     case = _planets(designation="K 26x34x20", diametral_clearance="9 um")
     own = case.planet_bearing

@@ -180,10 +180,8 @@ def test_disagreement_below_the_printed_digits_is_adjusted_and_told():
 def test_too_thick_teeth_are_told_with_what_fits():
     problems = problems_of(load_case, changed(sun={X: 0.35}))
     (problem,) = [one for one in problems if "too thick" in one.allowed]
-    proposed = dict(
-        part.split(" = ")
-        for part in problem.remedy.split("Without backlash ")[1].split(" fits")[0].split(" or ")
-    )
+    needed = problem.remedy.split("Zero backlash needs ")[1].split(", or ")[0]
+    proposed = dict(part.split(" = ") for part in needed.split(" or "))
     for key, value in proposed.items():
         fitted = changed(sun={X: 0.35})
         table, name = key.split(".")

@@ -592,7 +592,7 @@ def test_names_that_mean_two_things():
     own["meshes"], own["mesh"] = [["a_b", "c"], ["a", "b_c"]], {}
     tables["shafts"] = {"in": ["S.a_b"], "out": ["S.b_c"]}
     problem = only(problems_of(ep.load_case, tables))
-    assert "the same name, a_b_c_mesh" in problem.allowed
+    assert "as another mesh, a_b_c_mesh" in problem.allowed
 
 
 def test_friction_table_of_the_train_serves_its_sets():

@@ -61,8 +61,8 @@ HOSTILE = {
     "which exceeds": (changed("efficiency", (1, 1, 0), 1.07), "efficiency: must not exceed 1."),
     "nowhere": (changed("speed", 1, np.nan), "speed: must have finite values."),
     "endless": (changed("temperature", 1, np.inf), "temperature: must "),
-    "unsorted": (swapped, "torque: must be rising."),
-    "twice": (changed("torque", 1, -100.0), "torque: must be rising."),
+    "unsorted": (swapped, "torque: must be increasing."),
+    "twice": (changed("torque", 1, -100.0), "torque: must be increasing."),
     "other unit": (with_attribute("speed", "units", "rad/s"), "speed = rad/s: must be in rpm."),
     "times": (with_attribute("temperature", "units", "days since 1970-01-01"), "must be in degC."),
     "unit of losses": (with_attribute("total", "units", "kW"), "total = kW: must be in W."),
@@ -102,7 +102,7 @@ def test_a_dataset_in_memory_is_checked_as_well(pair_map):
     cycle = {"speed [rpm]": [900.0], "torque [N*m]": [40.0], "duration [s]": [7.0]}
     for axis in ("speed", "torque"):
         backwards = pair_map.isel({axis: slice(None, None, -1)})
-        with pytest.raises(ep.InputError, match=f"{axis}: must be rising"):
+        with pytest.raises(ep.InputError, match=f"{axis}: must be increasing"):
             ep.duty_cycle(backwards, cycle, ["60 degC"])
 
 

@@ -302,7 +302,7 @@ def with_coefficient(text):
         (lambda text: resealed(text.replace('"version": "0"', '"version": "99.1"')), "99.1"),
         (lambda text: text.replace('"seed": 0', '"seed": 7'), "was altered"),
         (lambda text: text.replace('"fingerprint"', '"print"'), "no fingerprint"),
-        (with_domain(0.02, 0.01), "must be rising"),
+        (with_domain(0.02, 0.01), "must be increasing"),
         (with_domain(-0.02, 0.01), "above zero"),
         (with_coefficient, "out of bounds"),
         (

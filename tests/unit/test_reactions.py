@@ -110,8 +110,8 @@ def test_one_bearing_carries_what_does_not_tilt_it():
         ([], [], "no bearing"),
         ([Support(0.0), Support(1.0), Support(2.0)], [], "give radial_force"),
         ([Support(1.0), Support(1.0)], [], "same position"),
-        ([Support(0.0)], [ShaftLoad(0.1, (100.0, 0.0, 0.0))], "moment of 10 N m remains"),
-        ([Support(0.0)], [ShaftLoad(0.0, (1.0, 0.0, 0.0), (0.0, 2.0))], "moment of 2 N m"),
+        ([Support(0.0)], [ShaftLoad(0.1, (100.0, 0.0, 0.0))], "moment of 10 N·m remains"),
+        ([Support(0.0)], [ShaftLoad(0.0, (1.0, 0.0, 0.0), (0.0, 2.0))], "moment of 2 N·m"),
         (
             [Support(0.0, "positive"), Support(1.0)],
             [ShaftLoad(0.1, (0.0, 0.0, -5.0))],

@@ -235,7 +235,7 @@ def test_units_of_the_file_are_converted(read):
         ({"face_width": ("1e999", "mm")}, "not a finite number"),
         ({"face_width": ("1_0", "mm")}, "not a finite number"),
         ({"face_width": ("wide", "mm")}, "not a finite number"),
-        ({"face_width": (20.0, "furlong")}, "not one of REXS"),
+        ({"face_width": (20.0, "furlong")}, "which REXS does not have"),
     ],
 )
 def test_values_that_cannot_be_read_are_told(read, change, told):

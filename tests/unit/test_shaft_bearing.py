@@ -271,7 +271,7 @@ def test_speed_beyond_the_limit_of_the_cage_is_named(state):
     limit, load = 660e3 / (1e3 * BALL.pitch_diameter), BearingLoad(2000.0, 0.0)
     stated = replace(bearing, limiting_speed=0.7 * limit * RPM)
     for own, speed, said in (
-        (bearing, 1.01, "SKF's tables, which"), (bearing, 0.99, None), (stated, 0.8, "rpm, which"),
+        (bearing, 1.01, "SKF's tables). No"), (bearing, 0.99, None), (stated, 0.8, "rpm. No"),
         (stated, 0.6, None),
     ):  # fmt: skip
         notes = own.evaluate(state(speed * limit, load)).notes

@@ -215,7 +215,7 @@ def test_too_thick_teeth_are_told_in_the_way_they_are_stated(way):
     own = {key: value for key, value in TABLES["pinion"].items() if key != X} | stated
     problems = problems_of(load_case, TABLES | {"pinion": own})
     (problem,) = [one for one in problems if "too thick" in one.allowed]
-    key, value = problem.remedy.removeprefix("Without backlash ").split(" or ")[0].split(" = ")
+    key, value = problem.remedy.removeprefix("Zero backlash needs ").split(" or ")[0].split(" = ")
     fitted = own | {key.removeprefix("pinion."): value.strip('"')}
     case = load_case(TABLES | {"pinion": fitted})
     (mesh,) = case.gearings[""].geometries

@@ -85,7 +85,7 @@ def test_the_recommended_model_and_the_largest_warning_are_told():
     case = ep.load_case("talbot-2012").updated({**QUICK, "models.preset": "talbot-2012"})
     result = ep.solve(case)
     own = model_remarks(case, result)
-    assert any("mixed-ehl suits: it was made for this oil" in text for text in own)
+    assert any("mixed-ehl suits; it was made for this oil" in text for text in own)
     other = case.updated({"models.friction": "niemann-winter"})
     assert any(
         "would suit this case better" in text for text in model_remarks(other, ep.solve(other))

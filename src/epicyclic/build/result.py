@@ -47,7 +47,7 @@ from epicyclic.result.result import (
     Train,
     in_words,
 )
-from epicyclic.units import GIGAPASCAL, NEWTON, format_number, percent
+from epicyclic.units import GIGAPASCAL, NEWTON, WATT, percent, torque_text
 
 
 def oil_supplies(
@@ -224,7 +224,7 @@ def pressure_notes(figures: Mapping[str, object]) -> Iterator[str]:
                 yield (
                     f"{name.capitalize()}: {percent(idle, 0)} of the length of the most loaded "
                     f"roller carries none of its {NEWTON.text(found.roller_load_max, 3)}, "
-                    f"because the planet is tilted by {format_number(found.moment, 3)} N m."
+                    f"because a moment of {torque_text(found.moment, 3)} tilts the planet."
                 )
 
 
@@ -517,7 +517,7 @@ def _standing(
         if model == LAMINAR_RIMS:  # gears have no teeth
             continue
         found = drags_by_model(chain(*turning.discs.values()), state).items()
-        beside = ", ".join(f"{name} {watts:.3g} W" for name, watts in found)
+        beside = ", ".join(f"{name} {WATT.text(watts, 3)}" for name, watts in found)
         phrase = f"{model}: {DRAG_METHODS[model].reliability}"
         yield joined_key(key, "drag"), f"gears: {beside}; {phrase}" if beside else phrase
     for element in built.machine.elements:
@@ -557,7 +557,7 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
         yield (
             "Self-locking: no power passes from the input to the output; the output "
             f"{case.operation.output} must be driven too, with "
-            f"{solution.torques[output]:.6g} N*m."
+            f"{torque_text(solution.torques[output])}."
         )
     if not solution.unique and isinstance(case, TrainCase):
         yield (

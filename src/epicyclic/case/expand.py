@@ -166,8 +166,8 @@ def _listed(parts: Parts, joined: set[str]) -> tuple[Gearing, list[Problem]]:
     for one, two in pairs:
         found = _mesh_problem(parts, bodies, planets, one, two)
         if found is None and any(mesh.key == f"{one}_{two}_mesh" for mesh in meshes):
-            key, allowed = f"meshes[{listed.index((one, two))}]", "and another mesh have "
-            allowed += f"the same name, {one}_{two}_mesh, in the results."
+            key, name = f"meshes[{listed.index((one, two))}]", f"{one}_{two}_mesh"
+            allowed = f"has the same name in the results as another mesh, {name}."
             found = Problem(key, f'["{one}", "{two}"]', allowed, "Rename a gear.")
         if found is not None:
             problems.append(found)

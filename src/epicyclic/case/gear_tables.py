@@ -85,9 +85,9 @@ class Gears(SharedGears):
 class TopographyTable(Table):
     """Measured deviations of a flank, positive where material is missing."""
 
-    diameter: tuple[Length, ...] = Field(description="Two or more, rising.")
+    diameter: tuple[Length, ...] = Field(description="Two or more, increasing.")
     face_position: tuple[ShortLength, ...] = Field(
-        description="Two or more, rising, from the end of the face where contact begins."
+        description="Two or more, increasing, from the end of the face where contact begins."
     )
     deviation: tuple[tuple[Deviation, ...], ...] = Field(
         description="One row for each diameter, with one value for each face position."

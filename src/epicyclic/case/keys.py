@@ -160,7 +160,7 @@ def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Par
 
 
 def no_start(key: str, what: str) -> Problem:
-    allowed = f"{what}; it needs one, about which it is varied."
+    allowed = f"{what}; varying it needs a value to start from."
     return Problem(key, "", allowed, f'Add --set "{key}=...".')
 
 

@@ -536,7 +536,7 @@ def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Prob
             yield Problem(f"bearings.{name}.position", "", allowed, remedy)
     names = ", ".join(own)
     if len(own) > 2:
-        allowed = f"has {len(own)} bearings on {shaft}; statics gives the forces of only two."
+        allowed = f"has {len(own)} bearings on {shaft}; statics gives the forces on only two."
         yield Problem("bearings", names, allowed, "Give radial_force of all but two.")
     places = [table.position for table in own.values() if table.position is not None]
     pair = len(own) == 2 and all(table.is_angular for table in own.values())

@@ -56,8 +56,8 @@ def run(
 ) -> None:
     """Compute the losses of a case and print them by component."""
     from epicyclic.show.details import result_tables
+    from epicyclic.show.result_tables import adjusted, remarks
     from epicyclic.show.result_tables import details as more
-    from epicyclic.show.result_tables import remarks
     from epicyclic.show.summary import first_screen
     from epicyclic.show.uncertainty_tables import band_texts, result_json
     from epicyclic.study.bands.study import quick_known
@@ -79,7 +79,8 @@ def run(
     def tables() -> RenderableType:
         if details:
             notes = tuple(remarks(loaded, result))
-            return result_tables(result, notes, band_texts(known), more(loaded, result))
+            further = (*more(loaded, result), *adjusted(loaded))
+            return result_tables(result, notes, band_texts(known), further)
         return first_screen(result, known)
 
     show(tables, lambda: result_json(result, known), json_file)
@@ -121,22 +122,17 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     loaded = load_with(case, changes)
     found = list(reservations(loaded))
     kind = loaded.kind.replace("_", " ")
-    if not found:
-        echo(f"{case}: a sound {kind} case.")
-    else:
-        points = "1 point" if len(found) == 1 else f"{len(found)} points"
-        echo(f"{case}: a valid {kind} case; {points} to check:")
-        terminal().print(*map(Sentence, found))
+    points = "1 point" if len(found) == 1 else f"{len(found)} points"
+    echo(f"{case}: a valid {kind} case{f'; {points} to check:' if found else '.'}")
+    terminal().print(*map(Sentence, found), end="")
     if loaded.lubrication is not None:
         from epicyclic.build.models import set_cases
         from epicyclic.build.result import oil_supplies
 
         for name, supply in oil_supplies(set_cases(loaded)):
-            echo(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
-    terminal().print(data_sheet(loaded))
-    if loaded.kind == "train":
-        terminal().print(state_tables(loaded))
-    terminal().print(spaced(*map(as_on_page, details(loaded))), end="")
+            terminal().print(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
+    states = [state_tables(loaded)] if loaded.kind == "train" else []
+    terminal().print(spaced(data_sheet(loaded), *states, *map(as_on_page, details(loaded))))
 
 
 @click.command()
@@ -251,7 +247,8 @@ def _check_target(quantity: str, target: str | None) -> None:
     if (quantity == AS_GIVEN) == (target is None):
         return
     if target is None:
-        problem = Problem("--target", "", f"is needed with --solve {quantity}.", 'As in "90 degC".')
+        allowed = f"is needed with --solve {quantity}."
+        problem = Problem("--target", "", allowed, 'For example "90 degC".')
     else:
         remedy = f"Add --solve {either(QUANTITIES[1:])}."
         problem = Problem("--target", f'"{target}"', "needs a quantity to solve for.", remedy)

@@ -81,12 +81,13 @@ def duty(
 ) -> None:
     """Compute input, output and lost energy of a duty cycle, by component.
 
-    CYCLE is a text, Excel or Parquet table with the columns "speed [rpm]", "torque [N*m]", if it
-    varies "temperature [degC]", and "time [s]", "duration [s]" or "share"; any units. MAP is a loss
-    map in a .nc file; for a CASE one that covers the cycle is computed first.
+    CYCLE is a text, Excel or Parquet table with the columns "speed [rpm]", "torque [N*m]",
+    "temperature [degC]" if it varies, and "time [s]", "duration [s]" or "share"; any unit is
+    accepted. MAP is a loss map in a .nc file; for a CASE one that covers the cycle is computed
+    first.
 
-    A shard has its share of the points of that map. It keeps them beside the file of -o or --json,
-    which 'epicyclic merge' writes.
+    A shard computes its share of the points of that map and keeps them beside the file of -o or
+    --json, which 'epicyclic merge' writes.
     """
     from epicyclic.cli.common import progress_bar
     from epicyclic.study.maps.cycle import open_cycle

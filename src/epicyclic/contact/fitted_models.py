@@ -641,7 +641,7 @@ class QuantityFit(_Data):
         for name, (low, high) in self.domain.items():
             if not 0 <= low <= high or (low == 0 and name not in _MAY_BE_ZERO):
                 raise ValueError(
-                    f"the domain of {name} must be rising and above zero: {low:g} to {high:g}"
+                    f"the domain of {name} must be increasing and above zero: {low:g} to {high:g}"
                 )
         return self
 

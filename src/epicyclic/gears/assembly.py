@@ -123,7 +123,7 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
         others = [mesh for mesh, a in found if abs(a - wanted) > SAME_PLACE]
         fits = " ".join(_shifts_for(gearing, mesh, wanted) for mesh in others)
         allowed = f"the pin of {body} would be at different radii: {shown}."
-        remedy = f"Give them the same; the one of {'-'.join(first.pair)} is possible: {fits}"
+        remedy = f"Give them the same; that of {'-'.join(first.pair)} is possible: {fits}"
         yield Problem(", ".join(keys), "", allowed, remedy)
     if None not in distances.values():
         yield from _triangle_problems(gearing)

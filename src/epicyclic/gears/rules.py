@@ -389,9 +389,9 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
     less = thinning(mesh.gear1.rack, usual)
     allowed = f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
     allowed += f"centre distance of {millimetres(mesh.center_distance)} (negative backlash)."
-    remedy = f"Without backlash {fits} fits{_distance(gearing, mesh, distance_key)}; "
-    remedy += f"reducing one x by {less:.4f} gives {micrometres(usual)} of backlash, as in ISO/TR "
-    remedy += f"10064-2.{_other_sign(gearing, mesh)}"
+    remedy = f"Zero backlash needs {fits}{_distance(gearing, mesh, distance_key)}; "
+    remedy += f"reducing one x by {less:.4f} gives {micrometres(usual)} of backlash, as ISO/TR "
+    remedy += f"10064-2 recommends.{_other_sign(gearing, mesh)}"
     return [Problem(", ".join(keys), "", allowed, remedy)]
 
 
@@ -531,7 +531,7 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
         return Problem(
             key,
             f"{amount * 1e6:.5g} um",
-            f"needs the start of the relief, {'given once' if given else 'which is missing'}.",
+            f"needs one start of the relief, and has {'two' if given else 'none'}.",
             f"Give {end}_relief_roll_length or {end}_relief_diameter.",
         )
     near, far = flank.active[::-1] if end == "tip" else flank.active
@@ -578,8 +578,8 @@ def _check_overlap(flank: _Flank, tip: float, root: float) -> list[Problem]:
     if tip + root <= flank.active_length:
         return []
     allowed = f"tip relief over {millimetres(tip)} and root relief over {millimetres(root)} of "
-    allowed += f"roll overlap: the active profile of the {flank.mesh.name} has "
-    allowed += f"{millimetres(flank.active_length)}."
+    allowed += f"roll overlap: the active profile of the {flank.mesh.name} is "
+    allowed += f"{millimetres(flank.active_length)} long."
     return [Problem(f"{flank.key}.tip_relief", "", allowed, "Shorten one of the two.")]
 
 

@@ -332,7 +332,7 @@ class _Solver:
             distance = self.distances[mesh.group]
             least = micrometres(recommended_backlash(mesh.rack, distance))
             with_what = (
-                f"without backlash of the nominal teeth; ISO/TR 10064-2 recommends {least} or more"
+                f"for nominal teeth without backlash; ISO/TR 10064-2 recommends {least} or more"
             )
         else:
             with_what = f"with a normal backlash of {micrometres(mesh.backlash)}"

@@ -41,7 +41,7 @@ from epicyclic.units import (
     MICROMETRE,
     MILLIMETRE,
     NEWTON,
-    format_number,
+    torque_text,
 )
 
 FULL_COMPLEMENT = "full-complement"
@@ -247,7 +247,7 @@ def _loaded(
         raise ConvergenceError(
             "the load distribution of the planet bearing was not found under "
             f"{NEWTON.text(math.hypot(*load[:2]), 4)} and "
-            f"{format_number(half_width * math.hypot(*load[2:]), 4)} N m; "
+            f"{torque_text(half_width * math.hypot(*load[2:]), 4)}; "
             "check roller length and clearance, or use the bearing model 'palmgren'."
         )
     state[2:] /= half_width

@@ -437,7 +437,7 @@ class KnownFlows:
 
 ATTRIBUTE = "flows"  # Attribute of the NetCDF file that holds the tables as JSON.
 _KEY = "models.pocketing_table"
-_REMEDY = "Make it with 'epicyclic pockets-table', or leave the key out."
+_REMEDY = "Make it with 'epicyclic pockets table', or leave the key out."
 _SAME = 1e-9  # Numbers that differ less, relatively, are the same: machines round differently. [1]
 
 NEGLIGIBLE = 1e-3
@@ -558,7 +558,7 @@ def _table(path: Path, state: tuple[int, ...], family: FlowFamily) -> FlowTable:
             str(path),
             f"was made for a {family.mesh.name} with {name} = {_shown(stored.family, name)}, "
             f"not {_shown(wanted, name)}.",
-            "Make it again with 'epicyclic pockets-table', or leave the key out.",
+            "Make it again with 'epicyclic pockets table', or leave the key out.",
         )
         for name in dict.fromkeys([*wanted, *stored.family])
         if not _same(wanted.get(name), stored.family.get(name))

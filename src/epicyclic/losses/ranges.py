@@ -11,7 +11,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 import numpy as np
 
 from epicyclic.arrays import FloatArray
-from epicyclic.units import WATT, Quantity, format_number, known_text, percent
+from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
 
@@ -313,7 +313,7 @@ def range_text(group: Sequence[ValidityFlag]) -> str:
     low, high = (min(flag.found_low for flag in group), max(flag.found_high for flag in group))
     texts = format_number(low, 3), format_number(high, 3)
     found = texts[0] if texts[0] == texts[1] else " to ".join(texts)
-    unit = f" {first.unit}" if first.unit else ""
+    unit = f" {unit_text(first.unit)}" if first.unit else ""
     return f"{first.quantity} {found}{unit}, range {_limits(first)}{unit}"
 
 

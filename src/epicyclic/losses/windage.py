@@ -37,7 +37,7 @@ DRAG_METHODS: Mapping[DragModel, DragMethod] = {
     LAMINAR_RIMS: DragMethod(
         "drag of a disc in the air-oil mixture",
         "Seetharaman and Kahraman, Tribol. Trans. 53 (2010) 473; Talbot (2012), Eq. 5.4, 5.5",
-        "rims are laminar at any speed: 10 to 40 times too little at usual ones",
+        "rims are laminar at any speed, which gives 10 to 40 times too little at usual speeds",
     ),
     "theodorsen-regier": DragMethod(
         "drag of smooth rims and faces, laminar to turbulent",
@@ -48,14 +48,14 @@ DRAG_METHODS: Mapping[DragModel, DragMethod] = {
         "drag of rims and faces, laminar to turbulent; windage of teeth after Diab, Ville, Velex",
         "Y. Diab, F. Ville, P. Velex, C. Changenet, J. Mech. Des. 126 (2004) 903, second hand; "
         + _SMOOTH,
-        "teeth: tests in air, within 20 % for spur and 50 % for helical gears of such models after "
-        "Dynamics 5 (2025) 33, abstract; no law is known for more oil than a mist, and the loss "
-        "lies between those of a mist and of all the oil",
+        "teeth: such models are within 20 % of tests in air for spur gears and 50 % for helical "
+        "ones, after Dynamics 5 (2025) 33, abstract; no law covers more oil than a mist, so the "
+        "loss lies between those of a mist and of all the oil",
     ),
     "anderson-loewenthal": DragMethod(
         "windage of gears after Anderson and Loewenthal; drag of other rims and faces",
         "N. E. Anderson, S. H. Loewenthal, NASA TP-1622 (1980), second hand; " + _SMOOTH,
-        "made for gears with oil jets, one part of oil in 34.25 of air; knows no walls near by",
+        "made for gears with oil jets, one part of oil in 34.25 of air; without walls near by",
     ),
 }
 """Title, source and standing of each model of drag."""

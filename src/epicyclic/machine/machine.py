@@ -13,7 +13,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.machine.element import Element
-from epicyclic.units import NEWTON, format_number
+from epicyclic.units import NEWTON, torque_text
 
 # Statics of a shaft: forces of its gear meshes, and what its bearings answer.
 #
@@ -84,7 +84,7 @@ def bearing_reactions(
         raise ValueError("the shaft has no bearing to carry its loads")
     if len(supports) > 2:
         raise ValueError(
-            f"the shaft has {len(supports)} bearings, but statics gives the forces of only two; "
+            f"the shaft has {len(supports)} bearings, but statics gives the forces on only two; "
             "give radial_force"
         )
     forces = np.array([load.force for load in loads], dtype=float).reshape(-1, 3)
@@ -149,7 +149,7 @@ def _check_single(
     left = float(np.abs(about.sum(axis=0)).max())
     if left > NEGLIGIBLE * largest:
         raise ValueError(
-            f"a moment of {format_number(left, 4)} N m remains on the only bearing of the shaft; "
+            f"a moment of {torque_text(left, 4)} remains on the only bearing of the shaft; "
             "add a second bearing, or give radial_force"
         )
 

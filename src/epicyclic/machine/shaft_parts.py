@@ -373,23 +373,24 @@ class ShaftBearing:
             whose = "" if self.reference_speed else ", an estimate after ISO 15312"
             text = (
                 f"{self.key}: {RPM.text(abs(speed), 4)} exceed the thermal reference speed of "
-                f"{RPM.text(rating, 2)}{whose}. Above it a bearing in an oil bath overheats by "
-                "itself; give reference_speed of the catalogue, and check its limiting speed."
+                f"{RPM.text(rating, 2)}{whose}. Above it a bearing in an oil bath overheats "
+                "without cooling; give the reference_speed of the catalogue, and check the "
+                "limiting speed."
             )
             notes.append(Note(text, watts))
         limit = self.limiting_speed or limiting_speed(self.bearing)
         if abs(speed) > limit:
-            whose = "" if self.limiting_speed else ", an estimate by SKF's tables"
+            whose = "" if self.limiting_speed else " (estimated from SKF's tables)"
             text = (
-                f"{self.key}: {RPM.text(abs(speed), 4)} exceed the limiting speed of "
-                f"{RPM.text(limit, 2)}{whose}, which cage and rolling elements stand. Beyond it "
-                "no loss is known; give limiting_speed of the catalogue, or take another bearing."
+                f"{self.key}: {RPM.text(abs(speed), 4)} exceed the limiting speed of cage and "
+                f"rolling elements, {RPM.text(limit, 2)}{whose}. No model covers the loss above "
+                "it; give the limiting_speed of the catalogue, or choose another bearing."
             )
             notes.append(Note(text, watts))
         if self.arrangement_assumed and load.axial > 0:
             text = (
-                f"{self.key}: the arrangement with the other bearing of its shaft is not given; X "
-                'is assumed, as is usual for gear shafts. Write arrangement = "X" or "O".'
+                f"{self.key}: the bearing arrangement is not given; X is assumed, as is usual for "
+                'gear shafts. Write arrangement = "X" or "O".'
             )
             notes.append(Note(text, watts))
         if self.bearing.estimated:
@@ -406,10 +407,9 @@ class ShaftBearing:
         best, error = TAPERED_ERRORS["zhou-hoeprich"], TAPERED_ERRORS.get(self.model.name, 0.0)
         if self.bearing.type == "tapered" and error > best:
             text = (
-                f"{self.key}: {WATT.text(watts, 3)} after {self.model.name}, which is off by up to "
-                f"{percent(error, 0)} in the mean of a set of measured "
-                "tapered bearings; give the width of the bearing for zhou-hoeprich, which is off "
-                f"by up to {percent(best, 0)}."
+                f"{self.key}: {WATT.text(watts, 3)} after {self.model.name}, whose mean error on "
+                f"a set of measured tapered bearings reaches {percent(error, 0)}; give the width "
+                f"of the bearing to use zhou-hoeprich, with at most {percent(best, 0)}."
             )
             notes.append(Note(text, watts))
         skf = getattr(self.model, "skf", self.model)

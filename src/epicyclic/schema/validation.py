@@ -312,7 +312,7 @@ def _check_group(
         return []
     if not started:
         missing = alternatives[0][0]
-        allowed = f"is missing; needed is {choice}."
+        allowed = f"is missing; {choice} is needed."
         return [Problem(f"{name}.{missing}", "", allowed, f"Add {choice} to [{name}].")]
     if len(started) == 1:
         return [

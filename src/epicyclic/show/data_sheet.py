@@ -16,6 +16,7 @@ from epicyclic.gears.gear import HOUSING
 from epicyclic.oil.oil import GoldLaw, Oil, OilState, oil_state
 from epicyclic.show import page
 from epicyclic.show.page import MISSING, shown
+from epicyclic.show.result_tables import adjusted
 from epicyclic.show.terminal import as_on_page, plain_table, titled
 from epicyclic.study.data_sheet import DataSheet, GearSheet, MeshSheet, data_sheets, oil_at_inlet
 from epicyclic.study.trains import StateKinematics, train_states
@@ -128,7 +129,7 @@ def reservations(case: Case) -> Iterator[str]:
                     yield (
                         f"{where} tip clearance of the {gear.name} in the {mesh.name} is "
                         f"{_mm(clearance)} mm, {clearance / module:z.2f} normal modules; ISO 53 "
-                        "has 0.25."
+                        "specifies 0.25."
                     )
 
 
@@ -142,9 +143,7 @@ def data_sheet(case: Case) -> RenderableType:
         parts += map(as_on_page, _tables(sheet, f", {name}" if name else ""))
     if (oil := _oil(case)) is not None:
         parts.append(Text(oil))
-    if case.found:
-        told = tuple(map(str, case.found))
-        parts.append(as_on_page(page.Listing(told, "Computed, converted or adjusted")))
+    parts += map(as_on_page, adjusted(case))
     return titled(case.title or case.kind, *parts)
 
 
@@ -180,11 +179,11 @@ def _oil(case: Case) -> str | None:
     if state is None or case.lubricant is None:
         return None
     oil = case.lubricant.oil
-    law = "by Gold's constants" if isinstance(oil.pressure_viscosity, GoldLaw) else "by Roelands"
+    law = "Gold" if isinstance(oil.pressure_viscosity, GoldLaw) else "Roelands"
     return (
         f"Oil {oil.name} at {state.temperature - 273.15:.4g} °C: "
         f"nu {UM * state.kinematic_viscosity:.4g} mm²/s, rho {state.density:.4g} kg/m³, "
-        f"alpha {1e9 * state.pressure_viscosity:.4g} 1/GPa {law}."
+        f"alpha {1e9 * state.pressure_viscosity:.4g} 1/GPa after {law}."
     )
 
 
@@ -208,7 +207,7 @@ def state_tables(case: TrainCase) -> RenderableType:
             state.remark,
         )
         before = state
-    return Group(shafts, table)
+    return Group(shafts, Text(), table)
 
 
 def _step(before: StateKinematics | None, state: StateKinematics) -> str:

@@ -14,6 +14,7 @@ from epicyclic.messages import sentence
 from epicyclic.result.result import Result
 from epicyclic.show import page
 from epicyclic.show import result_tables as tables
+from epicyclic.show.summary import all_warnings
 from epicyclic.show.terminal import as_on_page, listed, number_table, titled
 from epicyclic.study.friction import FrictionComparison, recommended
 from epicyclic.study.operating import operating_line
@@ -36,7 +37,7 @@ def result_tables(
     parts += remarks
     parts += map(as_on_page, (*tables.oil_table(result), *tables.planets_table(result)))
     parts += map(as_on_page, more)
-    parts += [as_on_page(_methods(result)), listed("Warnings", result.warnings)]
+    parts += [as_on_page(_methods(result)), listed("Warnings", all_warnings(result))]
     return titled(
         result.title or result.kind, *parts, as_on_page(page.Listing(result.sources, "Sources"))
     )
@@ -88,32 +89,32 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     if all(math.isnan(row.mean_friction[mesh]) for row in rows for mesh in meshes):
         return Text("Without load or motion nothing slides, so there is no friction to compare.")
     columns = [f"μ {mesh.replace('_', ' ').replace('.', ': ')}" for mesh in meshes]
-    table = number_table("Friction models", "", *columns, "sliding W", "quick W", "over chosen", "")
-    table.columns[-1].justify = "left"
+    heads = ("sliding W", "quick W", "over chosen", "out of range")
+    table = number_table("Friction models", "", *columns, *heads)
     chosen = next((row.sliding for row in rows if row.chosen), 0.0)
     for row in rows:
-        outside = f"out of range {share_text(row.outside)}"
-        known = (("chosen", row.chosen), (outside, row.flagged), ("other oil", row.other_oil))
+        outside = share_text(row.outside) if row.flagged else ""
         table.add_row(
             row.name,
             *(f"{row.mean_friction[mesh]:z.4f}" for mesh in meshes),
             f"{row.sliding:z.1f}",
             f"{row.quick:z.1f}",
             f"{row.sliding / chosen:.2f}" if chosen else "",
-            ", ".join(mark for mark, holds in known if holds),
+            f"{outside} *" if row.other_oil else outside,
             style="bold" if row.chosen else "",
         )
     low, high = min(row.sliding for row in rows), max(row.sliding for row in rows)
     quick = Text(
-        "sliding: local, along the contact lines; quick: mean friction times loss factor; out of "
-        "range: share of the sliding loss"
+        "sliding: local, along the contact lines; quick: mean friction times loss factor; chosen: "
+        f"{', '.join(row.name for row in rows if row.chosen) or 'several models'}; out of range: "
+        "share of the sliding loss; *: made for another oil"
     )
     spread = Text(
         f"Spread: {low:.1f} to {high:.1f} W" + (f", a factor of {high / low:.2f}." if low else ".")
     )
     best, why = recommended(rows)
     advice = Text.assemble(
-        ("Recommended: ", "bold"), f"{best.name}: {why}. {sentence(best.standing)}"
+        ("Recommended: ", "bold"), f"{best.name}, because {why}. {sentence(best.standing)}"
     )
     lists = [
         listed("Out of range, and for another oil", [it for row in rows for it in _left(row)]),

@@ -30,8 +30,8 @@ from epicyclic.show.result_page import (
     sweep_key_figures,
     sweep_sections,
 )
-from epicyclic.show.result_tables import key_figures
 from epicyclic.show.uncertainty_tables import band_figures, uncertainty_items
+from epicyclic.study.bands.advice import known_of
 from epicyclic.study.maps.tables import map_inputs
 from epicyclic.study.operating import operating_line
 from epicyclic.study.sweeps.run import is_sweep
@@ -103,14 +103,17 @@ def page_html(**content: Any) -> str:
 
 
 def _result_content(record: ResultRecord, drawings: Drawings) -> dict[str, Any]:
+    from epicyclic.show.summary import head_figures  # builds on the terminal
+
     result = record.result
+    known = next(map(known_of, record.group("uncertainty").values()), None)
     created = f"{datetime.fromisoformat(record.created):%Y-%m-%d %H:%M} UTC"
     return {
         "title": record.title,
         "kind": KINDS[result.kind],
         "operation": operating_line(result.inputs["operation"]),
         "source": f"Computed {created} with epicyclic {result.versions['epicyclic']}",
-        "key_figures": key_figures(result),
+        "key_figures": list(head_figures(result, known)),
         "sections": result_sections(record, drawings),
     }
 

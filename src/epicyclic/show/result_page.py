@@ -146,6 +146,8 @@ def _validity_lead(result: Result) -> str:
 
 
 def _validity(result: Result) -> tuple[Table | Listing, ...]:
+    from epicyclic.show.summary import all_warnings  # builds on the terminal
+
     items: list[Table | Listing] = []
     if result.flags:
         rows = tuple(
@@ -162,7 +164,7 @@ def _validity(result: Result) -> tuple[Table | Listing, ...]:
         )
         head = ("quantity", "found", "range", "unit", "model", "share", "source of the range")
         items.append(Table(head, rows))
-    notes = tuple(text for text in result.warnings if not text.startswith("Out of range"))
+    notes = tuple(it for it in all_warnings(result) if not it.startswith("Out of range"))
     if notes:
         items.append(Listing(notes, "Notes"))
     return tuple(items) or (Listing(("There are no warnings.",)),)
@@ -325,7 +327,10 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
     "inputs": lambda record, drawings: Section(
         "inputs",
         "Inputs",
-        tuple(input_tables(record.result.inputs, record.given, record.result.models)),
+        (
+            *input_tables(record.result.inputs, record.given, record.result.models),
+            *tables.adjusted(read_case(record.given)),
+        ),
         _INPUT_LEAD,
     ),
     "versions": lambda record, drawings: Section(

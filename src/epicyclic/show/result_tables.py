@@ -61,8 +61,8 @@ if TYPE_CHECKING:
 
 Unit = tuple[str, float]  # Its name in print and its size.
 _FLOW_NOTE = (
-    "Speeds are positive in one common sense of rotation; torques act on the gear set from "
-    "outside; power is positive where it enters."
+    "All speeds are positive in the same sense of rotation. Torques act from outside; power is "
+    "positive where it enters."
 )
 _ROLES = {
     "lubrication": "lubrication",
@@ -415,10 +415,7 @@ def shafts_table(result: Result) -> Table:
     housing = scaled(held, "", torque)
     rows.append((Cell("housing"), number(0.0, ""), housing, Cell(""), Cell(""), Cell("at rest")))
     heads = (f"speed, {speed}", f"torque, {torque[0]}", f"power, {power[0]}")
-    note = (
-        "Speeds are positive in one common sense of rotation; torque and power are external and "
-        "positive where power enters; the transmitted torque includes those of sets and clutches."
-    )
+    note = f"{_FLOW_NOTE} The transmitted torque includes those of sets and clutches."
     head = ("", *heads, f"transmits, {torque[0]}", "")
     return Table(head, tuple(rows), "Shafts", note=note)
 
@@ -720,6 +717,12 @@ def _difference(
     share = percent((second - first) / first, signed=True) if first else ""
     change = number(second - first, "", text=f"{second - first:+z.{digits}f}")
     return Cell(label), *values, change, aligned(share)
+
+
+def adjusted(case: Case) -> Iterator[Listing]:
+    """What was computed from other inputs, converted or adjusted; nothing if nothing was."""
+    if case.found:
+        yield Listing(tuple(map(str, case.found)), "Computed, converted or adjusted")
 
 
 def details(case: Case, result: Result | None = None) -> Iterator[Table | Listing]:

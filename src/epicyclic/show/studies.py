@@ -17,12 +17,12 @@ from epicyclic.arrays import FloatArray
 from epicyclic.messages import one_line
 from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.page import MISSING, error_text, shown
-from epicyclic.show.terminal import number_table, plain_table, spaced, titled
+from epicyclic.show.terminal import Sentence, number_table, plain_table, spaced, titled
 from epicyclic.study.measured.comparison import CALIBRATED, ErrorFigures, MeasuredComparison
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.operating import OPERATING
 from epicyclic.study.sweeps.run import AS_TESTED
-from epicyclic.units import percent, unit_text
+from epicyclic.units import decimals_of, format_number, percent, unit_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,7 +50,7 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
         title = Text(str(mesh.attrs["title"]), style="bold")
         parts += [title, _over_period(mesh), _figures(mesh)]
     notes = _notes(meshes)
-    parts += [Text(f"• {note}") for note in notes]
+    parts += map(Sentence, notes)
     if any(mesh["transmission_error"].isnull().all() for mesh in meshes.values()):
         parts.append(
             Text(f'"{MISSING}": this load distribution gives no deflection; compliance does.')
@@ -160,7 +160,7 @@ def pocket_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
         title = Text(str(mesh.attrs["title"]), style="bold")
         parts += [title, _balance(mesh), _extremes(mesh)]
     models = dict.fromkeys(f"Model: {mesh.attrs['model']}." for mesh in meshes.values())
-    parts.append(Text("\n".join(f"• {line}" for line in (*models, *_notes(meshes)))))
+    parts.append(Group(*map(Sentence, (*models, *_notes(meshes)))))
     return spaced(*parts)
 
 
@@ -235,7 +235,8 @@ def _error_table(comparison: MeasuredComparison) -> Table:
     for number, row in enumerate(comparison.errors):
         if number and not row.group:
             table.add_section()
-        name = f"  {row.group}" if row.group else f"{row.state}: {row.points}"
+        points = row.points.removesuffix(" points")
+        name = f"  {row.group}" if row.group else f"{row.state}: {points}"
         cells = _error_cells(row)[: len(names) + weighted]
         table.add_row(name, *cells, style="" if row.group else "bold")
     return table
@@ -405,41 +406,45 @@ def _in_other_units(data: xr.Dataset) -> str:
 
 def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
     modes = [str(name) for name in data["mode"].values]
-    heads = ("", *modes, "total", "of lost")
+    heads = ("", *modes, "total", "of loss")
     table = number_table(f"{title}: energy in kJ", *heads, no_wrap=(True, False))
-    _add_row(table, "entering", data["energy_in"])
-    _add_row(table, "leaving", data["energy_out"], end_section=True)
     lost = data["energy_lost"]
     whole = float(lost.sum())
+    decimals = decimals_of(whole)
+    _add_row(table, "entering", data["energy_in"], decimals)
+    _add_row(table, "leaving", data["energy_out"], decimals, end_section=True)
     for name in lost["component"].values:
         row = lost.sel(component=name)
         share = percent(float(row.sum()) / whole) if whole else ""
-        _add_row(table, str(name).replace("_", " "), row, share)
-    _add_row(table, "lost", lost.sum("component"), style="bold", end_section=True)
-    _add_row(table, "duration s", data["duration"])
+        _add_row(table, str(name).replace("_", " "), row, decimals, share)
+    _add_row(table, "lost", lost.sum("component"), decimals, style="bold", end_section=True)
+    seconds = data["duration"]
+    _add_row(table, "duration s", seconds, decimals_of(float(seconds.sum())))
     efficiencies = [*data["efficiency"].values, data["total_efficiency"].item()]
     table.add_row("efficiency", *("" if math.isnan(it) else percent(it, 3) for it in efficiencies))
-    states = [_states_table(data)] if "state" in data.dims else []
+    states = [_states_table(data, decimals)] if "state" in data.dims else []
     return [table, *states, Text(_in_other_units(data)), Text(_error_text(data, whole))]
 
 
-def _states_table(data: xr.Dataset) -> Table:
+def _states_table(data: xr.Dataset, decimals: int) -> Table:
     """Energy of each state."""
     heads = ("", "entering", "leaving", "lost", "duration s", "efficiency")
     table = number_table("States: energy in kJ", *heads)
     for name in data["state"].values:
         own = data.sel(state=name)
-        values = [own["state_energy_in"], own["state_energy_out"]]
-        values += [own["state_energy_lost"].sum(), own["state_duration"]]
+        values = own["state_energy_in"], own["state_energy_out"], own["state_energy_lost"].sum()
+        cells = [f"{float(it):z.{decimals}f}" for it in values]
         efficiency = float(own["state_efficiency"])
-        shown_efficiency = "" if math.isnan(efficiency) else percent(efficiency, 3)
-        table.add_row(str(name), *(shown(float(it), 6) for it in values), shown_efficiency)
+        cells += [f"{float(own['state_duration']):.0f}"]
+        table.add_row(str(name), *cells, "" if math.isnan(efficiency) else percent(efficiency, 3))
     return table
 
 
-def _add_row(table: Table, name: str, values: xr.DataArray, share: str = "", **style: Any) -> None:
-    cells = [shown(float(value), 6) for value in values.values]
-    table.add_row(name, *cells, shown(float(values.sum()), 6), share, **style)
+def _add_row(
+    table: Table, name: str, values: xr.DataArray, decimals: int, share: str = "", **style: Any
+) -> None:
+    cells = (f"{float(value):z.{decimals}f}" for value in (*values.values, values.sum()))
+    table.add_row(name, *cells, share, **style)
 
 
 def _error_text(data: xr.Dataset, lost: float) -> str:
@@ -451,11 +456,13 @@ def _error_text(data: xr.Dataset, lost: float) -> str:
     part = f" ({percent(error / lost, 2, signed=True)} of the energy lost)" if lost else ""
     largest, outside = float(data["largest_deviation"]), float(data["share_outside"])
     how = f", {data.attrs['points_outside']}" if outside else ""
+    adds = "The error of interpolation is unknown"
+    if not math.isnan(error):
+        adds = f"Interpolation adds {shown(error, 3)}{scatter} kJ{part}; largest deviation of a "
+        adds += f"point {percent(largest, 2)}"
     return (
-        f"Interpolation adds {shown(error, 3)}{scatter} kJ{part}; largest deviation of a point "
-        f"{'-' if math.isnan(largest) else percent(largest, 2)} ("
-        f"{data.attrs['interpolation_error_method']}).\n{percent(outside)} of the duration lies "
-        f"outside of the map{how}."
+        f"{adds} ({data.attrs['interpolation_error_method']}).\n{percent(outside)} of the "
+        f"duration lies outside of the map{how}."
     )
 
 
@@ -539,7 +546,7 @@ def duration_text(seconds: float) -> str:
     if math.isnan(seconds):
         return "-"
     unit, size = next(((unit, size) for unit, size in _UNITS if seconds >= 2 * size), _UNITS[-1])
-    return f"{seconds / size:.3g} {unit}"
+    return f"{format_number(seconds / size, 3)} {unit}"
 
 
 def _number(value: float) -> str:

@@ -21,13 +21,7 @@ from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import Drawings, KeyFigure, Listing, Row, Section, Table, gallery
 from epicyclic.show.result_tables import key_figures, locking_text, losses_table, sums_table
 from epicyclic.show.terminal import Sentence, as_on_page, spaced
-from epicyclic.study.bands.advice import (
-    MOST_DRIVERS,
-    Known,
-    called,
-    in_few_words,
-    is_on_first_screen,
-)
+from epicyclic.study.bands.advice import Known, is_on_first_screen, main_causes
 from epicyclic.study.operating import operating_line
 from epicyclic.units import CELSIUS, efficiency_text, known_text, percent, unit_text
 
@@ -37,9 +31,9 @@ MOST_OF_SET = 10  # Losses of a single set; smaller ones are in the sums alone.
 MOST_ROWS = 20  # Of the losses of a train; smaller ones are put together.
 _BROAD = 0.5  # Part of the loss outside the ranges of its models from which that is said first. [1]
 WIDTH = 80  # Characters of its lines at most.
-LEAST_SHARE = 0.005  # Of the band, of a cause that is named. [1]
 _NEXT = "More: run --details (all figures and warnings), friction, uncertainty, report."
 _LABEL, _VALUE = 14, 12  # Characters.
+_ADJUSTED = re.compile(r"[\w.]+ = .+?: ")  # A value that a list of its own tells.
 _END_OF_SENTENCE = re.compile(r"(?<=\w[\w)])\. (?=[A-Z])")
 
 
@@ -54,7 +48,7 @@ def first_screen(result: Result, known: Known | None) -> RenderableType:
         *([Group(*map(Sentence, remarks))] if remarks else []),
         *([as_on_page(warnings)] if warnings.items else []),
     ]
-    return Constrain(Group(spaced(*parts), _NEXT), WIDTH)
+    return Constrain(spaced(*parts, _NEXT), WIDTH)
 
 
 def head_figures(result: Result, known: Known | None) -> Iterator[KeyFigure]:
@@ -100,9 +94,7 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
     """What the loss is without, what its band is due to, and what the standard gives."""
     if result.train is not None and (locking := locking_text(result.train)):
         yield locking
-    for (reason, terms), owners in _left_out(result).items():
-        of = f" of {', '.join(owners)}" if any(owners) else ""
-        yield f"{NOT_INCLUDED}: {', '.join(terms)}{of} ({reason})."
+    yield from _left_out(result)
     yield from (text for _, text in _notes(result) if MAY_LOSE in text)
     outside = _outside(result)
     if outside >= _BROAD:
@@ -112,17 +104,12 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
         )
     if known is None or not known.width:
         return
-    drivers = ", ".join(
-        f"{in_few_words(called(known, driver))} {percent(share, 0)}"
-        for driver, share in known.drivers[:MOST_DRIVERS]
-        if share >= LEAST_SHARE
-    )
-    yield f"Main causes of the band: {drivers}."
+    yield f"Main causes of the band: {main_causes(known)}."
     yield from filter(is_on_first_screen, known.remarks)
 
 
-def _left_out(result: Result) -> dict[tuple[str, tuple[str, ...]], list[str]]:
-    """Which sets are without which losses, by the reason and the losses."""
+def _left_out(result: Result) -> Iterator[str]:
+    """Which sets are without which losses, and why."""
     own: dict[tuple[str, str], list[str]] = {}
     for term in result.terms:
         if term.left_out:
@@ -131,7 +118,9 @@ def _left_out(result: Result) -> dict[tuple[str, tuple[str, ...]], list[str]]:
     found: dict[tuple[str, tuple[str, ...]], list[str]] = {}
     for (reason, owner), terms in own.items():
         found.setdefault((reason, tuple(terms)), []).append(owner)
-    return found
+    for (reason, names), owners in found.items():
+        of = f" of {', '.join(owners)}" if any(owners) else ""
+        yield f"{NOT_INCLUDED}: {', '.join(names)}{of} ({reason})."
 
 
 def _outside(result: Result) -> float:
@@ -140,18 +129,19 @@ def _outside(result: Result) -> float:
     return max(watts, default=0.0) / result.total if result.total else 0.0
 
 
-def _notes(result: Result) -> Iterator[tuple[float, str]]:
-    """Notes in short with the affected watts; what is said of several sets stands once."""
+def _notes(result: Result, *, whole: bool = False) -> Iterator[tuple[float, str]]:
+    """Notes with the affected watts, in short or `whole`; those of several sets are one."""
     stages = {in_words(key.rpartition(".")[0]) for key in result.losses}
     owners: dict[str, list[str]] = {}
     watts: dict[str, float] = {}
     for note in result.notes:
-        if note.startswith(NOT_INCLUDED):
+        if note.startswith(NOT_INCLUDED) or _ADJUSTED.match(note):
             continue
         owner, colon, text = note.partition(": ")
         if not colon or owner.replace("_", " ") not in stages:
             owner, text = "", note
-        text = _END_OF_SENTENCE.split(text)[0].rstrip(".") + "."
+        if not whole:
+            text = _END_OF_SENTENCE.split(text)[0].rstrip(".") + "."
         owners.setdefault(text, []).append(owner)
         watts[text] = watts.get(text, 0.0) + note_watts(note)
     for text, names in owners.items():
@@ -163,15 +153,26 @@ def first_warnings(result: Result) -> Listing:
     found = [it for it in _notes(result) if MAY_LOSE not in it[1]]
     for watts, group in result.flags_with_loss:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
-        size = "" if math.isnan(watts) else f"; {concern_text(watts, group)} of the loss"
-        text = f"{sentence(range_text(group)).rstrip('.')} ({', '.join(uses)}){size}."
+        at, _, limits = range_text(group).partition(", range ")
+        what, only = group[0].quantity, limits if limits[0] in "fu" else f"from {limits}"
+        size = "" if math.isnan(watts) else f"; this affects {concern_text(watts, group)}"
+        text = (
+            f"The {what} is{at.removeprefix(what)}, but {' and '.join(uses)} "
+            f"{'are' if len(uses) > 1 else 'is'} valid only {only}{size}."
+        )
         found.append((weight_of(watts, group), text))
     heavy = [pair for pair in found if pair[0] >= CONCERNED * result.total and pair[0] > 0]
     heavy.sort(key=lambda pair: -pair[0])
     shown = tuple(text for _, text in islice(heavy, MOST_WARNINGS))
-    count, many = len(result.warnings), len(shown) > 1
-    counted = f" ({len(shown)} of {count}, largest effect first)" if len(shown) < count else ""
+    count, many = len(all_warnings(result)), len(shown) > 1
+    counted = f" ({len(shown)} of {count}, most serious first)" if len(shown) < count else ""
     return Listing(shown, f"Warning{'s' * (many or bool(counted))}{counted}")
+
+
+def all_warnings(result: Result) -> tuple[str, ...]:
+    """Every warning in full, by the names of what it concerns."""
+    notes = (text for _, text in _notes(result, whole=True))
+    return (*_left_out(result), *notes, *result.warnings[len(result.notes) :])
 
 
 def summary_section(result: Result, known: Known | None, drawings: Drawings) -> Section:

@@ -24,6 +24,7 @@ from epicyclic.show import page
 GAP = 3  # Between two columns, the spaces on both sides of a line that is not drawn.
 LONGEST_WORD = 24
 """Longest word that stays whole; what is longer is an address, or a key with its table."""
+SHORT_NAME = 12  # Longest name of a row that stays in one line, whatever its words.
 FIRST_SHARE = 0.5  # Largest share of the width for the names in the first column.
 
 
@@ -48,7 +49,8 @@ class FittedTable(Table):
         if sum(need.most + GAP for need in needs) <= room:
             yield from super().__rich_console__(console, options)
             return
-        first = min(needs[0].least, int(FIRST_SHARE * room))
+        least, most = needs[0].least, needs[0].most
+        first = min(most if most <= SHORT_NAME else least, int(FIRST_SHARE * room))
         rest = room - first - 2 * GAP
         needs = [_Need(min(need.least, rest), need.most) for need in needs]
         needs[0] = _Need(first, needs[0].most)
@@ -162,9 +164,9 @@ def titled(title: str, *parts: RenderableType) -> RenderableType:
 
 
 def spaced(*parts: RenderableType) -> RenderableType:
-    """Parts with space below each."""
-    texts = (Text(it) if isinstance(it, str) else it for it in parts)
-    return Group(*(Padding(part, (0, 0, 1, 0)) for part in texts))
+    """Parts with space between them."""
+    texts = [Text(it) if isinstance(it, str) else it for it in parts]
+    return Group(*(Padding(part, (0, 0, 1, 0)) for part in texts[:-1]), *texts[-1:])
 
 
 def as_on_page(item: page.Table | page.Listing) -> RenderableType:

@@ -10,23 +10,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import RenderableType
 
-from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.messages import one_line
 from epicyclic.result.result import Result, in_words
-from epicyclic.show.page import (
-    MISSING,
-    Cell,
-    KeyFigure,
-    Listing,
-    Table,
-    aligned,
-    number,
-    shown,
-    tenths,
-)
+from epicyclic.show.page import MISSING, Cell, KeyFigure, Listing, Table, aligned, number, shown
 from epicyclic.show.terminal import as_on_page, titled
-from epicyclic.study.bands.advice import MOST_DRIVERS, Known, known_of, limits_of, measurements_of
-from epicyclic.units import efficiency_text, format_number, known_text, percent, unit_text
+from epicyclic.study.bands.advice import (
+    MOST_DRIVERS,
+    Known,
+    in_few_words,
+    known_of,
+    limits_of,
+    main_causes,
+    measurements_of,
+)
+from epicyclic.units import (
+    decimals_of,
+    efficiency_text,
+    format_number,
+    known_text,
+    percent,
+    unit_text,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,12 +50,9 @@ def band_texts(known: Known | None) -> list[str | Listing]:
     ends = known.ends["efficiency"]
     if ends[1] > 0:  # neither unknown nor without any efficiency
         text += f", efficiency {efficiency_text(*ends, ends=ends)}"
-    drivers = ", ".join(
-        f"{driver_name(key)} {percent(share, 0)}" for key, share in known.drivers[:MOST_DRIVERS]
-    )
     return [
-        f"{text}, mainly from {drivers}. Inputs without an entry in [uncertainty] are estimated: "
-        "'epicyclic uncertainty' shows all.",
+        f"{text}, mainly from {main_causes(known)}. Inputs without an entry in [uncertainty] are "
+        "estimated: 'epicyclic uncertainty' shows all.",
         Listing(tuple(advice_texts(known, brief=True)), LIMITS),
     ]
 
@@ -107,11 +108,10 @@ def _known(known: Known) -> dict[str, Any]:
     }
 
 
-def driver_name(key: str) -> str:
-    """What an uncertain value is called."""
-    if key.startswith(MODEL_FORM):
-        return f"model of {in_words(key.removeprefix(MODEL_FORM)).replace('-', ' ')}"
-    return key
+def _names(data: xr.Dataset) -> dict[str, str]:
+    """What uncertain values are called, by their keys."""
+    names = map(in_few_words, map(str, data["input_name"].values))
+    return dict(zip(map(str, data["input"].values), names, strict=True))
 
 
 MOST_COLUMNS = 9
@@ -202,14 +202,14 @@ def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
 
 def _drivers(data: xr.Dataset) -> Table:
     """Shares of the variance of the total loss: where the loss is, and where they are largest."""
-    shares, mean = data["first_order"], _mean_shares(data)
+    shares, mean, names = data["first_order"], _mean_shares(data), _names(data)
     rows = []
     for driver in mean["driver"].values:
         own = shares.sel(driver=driver)
         if not (own > LEAST).any():
             continue
         largest = own.isel(own.argmax(own.dims))
-        name = " + ".join(map(driver_name, str(driver).split(" + ")))
+        name = " + ".join(names[key] for key in str(driver).split(" + "))
         rows.append(
             (
                 Cell(name),
@@ -300,17 +300,18 @@ def band_figures(data: xr.Dataset) -> list[KeyFigure]:
 def _results(data: xr.Dataset) -> Table:
     rows = []
     names = [str(name) for name in data["result"].values]
+    total = float(data["nominal"].sel(result="total"))
     for name in names:
         one = data.sel(result=name)
         values = (
-            _shown(float(one[key]), str(one["unit"].values))
+            _shown(float(one[key]), str(one["unit"].values), total)
             for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
                         "low", "high", "shortest_low", "shortest_high")
         )  # fmt: skip
-        further = ", %" if name == "efficiency" else ""
+        label = in_words(name) + (", %" if name == "efficiency" else "")
         if name in ("load_dependent", "load_independent"):
-            further = data.attrs["grouping"]
-        rows.append((Cell(in_words(name) + further), *values))
+            label = name.replace("_", "-") + data.attrs["grouping"]
+        rows.append((Cell(label), *values))
     strong = frozenset({names.index("total"), names.index("efficiency")})
     head = ("", "case", "mean", "u_c", "U", "95 % from", "to", "shortest", "to")
     what = "Losses" if _unit(data) == "W" else "Energies"
@@ -323,12 +324,13 @@ def _unit(data: xr.Dataset) -> str:
     return str(data["unit"].sel(result="total").values)
 
 
-def _shown(value: float, unit: str) -> Cell:
-    """A number as precise as such numbers are."""
+def _shown(value: float, unit: str, total: float = math.inf) -> Cell:
+    """A number as precise as such numbers are, beside a `total` of losses."""
     if math.isnan(value):
         return number(None, "")
     if unit == "W":
-        return tenths(value)
+        decimals = max(1, decimals_of(total)) if math.isfinite(total) else 1
+        return number(value, "", text=f"{value:z.{decimals}f}")
     return number(value, "", text=f"{100 * value:z.3f}" if unit == "1" else shown(value, 5))
 
 
@@ -338,7 +340,7 @@ def _budget(data: xr.Dataset) -> Table:
     orders = [name for name in ("first_order", "total_order") if name in data]
     largest = total[orders[-1]]
     order = largest.sortby(-largest)["driver"].values
-    rows = []
+    rows, names = [], _names(data)
     for driver in map(str, order):
         keys = driver.split(" + ")
         if not total["contribution"].sel(input=keys).any():
@@ -349,10 +351,10 @@ def _budget(data: xr.Dataset) -> Table:
             own = total.sel(input=key)
             rows.append(
                 (
-                    Cell(driver_name(key)),
+                    Cell(names[key]),
                     Cell(str(own["distribution"].values)),
                     _input_value(own),
-                    _shown(float(own["contribution"]), _unit(data)),
+                    _shown(float(own["contribution"]), _unit(data), float(total["nominal"])),
                     *(aligned("" if place else text) for text in shares),
                 )
             )
@@ -403,9 +405,10 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
         yield f"Without effect here: {', '.join(idle)}."
     yield from _of_points(data)
     sources: dict[str, list[str]] = {}
+    names = _names(data)
     for key in sorted(set(map(str, data["input"].values)) - set(idle)):
         source = str(data["distribution_source"].sel(input=key).values)
-        sources.setdefault(source, []).append(driver_name(key))
+        sources.setdefault(source, []).append(f"{names[key]} ({key})")
     for source, keys in sources.items():
         yield f"{', '.join(keys)}: {source}."
 

@@ -121,7 +121,7 @@ def recommended(rows: Sequence[FrictionComparison]) -> tuple[FrictionComparison,
             why = "it was made for this oil and accounts for unequal roughness of the flanks"
             return paired, f"{why}; {_inside(paired)}"
         return own, f"it was made for this oil, and {_inside(own)}"
-    why = "it holds for any oil and is nearer to measured gears than the others"
+    why = "it holds for any oil and agrees best with measured gears"
     return any_oil, f"{why}; {_inside(any_oil)}"
 
 
@@ -143,7 +143,8 @@ def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str |
     if 1 / PARTED < ratio < PARTED:
         return f"{told}."
     if standard.outside > MOSTLY:
-        return f"{told}; most of the loss is outside the range of its tests: {standard.reasons[0]}."
+        left = standard.reasons[0].partition(" (")[0]
+        return f"{told}; most of the loss is outside the range of its tests: {left}."
     low = min(mesh.film_ratio_min for mesh in result.meshes.values())
     high = max(mesh.film_ratio_max for mesh in result.meshes.values())
     return f"{told}; its friction does not follow the film ratio, {low:.2g} to {high:.2g} here."

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field, Tag, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.tables.base import (
@@ -49,9 +49,12 @@ def _filled(kind: str, raw: dict[str, Any]) -> dict[str, Any]:
     return designations.KEYS[kind](raw) | raw
 
 
-ShaftDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "shaft"))]
-PlanetDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "planet"))]
-ThrustDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "thrust"))]
+# 6208 without quotes, as on a command line, is text too
+_FromDigits = BeforeValidator(lambda given: str(given) if type(given) is int else given)
+_Designation = Annotated[str, Field(max_length=40), _FromDigits]
+ShaftDesignation = Annotated[_Designation, AfterValidator(partial(_known, "shaft"))]
+PlanetDesignation = Annotated[_Designation, AfterValidator(partial(_known, "planet"))]
+ThrustDesignation = Annotated[_Designation, AfterValidator(partial(_known, "thrust"))]
 ReferenceSpeed = Annotated[
     float, Quantity("a speed rating", "rad/s", "rpm", low=0.0, high=1e6, open_low=True)
 ]
@@ -196,10 +199,10 @@ class LossTableTable(PointsTable):
     AXES: ClassVar = ("speed", "temperature", "radial_force")
 
     speed: tuple[SpeedDifference, ...] | None = option(
-        "Magnitudes of the speed difference, rising."
+        "Magnitudes of the speed difference, increasing."
     )
-    temperature: tuple[Temperature, ...] | None = option("Temperatures of the oil, rising.")
-    radial_force: tuple[Force, ...] | None = option("On a bearing, rising.")
+    temperature: tuple[Temperature, ...] | None = option("Temperatures of the oil, increasing.")
+    radial_force: tuple[Force, ...] | None = option("On a bearing, increasing.")
     torque: Torques | None = option(
         "Friction torque, with one value or one row for each value of the first axis."
     )
@@ -438,7 +441,7 @@ class ShaftBearingTable(ElementTable):
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
         if (kind, self.cage) not in DEFAULT_VISCOUS_FACTORS:
             remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
-            yield Problem("cage", written(self.cage), f"is not made as a {kind} bearing.", remedy)
+            yield Problem("cage", written(self.cage), f"is not made for {kind} bearings.", remedy)
         yield from _angle_problems(self)
         yield from _pair_problems(self)
         yield from super().problems()
@@ -555,7 +558,7 @@ def _force_problems(table: ShaftBearingTable) -> Iterator[Problem]:
         return
     if table.axial_force is not None and table.radial_force is None:
         remedy = 'Add radial_force = "0 N" if there is none.'
-        yield Problem("radial_force", "", "is missing with axial_force.", remedy)
+        yield Problem("radial_force", "", "is missing, but axial_force is given.", remedy)
     if table.type == "needle":
         reason = "is not possible with a needle roller bearing, which carries no axial force."
         remedy = "Locate the shaft by another bearing."

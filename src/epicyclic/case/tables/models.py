@@ -371,7 +371,7 @@ class GearPairModels(Table):
         "Absolute pressure of a void in the pockets, for pocketing = incompressible.", "0.01 bar"
     )
     pocketing_table: str | None = option(
-        "File of 'epicyclic pockets-table', relative to the folder of the case, with the flow "
+        "File of 'epicyclic pockets table', relative to the folder of the case, with the flow "
         "through the pockets."
     )
     pocket_end_length: Number = option(

@@ -434,7 +434,7 @@ def check_wetting(table: LubricationTable, thermal: ThermalTable) -> list[Proble
     if "lubrication" not in thermal.model_fields_set or thermal.lubrication in wetting:
         return []
     fitting = " or ".join(f'"{name}"' for name in wetting)
-    allowed = f'contradicts lubrication.method = "{table.method}", for which it is {fitting}.'
+    allowed = f'contradicts lubrication.method = "{table.method}", which implies {fitting}.'
     remedy = "Remove it, because it follows from the method."
     return [Problem("thermal.lubrication", f'"{thermal.lubrication}"', allowed, remedy)]
 

@@ -191,7 +191,7 @@ def parse_ranges(options: Iterable[str]) -> dict[str, tuple[float, float]]:
             continue
         if not low < high:
             problems.append(
-                Problem(f"--range {name}", f'"{option}"', "must be rising.", "Swap them.")
+                Problem(f"--range {name}", f'"{option}"', "must be increasing.", "Swap them.")
             )
         ranges[name] = (low, high)
     raise_any(problems, "the command")

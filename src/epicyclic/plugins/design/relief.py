@@ -62,7 +62,7 @@ def key_problems(relief: Relief) -> list[Problem]:
     for key in relief.vary:
         if "micro_geometry" not in key and not key.endswith("misalignment"):
             allowed = "is no key of micro-geometry."
-            remedy = 'As in "sun.micro_geometry.tip_relief=5:45:5 um".'
+            remedy = 'For example "sun.micro_geometry.tip_relief=5:45:5 um".'
             problems.append(Problem("--vary", key, allowed, remedy))
     keys = mesh_keys(relief.case)
     if relief.mesh not in keys:

@@ -188,7 +188,7 @@ def parse_length(option: str, text: str | None) -> float:
     try:
         return float(TypeAdapter(Length).validate_python(text))
     except ValidationError:
-        problem = Problem(option, f'"{text}"', "must be a length.", 'As in "3 um".')
+        problem = Problem(option, f'"{text}"', "must be a length.", 'For example "3 um".')
         raise InputError([problem], "the command") from None
 
 

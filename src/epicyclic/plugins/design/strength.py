@@ -51,8 +51,8 @@ AFTER = {
     "pitting": "after ISO 6336-2: stresses and factors of method B, without warm or static cases",
     "bending": "after ISO 6336-3: method B, without thin rims, protuberance and grinding notches",
     "loads": "after ISO 6336-1: K_v and K_Halpha of method B, K_Hbeta from the computed load",
-    "micropitting": "after ISO/TS 6336-22: its film under the computed pressure and friction",
-    "scuffing": "after ISO/TS 6336-20, -21: its limits for the computed flash temperatures",
+    "micropitting": "after ISO/TS 6336-22: film thickness at the computed pressure and friction",
+    "scuffing": "after ISO/TS 6336-20, -21: limits for the computed flash temperatures",
     "bearings": "after ISO 281: basic and modified life, 90 %, without misalignment",
 }
 """What the numbers are, and which parts are covered."""

@@ -9,7 +9,7 @@ from typing import Any
 from epicyclic.case.case import Case
 from epicyclic.plugins.design.mass import Part, parts
 from epicyclic.plugins.design.strength import AFTER, MeshRating, Strength, strength
-from epicyclic.result.result import Result
+from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import Cell, Listing, Table, number
 
 MPA, HOUR, CELSIUS = 1e-6, 3600.0, -273.15
@@ -31,7 +31,7 @@ def tables_of(found: Strength) -> Iterator[Table | Listing]:
     yield Listing(
         (*found.notes, *AFTER.values(), f"load stages of the oil, scuffing {found.stages[0]}, "
         f"micropitting {found.stages[1]}: {found.stages_source}"),
-        "Safeties: what they follow",
+        "Safeties: methods and limits",
     )  # fmt: skip
 
 
@@ -47,25 +47,21 @@ def _table(
     return Table(head, tuple(made), title)
 
 
-def _words(key: str) -> str:
-    return key.replace("_", " ")
-
-
 def _gears(found: Strength) -> Table:
-    head = ("gear", "S_H", "sigma_H [MPa]", "limit", "S_F", "sigma_F [MPa]", "limit", "Y_F", "Y_S")
+    head = ("gear", "S_H", "sigma_H, MPa", "limit", "S_F", "sigma_F, MPa", "limit", "Y_F", "Y_S")
     rows = [
-        (f"{it.gear}, {_words(mesh.key)}", it.pitting, it.contact_stress * MPA,
-         it.contact_limit * MPA, it.bending, it.root_stress * MPA, it.root_limit * MPA,
-         it.form_factor, it.stress_correction)
+        (f"{in_words(it.gear)}, {in_words(mesh.key.rpartition('.')[2])}", it.pitting,
+         it.contact_stress * MPA, it.contact_limit * MPA, it.bending,
+         it.root_stress * MPA, it.root_limit * MPA, it.form_factor, it.stress_correction)
         for mesh in found.meshes for it in mesh.gears
     ]  # fmt: skip
     return _table("Pitting and bending after ISO 6336-2, -3", head, (3, 4, 4, 3, 4, 4, 3, 3), rows)
 
 
 def _flanks(found: Strength) -> Table:
-    head = ("mesh", "S_lambda", "lambda", "limit", "S_B", "theta_B [°C]", "limit", "S_intS")
+    head = ("mesh", "S_lambda", "lambda", "limit", "S_B", "theta_B, °C", "limit", "S_intS")
     rows = [
-        (_words(mesh.key), it.micropitting, it.film_ratio, it.film_ratio_limit, it.scuffing,
+        (in_words(mesh.key), it.micropitting, it.film_ratio, it.film_ratio_limit, it.scuffing,
          it.contact_temperature + CELSIUS, it.scuffing_temperature + CELSIUS, it.integral_scuffing)
         for mesh in found.meshes for it in (mesh.flanks,)
     ]  # fmt: skip
@@ -74,9 +70,9 @@ def _flanks(found: Strength) -> Table:
 
 
 def _factors(meshes: Sequence[MeshRating]) -> Table:
-    head = ("mesh", "F_t [N]", "K_A", "K_gamma", "K_v", "K_Hbeta", "computed", "K_Halpha")
+    head = ("mesh", "F_t, N", "K_A", "K_gamma", "K_v", "K_Hbeta", "computed", "K_Halpha")
     rows = [
-        (_words(mesh.key), mesh.tangential_force, it.application, it.sharing, it.dynamic, it.face,
+        (in_words(mesh.key), mesh.tangential_force, it.application, it.sharing, it.dynamic, it.face,
          it.face_computed, it.transverse)
         for mesh in meshes for it in (mesh.factors,)
     ]  # fmt: skip
@@ -84,9 +80,9 @@ def _factors(meshes: Sequence[MeshRating]) -> Table:
 
 
 def _bearings(found: Strength) -> Table:
-    head = ("bearing", "P [N]", "C [N]", "kappa", "a_ISO", "L10 [h]", "L10m [h]")
+    head = ("bearing", "P, N", "C, N", "kappa", "a_ISO", "L10, h", "L10m, h")
     rows = [
-        (_words(it.key), it.load, it.dynamic_load_rating, it.viscosity_ratio, it.life_factor,
+        (in_words(it.key), it.load, it.dynamic_load_rating, it.viscosity_ratio, it.life_factor,
          it.basic_life / HOUR, it.modified_life / HOUR)
         for it in found.bearings
     ]  # fmt: skip
@@ -99,11 +95,15 @@ def mass_table(case: Case) -> Table:
 
     def row(part: Part) -> tuple[Cell, ...]:
         cells = (part.mass, 1e4 * part.inertia, 1e4 * part.carried_inertia)
-        return (Cell(part.name), number(part.count, ""), *(number(it, "") for it in cells))
+        return (
+            Cell(in_words(part.name)),
+            number(part.count, ""),
+            *(number(it, "") for it in cells),
+        )
 
     total = sum(part.count * part.mass for part in found)
     return Table(
-        ("part", "number", "mass [kg]", "inertia [kg cm²]", "on the carrier [kg cm²]"),
+        ("part", "number", "mass, kg", "inertia, kg·cm²", "on the carrier, kg·cm²"),
         tuple(map(row, found)),
         "Mass and inertia",
         note=f"Together {total:.4g} kg, without shafts, pins, rollers and housing.",

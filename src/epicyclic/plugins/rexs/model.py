@@ -231,7 +231,7 @@ def checked_unit(attribute: Attribute) -> str:
     """The unit of this package for that of an attribute; ValueError if it is not known."""
     unit = unit_of(attribute.unit or "none")
     if unit is None:
-        raise ValueError(f"has the unit {one_line(str(attribute.unit))}, which is not one of REXS")
+        raise ValueError(f"has the unit {one_line(str(attribute.unit))}, which REXS does not have")
     return unit
 
 

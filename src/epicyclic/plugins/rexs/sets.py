@@ -197,7 +197,7 @@ def _planetary_set(model: Model, stage: Component) -> PlanetaryParts:
                     str(stage),
                     "",
                     f"has {found}.",
-                    "One sun, one ring and planets that mesh with both can be read.",
+                    "Only one sun, one ring and planets that mesh with both can be read.",
                 )
             ]
         )

@@ -256,5 +256,6 @@ def _write_names(
         }
         text = ax.text(place, height, in_words(shaft), ha=side, va="center", fontsize="small")
         text.set_bbox(style)
-        ends.append((place, -len(shaft) if is_left else len(shaft)))
+        letters = len(shaft) + 2  # with a gap to the axis
+        ends.append((place, -letters if is_left else letters))
     return ends

@@ -18,7 +18,13 @@ from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.ranges import range_text
 from epicyclic.result.result import Result
-from epicyclic.study.friction import STANDARD, compare_friction, recommended, standard_beside
+from epicyclic.study.friction import (
+    MOSTLY,
+    STANDARD,
+    compare_friction,
+    recommended,
+    standard_beside,
+)
 from epicyclic.units import known_text, percent
 
 if TYPE_CHECKING:
@@ -26,6 +32,7 @@ if TYPE_CHECKING:
 
 
 MOST_DRIVERS = 3  # Inputs and models that are named after a band.
+LEAST_SHARE = 0.005  # Of the band, of a cause that is named. [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,8 +146,17 @@ def in_few_words(name: str) -> str:
     if not _KEY.fullmatch(name):
         return name
     *owners, last = name.replace("_", " ").split(".")
-    owner = " ".join(one for one in owners if one not in _OF_ALL)
+    owner = ": ".join(one for one in owners if one not in _OF_ALL)
     return f"{last} of {owner}" if owner else last
+
+
+def main_causes(known: Known) -> str:
+    """What makes most of a band, with its shares."""
+    return ", ".join(
+        f"{in_few_words(called(known, driver))} {percent(share, 0)}"
+        for driver, share in known.drivers[:MOST_DRIVERS]
+        if share >= LEAST_SHARE
+    )
 
 
 def _left(known: Known, name: str, uncertainty: float) -> float:
@@ -192,7 +208,9 @@ def _friction(case: Case, result: Result, brief: bool) -> Iterator[str]:
         return
     best, why = recommended(rows)
     does = "suits" if best.chosen else BETTER
-    yield f"Friction: {best.name} {does}: {why}."
+    if best.chosen and best.outside > MOSTLY:
+        does = "is only the nearest, because no model covers most of the loss"
+    yield f"Friction: {best.name} {does}; {why}."
     beside = standard_beside(rows, result)
     if beside:
         yield beside

@@ -202,8 +202,8 @@ def _column(header: str, unit: str | None, quantity: Quantity | None) -> Column:
 
 def _repeated(name: str, headers: list[str]) -> Problem:
     shown = ", ".join(f'"{one_line(header)}"' for header in headers)
-    remedy = f'Keep one, or choose it: --column "{name}=HEADER".'
-    return Problem(name, shown, "appears more than once.", remedy)
+    choice = f', or choose it: --column "{name}=HEADER"' * (len({*headers}) == len(headers))
+    return Problem(name, shown, "appears more than once.", f"Keep one{choice}.")
 
 
 def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[Problem]:

@@ -87,9 +87,7 @@ def stated(data: xr.Dataset, axes: Sequence[str] = PLANE) -> dict[str, str]:
 
 def driven_problem(why: str) -> Problem:
     """A map of two driven shafts, for what takes one; `why` ends the sentence."""
-    remedy = (
-        "Set operation.fixed instead; of a train leave out operation.speeds and operation.torques."
-    )
+    remedy = "Set operation.fixed instead; in a train omit operation.speeds and operation.torques."
     return Problem("operation.second_input", "", f"is driven; {why}.", remedy)
 
 
@@ -126,7 +124,7 @@ def _axis_problems(data: xr.Dataset) -> Iterator[Problem]:
         elif not np.isfinite(axis.values).all():
             yield Problem(name, "", "must have finite values.", _MAKE_AGAIN)
         elif (np.diff(axis.values) <= 0).any():
-            yield Problem(name, "", "must be rising.", "Sort the map, as with .sortby.")
+            yield Problem(name, "", "must be increasing.", "Sort the map, as with .sortby.")
 
 
 def _value_problems(data: xr.Dataset) -> Iterator[Problem]:
