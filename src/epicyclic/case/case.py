@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import re
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -84,6 +85,7 @@ from epicyclic.messages import (
     PART_NAME_RULE,
     did_you_mean,
     either,
+    millimetres,
     misspelt,
     one_line,
     path_of,
@@ -664,10 +666,17 @@ class TrainCase(_TrainHead):
         return cls._made(cast(Self, train), tables, source, found)
 
 
+_OWN_TABLE = re.compile(
+    r"\[(?=(carrier|planet_(bearings?|pin)|thrust_bearing|gears|((sun|ring)_)?mesh|sun|planet|ring|pinion|gear)[].])"
+)
+"""Where a text names a table that only a set has."""
+
+
 def _below(prefix: str, problem: Problem) -> Problem:
     """A problem of a set or part as one of the train."""
     keys = ", ".join(f"{prefix}.{key}" if key else prefix for key in problem.key.split(", "))
-    return replace(problem, key=keys)
+    told = (_OWN_TABLE.sub(f"[{prefix}.", it) for it in (problem.allowed, problem.remedy))
+    return Problem(keys, problem.value, *told)
 
 
 def _joined_members(tables: Mapping[str, Any]) -> dict[str, set[str]]:
@@ -799,7 +808,27 @@ def _complete(
     problems += [*listed_problems(table, whole), *set_problems(whole)]
     if not any(rack_problems(whole)):
         problems += check_listed_bearings(table, whole)
+    if not problems:
+        told = (*told, *_places_told(table, whole))
     return (table, whole), told, list(dict.fromkeys(problems))
+
+
+def _places_told(table: ListedSet, gearing: Gearing) -> Iterator[Found]:
+    """Where planets on bearings and their gears stand, where only the order of the meshes says."""
+    if not (table.planet_bearing or table.planet_bearings or table.planet_pin):
+        return
+    for number, mesh in enumerate(gearing.meshes):
+        one, two = (gearing.bodies[gear] for gear in mesh.pair)
+        if one in gearing.pins and two in gearing.pins:
+            how = f"{two} is assumed ahead of {one} in the sense of positive speeds."
+            yield Found(f"meshes[{number}]", written(list(mesh.pair)), how)
+    for body in gearing.planets:
+        gears = gearing.gears_of(body)
+        for gear in gears if len(gears) > 1 else ():
+            if table.members[gear].axial_position is None:
+                place = millimetres(gearing.positions[gear])
+                how = "assumed, side by side in the order of the meshes."
+                yield Found(f"gears.{gear}.axial_position", place, how)
 
 
 # --- bearings, seals, drags -----------------------------------------------------------------------

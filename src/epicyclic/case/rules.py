@@ -156,16 +156,11 @@ def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Proble
     found: dict[str, tuple[PlanetBearing | PlanetPin, Sequence[str]]] = {
         f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
     }
+    others = [body for body in gearing.planets if body not in own]
     if table.planet_bearing is not None:
-        others = [body for body in gearing.planets if body not in own]
         found["planet_bearing"] = table.planet_bearing, others
     if table.planet_pin is not None:
-        found["planet_pin"] = (
-            table.planet_pin,
-            [body for body in gearing.planets if body not in own],
-        )
-        if table.planet_bearing is not None:
-            yield from _both_bearings(table.planet_bearing, table.planet_pin)
+        found["planet_pin"] = table.planet_pin, others
     yield from check_bores(gearing, found)
 
 
