@@ -78,14 +78,13 @@ from epicyclic.case.train_tables import (
 from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.assembly import place_problems, rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
-from epicyclic.gears.sizing import Found, complete, problems_of_some
+from epicyclic.gears.sizing import Found, complete, places_told, problems_of_some
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
 from epicyclic.messages import (
     PART_NAME,
     PART_NAME_RULE,
     did_you_mean,
     either,
-    millimetres,
     misspelt,
     one_line,
     path_of,
@@ -808,27 +807,9 @@ def _complete(
     problems += [*listed_problems(table, whole), *set_problems(whole)]
     if not any(rack_problems(whole)):
         problems += check_listed_bearings(table, whole)
-    if not problems:
-        told = (*told, *_places_told(table, whole))
+    if not problems and (table.planet_bearing or table.planet_bearings or table.planet_pin):
+        told = (*told, *places_told(whole))
     return (table, whole), told, list(dict.fromkeys(problems))
-
-
-def _places_told(table: ListedSet, gearing: Gearing) -> Iterator[Found]:
-    """Where planets on bearings and their gears stand, where only the order of the meshes says."""
-    if not (table.planet_bearing or table.planet_bearings or table.planet_pin):
-        return
-    for number, mesh in enumerate(gearing.meshes):
-        one, two = (gearing.bodies[gear] for gear in mesh.pair)
-        if one in gearing.pins and two in gearing.pins:
-            how = f"{two} is assumed ahead of {one} in the sense of positive speeds."
-            yield Found(f"meshes[{number}]", written(list(mesh.pair)), how)
-    for body in gearing.planets:
-        gears = gearing.gears_of(body)
-        for gear in gears if len(gears) > 1 else ():
-            if table.members[gear].axial_position is None:
-                place = millimetres(gearing.positions[gear])
-                how = "assumed, side by side in the order of the meshes."
-                yield Found(f"gears.{gear}.axial_position", place, how)
 
 
 # --- bearings, seals, drags -----------------------------------------------------------------------

@@ -157,10 +157,9 @@ def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Proble
         f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
     }
     others = [body for body in gearing.planets if body not in own]
-    if table.planet_bearing is not None:
-        found["planet_bearing"] = table.planet_bearing, others
-    if table.planet_pin is not None:
-        found["planet_pin"] = table.planet_pin, others
+    for key in ("planet_bearing", "planet_pin"):
+        if (bearing := getattr(table, key)) is not None:
+            found[key] = bearing, others
     yield from check_bores(gearing, found)
 
 
