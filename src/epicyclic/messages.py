@@ -141,6 +141,7 @@ _LIKENESS = 60.0  # Smallest likeness, in percent, at which a name is worth sugg
 _MOST_KINDS = 3  # Names of kinds of one thing that are all suggested.
 _MOST_SLIPS = 2  # Letters left out, added, changed or swapped in a name that is still clear.
 
+_SHORT_WORD = 2  # Length of words that say nothing.
 _LONGEST = 60  # No name is longer, and longer text is not compared. [characters]
 
 
@@ -160,6 +161,13 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     )
     near = dict.fromkeys(repr(one[0]) for one in found if one)
     return f"Did you mean {' or '.join(near)}?" if near else ""
+
+
+def titled(text: str, titles: Mapping[str, str]) -> str:
+    """``"Did you mean 'CuSn12'?"`` of names in whose titles a word of `text` stands; or nothing."""
+    words = [word for word in re.split(r"[\W_]+", text.casefold()) if len(word) > _SHORT_WORD]
+    near = [repr(name) for name in titles if any(one in titles[name].casefold() for one in words)]
+    return f"Did you mean {either(near)}?" if 0 < len(near) <= _MOST_KINDS else ""
 
 
 def either(names: Sequence[str]) -> str:

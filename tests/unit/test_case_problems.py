@@ -313,3 +313,18 @@ def test_many_problems_take_no_long():
     tables = builtin_case("talbot-2012")
     tables["sun"] |= {f"key{number}": number for number in range(5_000)}
     assert len(problems_of(read_case, tables)) == 5_000
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "remedy"),
+    [
+        ("planet.material", "bronze", "Did you mean 'CuSn12'?"),
+        ("planet.material", "EN-GJS-700", "Did you mean 'nodular-iron'?"),
+        ("planet.material", "100Cr6", "Did you mean 'bearing-steel'?"),
+        ("planet.material", "42CrMo", "Did you mean '42CrMo4'?"),
+        ("lubricant.oil", "lithium grease", 'write lubrication.method = "grease"'),
+    ],
+)
+def test_near_names_follow_from_the_kind_of_a_material(talbot, key, value, remedy):
+    (problem,) = problems_of(talbot.updated, {key: value})
+    assert remedy in problem.remedy

@@ -20,7 +20,7 @@ from epicyclic.losses.designations import (
 from problems import only, problems_of
 
 # As catalogues print them: d, D, B in mm, C and C0 in kN. Ratings of URB (2017) and, where that
-# catalogue has none, of SKF, second hand.
+# catalogue has none, of SKF: second hand or, the last five, Rolling bearings (2017).
 PRINTED = {
     "6208": (40, 80, 18, 32.6, 20.0),
     "6308": (40, 90, 23, 41.0, 24.0),
@@ -31,6 +31,11 @@ PRINTED = {
     "NKI 40/30": (40, 55, 30, 40.2, 93.0),
     "NA 4908": (40, 62, 22, 42.9, 71.0),
     "22220": (100, 180, 46, 425.0, 490.0),
+    "24130 CC/W33": (150, 250, 100, 1020.0, 1530.0),
+    "NCF 3010 CV": (50, 80, 23, 76.5, 98.0),
+    "NKI 95/26": (95, 125, 26, 78.1, 166.0),
+    "62/28": (28, 58, 16, 16.8, 9.5),
+    "6202-2RS1": (15, 35, 11, 8.06, 3.75),
 }
 
 

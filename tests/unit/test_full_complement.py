@@ -109,3 +109,17 @@ def test_it_needs_rollers_without_a_cage_that_fill_the_row(case):
         case.updated({"planet_bearing.cage": "caged"})
     with pytest.raises(ep.InputError, match="23 fit"):
         case.updated({"planet_bearing.rollers_per_row": 21})
+
+
+def test_ratios_to_rollers_in_a_cage_are_those_of_the_page(case):
+    """As docs/theory/planet-bearing.md says after (B23)."""
+    caged = {"planet_bearing.cage": "caged", "planet_bearing.rollers_per_row": 16}
+    caged["models.bearing"] = "mixed-ehl"
+    for torque, rpm, ratio, whole in (
+        (1000, 4000, 2.36, 2.24), (1000, 1000, 1.80, 1.77), (250, 1000, 1.43, 1.39),
+    ):  # fmt: skip
+        at = {"operation.torque": f"{torque} N*m", "operation.speed": f"{rpm} rpm"}
+        full, held = (ep.solve(case.updated(at | more)).losses for more in ({}, caged))
+        load, viscous = (f"planet_bearing_{part}" for part in ("mechanical", "viscous"))
+        assert round(full[load] / held[load], 2) == ratio
+        assert round((full[load] + full[viscous]) / (held[load] + held[viscous]), 2) == whole

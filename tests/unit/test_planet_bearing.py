@@ -435,3 +435,23 @@ def test_loads_and_speeds_beyond_them_are_told(talbot):
     assert told(**quick, **light) == ["planet bearing"]
     (fast,) = told(**quick, **{"operation.torque": "900 N*m", "operation.speed": "6100 rpm"})
     assert fast.endswith("rpm")
+
+
+def test_limiting_speed_of_planets_is_told(talbot):
+    """490,000 mm/min caged, 320,000 without a cage, on the pitch circle of 30.008 mm."""
+    quick = {
+        "losses.sun_mesh_pocketing.include": False,
+        "losses.ring_mesh_pocketing.include": False,
+    }
+    full = {"cage": "full-complement", "rollers_per_row": 23}
+    full = {f"planet_bearing.{key}": value for key, value in full.items()}
+    ratio = ep.solve(talbot.updated(quick)).bearing.speed * 30 / math.pi / 4000
+    for changes, product in ((quick, 490e3), ({**quick, **full}, 320e3)):
+        limit = product / 30.008
+        for share in (0.99, 1.01):
+            speed = f"{share * limit / ratio} rpm"
+            warnings = ep.solve(talbot.updated({**changes, "operation.speed": speed})).warnings
+            assert any("exceed the limiting speed of" in it for it in warnings) == (share > 1)
+    stated = quick | {"planet_bearing.limiting_speed": f"{3900 * ratio} rpm"}
+    told = [it for it in ep.solve(talbot.updated(stated)).warnings if "limiting speed of" in it]
+    assert [("SKF" in note) for note in told] == [False]

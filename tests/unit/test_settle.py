@@ -36,6 +36,7 @@ class Model:
 def settled(monkeypatch):
     monkeypatch.setattr(settling, "start_of", lambda *_: None)
     monkeypatch.setattr(settling, "solve_machine", lambda _machine, _operation, at, *_: at)
+    monkeypatch.setattr(settling, "next_solution", lambda _machine, _operation, at, *_: (at, True))
     machine = SimpleNamespace()
     return lambda scatter: settle(machine, machine, Model(scatter))
 
@@ -45,6 +46,18 @@ def test_temperatures_settle_in_a_few_evaluations(settled):
     assert found.answer.temperatures == pytest.approx({"oil": 350, "housing": 340}, abs=AGREEMENT)
     assert found.evaluations < 8
     assert found.change <= AGREEMENT
+
+
+def test_torques_agree_with_the_losses_in_the_end(settled, monkeypatch):
+    monkeypatch.setattr(settling, "next_solution", lambda _machine, _operation, at, *_: (at, False))
+    whole = []
+    monkeypatch.setattr(
+        settling, "solve_machine", lambda _machine, _operation, at, *_: whole.append(at) or at
+    )
+    found = settled(0.0)
+    assert found.solution is whole[-1]
+    assert len(whole) == 2
+    assert found.answer.temperatures == pytest.approx({"oil": 350, "housing": 340}, abs=AGREEMENT)
 
 
 def test_losses_that_scatter_settle_to_their_scatter_and_tell(settled):

@@ -257,17 +257,21 @@ def test_speed_beyond_the_thermal_rating_is_named(state):
 
 
 def test_speed_beyond_the_limit_of_the_cage_is_named(state):
-    """Within 8 % of limiting speeds of SKF's tables, second hand: 32006 X, 30204, NU 205."""
+    """SKF's 32006 X, 30204, NU 205, K 40x45x17, NKI 40/30, NCF 3010, 22310 within 8 %."""
     for kind, bore, outside, printed in [
         ("tapered", 30, 55, 12000), ("tapered", 20, 47, 15000), ("cylindrical", 25, 52, 16000),
+        ("needle", 40, 45, 12000), ("needle", 40, 55, 10000), ("full", 50, 80, 5000),
+        ("spherical", 50, 110, 6300),
     ]:  # fmt: skip
         own = replace(BALL, type=kind, bore=1e-3 * bore, outside_diameter=1e-3 * outside)
+        if kind == "full":
+            own = replace(own, type="cylindrical", cage="full-complement")
         assert limiting_speed(own) / RPM == pytest.approx(printed, rel=0.08)
     bearing = ShaftBearing("input.front", ("input", HOUSING), BALL, MODELS["palmgren"])
     limit, load = 660e3 / (1e3 * BALL.pitch_diameter), BearingLoad(2000.0, 0.0)
     stated = replace(bearing, limiting_speed=0.7 * limit * RPM)
     for own, speed, said in (
-        (bearing, 1.01, "second hand, which"), (bearing, 0.99, None), (stated, 0.8, "rpm, which"),
+        (bearing, 1.01, "SKF's tables, which"), (bearing, 0.99, None), (stated, 0.8, "rpm, which"),
         (stated, 0.6, None),
     ):  # fmt: skip
         notes = own.evaluate(state(speed * limit, load)).notes
@@ -276,7 +280,7 @@ def test_speed_beyond_the_limit_of_the_cage_is_named(state):
         )
     angular = replace(BALL, type="angular-contact")
     assert limiting_speed(angular) / RPM == pytest.approx(610e3 / 60, rel=1e-12)
-    assert math.isinf(limiting_speed(replace(BALL, type="needle")))
+    assert math.isinf(limiting_speed(replace(BALL, type="thrust-ball")))
 
 
 def test_estimated_drag_is_named(state):

@@ -20,7 +20,7 @@ from epicyclic.losses.ranges import (
     held_in_range,
     weight_of,
 )
-from epicyclic.show.summary import first_remarks
+from epicyclic.show.summary import first_remarks, first_warnings
 from epicyclic.units import CELSIUS, GIGAPASCAL, MILLIMETRE
 
 PRESSURE = Range("pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, "a table")
@@ -235,6 +235,17 @@ def test_the_first_screen_says_how_much_of_the_loss_is_only_an_estimate(talbot):
     assert float(told.partition(" % of the loss")[0]) == pytest.approx(
         100 * largest / result.total, abs=0.5
     )
+
+
+def test_the_first_screen_says_what_a_missing_planet_bearing_may_lose(talbot):
+    """(B16) by hand, on half of the reference diameter of planets with 26 teeth."""
+    known, result = ep.solve(talbot), ep.solve(talbot.updated({"planet_bearing": None}))
+    (told,) = (it for it in first_remarks(result, None) if "may lose" in it)
+    least, most = map(float, re.search(r"lose (\S+) to (\S+) W", told).groups())
+    diameter = 26 * 1.813e-3 / math.cos(math.radians(13.124))
+    power = 3 * known.bearing.radial_force * diameter / 2 * known.bearing.speed
+    assert (least, most) == (float(f"{0.0003 * power:.2g}"), float(f"{0.002 * power:.2g}"))
+    assert not any("may lose" in it for it in first_warnings(result).items)
 
 
 def test_own_oil_of_the_regression_is_told_apart(talbot):

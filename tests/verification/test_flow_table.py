@@ -22,6 +22,9 @@ from epicyclic.losses.pocket_tables import (
 )
 from epicyclic.machine.pocket_flow import flow_family, flow_request
 from epicyclic.oil.oil import MixtureState
+from epicyclic.study.solve import pocket_flow_numbers
+from epicyclic.study.sweeps import run as sweeps
+from epicyclic.study.sweeps.run import make_plan
 
 COARSE = {
     "numerics.pocket_slices": 4,
@@ -140,6 +143,29 @@ def test_a_sweep_interpolates_and_says_so(case):
     np.testing.assert_allclose(read["mesh_pocketing"], solved["mesh_pocketing"], rtol=2 * BOUND)
     assert "interpolated" in read.attrs["pocketing"]
     assert "solved at every point" in solved.attrs["pocketing"]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "matters"),
+    [
+        ("planet.roughness", "0.53 um", False),
+        ("planet_bearing.race_roughness", "0.31 um", False),
+        ("load_sharing.mesh_load_factor", 1.13, False),
+        ("models.hurst_exponent", 0.61, False),
+        ("models.running_in_factor", 0.71, False),
+        ("models.boundary_friction", 0.074, False),
+        ("lubricant.pressure_viscosity_factor", 1.09, False),
+        ("surroundings.oil_air_ratio", 0.063, True),
+        ("operation.oil_inlet_temperature", "71 degC", True),
+        ("operation.speed", "3100 rpm", True),
+    ],
+)
+def test_what_points_change_of_the_pockets(key, value, matters):
+    case = ep.load_case("talbot-2012").updated(COARSE)
+    changed = pocket_flow_numbers(case.updated({key: value})) != pocket_flow_numbers(case)
+    plan = make_plan(case, {key: [value]})
+    assert changed is matters
+    assert list(sweeps._changes(plan, [0])) == [{key: value} if matters else {}]
 
 
 def test_a_single_case_and_few_points_are_solved(case):

@@ -244,6 +244,7 @@ def _planet(key: str, case: SetCase, planet: str, body: str) -> Planet:
         mass_estimated=not stated,
         bearing=own,
         no_bearing=f"the case has no {no_bearing}",
+        diameter=2 * max(gear.reference_radius for gear, _ in made),
         tilts=case.models.planet_tilt == "coupled",
         nodes=(joined_key(key, planet), joined_key(key, pin)),
     )
@@ -311,6 +312,8 @@ def planet_bearing(case: SetCase, table: BearingTable, planet: str) -> PlanetBea
         palmgren_beyond=name == FITTED_OR_PALMGREN,
         roller_density=table.material.density,
         aligns_itself=table.type == "spherical",
+        cage=table.cage,
+        limiting_speed=table.limiting_speed,
         viscous_added=case.models.preset != "general",
     )
 

@@ -23,6 +23,7 @@ from epicyclic.case.tables.operation import (
     ThermalTable,
 )
 from epicyclic.contact.temperatures import LUBRICATION_FACTORS
+from epicyclic.errors import ConvergenceError
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.losses.ranges import Flags, ValidityFlag
@@ -320,8 +321,18 @@ class Built:
         """Torques, losses and temperatures that agree."""
         if self.thermal is None:
             solution = solve_machine(self.machine, self.operation, self.known_fluids)
-            return Settled(solution, Answer({}), 1)
-        return settle(self.machine, self.operation, self.thermal)
+            settled = Settled(solution, Answer({}), 1)
+        else:
+            settled = settle(self.machine, self.operation, self.thermal)
+        losses = settled.solution.losses
+        bad = [name for name, loss in losses.items() if not math.isfinite(loss.watts)]
+        if bad:
+            raise ConvergenceError(
+                f"{', '.join(bad)} did not give a finite number, because the case is far outside "
+                "the range of the models. Choose others (models.friction, models.rolling, "
+                "models.bearing)."
+            )
+        return settled
 
     def state(self) -> State:
         """Speeds, and torques as without losses."""

@@ -61,7 +61,9 @@ def _blas() -> ThreadpoolController:
 # section. The root section rests on springs against rotation and deflection per length, from the
 # deformation of an elastic half-plane under the moment and the shear force of the tooth (C. Weber,
 # 1949; R. W. Cornell, J. Mech. Des. 103 (1981) 447). Because the thickness does not change along
-# the tooth, the stiffness matrix is a sum of Kronecker products of one-dimensional integrals.
+# the tooth, the stiffness matrix is a sum of Kronecker products of one-dimensional integrals, and
+# deflections even along it are uncoupled from odd ones. No force acts on theta_y: with it first,
+# the Cholesky factor of the stiffness under load is the last block of the whole factor.
 
 SHEAR_FACTOR = 5 / 6  # k of Mindlin's plate for a rectangular section. [1]
 ROOT_TANGENT = math.radians(30.0)
@@ -86,21 +88,23 @@ class ToothPlate:
     section_height: FloatArray
     section_thickness: FloatArray
     root_offset: float  # Height of the root section above the root circle. [m]
-    # Inverse of the Cholesky factor of the stiffness matrix: compliances are products of it.
-    half_inverse: FloatArray
+    # Inverses of the Cholesky factors of the stiffness in w and theta_s, even and odd along the
+    # tooth: compliances are products of them.
+    half_inverses: tuple[FloatArray, FloatArray]
     face_terms: int  # Polynomials along the tooth.
 
-    def amplitudes(
+    def influence(
         self,
-        curvature: FloatArray,  # Transverse radius of curvature of the involute at each point. [m]
+        # Of points on contact lines, shape (positions, lines, segments):
+        curvature: FloatArray,  # Transverse radius of curvature of the involute. [m]
         face_position: FloatArray,  # Position across the face width of the gear, 0 to 1.
     ) -> tuple[FloatArray, FloatArray]:
-        """Amplitudes a_i of unit normal forces at points of the flank: their compliance is a_i a_j.
+        """Approach at each point of a line under a unit normal force at another one of that line.
 
         The force acts along the common normal; in the section of the tooth it bends the plate by
         its part across the middle line and, acting beside that line, by the moment of the rest.
 
-        Also how deep the middle line lies along the normal. Theory (E3). [m^0.5 N^-0.5], [m]
+        Also how deep the middle line lies along the normal. Theory (E3). [m/N], [m]
         """
         gear = self.gear
         radius = np.hypot(gear.base_radius, curvature)
@@ -113,12 +117,16 @@ class ToothPlate:
         s = np.clip(2 * height / self.height - 1, -1.0, 1.0)
         over_height = legendre.legvander(s, HEIGHT_TERMS - 1)
         along = legendre.legvander(2 * face_position - 1, self.face_terms - 1)
-        shape = (over_height[:, :, None] * along[:, None, :]).reshape(len(height), -1)
-        load = np.zeros((len(height), self.half_inverse.shape[0]))
-        terms = shape.shape[1]
-        load[:, :terms] = shape * np.cos(inclination)[:, None]
-        load[:, terms : 2 * terms] = -shape * (np.sin(inclination) * thickness / 2)[:, None]
-        return load @ self.half_inverse.T, thickness / (2 * np.cos(inclination))
+        force, moment = np.cos(inclination), -np.sin(inclination) * thickness / 2
+        loads = np.concatenate([over_height * it[..., None] for it in (force, moment)], axis=-1)
+        influence = np.zeros((*curvature.shape, curvature.shape[-1]))
+        for m in range(len(influence)):  # arrays of all positions would not fit into fast memory
+            for parity, inverse in enumerate(self.half_inverses):
+                load = loads[m][..., None] * along[m][..., None, parity::2]
+                amplitude = load.reshape(-1, len(inverse)) @ inverse.T
+                amplitude = amplitude.reshape(*curvature.shape[1:], -1)
+                influence[m] += amplitude @ amplitude.swapaxes(-1, -2)
+        return influence, thickness / (2 * force)
 
 
 @lru_cache(maxsize=64)
@@ -147,11 +155,18 @@ def tooth_plate(
     stiffness = _stiffness(height, thickness, length, elastic_modulus, poisson_ratio, face_terms)
     # scaled to a unit diagonal: deflections and rotations differ by orders of magnitude
     scale = 1 / np.sqrt(np.diag(stiffness))
-    factor = np.linalg.cholesky(scale[:, None] * stiffness * scale)
-    half_inverse = np.linalg.inv(factor) * scale
-    for array in (height, thickness, half_inverse):
+    numbers = np.arange(len(scale)).reshape(3, HEIGHT_TERMS, face_terms)
+    inverses = []
+    for parity in (0, 1):
+        free, loaded = numbers[2, :, 1 - parity :: 2].ravel(), numbers[:2, :, parity::2].ravel()
+        order = np.concatenate([free, loaded])
+        part = scale[order, None] * stiffness[np.ix_(order, order)] * scale[order]
+        factor = np.linalg.cholesky(part)[len(free) :, len(free) :]
+        inverses.append(np.linalg.inv(factor) * scale[loaded])
+    for array in (height, thickness, *inverses):
         array.flags.writeable = False
-    return ToothPlate(gear, float(height[-1]), height, thickness, offset, half_inverse, face_terms)
+    even, odd = inverses
+    return ToothPlate(gear, float(height[-1]), height, thickness, offset, (even, odd), face_terms)
 
 
 def _stiffness(
@@ -421,14 +436,11 @@ def mesh_compliance(
         overhang = (gear.face_width - mesh.face_width) / 2
         face = (lines.face_position + overhang) / gear.face_width
         with one_thread():
-            plate = _plate(gear, body)
-            flat, depth = plate.amplitudes(curvature.ravel(), face.ravel())
-            amplitudes = flat.reshape(*shape, -1)
-            influence += amplitudes @ amplitudes.swapaxes(-1, -2)
+            own, depth = _plate(gear, body).influence(curvature, face)
+        influence += own
         nu = body.poisson_ratio
         local = 2 * (1 - nu**2) / (math.pi * body.modulus)
-        log_depth = np.log(2 * depth).reshape(shape)
-        local_a += local * (log_depth - log_width - nu / (2 * (1 - nu)))
+        local_a += local * (np.log(2 * depth) - log_width - nu / (2 * (1 - nu)))
         local_b += local
     coupling = np.zeros((*shape[:2], shape[1]))
     if body2.rim is not None:

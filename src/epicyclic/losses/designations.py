@@ -17,7 +17,8 @@ from epicyclic.messages import did_you_mean
 
 RATING_BAND = 0.3
 """Relative deviation of estimated load ratings from catalogues, of the tests' sample. [1]"""
-_BORES = {"00": 10, "01": 12, "02": 15, "03": 17}  # mm; further codes are bore/5
+_BORES = {"00": 10, "01": 12, "02": 15, "03": 17, "/22": 22, "/28": 28, "/32": 32}
+"""Codes of bores in mm; further ones are bore/5."""
 _ANGLES = {"AC": 25.0, "A": 30.0, "B": 40.0, "C": 15.0, "E": 25.0}
 """Contact angle by the letter after the size of an angular contact ball bearing. [deg]"""
 _WITHOUT_RIB = re.compile(r"(NUP|NJ|N)(?=\d)")  # the other cylindrical types have the sizes of NU
@@ -113,7 +114,7 @@ def designated(text: str) -> DesignatedBearing:
     >>> round(1e3 * found.bore), round(1e3 * found.outside_diameter), round(1e3 * found.width)
     (50, 90, 23)
     """
-    name = re.sub(r"[\s.\-]", "", text.upper())
+    name = re.sub(r"[\s.\-](\d(?=[A-Z]))?", "", text.upper())  # not the 2 of 6208-2RS either
     by_size, cage = _BY_SIZE.match(name), _CAGE.match(name)
     if by_size and by_size["bore"] not in (bores := _tables()["needle"][by_size["kind"]]):
         raise KeyError(f"{by_size['kind']} has the bores {', '.join(bores)}")

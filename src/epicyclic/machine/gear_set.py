@@ -96,6 +96,7 @@ class Planet:
     mass_estimated: bool = False  # True if no case states it.
     bearing: PlanetBearing | PlanetPin | None = None
     no_bearing: str = ""  # Why there is none.
+    diameter: float = 0.0  # Of the reference circle of its largest gear. [m]
     tilts: bool = False  # True if the planet tilts in its bearing and misaligns its meshes.
     nodes: tuple[str, str] = (OIL, OIL)  # The thermal nodes of the planets and of their pins.
 
@@ -154,16 +155,20 @@ class Planet:
         )
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
-        contacts = []
-        for own in self.meshes:
-            duty = duties[own.mesh]
-            # the mesh turns both of its external gears against the torque that gear 1 brings in
-            sense = -1 if duty.torque1 > 0 else 1
-            contacts.append(
-                PlanetContact(duty, own.member, own.outward, sense, own.hand, own.position)
+        # a mesh turns both of its external gears against the torque that gear 1 brings in
+        senses = [-1 if duties[own.mesh].torque1 > 0 else 1 for own in self.meshes]
+        turn = senses[0]  # axes turned about r by half a turn if -1; no -0.0, which prints oddly
+        return [
+            PlanetContact(
+                duties[own.mesh],
+                own.member,
+                (turn * own.outward[0] + 0.0, own.outward[1]),
+                turn * sense,
+                own.hand,
+                turn * own.position + 0.0,
             )
-        first = contacts[0].sense
-        return contacts if first > 0 else [contact.turned_round() for contact in contacts]
+            for own, sense in zip(self.meshes, senses, strict=True)
+        ]
 
 
 class Drags(NamedTuple):
@@ -444,7 +449,8 @@ class GearSet:
             oil = state.fluids.at(joined_key(self.key, planet.key))
             last = last_rollers.get((planet.key, share))
             if planet.bearing is None:
-                bearing = missing_bearing(planet.key, planet.no_bearing)
+                moment = load.force * planet.diameter / 4 / share if share else 0.0
+                bearing = missing_bearing(planet.key, planet.no_bearing, moment, speed)
             elif isinstance(planet.bearing, PlanetPin):
                 # in the axes of the load, in which the first mesh turns the planet from t to r
                 driven = -speed if duties[planet.meshes[0].mesh].torque1 > 0 else speed

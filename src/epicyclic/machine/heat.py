@@ -33,7 +33,7 @@ from epicyclic.machine.heat_paths import (
 )
 from epicyclic.machine.machine import Machine, Operation
 from epicyclic.machine.shaft_parts import ShaftBearing
-from epicyclic.machine.solve import Solution, solve_machine, start_of
+from epicyclic.machine.solve import Solution, next_solution, solve_machine, start_of
 from epicyclic.units import CELSIUS
 
 AGREEMENT = 3e-5
@@ -110,13 +110,20 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     unheated = start_of(machine, operation)
     found: list[tuple[Solution, Answer]] = []
     steps: list[float] = []
+    at = np.array([model.start[node] for node in nodes])
+    agrees = True  # Whether the torques of the last solution do with its losses.
 
-    def change(values: FloatArray) -> FloatArray:
-        at = dict(zip(nodes, map(float, np.clip(values, COLDEST, HOTTEST)), strict=True))
+    def change(values: FloatArray, whole: bool = False) -> FloatArray:
+        nonlocal at, agrees
+        at = np.clip(values, COLDEST, HOTTEST)
+        oil = dict(zip(nodes, map(float, at), strict=True))
         with np.errstate(invalid="warn"):
-            earlier = found[-1][0] if found else None
-            solution = solve_machine(machine, operation, model.fluids(at), unheated, earlier)
-            answer = model.answer(at, solution)
+            given = machine, operation, model.fluids(oil), unheated
+            if found and not whole:
+                solution, agrees = next_solution(*given, found[-1][0])
+            else:
+                solution, agrees = solve_machine(*given, found[-1][0] if found else None), True
+            answer = model.answer(oil, solution)
         found.append((solution, answer))
         step: FloatArray = np.array([answer.temperatures[node] for node in nodes]) - values
         steps.append(float(np.abs(step).max()))
@@ -125,13 +132,14 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     def left(_: FloatArray) -> float:
         return steps[-1] / (AGREEMENT if len(steps) <= SCATTERING_FROM else SCATTER)
 
-    at = np.array([model.start[node] for node in nodes])
     for _ in range(2):
         at = at + change(at)
     while AGREEMENT < steps[-1] <= QUICK * steps[-2]:
         at = at + change(at)
     if not steps[-1] <= AGREEMENT:
         _by_secants(change, at, left, found)
+    while not agrees or (left(at) > 1 and len(steps) < MOST_PASSES):
+        at = at + change(at, whole=True)
     solution, answer = found[-1]
     temperatures = answer.temperatures.values()
     if min(temperatures) < COLDEST or max(temperatures) > HOTTEST:

@@ -54,7 +54,9 @@ from epicyclic.losses.ranges import Flags
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.losses.shaft_bearing import (
     BearingType,
+    Cage,
     CatalogueBearing,
+    limiting_speed,
     minimum_load,
     thermal_excess,
     thermal_speed_rating,
@@ -224,15 +226,6 @@ class PlanetContact:
     sense: int  # +1 if the mesh turns the planet from t to r, else -1.
     hand: int = 1  # +1 if a positive `sense` pushes the planet along y, else -1.
     position: float = 0.0  # Position of the middle of the face, along y. [m]
-
-    def turned_round(self) -> PlanetContact:
-        """The same in axes turned about r by half a turn."""
-        t, r = self.outward
-        # not -0.0, which prints oddly
-        outward = (0.0 - t, r)
-        return PlanetContact(
-            self.duty, self.member, outward, -self.sense, self.hand, 0.0 - self.position
-        )
 
     @property
     def face_sense(self) -> int:
@@ -504,6 +497,8 @@ class PlanetBearing:
     palmgren_beyond: bool = False
     roller_density: float = 7850.0  # [kg/m^3]
     aligns_itself: bool = False  # True if it takes no moment.
+    cage: Cage = "caged"
+    limiting_speed: float | None = None  # None for that of the type. [rad/s]
     viscous_added: bool = False  # True if (V1) is added to rolling losses, as by Talbot.
 
     @property
@@ -556,13 +551,29 @@ class BearingResult(ElementResult):
     loads: Carried = None  # On its rollers or film: what the next pass goes on from.
 
 
-def missing_bearing(key: str, reason: str) -> BearingResult:
-    """The losses of a bearing that is not there."""
+ROLLER_FRICTION = 0.0003, 0.002
+"""f1 of caged rollers, and the largest of catalogues of needle bearings. Theory (B16). [1]"""
+MAY_LOSE = "not given; its rollers may lose"
+"""In the note on what a missing planet bearing may cost."""
+
+
+def missing_bearing(key: str, reason: str, moment: float, speed: float) -> BearingResult:
+    """The losses of a bearing that is not there, with a note on what rollers may lose (B16).
+
+    `moment` is the force on all of them times their pitch radius. [N m]
+    """
+    least, most = (abs(2 * moment * speed * factor) for factor in ROLLER_FRICTION)
+    text = (
+        f"{key.replace('_', ' ')}: {MAY_LOSE} {format_number(least, 2)} to {WATT.text(most, 2)}, "
+        "which the band does not contain. By Palmgren, f1 = 0.0003 to 0.002, on a pitch diameter "
+        "of half that of the planet."
+    )
     return BearingResult(
         {
             f"{key}_mechanical": Loss(LOAD_DEPENDENT, left_out=reason),
             f"{key}_viscous": Loss(LOAD_INDEPENDENT, left_out=reason),
-        }
+        },
+        notes=(Note(text, most),) if most else (),
     )
 
 
@@ -608,8 +619,9 @@ def solve_bearing(
         rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
         watts += rubbed.between + rubbed.skewed
         notes = (_rubbing_note(where, rubbed),)
-    known, carried = rated(bearing, own.aligns_itself), load.force if loaded else math.inf
-    notes += _limit_notes(where, known, carried, speed, watts)
+    known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
+    limit = own.limiting_speed or limiting_speed(known)
+    notes += _limit_notes(where, known, carried, abs(speed), limit, watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
         {
@@ -636,7 +648,9 @@ def _rubbing_note(where: str, rubbed: Rubbing) -> Note:
 
 
 @lru_cache(maxsize=64)
-def rated(bearing: RollerBearing, aligns_itself: bool = False) -> CatalogueBearing:
+def rated(
+    bearing: RollerBearing, aligns_itself: bool = False, cage: Cage = "caged"
+) -> CatalogueBearing:
     """A planet bearing between pin and race of the planet with the ratings of its rollers.
 
     Cylindrical ones count as needles. Theory (J27), (J28).
@@ -654,11 +668,11 @@ def rated(bearing: RollerBearing, aligns_itself: bool = False) -> CatalogueBeari
         elements=bearing.rollers_per_row,
     )
     ratings = rollers.dynamic_load_rating, rollers.static_load_rating
-    return CatalogueBearing(kind, *sizes, "caged", *ratings)
+    return CatalogueBearing(kind, *sizes, "caged" if aligns_itself else cage, *ratings)
 
 
 def _limit_notes(
-    where: str, known: CatalogueBearing, force: float, speed: float, watts: float
+    where: str, known: CatalogueBearing, force: float, speed: float, limit: float, watts: float
 ) -> tuple[Note, ...]:
     notes, share = [], "0.01 C0" if known.type == "spherical" else "0.02 C"
     least = minimum_load(known, 0.0, 0.0)
@@ -669,12 +683,20 @@ def _limit_notes(
             "the loss is that of the actual load without slip."
         )
         notes.append(Note(text, watts))
-    if thermal_excess(known, abs(speed)) > 0:
+    if thermal_excess(known, speed) > 0:
         rating = thermal_speed_rating(known)
         text = (
-            f"{where}: {RPM.text(abs(speed), 4)} against the carrier exceed the thermal reference "
+            f"{where}: {RPM.text(speed, 4)} against the carrier exceed the thermal reference "
             f"speed of {RPM.text(rating, 2)}, an estimate after ISO 15312 by its rollers. Above it "
-            "the bearing needs oil that cools it; check the limiting speed of rollers and cage."
+            "the bearing needs oil that cools it."
+        )
+        notes.append(Note(text, watts))
+    if speed > limit:
+        whose = ", an estimate by SKF's tables" if limit == limiting_speed(known) else ""
+        text = (
+            f"{where}: {RPM.text(speed, 4)} against the carrier exceed the limiting speed of "
+            f"{RPM.text(limit, 2)}{whose}, which cage and rollers stand. Beyond it no loss is "
+            "known; give limiting_speed of the catalogue, or take another bearing."
         )
         notes.append(Note(text, watts))
     return tuple(notes)

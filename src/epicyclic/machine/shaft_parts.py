@@ -379,7 +379,7 @@ class ShaftBearing:
             notes.append(Note(text, watts))
         limit = self.limiting_speed or limiting_speed(self.bearing)
         if abs(speed) > limit:
-            whose = "" if self.limiting_speed else ", an estimate by SKF's tables, second hand"
+            whose = "" if self.limiting_speed else ", an estimate by SKF's tables"
             text = (
                 f"{self.key}: {RPM.text(abs(speed), 4)} exceed the limiting speed of "
                 f"{RPM.text(limit, 2)}{whose}, which cage and rolling elements stand. Beyond it "

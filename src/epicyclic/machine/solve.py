@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple, cast
 
@@ -69,12 +69,13 @@ class Answer:
         Losses only: figures and flags are those of the last answer, to loads no farther off than
         `NEAR`.
         """
-        if self.before is None or not self.alike(loads, self.result):
+        if not self.alike(loads, self.result):
             return None
         losses, off = {}, 0.0
+        before = self.before or self
         steps: dict[tuple[str, ...], _Step] = {}
         for name, loss in self.result.losses.items():
-            older = self.before.result.losses[name].watts
+            older = before.result.losses[name].watts
             if loss.follows not in steps:
                 steps[loss.follows] = self._step(loads, loss)
             step = steps[loss.follows]
@@ -100,11 +101,9 @@ class Answer:
 
     def _step(self, loads: Mapping[str, float], loss: Loss) -> _Step:
         """From the last loads that a loss follows to these, along the line from those before."""
-        assert self.before is not None
         keys = loss.follows or tuple(loads)
-        new, last, old = (
-            [those[key] for key in keys] for those in (loads, self.loads, self.before.loads)
-        )
+        before = (self.before or self).loads
+        new, last, old = ([those[key] for key in keys] for those in (loads, self.loads, before))
         largest = max(map(abs, new), default=0.0)
         ways = [one - two for one, two in zip(last, old, strict=True)]
         length = sum(way**2 for way in ways)
@@ -306,7 +305,7 @@ def solve_machine(
     operation: Operation,
     fluids: Fluids | None,  # None if every loss is given.
     start: Start | None = None,  # As from `start_of`, for solutions that differ in the oil only.
-    earlier: Solution | None = None,  # At another temperature of the oil, which saves work.
+    earlier: Solution | None = None,  # At nearly the same temperatures, to begin with.
 ) -> Solution:
     """Torques and losses that agree. Theory (T5), (T6).
 
@@ -316,8 +315,7 @@ def solve_machine(
         start = start_of(machine, operation)
     speeds, lossless, directions = start.speeds, start.lossless, start.directions
     efficiencies = start.efficiencies
-    results = {} if earlier is None else earlier.results
-    branch = _Branch(machine, operation, start, fluids, {}, results, directions.drives)
+    branch = _Branch(machine, operation, start, fluids, {}, earlier, directions.drives)
     drives = _led(branch)
     tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
@@ -357,8 +355,36 @@ def solve_machine(
         unique=last.balance.unique,
         floating=floating,
         standing=start.standing,
-        state=last.state,
+        state=branch.state,
     )
+
+
+def next_solution(
+    machine: Machine,
+    operation: Operation,
+    fluids: Fluids | None,
+    start: Start,
+    earlier: Solution,  # At other temperatures of the oil.
+) -> tuple[Solution, bool]:
+    """The losses of other oil at the loads of a solution, and the loads that follow from them.
+
+    Also whether these agree. Else they lag one pass behind, which is enough as long as temperatures
+    still change. Raises `ConvergenceError` if losses or torques grow beyond all bounds.
+    """
+    braking = earlier.floating
+    branch = _Branch(machine, operation, start, fluids, {}, earlier, earlier.drives, braking)
+    found = branch.follow(branch.begin())
+    balance = found.balance if isinstance(found, _Pass) else found
+    lagging = replace(
+        earlier,
+        torques=balance.torques,
+        couplings=balance.couplings,
+        meshes=balance.meshes,
+        rolling=balance.powers,
+        results=branch.results,
+        state=branch.state,
+    )
+    return lagging, isinstance(found, _Pass)
 
 
 class _Known(NamedTuple):
@@ -404,7 +430,6 @@ class _Pass:
     balance: Balance
     drives: Mapping[str, bool]
     efficiencies: Mapping[str, float]
-    state: State
 
 
 @dataclass
@@ -416,10 +441,11 @@ class _Branch:
     start: Start
     fluids: Fluids | None
     known: Mapping[str, _Known]  # What the elements have answered so far, by their keys.
-    earlier: Mapping[str, ElementResult]  # As `State.earlier`.
+    earlier: Solution | None  # Whose loads and results it begins with.
     drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
     braking: Collection[str] = ()  # Meshes whose losses are friction, whichever gear drives.
     passes: int = 0  # So far.
+    state: State = field(init=False, repr=False)  # That the elements saw in the last of them.
 
     @cached_property
     def unlost(self) -> Balance:
@@ -436,8 +462,9 @@ class _Branch:
 
     def begin(self) -> Balance:
         """Torques with the losses that are known so far."""
-        found = self.unlost
-        return self._with_losses(found)[0] if self.known else found
+        if self.known:
+            return self._with_losses(self.unlost)[0]
+        return self.unlost if self.earlier is None else self.under(self.unlost, self.earlier.meshes)
 
     def under(self, found: Balance, meshes: Mapping[str, float]) -> Balance:
         """`found` with other loads of the meshes."""
@@ -454,14 +481,14 @@ class _Branch:
         Raises `ConvergenceError` if losses or torques grow beyond all bounds.
         """
         self.passes += 1
-        state = State(
+        self.state = state = State(
             self.start.speeds,
             found.meshes,
             forces_of(self.machine.layouts, found.meshes),
             cast(Fluids, self.fluids),
-            lossless=not self.known,
+            lossless=not self.known and self.earlier is None,
             drives=self.drives,
-            earlier=self.earlier,
+            earlier={} if self.earlier is None else self.earlier.results,
         )
         # an error of the losses changes the loads about as much as the losses do of which it is
         # that share: it may change them by less than they have to agree
@@ -477,7 +504,7 @@ class _Branch:
             raise self.disagreement()
         new, efficiencies = self._with_losses(found)
         if _agrees(found.meshes, new.meshes):
-            return _Pass(new, self.drives, efficiencies, state)
+            return _Pass(new, self.drives, efficiencies)
         if not max(map(abs, new.meshes.values()), default=0.0) < MOST_TORQUE:
             raise self.disagreement()
         return new

@@ -15,6 +15,7 @@ from rich.text import Text
 from epicyclic.build.result import NOT_INCLUDED, UNCOVERED
 from epicyclic.losses.ranges import concern_text, range_text, weight_of
 from epicyclic.machine.element import note_watts
+from epicyclic.machine.planets import MAY_LOSE
 from epicyclic.messages import sentence
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import Drawings, KeyFigure, Listing, Row, Section, Table, gallery
@@ -102,6 +103,7 @@ def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
     for (reason, terms), owners in _left_out(result).items():
         of = f" of {', '.join(owners)}" if any(owners) else ""
         yield f"{NOT_INCLUDED}: {', '.join(terms)}{of} ({reason})."
+    yield from (text for _, text in _notes(result) if MAY_LOSE in text)
     outside = _outside(result)
     if outside >= _BROAD:
         yield (
@@ -158,7 +160,7 @@ def _notes(result: Result) -> Iterator[tuple[float, str]]:
 
 def first_warnings(result: Result) -> Listing:
     """The warnings that concern most of the loss, in short; nothing if none matters."""
-    found = list(_notes(result))
+    found = [it for it in _notes(result) if MAY_LOSE not in it[1]]
     for watts, group in result.flags_with_loss:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
         size = "" if math.isnan(watts) else f"; {concern_text(watts, group)} of the loss"

@@ -17,7 +17,7 @@ from pydantic_core import CoreSchema, PydanticCustomError
 from epicyclic import library
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_BAND, RZ_OVER_RA, rq_of
 from epicyclic.gears.measures import named_fit
-from epicyclic.messages import did_you_mean, value_at
+from epicyclic.messages import did_you_mean, titled, value_at
 from epicyclic.oil.grades import ShortOil, whole_oil
 from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil
 from epicyclic.schema.fields import Named
@@ -26,13 +26,12 @@ from epicyclic.schema.table import Table, option
 from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity
 
 
-def _no_preset(noun: str, name: str, known: Iterable[str], allowed: str) -> PydanticCustomError:
-    nearest = did_you_mean(name, known)
-    return PydanticCustomError(
-        "preset",
-        "no such {noun}; it must be {allowed}",
-        {"noun": noun, "allowed": allowed, "remedy": nearest or "Check the name"},
-    )
+def _no_preset(
+    noun: str, name: str, known: Iterable[str], allowed: str, other: str = ""
+) -> PydanticCustomError:
+    remedy = other or did_you_mean(name, known) or "Check the name"
+    values = {"noun": noun, "allowed": allowed, "remedy": remedy}
+    return PydanticCustomError("preset", "no such {noun}; it must be {allowed}", values)
 
 
 _PARAMETER = re.compile(r"\s*(R[aqz])\b\s*(.*)")
@@ -146,7 +145,8 @@ def _named_material(value: object) -> object:
     if not isinstance(value, str):
         return value
     if value not in _MATERIALS.names():
-        raise _no_preset("material", value, _MATERIALS.names(), _MATERIALS.allowed())
+        known = {name: table["title"] for name, table in library.named("materials").items()}
+        raise _no_preset("material", value, known, _MATERIALS.allowed(), titled(value, known))
     return _builtin(Material, value)
 
 
@@ -164,7 +164,9 @@ def _named_oil(value: object) -> object:
     if not isinstance(value, str):
         return value
     if value not in _OILS.names():
-        raise _no_preset("oil", value, _OILS.names(), _OILS.allowed())
+        base = 'Name its base oil, and write lubrication.method = "grease"'
+        base = base if "grease" in value.casefold() else ""
+        raise _no_preset("oil", value, _OILS.names(), _OILS.allowed(), base)
     return _builtin(Oil, value)
 
 

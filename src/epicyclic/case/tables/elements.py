@@ -52,6 +52,9 @@ def _filled(kind: str, raw: dict[str, Any]) -> dict[str, Any]:
 ShaftDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "shaft"))]
 PlanetDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "planet"))]
 ThrustDesignation = Annotated[str, Field(max_length=40), AfterValidator(partial(_known, "thrust"))]
+ReferenceSpeed = Annotated[
+    float, Quantity("a speed rating", "rad/s", "rpm", low=0.0, high=1e6, open_low=True)
+]
 
 
 class PlanetBearing(Table):
@@ -104,6 +107,7 @@ class PlanetBearing(Table):
         "Length of the crowned part at each end.", 0.2, ge=0, le=0.5
     )
     row_gap: ShortLength = option("Axial gap between the rollers of neighbouring rows.", "0 mm")
+    limiting_speed: ReferenceSpeed | None = option("Of the catalogue. Default: that of its type.")
     material: NamedMaterial = option("Material of rollers and races.", "steel")
 
     _fill = model_validator(mode="before")(
@@ -167,9 +171,6 @@ ContactAngle = Annotated[
 ]
 SpeedDifference = Annotated[
     float, Quantity("a speed difference", "rad/s", "rpm", low=0.0, high=1e6)
-]
-ReferenceSpeed = Annotated[
-    float, Quantity("a speed rating", "rad/s", "rpm", low=0.0, high=1e6, open_low=True)
 ]
 DragTorque = Annotated[float, Quantity("a drag torque", "N*m", "N*m", low=0.0, high=1e9)]
 LostPower = Annotated[float, Quantity("a power loss", "W", "W", low=0.0, high=1e9)]
@@ -407,7 +408,7 @@ class ShaftBearingTable(ElementTable):
         "Of the catalogue; for the minimum load of cylindrical rollers, and a note above it."
     )
     limiting_speed: ReferenceSpeed | None = option(
-        "Of the catalogue; a note above it. Default: that of small bearings of the type."
+        "Of the catalogue; a note above it. Default: that of its type."
     )
     table: LossTableTable | None = option("Loss table for model = table.")
 

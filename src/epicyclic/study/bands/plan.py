@@ -22,7 +22,7 @@ from epicyclic.result.result import Result
 from epicyclic.schema.read import plain
 from epicyclic.study.bands.inputs import model_form_of, uncertain_values
 from epicyclic.study.bands.samples import Samples, groups_of, make_samples
-from epicyclic.study.solve import flows_around, solve, without_torque
+from epicyclic.study.solve import flows_around, losses_and_power, without_torque
 from epicyclic.study.sweeps.run import AS_TESTED, CasePlan
 from epicyclic.study.sweeps.runner import Row, Rows, Runner
 
@@ -117,15 +117,13 @@ def shaft_power(case: Case) -> float:
     return case.operation.torque * case.operation.speed
 
 
-def loss_numbers(
-    case: Case, outputs: Outputs, flow_tables: FlowTables | None = None
-) -> dict[str, float]:
+def loss_numbers(case: Case, outputs: Outputs, flow_tables: FlowTables) -> dict[str, float]:
     """`Outputs.numbers` of a case, its input power, and that of the stated shaft. [W]"""
     plain = case.updated({"models.load_dependent": "computed"}) if outputs.tested else case
-    result = solve(plain, flow_tables=flow_tables)
-    found = {**result.losses, INPUT_POWER: result.input_power, SHAFT_POWER: shaft_power(case)}
+    losses, power = losses_and_power(plain, flow_tables)
+    found = {**losses, INPUT_POWER: power, SHAFT_POWER: shaft_power(case)}
     if outputs.tested:
-        unloaded = solve(without_torque(plain), flow_tables=flow_tables).losses
+        unloaded, _ = losses_and_power(without_torque(plain), flow_tables)
         found |= {f"{UNLOADED}{name}": watts for name, watts in unloaded.items()}
     return found
 

@@ -66,6 +66,11 @@ _LIKE_SPEED = (
 """Keys that change the number of a flow, but not its family."""
 _FEWEST = 8  # Values of these keys for which a table is made: few flows are solved as soon.
 _TORQUE = AXES["torque"]  # Only its sign matters to the pockets.
+_NOT_OF_POCKETS = re.compile(
+    r"(.*\.)?((planet_bearing|load_sharing|bearings)\..*|\w*roughness"
+    r"|(hurst_exponent|running_in_factor|boundary_friction|pressure_viscosity_factor))"
+)
+"""Keys that change neither a family nor a number: bands vary mostly these."""
 
 
 def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = None) -> FlowTables:
@@ -100,16 +105,17 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
 
 
 def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
-    """What the points change; those that cannot be made report it themselves."""
+    """What the points change of the pockets; those that cannot be made report it themselves."""
     for index in indices:
         with suppress(InputError):
-            yield plan.changes(index)
+            changes = plan.changes(index).items()
+            yield {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
 
 
 def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
     """Equal for points that differ in the magnitude of torque only."""
     coasting = str(changes.get(_TORQUE, "")).lstrip().startswith("-")
-    return (coasting, *(str(value) for key, value in changes.items() if key != _TORQUE))
+    return (coasting, *(f"{key}={value}" for key, value in changes.items() if key != _TORQUE))
 
 
 # What a sweep varies: keys, their values, and the cases of the full product.
