@@ -665,9 +665,7 @@ class TrainCase(_TrainHead):
         return cls._made(cast(Self, train), tables, source, found)
 
 
-_OWN_TABLE = re.compile(
-    r"\[(?=(carrier|planet_(bearings?|pin)|thrust_bearing|gears|((sun|ring)_)?mesh|sun|planet|ring|pinion|gear)[].])"
-)
+_OWN_TABLE = re.compile(r"\[(?=(carrier|gear|mesh|pinion|planet|ring|sun|thrust)\w*[].])")
 """Where a text names a table that only a set has."""
 
 

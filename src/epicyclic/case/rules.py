@@ -157,9 +157,8 @@ def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Proble
         f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
     }
     others = [body for body in gearing.planets if body not in own]
-    for key in ("planet_bearing", "planet_pin"):
-        if (bearing := getattr(table, key)) is not None:
-            found[key] = bearing, others
+    pairs = ((key, getattr(table, key)) for key in ("planet_bearing", "planet_pin"))
+    found |= {key: (bearing, others) for key, bearing in pairs if bearing is not None}
     yield from check_bores(gearing, found)
 
 
