@@ -157,25 +157,25 @@ def refuse(allowed: str, remedy: str) -> NoReturn:
 # leaves behind is removed by the next one that writes to the same folder.
 
 PREFIX = ".epicyclic-"  # Begins the names of the private folders.
-OPTION, FILE, REMEDY = "-o", "FILE", "Name another file."
+FILE, REMEDY = "FILE", "Name another file."
 
 
 def check_place(path: Path) -> None:
     """Raise `InputError` unless a file can be written to `path`."""
-    with _plain_errors(path, OPTION):
+    with _plain_errors(path, FILE):
         folder = path.absolute().parent
         with suppress(FileNotFoundError):
             path.lstat()  # raises for a name that is too long
         if not folder.is_dir():
-            raise _error(path, OPTION, "lies in a folder that does not exist.", "Create it first.")
+            raise _error(path, FILE, "lies in a folder that does not exist.", "Create it first.")
         if path.exists() and not path.is_file():
-            raise _error(path, OPTION, "is a folder or no regular file.", REMEDY)
+            raise _error(path, FILE, "is a folder or no regular file.", REMEDY)
         if not os.access(folder, os.W_OK):
             allowed = "lies in a folder without write permission."
-            raise _error(path, OPTION, allowed, "Move it.")
+            raise _error(path, FILE, allowed, "Move it.")
 
 
-def make_folder(path: Path, option: str = OPTION) -> None:
+def make_folder(path: Path, option: str = FILE) -> None:
     """Make a folder, unless there is one; raises `InputError` if it cannot be made."""
     try:
         _check_name(path)
@@ -185,7 +185,7 @@ def make_folder(path: Path, option: str = OPTION) -> None:
         raise _error(path, option, allowed, "Name another folder.") from None
 
 
-def check_folder(path: Path, option: str = OPTION) -> None:
+def check_folder(path: Path, option: str = FILE) -> None:
     """Raise `InputError` unless there is a folder to write to or it can be made; it is not kept."""
     new = [it for it in (path, *path.parents) if not os.path.lexists(it)]
     make_folder(path, option)
@@ -197,7 +197,7 @@ def check_folder(path: Path, option: str = OPTION) -> None:
 
 
 @contextmanager
-def whole_file(path: Path, option: str = OPTION) -> Iterator[Path]:
+def whole_file(path: Path, option: str = FILE) -> Iterator[Path]:
     """A file to be written in a private folder; it replaces `path` if nothing goes wrong.
 
     A file that is replaced keeps its permissions, a new one gets those that the umask of the user
@@ -232,7 +232,7 @@ def write_file(path: Path, content: str | bytes) -> None:
         if path.exists() and not path.is_file():
             path.write_bytes(data)  # must not be replaced by a file
             return
-    with whole_file(path, FILE) as temporary:
+    with whole_file(path) as temporary:
         temporary.write_bytes(data)
 
 

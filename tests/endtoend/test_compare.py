@@ -57,6 +57,16 @@ def test_tables_are_printed(call, measured):
     assert "Not included: thrust_bearing_viscous" in done.stdout
 
 
+def test_negative_losses_are_told_with_their_lines(call, tmp_path):
+    """Scatter about zero is sound, a wrong sign is not: the user knows which it is."""
+    path = tmp_path / "measured.csv"
+    path.write_text("speed [rpm],torque [N*m],loss [W]\n2000,300,989\n1700,130,-4.5\n900,0,-1\n")
+    done = call("train-8hp70", str(path))
+    assert done.returncode == 0, done.stderr
+    told = " ".join(done.stdout.split())
+    assert "measured losses are negative: -4.5 W in line 3, -1 W in line 4." in told
+
+
 @pytest.mark.slow
 def test_a_calibration_is_called_so_everywhere(call, measured, tmp_path):
     case, picture, data = (tmp_path / name for name in ("fitted.toml", "fit.svg", "fit.json"))

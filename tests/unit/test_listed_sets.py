@@ -176,6 +176,32 @@ def test_gears_of_a_planet_stand_side_by_side_unless_stated():
     assert shape.positions["narrow"] == pytest.approx(20e-3)
 
 
+def test_what_the_order_of_the_meshes_decides_is_told():
+    """Which of two planets is ahead, and how gears stand on one body, if they have a bearing."""
+
+    def told(kind, **changes):
+        return [str(it) for it in ep.load_case(changed(kind, **changes)).found]
+
+    notes = told("ravigneaux", planet_bearing=BEARING)
+    key = 'sets.S.meshes[1] = ["short", "long_front"]'
+    assert f"{key}: long is assumed ahead of short in the sense of positive speeds." in notes
+    key, how = "sets.S.gears.wide.axial_position", "side by side in the order of the meshes."
+    assert f"{key} = -13 mm: assumed, {how}" in told("stepped")
+    stated = told("stepped", gears__wide__axial_position="-14 mm")
+    assert [note for note in stated if how in note] == [
+        f"sets.S.gears.narrow.axial_position = 9.5 mm: assumed, {how}"
+    ]
+    assert not any("assumed" in note for note in told("stepped", planet_bearings=None))
+
+
+def test_two_bearings_of_a_planet_are_told_once_with_their_tables():
+    pin = {"pin_diameter": "9 mm", "length": "31 mm", "diametral_clearance": "30 um"}
+    pin |= {"pin_roughness": "0.4 um", "bore_roughness": "0.8 um"}
+    problem = only(found("stepped", planet_bearing=BEARING, planet_pin=pin))
+    assert problem.key == "sets.S.planet_pin"
+    assert "together with [sets.S.planet_bearing];" in problem.allowed
+
+
 def test_pins_of_planets_that_mesh_stand_at_their_centre_distance():
     shape = gearing_of("ravigneaux")
     pins = shape.pins
@@ -373,7 +399,7 @@ def test_rack_stated_twice():
 def test_keys_of_a_gear_are_told_where_the_user_wrote_them():
     problem = only(found("wolfrom", gears__wide__roughness=None))
     assert problem.key == "sets.S.gears.wide.roughness"
-    assert "gears.wide" in problem.remedy
+    assert problem.remedy.endswith("to [sets.S.gears.wide].")
     left = {"gears__narrow__profile_shift_coefficient": None}
     left["gears__output_ring__profile_shift_coefficient"] = None
     problem = only(found("wolfrom", **left))
@@ -417,7 +443,7 @@ def test_centre_distance_that_nothing_states():
     problem = only(found("wolfrom", gears__center_distance=None, **left))
     assert problem.key == "sets.S.mesh.sun-wide.center_distance"
     assert "sun and wide or wide and fixed_ring or narrow and output_ring" in problem.allowed
-    assert problem.remedy.startswith('Add center_distance = "... mm" to [mesh.sun-wide]')
+    assert problem.remedy.startswith('Add center_distance = "... mm" to [sets.S.mesh.sun-wide]')
 
 
 def test_centre_distances_that_put_one_pin_at_two_places():

@@ -107,6 +107,16 @@ def standard(case, **changes):
     return told, *(ep.solve(it).load_dependent for it in both)
 
 
+def test_no_model_of_friction_is_advised_where_nothing_slides(case):
+    """As in a train whose set turns as a whole."""
+
+    def told(one):
+        return [it for it in model_remarks(one, ep.solve(one)) if it.startswith("Friction")]
+
+    assert told(case)
+    assert not told(case.updated({"losses.mesh_sliding.include": False}))
+
+
 def test_the_standard_stands_beside_the_result_with_a_reason_where_they_part(case):
     bare = {"losses.planet_bearing_mechanical.include": False, "models.running_in": "run-in"}
     (near,), own, by_it = standard(ep.load_case("talbot-2012").updated(QUICK), **bare)

@@ -24,6 +24,7 @@ from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances,
 from epicyclic.plugins.design.commands import design as command
 from epicyclic.plugins.design.front import front_of, stored
 from epicyclic.plugins.design.relief import Relief, relief_front
+from epicyclic.plugins.design.report import fates_table
 from epicyclic.plugins.design.rotor import rotor_dynamics, rotor_text
 from epicyclic.plugins.design.search import case_text, design, dominated, screen, search
 from epicyclic.plugins.design.task import read_task
@@ -196,6 +197,18 @@ def test_a_folder_is_made_only_for_designs_that_were_found(tmp_path):
         with pytest.raises(InputError) as caught:
             command.main([str(path), option, str(path / "x")], standalone_mode=False)
         assert [it.key for it in caught.value.problems] == [option]
+
+
+@pytest.mark.parametrize(
+    ("shares", "factor"), [((0.3, 0.5), "1.25"), ((0.3, 0.7), None), ((None, None), None)]
+)
+def test_shares_of_the_cycle_that_are_not_the_whole_are_told(shares, factor):
+    """Points without a share count alike, which needs no word."""
+    raw = task_of("pair")
+    raw["cycle"] = [raw["operation"] | ({} if it is None else {"share": it}) for it in shares]
+    note = fates_table(screen(read_task(raw))).note
+    assert ("multiplied by" in note) == (factor is not None)
+    assert factor is None or f"sum to 0.8, not to 1: multiplied by {factor}." in note
 
 
 def test_of_many_combinations_the_stated_number_is_drawn(monkeypatch):

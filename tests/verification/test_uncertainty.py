@@ -14,7 +14,9 @@ from asymmetric import gear_pair
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import InputError
 from epicyclic.losses.pocket_tables import FlowFamily
+from epicyclic.show.page import Listing
 from epicyclic.show.plots.catalogue import available
+from epicyclic.show.uncertainty_tables import uncertainty_items
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.plan import at_deviations, look_nearby
 from epicyclic.study.bands.samples import (
@@ -58,6 +60,15 @@ def case():
 @pytest.fixture(scope="module")
 def study(case):
     return ep.uncertainty(case, samples=16, jobs=1)
+
+
+def test_a_loss_that_nothing_changes_has_no_table_of_causes(study):
+    """As that of a train whose losses are all given."""
+    title = "Causes of the uncertainty of the total loss"
+    idle = study.assign(contribution=study["contribution"] * 0.0)
+    shown = {it.title: it for it in uncertainty_items(idle)}
+    assert shown[title] == Listing((), title)
+    assert {it.title: it for it in uncertainty_items(study)}[title].rows
 
 
 def test_indices_of_the_function_of_ishigami():

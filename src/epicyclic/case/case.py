@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import re
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -77,7 +78,7 @@ from epicyclic.case.train_tables import (
 from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.assembly import place_problems, rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
-from epicyclic.gears.sizing import Found, complete, problems_of_some
+from epicyclic.gears.sizing import Found, complete, places_told, problems_of_some
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
 from epicyclic.messages import (
     PART_NAME,
@@ -664,10 +665,15 @@ class TrainCase(_TrainHead):
         return cls._made(cast(Self, train), tables, source, found)
 
 
+_OWN_TABLE = re.compile(r"\[(?=(carrier|gear|mesh|pinion|planet|ring|sun|thrust)\w*[].])")
+"""Where a text names a table that only a set has."""
+
+
 def _below(prefix: str, problem: Problem) -> Problem:
     """A problem of a set or part as one of the train."""
     keys = ", ".join(f"{prefix}.{key}" if key else prefix for key in problem.key.split(", "))
-    return replace(problem, key=keys)
+    told = (_OWN_TABLE.sub(f"[{prefix}.", it) for it in (problem.allowed, problem.remedy))
+    return Problem(keys, problem.value, *told)
 
 
 def _joined_members(tables: Mapping[str, Any]) -> dict[str, set[str]]:
@@ -799,6 +805,8 @@ def _complete(
     problems += [*listed_problems(table, whole), *set_problems(whole)]
     if not any(rack_problems(whole)):
         problems += check_listed_bearings(table, whole)
+    if not problems and (table.planet_bearing or table.planet_bearings or table.planet_pin):
+        told = (*told, *places_told(whole))
     return (table, whole), told, list(dict.fromkeys(problems))
 
 

@@ -156,16 +156,9 @@ def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Proble
     found: dict[str, tuple[PlanetBearing | PlanetPin, Sequence[str]]] = {
         f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
     }
-    if table.planet_bearing is not None:
-        others = [body for body in gearing.planets if body not in own]
-        found["planet_bearing"] = table.planet_bearing, others
-    if table.planet_pin is not None:
-        found["planet_pin"] = (
-            table.planet_pin,
-            [body for body in gearing.planets if body not in own],
-        )
-        if table.planet_bearing is not None:
-            yield from _both_bearings(table.planet_bearing, table.planet_pin)
+    others = [body for body in gearing.planets if body not in own]
+    pairs = ((key, getattr(table, key)) for key in ("planet_bearing", "planet_pin"))
+    found |= {key: (bearing, others) for key, bearing in pairs if bearing is not None}
     yield from check_bores(gearing, found)
 
 

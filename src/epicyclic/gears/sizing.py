@@ -25,7 +25,7 @@ from epicyclic.gears.mesh import (
 )
 from epicyclic.gears.rules import gears_by_name
 from epicyclic.gears.stated import THICKNESS, allowance_shift, thickness_key
-from epicyclic.messages import micrometres, millimetres, value_at
+from epicyclic.messages import micrometres, millimetres, value_at, written
 from epicyclic.units import MILLIMETRE
 
 BASIC_RACKS = {
@@ -400,3 +400,19 @@ def _no_distance(meshes: Sequence[_Sized]) -> InputError:
     allowed += f"gears, {pairs}."
     remedy = f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.'
     return one_problem(place, "", allowed, remedy)
+
+
+def places_told(gearing: Gearing) -> Iterator[Found]:
+    """Where planets and their gears stand, as far as only the order of the meshes says it."""
+    for number, mesh in enumerate(gearing.meshes):
+        one, two = (gearing.bodies[gear] for gear in mesh.pair)
+        if one in gearing.pins and two in gearing.pins:
+            how = f"{two} is assumed ahead of {one} in the sense of positive speeds."
+            yield Found(f"meshes[{number}]", written(list(mesh.pair)), how)
+    for body in gearing.planets:
+        gears = gearing.gears_of(body)
+        for gear in gears if len(gears) > 1 else ():
+            if getattr(gearing.tables[gear], "axial_position", None) is None:
+                place = millimetres(gearing.positions[gear])
+                how = "assumed, side by side in the order of the meshes."
+                yield Found(f"gears.{gear}.axial_position", place, how)

@@ -292,9 +292,7 @@ def _checked(text: str) -> DesignatedBearing:
 def _checked_planet(text: str) -> None:
     kind = _checked(text).type
     if kind not in PLANET_BEARINGS:
-        reason = (
-            f"is a {kind} bearing; planets have needle, cylindrical or spherical rollers, or a "
-        )
+        reason = f"is a {kind} bearing; planets have needle, cylindrical or spherical rollers, or "
         remedy = 'Choose one such as "NU 2210", "22220", "NKI 40/30" or "K 40x48x20"'
         raise KeyError(f"{reason}a [planet_pin]", remedy)
 

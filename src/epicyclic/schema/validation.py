@@ -104,7 +104,7 @@ def _missing(place: Place, shown_by: str) -> Problem:
     owner = dotted(place.path[:-1])
     if isinstance(name, int):
         return Problem(key, "", f"is missing; it must be {allowed}.", f"Add it to {owner}.")
-    where = f" to [{owner}]" if owner.isidentifier() else f" to {owner}"
+    where = f" to {owner}" if "[" in owner else f" to [{owner}]"
     remedy = f"Add {name} = {_example(place)}{where if owner else ''}."
     return Problem(key, "", f"is missing; it must be {allowed}.", remedy)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -200,7 +200,7 @@ def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
     return cell
 
 
-def _drivers(data: xr.Dataset) -> Table:
+def _drivers(data: xr.Dataset) -> Table | Listing:
     """Shares of the variance of the total loss: where the loss is, and where they are largest."""
     shares, mean, names = data["first_order"], _mean_shares(data), _names(data)
     rows = []
@@ -225,7 +225,12 @@ def _drivers(data: xr.Dataset) -> Table:
         "point."
     )
     head = ("", "mean share", "largest", "at")
-    return Table(head, tuple(rows), "Causes of the uncertainty of the total loss", note=note)
+    return _causes(head, rows, note)
+
+
+def _causes(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]], note: str) -> Table | Listing:
+    title = "Causes of the uncertainty of the total loss"
+    return Table(head, tuple(rows), title, note=note) if rows else Listing((), title)
 
 
 def _value(value: xr.DataArray) -> str:
@@ -334,7 +339,7 @@ def _shown(value: float, unit: str, total: float = math.inf) -> Cell:
     return number(value, "", text=f"{100 * value:z.3f}" if unit == "1" else shown(value, 5))
 
 
-def _budget(data: xr.Dataset) -> Table:
+def _budget(data: xr.Dataset) -> Table | Listing:
     """What makes the variance of the total loss, the largest share first."""
     total = data.sel(result="total", sum="total")
     orders = [name for name in ("first_order", "total_order") if name in data]
@@ -366,7 +371,7 @@ def _budget(data: xr.Dataset) -> Table:
     if len(orders) == 1:
         note = note.replace("alone and with all interactions; ", "each alone; ")
     head = heads[: len(heads) + len(orders) - 2]
-    return Table(head, tuple(rows), "Causes of the uncertainty of the total loss", note=note)
+    return _causes(head, rows, note)
 
 
 def _input_value(own: xr.Dataset) -> Cell:

@@ -12,7 +12,6 @@ import numpy as np
 
 from epicyclic import library
 from epicyclic.arrays import FloatArray
-from epicyclic.build.machine import layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.errors import ConvergenceError
@@ -200,7 +199,8 @@ def _warnings(result: Result) -> Iterator[str]:
 
 def _friction(case: Case, result: Result, brief: bool) -> Iterator[str]:
     quick = case.models.temperatures == "inlet"
-    if not layout_of(case).meshes or not case.operation.torque or (brief and not quick):
+    slides = any(term.watts for term in result.terms if term.name.endswith("sliding"))
+    if not slides or not case.operation.torque or (brief and not quick):
         return
     try:
         rows = compare_friction(case, brief=True)

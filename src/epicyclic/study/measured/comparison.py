@@ -16,6 +16,7 @@ from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.result import NOT_INCLUDED
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
+from epicyclic.errors import first_of
 from epicyclic.losses.ranges import OUT_OF_RANGE
 from epicyclic.result.result import versions
 from epicyclic.study.bands.inputs import model_form_of
@@ -347,8 +348,16 @@ def notes_on(table: Measurements, computed: Computed) -> Iterator[str]:
             f"{len(flagged)} of {len(table)} points use a model outside its range, the first in "
             f"line {flagged[0]}; 'epicyclic run' at its conditions names the model."
         )
-    if (table.loss < 0).any():
-        yield "some measured losses are negative."
+    negative = [
+        f"{loss:.6g} W in line {line}"
+        for line, loss in zip(table.lines, table.loss, strict=True)
+        if loss < 0
+    ]
+    if negative:
+        yield (
+            f"measured losses are negative: {first_of(negative)}. Unless they scatter about zero, "
+            "correct their sign or the zeros of the torques."
+        )
 
 
 def _fit_dict(fit: Fit) -> dict[str, Any]:
