@@ -164,9 +164,9 @@ def _named_oil(value: object) -> object:
     if not isinstance(value, str):
         return value
     if value not in _OILS.names():
-        base = 'Name its base oil, and write lubrication.method = "grease"'
-        base = base if "grease" in value.casefold() else ""
-        raise _no_preset("oil", value, _OILS.names(), _OILS.allowed(), base)
+        grease = 'Name its base oil, and write lubrication.method = "grease"'
+        other = grease if "grease" in value.casefold() else ""
+        raise _no_preset("oil", value, _OILS.names(), _OILS.allowed(), other)
     return _builtin(Oil, value)
 
 

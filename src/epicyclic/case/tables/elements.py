@@ -49,8 +49,7 @@ def _filled(kind: str, raw: dict[str, Any]) -> dict[str, Any]:
     return designations.KEYS[kind](raw) | raw
 
 
-# 6208 without quotes, as on a command line, is text too
-_FromDigits = BeforeValidator(lambda given: str(given) if type(given) is int else given)
+_FromDigits = BeforeValidator(lambda it: str(it) if type(it) is int else it)  # 6208 without quotes
 _Designation = Annotated[str, Field(max_length=40), _FromDigits]
 ShaftDesignation = Annotated[_Designation, AfterValidator(partial(_known, "shaft"))]
 PlanetDesignation = Annotated[_Designation, AfterValidator(partial(_known, "planet"))]
@@ -410,9 +409,7 @@ class ShaftBearingTable(ElementTable):
     reference_speed: ReferenceSpeed | None = option(
         "Of the catalogue; for the minimum load of cylindrical rollers, and a note above it."
     )
-    limiting_speed: ReferenceSpeed | None = option(
-        "Of the catalogue; a note above it. Default: that of its type."
-    )
+    limiting_speed: ReferenceSpeed | None = option("Of the catalogue. Default: that of its type.")
     table: LossTableTable | None = option("Loss table for model = table.")
 
     _fill = model_validator(mode="before")(
