@@ -598,7 +598,8 @@ class TrainCase(_TrainHead):
             and whole.case is not None
             and not problems
             and before._only_operated(tables)
-            and _joined_members(tables) == _joined_members(before._tables)
+            and _joined_members(named, tables["operation"])
+            == _joined_members(named, before._tables["operation"])
         ):
             own = {key: getattr(before, key) for key in cls.model_fields}
             own |= {key: getattr(whole.case, key) for key in _OPERATED}
@@ -626,7 +627,7 @@ class TrainCase(_TrainHead):
         shapes: dict[str, Gearing] = {}
         sizes: list[Found] = []
         complete = True
-        joined = _joined_members(tables)
+        joined = _joined_members(named, [tables.get(k) for k in ("shafts", "states", "operation")])
         for name in named:
             read = _read_set(raw_sets[name], shared, folder)
             found += [_below(f"sets.{name}", problem) for problem in read.problems]
@@ -676,12 +677,11 @@ def _below(prefix: str, problem: Problem) -> Problem:
     return Problem(keys, problem.value, *told)
 
 
-def _joined_members(tables: Mapping[str, Any]) -> dict[str, set[str]]:
-    """Members of each set that shafts, states, operation and drags name."""
+def _joined_members(sets: Sequence[str], places: Any) -> dict[str, set[str]]:
+    """Members of each set that shafts, states and operation name."""
     found: dict[str, set[str]] = {}
-    for text in _texts([tables.get(key) for key in ("shafts", "states", "operation")]):
-        name, dot, member = text.partition(".")
-        if dot:
+    for name, _, member in (text.partition(".") for text in _texts(places)):
+        if member and name in sets:  # or it is a number
             found.setdefault(name, set()).add(member)
     return found
 

@@ -559,10 +559,11 @@ def _recognised(text: str, unit: str = "") -> tuple[str, str, bool] | None:
             measure = own or unit
             if quantity is RPM and _folded(measure) in _TURNS:
                 measure = "rpm"
-            fits, called = _measures(quantity, measure), _folded(name) == _folded(known)
+            called, alike = _folded(name) == _folded(known), _folded(name) in others
+            fits = (called or alike) and _measures(quantity, measure)  # else pint is loaded in vain
             if called and (fits or not divided):
                 return known, measure, True
-            if _folded(name) in others and (fits if measure else _folded(name) not in _SYMBOLS):
+            if alike and (fits if measure else _folded(name) not in _SYMBOLS):
                 return known, measure, False
     return None
 

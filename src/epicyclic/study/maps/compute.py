@@ -582,13 +582,14 @@ def _kept_variables(layout: Layout) -> list[str]:
 def _at_rest(data: xr.Dataset) -> xr.Dataset:
     """The map with powers and speeds of slow motion replaced by zero."""
     creeps = data["speed"] == _CREEP
-    for name, array in data.data_vars.items():
-        if array.attrs.get("units") in (WATT.display, RPM.display):
-            data[name] = array.where(~creeps | array.isnull(), 0.0).transpose(*array.dims)
-            data[name].attrs = array.attrs
-    rest = data["speed"].where(~creeps, 0.0)
-    rest.attrs = data["speed"].attrs
-    return data.assign_coords(speed=rest)
+    if not creeps.any():
+        return data
+    still = {
+        name: array.where(~creeps | array.isnull(), 0.0).transpose(*array.dims)
+        for name, array in data.data_vars.items()
+        if array.attrs.get("units") in (WATT.display, RPM.display)
+    }
+    return data.assign(still).assign_coords(speed=data["speed"].where(~creeps, 0.0))
 
 
 def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:

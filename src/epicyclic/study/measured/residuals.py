@@ -26,6 +26,7 @@ from epicyclic.study.sweeps.run import (
     LoadDependent,
     PointList,
     as_tested,
+    flows_asked,
     with_unloaded,
 )
 from epicyclic.study.sweeps.runner import HERE, Rows, Runner
@@ -94,9 +95,9 @@ class NearbyPoints(PointList):
         return replace(self, flow_tables=tables, lattice=FlowLattice())
 
     def _cases(self, indices: Sequence[int]) -> Iterable[Case]:
-        for index in indices:
+        for changes in flows_asked(self, indices).values():
             try:
-                yield self.case.updated(self.changes(index))
+                yield self.case.updated(changes)
             except InputError:
                 continue  # the point reports it
 

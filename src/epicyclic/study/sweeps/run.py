@@ -80,11 +80,11 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
     are done, and where.
     """
     bound = plan.case.numerics.pocket_interpolation
-    samples = {_flow(changes): changes for changes in _changes(plan, range(plan.size))}
+    samples = flows_asked(plan, range(plan.size))
     alike = {tuple(changes.get(key) for key in _LIKE_SPEED) for changes in samples.values()}
     if bound == 0 or len(alike) < _FEWEST:
         return {}
-    wanted = set(map(_flow, _changes(plan, indices)))
+    wanted = flows_asked(plan, indices)
     asked: dict[FlowFamily, set[float]] = defaultdict(set)
     read: set[FlowFamily] = set()
     for flow, changes in samples.items():
@@ -102,6 +102,11 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
         if family in read and len(numbers) >= _FEWEST
     }
     return make_tables(many, bound, threads)
+
+
+def flows_asked(plan: CasePlan, indices: Iterable[int]) -> dict[tuple[Any, ...], dict[str, Any]]:
+    """What points change of the pockets, once for all that need the same flows."""
+    return {_flow(changes): changes for changes in _changes(plan, indices)}
 
 
 def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
