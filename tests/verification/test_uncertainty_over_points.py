@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -9,13 +11,15 @@ import xarray as xr
 from click.testing import CliRunner
 
 import epicyclic as ep
+import listed_trains
 from asymmetric import gear_pair
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.cli.main import cli
 from epicyclic.errors import InputError
+from epicyclic.result.stored import read_result, stated_result
 from epicyclic.show.html import report_html
 from epicyclic.show.uncertainty_tables import LIMITS, map_band_tables, uncertainty_items
-from epicyclic.study.bands.plan import Outputs
+from epicyclic.study.bands.plan import Outputs, outputs_of
 from epicyclic.study.bands.points import Energies
 from epicyclic.study.bands.samples import fit_curves, index_values, make_samples
 from epicyclic.study.sweeps.run import write_dataset
@@ -259,8 +263,8 @@ def test_causes_of_the_band_of_a_map_are_told_where_they_are_largest():
     assert [cell.text for cell in band.rows[1]] == ["2700", "60 to 85", "210 to 320"]
     rows = [[cell.text for cell in row] for row in causes.rows]  # c is nowhere worth a row
     assert [(row[0], row[2], row[3]) for row in rows] == [
-        ("b", "80.0 %", "speed 2700 rpm, torque 190 N·m"),
-        ("a", "90.0 %", "speed 900 rpm, torque 40 N·m"),
+        ("friction", "80.0 %", "speed 2700 rpm, torque 190 N·m"),
+        ("oil level", "90.0 %", "speed 900 rpm, torque 40 N·m"),
     ]
     assert "97.0 % or more" in causes.note
     assert limits.items[0] == (
@@ -275,7 +279,9 @@ def value(key, kind, spread):
 
 def test_energies_of_samples_follow_from_losses_at_points():
     """Two points, power at the shaft in the first and at the other end in the second."""
-    outputs = Outputs(("drag", "sliding"), np.array([False, True]), ("drag", "sliding"))
+    outputs = Outputs(
+        ("drag", "sliding"), np.array([False, True]), ({"drag": 1.0}, {"sliding": 1.0})
+    )
     time, shaft = np.array([3.0, 1.7]), np.array([900.0, -400.0])
     by_map = np.array([[11.0, 7.0], [23.0, 13.0]])  # losses, points
     losses = by_map.T[:, :, None] * [[1.0, 1.6], [1.0, 0.7]]  # points, losses, samples
@@ -291,6 +297,23 @@ def test_energies_of_samples_follow_from_losses_at_points():
     assert lost == pytest.approx(drag + sliding)
     entering = 3.0 * 900 + 1.7 * (400 + total[1, 0])
     assert 1 - efficiency == pytest.approx(1e3 * lost / entering)
+
+
+def test_a_gear_that_dips_churns_in_every_form():
+    oil = {"method": "dip", "oil_volume": "0.6 l"}
+    own = oil | {"immersion": {"gear": "7 mm"}}
+    found = []
+    for form in (listed_trains.train_of_pair, listed_trains.listed_pair):
+        case = ep.load_case(form()).updated({"lubrication": oil, "sets.S.lubrication": own})
+        result = ep.solve(case)
+        stored, _ = read_result(json.loads(json.dumps(stated_result(result))))
+        for each in (result, stored):
+            found.append({"churning": 0.0, "windage": 0.0, "sliding": 0.0})
+            for term, kinds in zip(each.terms, outputs_of(case, each).kinds, strict=True):
+                for kind in kinds.keys() & found[-1]:
+                    found[-1][kind] += kinds[kind] * term.watts
+    assert min(found[0].values()) > 1
+    assert found[1:] == [pytest.approx(found[0], rel=1e-9)] * 3
 
 
 def test_curves_meet_products_of_powers():

@@ -357,7 +357,16 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
     solution = settled.solution
     losses = solution.losses
     terms = tuple(
-        LossTerm(name, loss.watts, loss.group, loss.method, loss.source, loss.factor, loss.left_out)
+        LossTerm(
+            name,
+            loss.watts,
+            loss.group,
+            loss.method,
+            loss.source,
+            loss.factor,
+            loss.left_out,
+            dict(loss.shares),
+        )
         for name in built.layout.losses
         for loss in (losses[name],)
     )

@@ -111,6 +111,7 @@ def disc_loss(
     flags: tuple[ValidityFlag, ...] = ()
     drags: dict[tuple[str, str], float] = {}
     methods: dict[str, str] = {}
+    by_model: dict[str, float] = {}
     for disc in discs:
         speed = state.speeds[disc.body] - state.speeds[disc.against]
         body = disc.turning
@@ -118,7 +119,7 @@ def disc_loss(
             model = CHURNING_MODELS[disc.sump.model]
             watts = disc.sump.power(disc.sump.model, speed, state)
             flags += churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
-            methods[model.title] = model.source
+            title, methods[model.title] = model.title, model.source
         else:
             mixture = state.fluids.mixed(disc.oil_fraction)
             if disc.model == LAMINAR_RIMS:
@@ -139,15 +140,19 @@ def disc_loss(
                         part=parts.faces / sum(parts),
                         watts=disc.count * parts.faces,
                     )
-            methods[DRAG_METHODS[disc.model].title] = DRAG_METHODS[disc.model].source
+            title = DRAG_METHODS[disc.model].title
+            methods[title] = DRAG_METHODS[disc.model].source
         if disc.jets is not None:
             watts += _jet_loss(disc.jets, speed, state, struck)
             methods[JET_METHOD] = JET_SOURCE
         drags[disc.body, disc.against] = watts
+        by_model[title] = by_model.get(title, 0.0) + watts
     total = sum(drags.values())
     brakes = tuple((*pair, own / total) for pair, own in drags.items() if own)
+    several = by_model if total and len(by_model) > 1 else {}
+    shares = tuple((title, own / total) for title, own in several.items())
     method, source = "; ".join(methods), "; ".join(methods.values())
-    return Loss(LOAD_INDEPENDENT, total, method, source, brakes=brakes), flags
+    return Loss(LOAD_INDEPENDENT, total, method, source, brakes=brakes, shares=shares), flags
 
 
 def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:

@@ -230,6 +230,8 @@ class Loss(NamedTuple):
     heat: tuple[tuple[str, float], ...] = ((OIL, 1.0),)
     # Those of the loads of its element that it depends on; empty: all of them.
     follows: tuple[str, ...] = ()
+    # Share of each of its methods in the watts; empty if it has one. [1]
+    shares: tuple[tuple[str, float], ...] = ()
 
 
 class Note(str):

@@ -202,6 +202,8 @@ class LossTerm:
         The user's factor. [1]
     left_out : str
         Why the term is not included; empty if it is.
+    shares : mapping of str to float
+        Share of each model in the loss; empty if there is one model only. [1]
     """
 
     name: str
@@ -211,6 +213,7 @@ class LossTerm:
     source: str
     factor: float = 1.0
     left_out: str = ""
+    shares: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 @dataclass(frozen=True, slots=True)

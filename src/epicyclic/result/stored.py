@@ -61,6 +61,7 @@ _MORE: dict[str, tuple[Any, Any]] = {
     "bearings": (Mapping[str, BearingFigures], {}),
     "parts": (Mapping[str, PartFigures], {}),
     "note_watts": (Numbers, {}),
+    "model_shares": (Mapping[str, Numbers], {}),
 }
 """What only some state, and what it is for the others."""
 _Check = Callable[[Mapping[str, Any]], str]
@@ -78,10 +79,11 @@ class StatedCase:
 
 
 def stated_result(result: Result) -> dict[str, Any]:
-    """What `read_result` reads: also the losses that notes concern, by which they are ordered."""
+    """What `read_result` reads: also the losses that notes concern, and the shares of models."""
     known = {note: note_watts(note) for note in result.notes}
     finite = {str(note): watts for note, watts in known.items() if math.isfinite(watts)}
-    return {**result.to_dict(), "note_watts": finite}
+    shares = {term.name: dict(term.shares) for term in result.terms if term.shares}
+    return {**result.to_dict(), "note_watts": finite, "model_shares": shares}
 
 
 def read_result(
@@ -185,6 +187,7 @@ def _made(found: dict[str, Any], data: Mapping[str, Any]) -> Result:
                 citations.get(name, ""),
                 found["factors"].get(name, 1.0),
                 found["not_included"].get(name, ""),
+                found["model_shares"].get(name, {}),
             )
             for name, watts in losses.items()
         ),

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import chain
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,7 +19,7 @@ from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.solve import NO_POWER
-from epicyclic.result.result import Result
+from epicyclic.result.result import LossTerm, Result
 from epicyclic.schema.read import plain
 from epicyclic.study.bands.inputs import model_form_of, uncertain_values
 from epicyclic.study.bands.samples import Samples, groups_of, make_samples
@@ -61,7 +62,8 @@ class Outputs:
 
     losses: tuple[str, ...]  # Names of those that are included.
     load_dependent: BoolArray  # Which of them depend on the load.
-    kinds: tuple[str, ...]  # Kind of each, see `model_form_of`.
+    # Kinds of models of each with their shares, see `model_form_of`. [1]
+    kinds: tuple[Mapping[str, float], ...]
     # True if they are grouped as a test rig does: what torque adds, and the rest.
     tested: bool = False
 
@@ -89,7 +91,10 @@ class Outputs:
         """
         kinds = self.kinds * (2 if self.tested else 1)
         every = np.array(
-            [row * factors.get(kind, 1.0) for row, kind in zip(losses, kinds, strict=True)]
+            [
+                row * sum(share * factors.get(kind, 1.0) for kind, share in own.items())
+                for row, own in zip(losses, kinds, strict=True)
+            ]
         ).reshape(losses.shape)
         scaled, unloaded = every[: len(self.losses)], every[len(self.losses) :]
         independent = (unloaded if self.tested else scaled[~self.load_dependent]).sum(axis=0)
@@ -107,9 +112,18 @@ def outputs_of(case: Case, result: Result) -> Outputs:
     return Outputs(
         tuple(term.name for term in terms),
         np.array([term.group == LOAD_DEPENDENT for term in terms], dtype=bool),
-        tuple(model_form_of(term.name, term.method) for term in terms),
+        tuple(_kinds(term) for term in terms),
         case.models.load_dependent == AS_TESTED,
     )
+
+
+def _kinds(term: LossTerm) -> dict[str, float]:
+    """A gear that dips churns; the other one of its pair has the drag of the mixture."""
+    found: dict[str, float] = {}
+    for method, share in (term.shares or {term.method: 1.0}).items():
+        kind = model_form_of(term.name, method)
+        found[kind] = found.get(kind, 0.0) + share
+    return found
 
 
 def shaft_power(case: Case) -> float:
@@ -174,7 +188,7 @@ class Nearby:
 
 def known_values(case: Case, result: Result) -> tuple[UncertainValue, ...]:
     """All that is uncertain in a case whose table [uncertainty] is sound."""
-    kinds = tuple(dict.fromkeys(outputs_of(case, result).kinds))
+    kinds = tuple(dict.fromkeys(chain(*outputs_of(case, result).kinds)))
     values, problems = uncertain_values(case, kinds)
     raise_any(problems, case.source)
     return values

@@ -426,13 +426,15 @@ def _parabola(nearby: Nearby, number: int, deviations: FloatArray) -> FloatArray
 
 def _parts(nearby: Nearby, shifts: FloatArray, factors: dict[str, FloatArray]) -> FloatArray:
     """What each value alone adds to the total loss, shape (d, n)."""
-    kinds = np.array(nearby.outputs.kinds)
-    losses = nearby.losses[: kinds.size]
+    kinds = nearby.outputs.kinds
+    losses = nearby.losses[: len(kinds)]
     return np.array(
         [
-            losses[kinds == value.kind_of_loss].sum() * (factors[value.kind_of_loss] - 1)
+            losses
+            @ [own.get(value.kind_of_loss, 0.0) for own in kinds]
+            * (factors[value.kind_of_loss] - 1)
             if value.is_model_form
-            else shift[: kinds.size].sum(axis=0)
+            else shift[: len(kinds)].sum(axis=0)
             for value, shift in zip(nearby.values, shifts, strict=True)
         ]
     )
