@@ -34,8 +34,12 @@ def answers(*loads):
     return answer
 
 
-def test_one_answer_foretells_nothing():
-    assert answers(100.0).predicted({"mesh": 100.0001}, 1e9) is None
+def test_one_answer_serves_for_loads_next_to_its_own():
+    answer = answers(100.0)
+    near = answer.predicted({"mesh": 100.0000005}, 1e-7)
+    assert near is not None
+    assert near.losses == answer.result.losses
+    assert answer.predicted({"mesh": 100.0001}, 1e-7) is None
 
 
 def test_what_is_predicted_is_as_near_as_was_allowed():

@@ -173,7 +173,7 @@ ONE_PROBLEM = {
     ),
     "an axis that falls": (
         TALBOT, {"friction_table": {"film_ratio": [1, 0.1], "friction": [0.1, 0.1]}},
-        "friction_table.film_ratio", "rising",
+        "friction_table.film_ratio", "increasing",
     ),
     "an axis of one point": (
         TALBOT, {"friction_table": {"film_ratio": [1], "friction": [0.1]}},

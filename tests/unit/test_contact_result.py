@@ -102,7 +102,7 @@ def test_nothing_is_flagged_within_it():
 
 @pytest.mark.parametrize(
     ("roughness", "told"),
-    [("0.005 um", "film ratio 46.5"), ("1.9 um", "composite roughness 1.9 um")],
+    [("0.005 um", "film ratio 46.5"), ("1.9 um", "composite roughness 1.9 µm")],
 )
 def test_roughness_beyond_the_tested_range_is_flagged(roughness, told):
     assert told in " ".join(solved(surface1={"roughness": roughness}).warnings)

@@ -21,14 +21,14 @@ TABLE = {
 @pytest.mark.parametrize(
     ("key", "value", "problem", "words"),
     [
-        ("sun.micro_geometry.tip_relief", "20 um", "sun.micro_geometry.tip_relief", "is missing"),
+        ("sun.micro_geometry.tip_relief", "20 um", "sun.micro_geometry.tip_relief", "has none"),
         ("sun.micro_geometry.tip_relief", "-20 um", "sun.micro_geometry.tip_relief", ">= 0 um"),
         ("sun.micro_geometry.lead_crown", 3, "sun.micro_geometry.lead_crown", "no unit"),
         (
             "sun.micro_geometry",
             TIP | {"tip_relief_diameter": "138 mm"},
             "sun.micro_geometry.tip_relief",
-            "once",
+            "has two",
         ),
         (
             "sun.micro_geometry",
@@ -70,7 +70,7 @@ TABLE = {
             "planet.micro_geometry.topography",
             TABLE | {"diameter": ["50 mm", "46 mm"]},
             "planet.micro_geometry.topography.diameter",
-            "rising",
+            "increasing",
         ),
         (
             "planet.micro_geometry.topography",

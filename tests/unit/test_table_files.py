@@ -186,7 +186,7 @@ REFUSED = {
     "a column twice": (
         PLAIN.replace("time [s]", "speed [rpm],time [s]").replace("0,4", "0,0,4", 1)
         .replace("7,8", "0,7,8"),
-        ["appears more than once", "--column"],
+        ["appears more than once", "Keep one"],
     ),
     "a gap": (PLAIN.replace("310", ""), ['torque = "" (line 2)', "is empty"]),
     "two sheets with tables": (

@@ -253,7 +253,7 @@ def test_oil_outside_its_data_is_told_with_the_temperature():
         result.bearing.contact_temperature,
     )
     assert len(told) == 1
-    assert f"to {hottest - 273.15:.0f} degC" in told[0]
+    assert f"to {hottest - 273.15:.0f} °C" in told[0]
 
 
 def test_flows_remembered_are_as_good_as_solved():
