@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 import epicyclic as ep
 from epicyclic.errors import InputError
 from epicyclic.show.plots.catalogue import PLOTS, available, figure_of, panels_of
+from epicyclic.show.plots.heat_network import plot_heat_network
 from epicyclic.show.plots.loss_map import map_at
 
 OF_MAPS = [name for name in PLOTS if "map" in name or name.startswith("loss-over")] + ["loss-parts"]
@@ -169,3 +170,16 @@ def test_what_a_case_lacks_is_left_out_or_said(talbot, changes):
 
 def _axes():
     return Figure().subplots()
+
+
+def test_the_picture_of_heat_has_every_part_with_its_temperature_and_all_the_heat():
+    case = ep.load_case("talbot-2012").updated({"models.temperatures": "network"})
+    result = ep.solve(case)
+    assert result.heat is not None
+    ax = plot_heat_network(result.heat, Figure(figsize=(7, 5)).subplots())
+    texts = " ".join(text.get_text() for text in ax.texts)
+    for node, kelvin in {**result.heat.temperatures, **result.heat.given}.items():
+        assert node.replace("_", " ") in texts
+        assert f"{kelvin - 273.15:.1f} °C" in texts
+    assert f"{result.total / 1e3:.3g} kW" in texts
+    check_figure(ax.figure)
