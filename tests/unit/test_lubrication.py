@@ -349,7 +349,7 @@ def test_a_stated_uncertainty_counts():
 def test_churning_has_a_factor_of_its_own():
     nearby = look_nearby(pair(DIP), ep.solve(pair(DIP)))
     kinds = dict(zip(nearby.outputs.losses, nearby.outputs.kinds, strict=True))
-    assert kinds["drag"] == "churning"
+    assert kinds["drag"] == {"churning": 1.0}
     (value,) = [one for one in nearby.values if one.key == "model_form.churning"]
     assert value.spread == (2.0,)
     assert not {"model_form.drag", "model_form.windage"} & {one.key for one in nearby.values}
