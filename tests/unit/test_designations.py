@@ -75,6 +75,8 @@ def test_contact_angles_of_iso_355_and_of_letters():
 def test_cages_thrust_bearings_and_full_complements():
     cage = designated("K 40x48x20")
     assert (cage.element_diameter, cage.pitch_diameter) == pytest.approx((4e-3, 44e-3))
+    assert designated("K 8x11x10").bore == pytest.approx(8e-3)  # no suffix is cut off
+    assert designated("6208-2RS1").bore == designated("6208 2Z").bore == pytest.approx(40e-3)
     assert thrust_bearing("51108") == pytest.approx((40e-3, 60e-3, 13e-3))
     assert (designated("51108").type, designated("81207").type) == ("thrust-ball", "thrust-roller")
     assert math.isnan(designated("51108").static_load_rating)

@@ -60,6 +60,18 @@ def test_torques_agree_with_the_losses_in_the_end(settled, monkeypatch):
     assert found.answer.temperatures == pytest.approx({"oil": 350, "housing": 340}, abs=AGREEMENT)
 
 
+def test_torques_that_never_let_temperatures_settle_are_told(settled, monkeypatch):
+    off = itertools.count(0.0, 0.4)  # what the whole solution adds, in each pass more
+    monkeypatch.setattr(settling, "next_solution", lambda _machine, _operation, at, *_: (at, False))
+    monkeypatch.setattr(
+        settling,
+        "solve_machine",
+        lambda _machine, _operation, at, *_: at | {"oil": at["oil"] + next(off)},
+    )
+    with pytest.raises(ep.ConvergenceError, match="thermal runaway"):
+        settled(0.0)
+
+
 def test_losses_that_scatter_settle_to_their_scatter_and_tell(settled):
     found = settled(0.012)
     assert found.answer.temperatures == pytest.approx({"oil": 350, "housing": 340}, abs=0.04)

@@ -114,7 +114,7 @@ def designated(text: str) -> DesignatedBearing:
     >>> round(1e3 * found.bore), round(1e3 * found.outside_diameter), round(1e3 * found.width)
     (50, 90, 23)
     """
-    name = re.sub(r"[\s.\-](\d(?=[A-Z]))?", "", text.upper())  # not the 2 of 6208-2RS either
+    name = re.sub(r"[\s\-]2(?=RS|Z)|[\s.\-]", "", text.upper())  # 2RS and 2Z are seals and shields
     by_size, cage = _BY_SIZE.match(name), _CAGE.match(name)
     if by_size and by_size["bore"] not in (bores := _tables()["needle"][by_size["kind"]]):
         raise KeyError(f"{by_size['kind']} has the bores {', '.join(bores)}")

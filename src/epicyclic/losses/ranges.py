@@ -309,21 +309,28 @@ def range_left(group: Sequence[ValidityFlag]) -> str:
 
 def range_text(group: Sequence[ValidityFlag]) -> str:
     """What was found, and the range."""
-    first = group[0]
+    return f"{group[0].quantity} {found_text(group)}, range {limits_text(group[0])}"
+
+
+def found_text(group: Sequence[ValidityFlag]) -> str:
+    """What was found by all flags of one quantity."""
     low, high = (min(flag.found_low for flag in group), max(flag.found_high for flag in group))
     texts = format_number(low, 3), format_number(high, 3)
-    found = texts[0] if texts[0] == texts[1] else " to ".join(texts)
-    unit = f" {unit_text(first.unit)}" if first.unit else ""
-    return f"{first.quantity} {found}{unit}, range {_limits(first)}{unit}"
+    return (texts[0] if texts[0] == texts[1] else " to ".join(texts)) + _unit(group[0])
 
 
-def _limits(flag: ValidityFlag) -> str:
+def limits_text(flag: ValidityFlag) -> str:
+    """The range that it leaves."""
     if flag.high is None:
-        return f"from {format_number(flag.low or 0.0)}"
+        return f"from {format_number(flag.low or 0.0)}{_unit(flag)}"
     if flag.low is None:
-        return f"up to {format_number(flag.high)}"
+        return f"up to {format_number(flag.high)}{_unit(flag)}"
     low, high = format_number(flag.low), format_number(flag.high)
-    return low if low == high else f"{low} to {high}"
+    return (low if low == high else f"{low} to {high}") + _unit(flag)
+
+
+def _unit(flag: ValidityFlag) -> str:
+    return f" {unit_text(flag.unit)}" if flag.unit else ""
 
 
 def share_text(share: float) -> str:

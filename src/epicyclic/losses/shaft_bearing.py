@@ -23,6 +23,7 @@ from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.oil.oil import OilState
 from epicyclic.units import NUMBER
+from epicyclic.units import RPM as SPEED
 
 BearingType = Literal[
     "deep-groove",
@@ -496,6 +497,20 @@ def limiting_speed(bearing: CatalogueBearing) -> float:
     """
     known = LIMITING_SPEEDS.get((bearing.type, bearing.cage), math.inf)
     return 1e-3 * known * RPM / bearing.pitch_diameter
+
+
+def limit_text(
+    speed: float,  # [rad/s]
+    limit: float,  # That it exceeds. [rad/s]
+    stated: bool,  # True if the case gives it.
+) -> str:
+    """What to say of a speed beyond the limiting speed."""
+    whose = "" if stated else " (estimated from SKF's tables)"
+    return (
+        f"{SPEED.text(abs(speed), 4)} exceed the limiting speed of cage and rolling elements, "
+        f"{SPEED.text(limit, 2)}{whose}. No model covers the loss above it; give the "
+        "limiting_speed of the catalogue, or choose another bearing."
+    )
 
 
 @lru_cache(maxsize=256)

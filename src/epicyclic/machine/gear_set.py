@@ -449,8 +449,9 @@ class GearSet:
             oil = state.fluids.at(joined_key(self.key, planet.key))
             last = last_rollers.get((planet.key, share))
             if planet.bearing is None:
-                moment = load.force * planet.diameter / 4 / share if share else 0.0
-                bearing = missing_bearing(planet.key, planet.no_bearing, moment, speed)
+                force = load.force / share if share else 0.0
+                reason, diameter = planet.no_bearing, planet.diameter
+                bearing = missing_bearing(planet.key, reason, force, diameter, speed)
             elif isinstance(planet.bearing, PlanetPin):
                 # in the axes of the load, in which the first mesh turns the planet from t to r
                 driven = -speed if duties[planet.meshes[0].mesh].torque1 > 0 else speed

@@ -116,14 +116,14 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     def change(values: FloatArray, whole: bool = False) -> FloatArray:
         nonlocal at, agrees
         at = np.clip(values, COLDEST, HOTTEST)
-        oil = dict(zip(nodes, map(float, at), strict=True))
+        temperatures = dict(zip(nodes, map(float, at), strict=True))
         with np.errstate(invalid="warn"):
-            given = machine, operation, model.fluids(oil), unheated
+            given = machine, operation, model.fluids(temperatures), unheated
             if found and not whole:
                 solution, agrees = next_solution(*given, found[-1][0])
             else:
                 solution, agrees = solve_machine(*given, found[-1][0] if found else None), True
-            answer = model.answer(oil, solution)
+            answer = model.answer(temperatures, solution)
         found.append((solution, answer))
         step: FloatArray = np.array([answer.temperatures[node] for node in nodes]) - values
         steps.append(float(np.abs(step).max()))
@@ -138,11 +138,13 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
         at = at + change(at)
     if not steps[-1] <= AGREEMENT:
         _by_secants(change, at, left, found)
-    while not agrees or (left(at) > 1 and len(steps) < MOST_PASSES):
+    for _ in range(MOST_PASSES):
+        if agrees and left(at) <= 1:
+            break
         at = at + change(at, whole=True)
     solution, answer = found[-1]
-    temperatures = answer.temperatures.values()
-    if min(temperatures) < COLDEST or max(temperatures) > HOTTEST:
+    reached = answer.temperatures.values()
+    if left(at) > 1 or min(reached) < COLDEST or max(reached) > HOTTEST:
         raise _no_equilibrium(found)
     return Settled(solution, answer, len(found), steps[-1])
 

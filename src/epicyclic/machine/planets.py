@@ -56,6 +56,7 @@ from epicyclic.losses.shaft_bearing import (
     BearingType,
     Cage,
     CatalogueBearing,
+    limit_text,
     limiting_speed,
     minimum_load,
     thermal_excess,
@@ -553,20 +554,27 @@ class BearingResult(ElementResult):
 
 ROLLER_FRICTION = 0.0003, 0.002
 """f1 of caged rollers, and the largest of catalogues of needle bearings. Theory (B16). [1]"""
+MISSING_PITCH = 0.5
+"""Pitch diameter of rollers that are not known, over that of the planet's teeth; assumed. [1]"""
 MAY_LOSE = "not given; its rollers may lose"
 """In the note on what a missing planet bearing may cost."""
 
 
-def missing_bearing(key: str, reason: str, moment: float, speed: float) -> BearingResult:
-    """The losses of a bearing that is not there, with a note on what rollers may lose (B16).
-
-    `moment` is the force on all of them times their pitch radius. [N m]
-    """
-    least, most = (abs(2 * moment * speed * factor) for factor in ROLLER_FRICTION)
+def missing_bearing(
+    key: str,
+    reason: str,
+    force: float,  # On the bearings of all planets. [N]
+    diameter: float,  # Of the teeth of the planet. [m]
+    speed: float,  # Against the carrier. [rad/s]
+) -> BearingResult:
+    """The losses of a bearing that is not there, with a note on what rollers may lose (B16)."""
+    low, high = ROLLER_FRICTION
+    power = force * MISSING_PITCH * diameter * abs(speed)
+    most = high * power
     text = (
-        f"{key.replace('_', ' ')}: {MAY_LOSE} {format_number(least, 2)} to {WATT.text(most, 2)}, "
-        "which the band does not contain. By Palmgren, f1 = 0.0003 to 0.002, on a pitch diameter "
-        "of half that of the planet."
+        f"{key.replace('_', ' ')}: {MAY_LOSE} {format_number(low * power, 2)} to "
+        f"{WATT.text(most, 2)}, which the band does not contain. By Palmgren, f1 = {low:g} to "
+        f"{high:g}, on a pitch diameter of {percent(MISSING_PITCH, 0)} of that of the planet."
     )
     return BearingResult(
         {
@@ -620,8 +628,7 @@ def solve_bearing(
         watts += rubbed.between + rubbed.skewed
         notes = (_rubbing_note(where, rubbed),)
     known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
-    limit = own.limiting_speed or limiting_speed(known)
-    notes += _limit_notes(where, known, carried, abs(speed), limit, watts)
+    notes += _limit_notes(where, known, own.limiting_speed, carried, abs(speed), watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
         {
@@ -672,7 +679,12 @@ def rated(
 
 
 def _limit_notes(
-    where: str, known: CatalogueBearing, force: float, speed: float, limit: float, watts: float
+    where: str,
+    known: CatalogueBearing,
+    stated: float | None,  # Its limiting speed, if the case gives it. [rad/s]
+    force: float,
+    speed: float,  # Not negative. [rad/s]
+    watts: float,
 ) -> tuple[Note, ...]:
     notes, share = [], "0.01 C0" if known.type == "spherical" else "0.02 C"
     least = minimum_load(known, 0.0, 0.0)
@@ -691,14 +703,10 @@ def _limit_notes(
             "the bearing needs oil that cools it."
         )
         notes.append(Note(text, watts))
+    limit = stated or limiting_speed(known)
     if speed > limit:
-        whose = ", an estimate by SKF's tables" if limit == limiting_speed(known) else ""
-        text = (
-            f"{where}: {RPM.text(speed, 4)} against the carrier exceed the limiting speed of "
-            f"{RPM.text(limit, 2)}{whose}, which cage and rollers stand. Beyond it no loss is "
-            "known; give limiting_speed of the catalogue, or take another bearing."
-        )
-        notes.append(Note(text, watts))
+        told = limit_text(speed, limit, stated is not None)
+        notes.append(Note(f"{where}, against the carrier: {told}", watts))
     return tuple(notes)
 
 

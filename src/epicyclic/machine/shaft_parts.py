@@ -18,6 +18,7 @@ from epicyclic.losses.shaft_bearing import (
     PalmgrenModel,
     TableModel,
     friction_load,
+    limit_text,
     limiting_speed,
     minimum_load,
     thermal_excess,
@@ -380,13 +381,8 @@ class ShaftBearing:
             notes.append(Note(text, watts))
         limit = self.limiting_speed or limiting_speed(self.bearing)
         if abs(speed) > limit:
-            whose = "" if self.limiting_speed else " (estimated from SKF's tables)"
-            text = (
-                f"{self.key}: {RPM.text(abs(speed), 4)} exceed the limiting speed of cage and "
-                f"rolling elements, {RPM.text(limit, 2)}{whose}. No model covers the loss above "
-                "it; give the limiting_speed of the catalogue, or choose another bearing."
-            )
-            notes.append(Note(text, watts))
+            told = limit_text(speed, limit, self.limiting_speed is not None)
+            notes.append(Note(f"{self.key}: {told}", watts))
         if self.arrangement_assumed and load.axial > 0:
             text = (
                 f"{self.key}: the bearing arrangement is not given; X is assumed, as is usual for "

@@ -13,7 +13,7 @@ from rich.constrain import Constrain
 from rich.text import Text
 
 from epicyclic.build.result import NOT_INCLUDED, UNCOVERED
-from epicyclic.losses.ranges import concern_text, range_text, weight_of
+from epicyclic.losses.ranges import concern_text, found_text, limits_text, weight_of
 from epicyclic.machine.element import note_watts
 from epicyclic.machine.planets import MAY_LOSE
 from epicyclic.messages import sentence
@@ -153,11 +153,11 @@ def first_warnings(result: Result) -> Listing:
     found = [it for it in _notes(result) if MAY_LOSE not in it[1]]
     for watts, group in result.flags_with_loss:
         uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
-        at, _, limits = range_text(group).partition(", range ")
-        what, only = group[0].quantity, limits if limits[0] in "fu" else f"from {limits}"
+        first, only = group[0], limits_text(group[0])
+        only = only if None in (first.low, first.high) else f"from {only}"
         size = "" if math.isnan(watts) else f"; this affects {concern_text(watts, group)}"
         text = (
-            f"The {what} is{at.removeprefix(what)}, but {' and '.join(uses)} "
+            f"The {first.quantity} is {found_text(group)}, but {' and '.join(uses)} "
             f"{'are' if len(uses) > 1 else 'is'} valid only {only}{size}."
         )
         found.append((weight_of(watts, group), text))

@@ -27,7 +27,7 @@ from epicyclic.plugins.design.tables import mass_table, strength_tables
 from epicyclic.show.page import Cell, Listing, Table, number
 from epicyclic.show.plots.style import styled_figure
 from epicyclic.show.terminal import as_on_page, spaced
-from epicyclic.study.maps.cycle import SUMS_TO_ONE
+from epicyclic.study.maps.cycle import SUMS_TO_ONE, shares_text
 from epicyclic.study.sweeps.run import write_netcdf
 from epicyclic.units import Length
 
@@ -61,9 +61,9 @@ def fates_table(found: Found) -> Table:
             f"of what {ENOUGH_SOLVED} or more solved designs of their arrangement let expect."
         )
     shares = [point.share for point in found.task.cycle]
-    if {*shares} - {1.0} and not math.isclose(whole := sum(shares), 1.0, rel_tol=SUMS_TO_ONE):
-        told = f"Shares of the cycle sum to {whole:.6g}, not to 1: multiplied by {1 / whole:.6g}."
-        notes.append(told)
+    whole, stated = sum(shares), any(share != 1 for share in shares)
+    if stated and not math.isclose(whole, 1.0, rel_tol=SUMS_TO_ONE):
+        notes.append(f"In the cycle {shares_text(whole)}.")
     total = (Cell("candidates"), number(len(found.table), "", text=f"{len(found.table):,}"))
     return Table(
         ("what became of them", "number"),

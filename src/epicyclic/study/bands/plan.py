@@ -118,7 +118,10 @@ def outputs_of(case: Case, result: Result) -> Outputs:
 
 
 def _kinds(term: LossTerm) -> dict[str, float]:
-    """A gear that dips churns; the other one of its pair has the drag of the mixture."""
+    """Kinds of the models of a loss, with their shares. [1]
+
+    There are two where one gear of a pair dips: it churns, the other has the drag of the mixture.
+    """
     found: dict[str, float] = {}
     for method, share in (term.shares or {term.method: 1.0}).items():
         kind = model_form_of(term.name, method)

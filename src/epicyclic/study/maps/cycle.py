@@ -56,6 +56,11 @@ SUMS_TO_ONE = 1e-6  # Shares that sum to one but for this do so: it is rounding.
 SHARE_DURATION = 3600.0  # What a cycle of shares lasts. [s]
 
 
+def shares_text(whole: float) -> str:
+    """What becomes of shares whose sum is not one."""
+    return f"shares sum to {whole:.6g}, not to 1: multiplied by {1 / whole:.6g}"
+
+
 @dataclass(frozen=True, slots=True)
 class Column:
     """A column of a cycle: its header, and what turns it into the display unit."""
@@ -96,8 +101,7 @@ class Cycle:
         told = f"{self.source.name}, {self.rows} rows"
         if any(math.isclose(self.whole, whole, rel_tol=SUMS_TO_ONE) for whole in (1.0, 100.0)):
             return told
-        factor = 1 / self.whole
-        return f"{told}; its shares sum to {self.whole:.6g}, not to 1: multiplied by {factor:.6g}"
+        return f"{told}; its {shares_text(self.whole)}"
 
     def pieces(self, celsius: float | None = None) -> Iterator[Piece]:
         """All points, at their own temperatures or at one.
@@ -202,8 +206,10 @@ def _column(header: str, unit: str | None, quantity: Quantity | None) -> Column:
 
 def _repeated(name: str, headers: list[str]) -> Problem:
     shown = ", ".join(f'"{one_line(header)}"' for header in headers)
-    choice = f', or choose it: --column "{name}=HEADER"' * (len({*headers}) == len(headers))
-    return Problem(name, shown, "appears more than once.", f"Keep one{choice}.")
+    remedy = "Keep one."
+    if len(set(headers)) == len(headers):  # else no option tells them apart
+        remedy = f'Keep one, or choose it: --column "{name}=HEADER".'
+    return Problem(name, shown, "appears more than once.", remedy)
 
 
 def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[Problem]:
