@@ -49,6 +49,7 @@ AS_THEN = {name: it["as_then"] for it in CHANGED["case"] for name in it["names"]
 ONLY = {name: it["only"] for it in CHANGED["sweep"] for name in it["names"]}
 WITHIN = {name: it["within"] for it in CHANGED["result"] for name in it["names"]}
 MORE = {name: it.get("more", {}) for it in CHANGED["result"] for name in it["names"]}
+FIGURES = {it: own["within"] for own in CHANGED["figure"] for it in own["patterns"]}
 
 WEIGHED = [item["text"] for item in CHANGED["weighed"]]
 NEW_WARNINGS = [item["text"] for item in CHANGED["warning"]]
@@ -220,7 +221,8 @@ def same(frozen: Any, found: Any, place: str, floors: dict[str, float]) -> bool:
     floor = max((size for key, size in floors.items() if fnmatch(place, key)), default=0.0)
     name = place.split("/")[0]
     near = WITHIN.get(name, TOLERANCE)
-    near = max([near, *(it for key, it in MORE.get(name, {}).items() if fnmatch(place, key))])
+    more = FIGURES | MORE.get(name, {})
+    near = max([near, *(it for key, it in more.items() if fnmatch(place, key))])
     return math.isclose(frozen, found, rel_tol=near, abs_tol=floor)
 
 

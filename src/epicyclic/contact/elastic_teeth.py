@@ -477,7 +477,7 @@ STEPS_PER_SEGMENT = 10
 """Most steps of the careful method for each segment: one may leave or join in a step."""
 KEPT_LOADS = 256
 """Solutions that are kept: one for each torque, mesh and set of flanks, for all speeds and
-temperatures. One takes 10 kB with the default resolution."""
+temperatures. One takes 20 kB with the default resolution."""
 UNMODIFIED = FlankDeviations()
 
 
@@ -498,14 +498,22 @@ class LoadedMesh:
         deviations touch unloaded. [m]
     normal_stiffness : ndarray, shape (positions,)
         Slope of the normal force over the normal approach, at this load. [N/m]
+    rise : ndarray, shape (positions, lines, segments)
+        Rise of the force on each segment with the normal force of the mesh. [1]
     """
 
     mesh: Mesh
-    lines: ContactLines
+    compliance: MeshCompliance
     force: float
     line_load: FloatArray
     normal_approach: FloatArray
     normal_stiffness: FloatArray
+    rise: FloatArray
+
+    @property
+    def lines(self) -> ContactLines:
+        """The contact lines of the mesh."""
+        return self.compliance.lines
 
     @property
     def pattern(self) -> BoolArray:
@@ -564,35 +572,30 @@ def load_mesh_elastically(
     `ConvergenceError` if no loads are found that satisfy all conditions of the contact.
     """
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
-    separation = _separation(mesh, deviations, positions, segments)
+    separation = _separation(mesh, deviations, compliance.lines)
     return _loaded(mesh, compliance, force, separation, compliance.lines.length)
 
 
 def load_mesh_next_to(
-    last: LoadedMesh,  # With the same `positions` and `segments`.
-    # body1, body2, positions, segments, force, deviations: As for `load_mesh_elastically`, which
-    # has the same solution but for its tolerance.
-    body1: GearBody,
-    body2: GearBody,
-    positions: int,
-    segments: int,
+    last: LoadedMesh,
     force: float,
     deviations: FlankDeviations = UNMODIFIED,
 ) -> LoadedMesh:
-    """The mesh of `last` under nearly the same load, which saves most of the work."""
-    compliance = mesh_compliance(last.mesh, body1, body2, positions, segments)
-    separation = _separation(last.mesh, deviations, positions, segments)
-    start = last.line_load * last.lines.length
+    """The mesh of `last` under nearly the same load, which saves most of the work.
+
+    Parameters as for `load_mesh_elastically`, which has the same solution but for its tolerance.
+    """
+    separation = _separation(last.mesh, deviations, last.lines)
+    more = (force - last.force) / math.cos(last.mesh.gear1.rack.base_helix_angle)
+    start = last.line_load * last.lines.length + more * last.rise
     start.flags.writeable = False  # as lengths are: the kernel is compiled once for both
-    return _loaded(last.mesh, compliance, force, separation, start)
+    return _loaded(last.mesh, last.compliance, force, separation, start)
 
 
 @lru_cache(maxsize=64)
-def _separation(
-    mesh: Mesh, deviations: FlankDeviations, positions: int, segments: int
-) -> FloatArray:
+def _separation(mesh: Mesh, deviations: FlankDeviations, lines: ContactLines) -> FloatArray:
     """Gap of the unloaded flanks on all segments, shape (positions, lines, segments). [m]"""
-    separation = deviations.separation(mesh, contact_lines(mesh, positions, segments))
+    separation = deviations.separation(mesh, lines)
     separation.flags.writeable = False
     return separation
 
@@ -603,7 +606,7 @@ def _loaded(
     """The mesh under the transverse `force`, from the normal forces `start` of the segments."""
     lines = compliance.lines
     normal = force / math.cos(mesh.gear1.rack.base_helix_angle)
-    forces, approach, stiffness, iterations = solve_all_positions(
+    forces, approach, stiffness, iterations, rise = solve_all_positions(
         normal,
         compliance.influence,
         compliance.coupling,
@@ -621,6 +624,6 @@ def _loaded(
             'models.load_distribution = "uniform".'
         )
     line_load = np.divide(forces, lines.length, out=np.zeros_like(forces), where=lines.length > 0)
-    for array in (line_load, approach, stiffness):
+    for array in (line_load, approach, stiffness, rise):
         array.flags.writeable = False
-    return LoadedMesh(mesh, lines, force, line_load, approach, stiffness)
+    return LoadedMesh(mesh, compliance, force, line_load, approach, stiffness, rise)

@@ -69,16 +69,18 @@ def line_totals(values: FloatArray) -> FloatArray:
 
 @kernel
 def shared(force: float, weight: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """A force in proportion to weights, and where they are not zero."""
+    """A force in proportion to weights, and where they are positive; nothing where they are not."""
     whole = 0.0
-    for part in line_totals(weight):
-        whole += part
+    for line in range(weight.shape[0]):
+        for k in range(weight.shape[1]):
+            whole += max(weight[line, k], 0.0)
     forces = np.zeros(weight.shape)
     loaded = np.zeros(weight.shape, np.bool_)
     for line in range(weight.shape[0]):
         for k in range(weight.shape[1]):
-            forces[line, k] = force * weight[line, k] / whole
             loaded[line, k] = weight[line, k] > 0.0
+            if loaded[line, k]:
+                forces[line, k] = force * weight[line, k] / whole
     return forces, loaded
 
 
@@ -178,7 +180,7 @@ def newton_step(
     slope: FloatArray,
     compliance: FloatArray,
     coupling: FloatArray,
-) -> tuple[FloatArray, float, float]:
+) -> tuple[FloatArray, float, float, FloatArray]:
     """Newton's step on the loaded segments to the total `force`.
 
     Each line is solved by itself; a system of the size of the lines joins them.
@@ -191,6 +193,8 @@ def newton_step(
         [m]
     stiffness : float
         Stiffness of the total force against the approach. [N/m]
+    rise : ndarray, shape (lines, segments)
+        Rise of each force with the total one. [1]
     """
     lines, segments = loaded.shape
     unit = np.zeros((lines, segments))
@@ -233,15 +237,17 @@ def newton_step(
         stiffness += system[i, lines]
         missing += system[i, lines + 1] - totals[i]
     approach = missing / stiffness
-    step = np.empty((lines, segments))
+    step, rise = np.empty((lines, segments)), np.empty((lines, segments))
     for line in range(lines):
-        rim = 0.0
+        rim = rim_rise = 0.0
         for other in range(lines):
             change = system[other, lines] * approach - system[other, lines + 1]
             rim += coupling[line, other] * change
+            rim_rise += coupling[line, other] * system[other, lines]
         for k in range(segments):
             step[line, k] = unit[line, k] * (approach - rim) - back[line, k]
-    return step, approach, stiffness
+            rise[line, k] = unit[line, k] * (1.0 - rim_rise) / stiffness
+    return step, approach, stiffness, rise
 
 
 @kernel
@@ -359,7 +365,7 @@ def careful_solution(
     floor: float,
     tolerance: float,
     max_iterations: int,
-) -> tuple[FloatArray, float, float, int]:
+) -> tuple[FloatArray, float, float, int, FloatArray]:
     """The solution by steps that keep the balance and never increase the energy.
 
     A step ends where the first segment would pull; a free segment joins only at the least energy of
@@ -370,8 +376,9 @@ def careful_solution(
     closed, slope = deflections(
         forces, compliance, coupling, separation, length, local_a, local_b, floor
     )
+    rise = np.zeros(length.shape)
     for iteration in range(max_iterations):
-        step, approach, stiffness = newton_step(
+        step, approach, stiffness, rise = newton_step(
             force, forces, loaded, closed, slope, compliance, coupling
         )
         share = share_until_release(forces, step, loaded)
@@ -395,10 +402,10 @@ def careful_solution(
                 forces, compliance, coupling, separation, length, local_a, local_b, floor
             )
         elif is_solution(force, forces, approach, closed, length, tolerance):
-            return forces, approach, stiffness, iteration + 1
+            return forces, approach, stiffness, iteration + 1, rise
         elif is_even(closed, loaded, approach, tolerance):
             load_deepest(loaded, closed, length, approach)
-    return forces, np.nan, np.nan, -1
+    return forces, np.nan, np.nan, -1, rise
 
 
 @kernel
@@ -410,15 +417,15 @@ def solve_contact_loads(
     length: FloatArray,  # Lengths of the segments; zero where a line is not in contact. [m]
     local_a: FloatArray,  # A of delta_c. [m^2/N]
     local_b: float,  # B of delta_c. [m^2/N]
-    # Forces to begin with, whatever their sum: the solution for a force next to this one saves most
-    # of the steps, the lengths do for a start from nothing. [N]
+    # Forces to begin with, whatever their sum, those that pull as none: what is next to the solution
+    # saves most of the steps, the lengths do for a start from nothing. [N]
     start: FloatArray,
     # Largest gap or penetration at loaded segments over the approach, and largest error of the
     # balance over the force. [1]
     tolerance: float,
     # Most iterations of the careful method, for which one segment may leave or join at a time.
     max_iterations: int,
-) -> tuple[FloatArray, float, float, int]:
+) -> tuple[FloatArray, float, float, int, FloatArray]:
     """Forces on all segments of all lines. Theory (E5).
 
     Returns
@@ -431,8 +438,11 @@ def solve_contact_loads(
         Stiffness of the total normal force against the approach. [N/m]
     iterations : int
         Newton steps, or -1 without a solution.
+    rise : ndarray, shape (lines, segments)
+        Rise of each force with the total one, before the last step. [1]
     """
     approach = stiffness = np.nan
+    rise = np.zeros(length.shape)
     nearest = np.inf
     for line in range(length.shape[0]):
         for k in range(length.shape[1]):
@@ -451,20 +461,20 @@ def solve_contact_loads(
             forces, compliance, coupling, gap, length, local_a, local_b, floor
         )
         if iteration == 0 and not product(closed, length) < np.inf:
-            return np.zeros(length.shape), approach, stiffness, -1
+            return np.zeros(length.shape), approach, stiffness, -1, rise
         if is_solution(force, forces, approach, closed, length, tolerance):
-            return forces, approach + nearest, stiffness, iteration
+            return forces, approach + nearest, stiffness, iteration, rise
         load_touching(loaded, closed, length, approach, tolerance)
-        step, approach, stiffness = newton_step(
+        step, approach, stiffness, rise = newton_step(
             force, forces, loaded, closed, slope, compliance, coupling
         )
         quick_update(forces, step, loaded)
-    forces, approach, stiffness, iterations = careful_solution(
+    forces, approach, stiffness, iterations, rise = careful_solution(
         force, compliance, coupling, gap, length, local_a, local_b, floor, tolerance, max_iterations
     )
     if iterations > 0:
         iterations += QUICK_STEPS
-    return forces, approach + nearest, stiffness, iterations
+    return forces, approach + nearest, stiffness, iterations, rise
 
 
 @kernel
@@ -479,15 +489,15 @@ def solve_all_positions(
     start: FloatArray,
     tolerance: float,
     max_iterations: int,
-) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64], FloatArray]:
     """`solve_contact_loads` for arrays with mesh positions as their first axis."""
     positions = length.shape[0]
-    forces = np.zeros(length.shape)
+    forces, rise = np.zeros(length.shape), np.zeros(length.shape)
     approach = np.empty(positions)
     stiffness = np.empty(positions)
     iterations = np.empty(positions, dtype=np.int64)
     for m in range(positions):
-        forces[m], approach[m], stiffness[m], iterations[m] = solve_contact_loads(
+        forces[m], approach[m], stiffness[m], iterations[m], rise[m] = solve_contact_loads(
             force,
             compliance[m],
             coupling[m],
@@ -499,4 +509,4 @@ def solve_all_positions(
             tolerance,
             max_iterations,
         )
-    return forces, approach, stiffness, iterations
+    return forces, approach, stiffness, iterations, rise

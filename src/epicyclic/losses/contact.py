@@ -241,9 +241,9 @@ def _in_proportion(name: str, load: MeshLoad, positions: int, segments: int) -> 
 
 
 def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
-    rest = (*load.bodies, positions, segments, load.force, load.deviations)
+    rest = (load.force, load.deviations)
     if load.last is None:
-        loaded = load_mesh_elastically(load.mesh, *rest)
+        loaded = load_mesh_elastically(load.mesh, *load.bodies, positions, segments, *rest)
     else:
         loaded = load_mesh_next_to(load.last, *rest)
     return LineLoads(loaded.lines, loaded.line_load, loaded)

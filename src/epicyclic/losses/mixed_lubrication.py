@@ -68,7 +68,7 @@ def acting_roughness(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
     for roughness in contact.roughness:
         cutoff = usual_cutoff(roughness) if surfaces.cutoff is None else surfaces.cutoff
         heights.append(roughness * np.minimum(grown / cutoff**exponent, 1.0))
-    sigma: FloatArray = surfaces.running_in * np.hypot(*heights)
+    sigma: FloatArray = surfaces.running_in * np.sqrt(heights[0] ** 2 + heights[1] ** 2)
     return sigma
 
 

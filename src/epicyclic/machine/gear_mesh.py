@@ -119,10 +119,16 @@ class MeshDuty:
         """Along the transverse line of action. Theory (D1). [N]"""
         return abs(self.torque1) / self.gears.mesh.gear1.base_radius
 
+    @property
+    def deviations(self) -> FlankDeviations:
+        """Of the flanks in contact: with the power reversed, those behind."""
+        own = self.gears.deviations
+        return own if self.drives1 else replace(own, mirrored=True)
+
     def misaligned(self, by: float) -> MeshDuty:
         """The same with a further misalignment, along y of the contact lines, in metres."""
         deviations = self.gears.deviations
-        by = -by if deviations.mirrored else by
+        by = -by if self.deviations.mirrored else by
         tilted = replace(deviations, misalignment=deviations.misalignment + by)
         return replace(self, gears=replace(self.gears, deviations=tilted))
 
@@ -189,7 +195,7 @@ def distribute_load(duty: MeshDuty, last: LoadedMesh | None = None) -> LineLoads
     """
     models = duty.gears.models
     distribution = LOAD_DISTRIBUTIONS[models.load_distribution]
-    load = MeshLoad(duty.gears.mesh, duty.force, duty.gears.solids, duty.gears.deviations, last)
+    load = MeshLoad(duty.gears.mesh, duty.force, duty.gears.solids, duty.deviations, last)
     return distribution.distribute(load, models.positions, models.segments)
 
 
@@ -201,7 +207,7 @@ def elastic_loads(duty: MeshDuty) -> LoadedMesh:
         duty.gears.models.positions,
         duty.gears.models.segments,
         duty.force,
-        duty.gears.deviations,
+        duty.deviations,
     )
 
 

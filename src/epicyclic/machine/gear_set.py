@@ -348,11 +348,7 @@ class GearSet:
         duties = []
         for mesh in self.meshes:
             torque, speed = share * torques[mesh.key], state.speeds[mesh.bodies[0]] - carrier
-            drives1 = torque * speed >= 0
-            if not drives1:
-                mirrored = replace(mesh.deviations, mirrored=True)
-                mesh = replace(mesh, deviations=mirrored)
-            duties.append(MeshDuty(mesh, torque, speed, drives1))
+            duties.append(MeshDuty(mesh, torque, speed, torque * speed >= 0))
         return tuple(duties)
 
     def shares(self, state: State, torques: Mapping[str, float]) -> tuple[float, ...]:
@@ -360,7 +356,8 @@ class GearSet:
         if self.sharing is None:
             return (1.0,)
         bearing = self.planets[0].bearing
-        duties = self.duties(state, torques, 1 / self.count)
+        alike = self.sharing.whatever_the_load
+        duties = () if alike else self.duties(state, torques, 1 / self.count)
         rollers = bearing.bearing if isinstance(bearing, PlanetBearing) else None
         return planet_shares(self.sharing, duties, rollers)
 
