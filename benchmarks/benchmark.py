@@ -1,7 +1,7 @@
 """Time what users wait for. Run: python benchmarks/benchmark.py
 
-With the folder of the sources of another version behind it, the same work is timed with both, in
-turns, and only what has a goal; of maps and bands a tenth, or with --whole all points.
+With the Python of an environment that has another version behind it, the same work is timed with
+both, in turns, and only what has a goal; of maps and bands a tenth, or with --whole all points.
 
 Seconds depend on the machine; the ratio to a reference measured in the same run does not, or much
 less. Whole commands run in processes of their own, the first one with an empty folder
@@ -49,11 +49,11 @@ MATRIX = {
 GEAR_SETS = ("n3", "n4", "n5", "n6", "n6-polished")
 
 
-def process_seconds(*arguments: str, **environment: str) -> float:
+def process_seconds(*arguments: str, program: str = sys.executable, **environment: str) -> float:
     """Wall time of one Python process."""
     start = time.perf_counter()
     subprocess.run(
-        [sys.executable, *arguments],
+        [program, *arguments],
         check=True,
         stdout=subprocess.DEVNULL,
         env={**os.environ, **environment},
@@ -615,6 +615,9 @@ SNIPPETS = {
 }
 
 
+Measure = Callable[[str], float]  # Of the version that a Python has.
+
+
 class Work(NamedTuple):
     """A command of many points."""
 
@@ -636,77 +639,84 @@ COMMANDS = {
 
 def compare(other: Path, whole: bool) -> None:
     """Both versions in turns: seconds of each, and their ratio."""
-    sources = {"other": other, "this": Path(ep.__file__).parents[1]}
+    programs = (str(other), sys.executable)
+    where = "import epicyclic; print(epicyclic.__file__)"
 
-    def row(what: str, goal: str, measure: Callable[[], float], unit: str, repeats: int) -> None:
-        found: dict[str, list[float]] = {name: [] for name in sources}
+    def row(what: str, goal: str, measure: Measure, unit: str, repeats: int) -> None:
+        found: dict[str, list[float]] = {program: [] for program in programs}
         for _ in range(repeats):
-            for name, source in sources.items():
-                os.environ["PYTHONPATH"] = str(source)
-                found[name].append(measure())
+            for program in programs:
+                found[program].append(measure(program))
         before, this = (statistics.median(own) for own in found.values())
         ratio = f"{this / before:.2f}" if before else ""
         show(what, f"{before:.4g} {unit}", f"{this:.4g} {unit}", ratio, goal)
 
-    def first() -> float:
+    def first(program: str) -> float:
         with tempfile.TemporaryDirectory() as empty:
-            return process_seconds("-m", "epicyclic", "run", "talbot-2012", NUMBA_CACHE_DIR=empty)
+            return process_seconds(*RUN, program=program, NUMBA_CACHE_DIR=empty)
 
-    def printed(snippet: str) -> float:
-        command = [sys.executable, "-c", snippet]
-        return float(subprocess.run(command, check=True, capture_output=True).stdout)
+    def warm(program: str) -> float:
+        return process_seconds(*RUN, program=program)
+
+    def printed(snippet: str, program: str) -> str:
+        command = [program, "-c", snippet]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+    def number(snippet: str, program: str) -> float:
+        return float(printed(snippet, program))
 
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         (folder / "CASE.toml").write_text(case_text(gearbox(), [], {}), encoding="utf-8")
 
-        def command(work: Work) -> float:
+        def command(work: Work, program: str) -> float:
             """Seconds of the command; its largest memory, and the error that a map states."""
             argument, shorter = (work.tenth[0],) * 2 if whole else work.tenth
             given = [shorter if it == argument else it for it in work.command]
             files = [str(folder / f"{it}.toml") if it.isupper() else it for it in given]
-            twenty = twenty_inputs(Path(os.environ["PYTHONPATH"]))
+            twenty = twenty_inputs(Path(printed(where, program)).parents[1])
             (folder / "TWENTY.toml").write_text(twenty, encoding="utf-8")
             files += ["-o", str(folder / "map.nc")] if files[0] == "map" else []
             start = time.perf_counter()
             process = subprocess.Popen(
-                [sys.executable, "-m", "epicyclic", *files],
+                [program, "-m", "epicyclic", *files],
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
             )
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = status
             assert not status, files
-            seconds, own = time.perf_counter() - start, os.environ["PYTHONPATH"]
-            memory[own] = max(memory.get(own, 0.0), usage.ru_maxrss / 1024)
+            seconds = time.perf_counter() - start
+            memory[program] = max(memory.get(program, 0.0), usage.ru_maxrss / 1024)
             if files[0] == "map":
                 with netCDF4.Dataset(folder / "map.nc") as data:
-                    stated[own] = 100 * float(data.torque_interpolation_error)
+                    stated[program] = 100 * float(data.torque_interpolation_error)
             return seconds
 
         memory: dict[str, float] = {}
         stated: dict[str, float] = {}  # by the last of the maps, which is that of the gearbox
         heading("Both versions in turns", "other", "this", "ratio", "goal")
         row("first run ever", "30 s", first, "s", 1)
-        row("run, warm", "1.2 s", lambda: process_seconds(*RUN), "s", REPEATS)
+        row("run, warm", "1.2 s", warm, "s", REPEATS)
         for what, (goal, snippet) in SNIPPETS.items():
-            row(what, goal, partial(printed, snippet), "s", 1 if snippet is SETTLED_MATRIX else 3)
+            repeats = 1 if snippet is SETTLED_MATRIX else 3
+            row(what, goal, partial(number, snippet), "s", repeats)
         for what, work in COMMANDS.items():
             part, goal = ("", work.goal) if whole else (", a tenth", f"{work.goal} for all")
             row(f"{what}{part}", goal, partial(command, work), "s", 1)
-        row("largest memory", "400 MB", lambda: memory[os.environ["PYTHONPATH"]], "MB", 1)
-        row("stated error of the last map", "2 %", lambda: stated[os.environ["PYTHONPATH"]], "%", 1)
+        row("largest memory", "400 MB", memory.__getitem__, "MB", 1)
+        row("stated error of the last map", "2 %", stated.__getitem__, "%", 1)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="Time what users wait for.")
-    about = "Folder of the sources of another version, to time both in turns."
-    parser.add_argument("sources", nargs="?", type=Path, help=about)
-    about = "With SOURCES: whole maps and bands; else a tenth of their points."
+    about = "Python of an environment that has another version, to time both in turns."
+    parser.add_argument("other", nargs="?", type=Path, help=about)
+    about = "With OTHER: whole maps and bands; else a tenth of their points."
     parser.add_argument("--whole", action="store_true", help=about)
     given = parser.parse_args()
-    if given.sources is not None:
-        compare(given.sources.resolve(), given.whole)
+    if given.other is not None:
+        compare(given.other.absolute(), given.whole)
         return
     heading("Epicyclic benchmark", "measured", "aim", "ratio", "to")
     point = show_commands()

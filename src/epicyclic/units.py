@@ -374,7 +374,7 @@ class Quantity:
 
     def _converted(self, number: float, unit: str) -> float:
         try:
-            return _convert(number, unit, self.si)
+            return _convert(number + 0.0, unit, self.si)  # one zero, whatever was read before
         except _UnitError as error:
             remedy = error.remedy or self._remedy_of_unit(number, unit)
             raise self._error(str(error), remedy) from None
@@ -410,7 +410,10 @@ class Quantity:
 
     def scale_and_offset(self) -> tuple[float, float]:
         """What arrays of SI values are multiplied by, and what is added, for the display unit."""
-        return _rounded_scale(self) if self.si else (1.0, 0.0)
+        if not self.si:
+            return 1.0, 0.0
+        zero = self.to_display(0.0)
+        return self.to_display(1.0) - zero, zero
 
     def text(self, value: float, digits: int = 6) -> str:
         """SI `value` as text in the display unit, ``"139.23 mm"``."""
@@ -488,12 +491,6 @@ def _scale(si: str, display: str) -> tuple[float, float]:
         return 1 / size, 0.0
     zero, one = (float(registry().Quantity(it, si).to(display).magnitude) for it in (0.0, 1.0))
     return one - zero, zero
-
-
-@cache
-def _rounded_scale(unit: Quantity) -> tuple[float, float]:
-    zero = unit.to_display(0.0)
-    return unit.to_display(1.0) - zero, zero
 
 
 # Kinds of values that are only shown; a case does not read them, so that they have no bounds.

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from epicyclic.machine.element import LOAD_DEPENDENT, ElementResult, Loss
-from epicyclic.machine.solve import NEAR, Answer, distance
+from epicyclic.machine.solve import NEAR, Answer
 
 
 def result(watts, mesh="S.mesh"):
@@ -116,8 +116,3 @@ def test_a_load_that_did_not_move_before_foretells_little():
     answer = after(Answer(*both(100.0, 50.0)), *both(99.9, 50.0))
     assert answer.predicted(both(99.9, 50.0001)[0], 1e-6) is None
     assert answer.predicted(both(99.9001, 50.0)[0], 1e-6) is not None
-
-
-def test_distance_is_relative_to_the_largest_load():
-    assert distance({"one": 1.0, "two": 10.0}, {"one": 1.1, "two": 10.0}) == pytest.approx(0.01)
-    assert distance({"one": 1.0}, {"one": 0.0}) == 0.0

@@ -14,7 +14,7 @@ import pytest
 from epicyclic import cache_folder
 from epicyclic.cache_folder import private_folder
 from epicyclic.kernels import compiling as _jit
-from epicyclic.kernels.mixed_lubrication import eyring_stress
+from epicyclic.kernels.contact_load import local_law
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX permissions")
 
@@ -81,7 +81,7 @@ def test_a_folder_that_others_can_write_to_is_not_taken(places, mode, which):
 def test_the_kernels_of_this_run_are_kept():
     assert _jit._CACHE_DIR is not None
     assert Path(_jit._CACHE_DIR).is_dir()
-    cached = eyring_stress._cache
+    cached = local_law._cache
     assert cached.cache_path == str(_jit._CACHE_DIR)  # wherever the package is
 
 

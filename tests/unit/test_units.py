@@ -195,6 +195,7 @@ def test_text_is_short_and_exact_text_is_exact():
     assert LENGTH.text(0.13923) == "139.23 mm"
     assert LENGTH.text(third) == "333.333 mm"
     assert LENGTH.exact_text(0.13923) == "139.23 mm"
+    assert TORQUE.exact_text(TORQUE.parse("-0.0 N*m")) == "0 N*m"
     assert LENGTH.parse(LENGTH.exact_text(third)) == third
 
 

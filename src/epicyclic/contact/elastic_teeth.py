@@ -511,11 +511,6 @@ class LoadedMesh:
     rise: FloatArray
 
     @property
-    def lines(self) -> ContactLines:
-        """The contact lines of the mesh."""
-        return self.compliance.lines
-
-    @property
     def pattern(self) -> BoolArray:
         """Which segments carry load, shape (positions, lines, segments)."""
         return self.line_load > 0
@@ -523,7 +518,7 @@ class LoadedMesh:
     @property
     def pair_force(self) -> FloatArray:
         """Normal force on each pair of teeth, shape (positions, lines). [N]"""
-        force: FloatArray = (self.line_load * self.lines.length).sum(axis=2)
+        force: FloatArray = (self.line_load * self.compliance.lines.length).sum(axis=2)
         return force
 
     @property
@@ -552,7 +547,7 @@ class LoadedMesh:
 
     def mean(self, over_period: FloatArray) -> float:
         """Mean over the mesh period of a figure of shape (positions,)."""
-        return float(over_period @ self.lines.weight)
+        return float(over_period @ self.compliance.lines.weight)
 
 
 @lru_cache(maxsize=KEPT_LOADS)
@@ -577,17 +572,15 @@ def load_mesh_elastically(
 
 
 def load_mesh_next_to(
-    last: LoadedMesh,
-    force: float,
-    deviations: FlankDeviations = UNMODIFIED,
+    last: LoadedMesh, force: float, deviations: FlankDeviations = UNMODIFIED
 ) -> LoadedMesh:
     """The mesh of `last` under nearly the same load, which saves most of the work.
 
     Parameters as for `load_mesh_elastically`, which has the same solution but for its tolerance.
     """
-    separation = _separation(last.mesh, deviations, last.lines)
+    separation = _separation(last.mesh, deviations, last.compliance.lines)
     more = (force - last.force) / math.cos(last.mesh.gear1.rack.base_helix_angle)
-    start = last.line_load * last.lines.length + more * last.rise
+    start = last.line_load * last.compliance.lines.length + more * last.rise
     start.flags.writeable = False  # as lengths are: the kernel is compiled once for both
     return _loaded(last.mesh, last.compliance, force, separation, start)
 

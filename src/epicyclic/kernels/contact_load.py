@@ -417,8 +417,8 @@ def solve_contact_loads(
     length: FloatArray,  # Lengths of the segments; zero where a line is not in contact. [m]
     local_a: FloatArray,  # A of delta_c. [m^2/N]
     local_b: float,  # B of delta_c. [m^2/N]
-    # Forces to begin with, whatever their sum, those that pull as none: what is next to the solution
-    # saves most of the steps, the lengths do for a start from nothing. [N]
+    # Forces to begin with, whatever their sum, none for those that pull: what is next to the
+    # solution saves most of the steps, the lengths do for a start from nothing. [N]
     start: FloatArray,
     # Largest gap or penetration at loaded segments over the approach, and largest error of the
     # balance over the force. [1]

@@ -50,14 +50,12 @@ def line_load_at_pressure(p_h: Real, r_eq: Real, e_eq: float) -> Real:
 def power(*bases_exponents: Any) -> Any:
     """Product of base^exponent, bases not negative; numpy's own takes three times as long."""
     bases, exponents = bases_exponents[::2], bases_exponents[1::2]
-    first, *others = (it * _logarithm(base) for base, it in zip(bases, exponents, strict=True))
+    first, *others = (
+        it * (math.log(max(base, _LEAST)) if isinstance(base, float)  # of numbers the faster one
+              else np.log(np.maximum(base, _LEAST)))
+        for base, it in zip(bases, exponents, strict=True)
+    )  # fmt: skip
     return np.exp(sum(others, first))
-
-
-def _logarithm(base: Any) -> Any:
-    if isinstance(base, float):  # of a number numpy takes ten times as long
-        return math.log(max(base, _LEAST))
-    return np.log(np.maximum(base, _LEAST))
 
 
 _LEAST = 1e-300

@@ -246,7 +246,7 @@ def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
         loaded = load_mesh_elastically(load.mesh, *load.bodies, positions, segments, *rest)
     else:
         loaded = load_mesh_next_to(load.last, *rest)
-    return LineLoads(loaded.lines, loaded.line_load, loaded)
+    return LineLoads(loaded.compliance.lines, loaded.line_load, loaded)
 
 
 LOAD_DISTRIBUTIONS: dict[str, LoadDistribution] = {

@@ -237,7 +237,7 @@ class Statics:
         efficiencies: Mapping[str, float],  # Of each mesh with its carrier at rest. [1]
         frictions: Iterable[Friction] = (),
     ) -> Balance:
-        """Torques and mesh loads from the balance of every body. Theory (T3), (T5)."""
+        """Torques and mesh loads from the balance of every body. Theory (T3), (T5), (T6)."""
         rows, couplings, speeds = self.machine.rows, self.machine.couplings, self.speeds
         matrix, scale = self._fixed[0].copy(), []
         for number, row in enumerate(rows):  # the term of the driven gear is reduced
@@ -248,7 +248,17 @@ class Statics:
             matrix[:, number] = column
             scale.append(length)
         scale += self._fixed[1]
-        known = self._known_torques(frictions)
+        known_of = {body: self._given[body] for body in self._place}  # with those of friction (T6)
+        for friction in frictions:
+            one, two = friction.between
+            difference = speeds[one] - speeds[two]
+            if difference:
+                torque = friction.watts / difference
+                if one in known_of:
+                    known_of[one] -= torque
+                if two in known_of:
+                    known_of[two] += torque
+        known = np.array([*known_of.values()])
         found, unique = _least(matrix, -known)
         values = found.tolist()
         size = max(map(abs, (*known.tolist(), *values)), default=0.0)
@@ -308,20 +318,6 @@ class Statics:
                 column[self._place[body]] += coefficient
         length = math.hypot(*column) or 1.0
         return [coefficient / length for coefficient in column], length
-
-    def _known_torques(self, frictions: Iterable[Friction]) -> FloatArray:
-        """Given torques and those of friction on every body. Theory (T6). [N m]"""
-        torques = {body: self._given[body] for body in self._place}
-        for friction in frictions:
-            one, two = friction.between
-            difference = self.speeds[one] - self.speeds[two]
-            if difference:
-                torque = friction.watts / difference
-                if one in torques:
-                    torques[one] -= torque
-                if two in torques:
-                    torques[two] += torque
-        return np.array([*torques.values()])
 
 
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:

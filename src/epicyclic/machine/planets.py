@@ -460,8 +460,9 @@ def _mesh_moment(duty: MeshDuty) -> float:
     if duty.torque1 == 0:
         return 0.0
     loaded = elastic_loads(duty)
-    height = loaded.lines.face_position - duty.gears.mesh.face_width / 2
-    moments = (loaded.line_load * loaded.lines.length * height).sum(axis=(1, 2))
+    lines = loaded.compliance.lines
+    height = lines.face_position - duty.gears.mesh.face_width / 2
+    moments = (loaded.line_load * lines.length * height).sum(axis=(1, 2))
     return loaded.mean(moments) * math.cos(duty.gears.mesh.gear1.rack.base_helix_angle)
 
 

@@ -146,12 +146,8 @@ class _Step:
         return bend * self.size * (self.before + self.size) + STEEPEST * self.aside
 
 
-def distance(old: Mapping[str, float], new: Mapping[str, float]) -> float:
-    """Largest change of a load, relative to the largest load. [1]"""
-    return _apart([old[key] for key in new], list(new.values()))
-
-
 def _apart(old: list[float], new: list[float]) -> float:
+    """Largest change of a load, relative to the largest load. [1]"""
     largest = max(map(abs, new), default=0.0)
     if not largest:
         return 0.0
@@ -413,7 +409,7 @@ def _answered(
         return _Known(Answer(loads, result), result, loads, state.drives)
     if _agrees(known.loads, loads):
         return known
-    passed = distance(known.loads, loads)
+    passed = _apart([known.loads[key] for key in loads], [*loads.values()])
     predicted = known.answer.predicted(loads, max(allowed, PREDICTED * passed))
     if predicted is not None:
         return _Known(known.answer, predicted, loads, state.drives)
@@ -492,7 +488,7 @@ class _Branch:
         )
         # an error of the losses changes the loads about as much as the losses do of which it is
         # that share: it may change them by less than they have to agree
-        moved = distance(self.unlost.meshes, found.meshes)
+        moved = _apart([self.unlost.meshes[key] for key in found.meshes], [*found.meshes.values()])
         allowed = min(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
         with np.errstate(over="ignore"):  # a loss may be too large for a number
             self.known = {
