@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.machine import build
@@ -157,6 +156,8 @@ class _Life:
 
     def mean_area(self) -> FloatArray:
         """Area of the section where it is a pocket, mean over the face. [m^2]"""
+        from scipy.integrate import cumulative_trapezoid  # 40 MB that maps do without
+
         first, last = self.section[..., 0], self.section[..., -1]
         if first[0, 0] == last[0, 0]:
             return np.where(self.living[..., 0], self.read(self.geometry.area)[..., 0], 0.0)

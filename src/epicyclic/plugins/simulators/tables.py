@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from epicyclic.arrays import FloatArray
 from epicyclic.errors import Problem, printable
@@ -184,6 +183,8 @@ def loss_table(data: xr.Dataset) -> tuple[FloatArray, FloatArray]:
     deviation : array, shape (speeds, torques)
         Deviation of the table less that of the map. [N m]
     """
+    from scipy.optimize import lsq_linear  # 40 MB that maps do without
+
     to_rpm, _ = RPM.scale_and_offset()
     torque = data["torque"].values
     columns = np.stack([np.maximum(torque, 0), np.maximum(-torque, 0), np.ones_like(torque)], 1)
