@@ -94,6 +94,25 @@ def test_the_film_is_as_hot_as_its_stress_makes_it(contact):
         assert stress[i] < stress_at(oil[0], pressure[i], rate[i], oil)
 
 
+def test_the_stress_is_found_however_stiff_the_oil():
+    """Newton's method alone ran in circles where an oil of 5e5 mm^2/s heats itself by 100 K."""
+    rng = np.random.default_rng(20)
+    for _ in range(300):
+        n, viscosity = 40, 10 ** rng.uniform(-0.3, 6)
+        oil = np.array(
+            [rng.uniform(230, 450), math.log(viscosity + 0.7), math.log(viscosity),
+             rng.uniform(2, 5), 0.9e-3, 10 ** rng.uniform(-9, -7.2), rng.uniform(0, 0.3)]
+        )  # fmt: skip
+        pressure, rate = 10 ** rng.uniform(5, 9.8, n), 10 ** rng.uniform(-3, 9, n)
+        warm, heating = 10 ** rng.uniform(-6, 2, n), 10 ** rng.uniform(-14, -5.3, n)
+        stress = film_stress(pressure, rate, warm, heating, 0.047, oil)
+        log_rate = np.log(rate * (oil[4] * oil[5] / 0.047))
+        hot = oil[0] + warm + heating * stress
+        assert stress == pytest.approx(
+            eyring_stress(hot, pressure, log_rate, 0.047, oil)[0], rel=1e-7
+        )
+
+
 def test_derivative_of_the_stress_to_the_temperature(contact):
     oil = model._oil_constants(contact.oil)
     for pressure, log_rate in ((0.0, -9.0), (0.4e9, -6.0), (1.5e9, -4.0)):

@@ -64,16 +64,17 @@ def film_stress(
     log_rate = np.log(np.where(sheared, rate, 1.0) * (oil[4] * oil[5] / limit))
     base, stress = oil[0] + warm, START * limit * pressure
     low, high = np.zeros_like(stress), np.full_like(stress, math.inf)
-    for _ in range(STEPS):  # Newton, bisection where that leaves what is known
+    moved = high
+    for _ in range(STEPS):  # Newton, bisection where that leaves what is known or runs in circles
         hot, slope = eyring_stress(base + heating * stress, pressure, log_rate, limit, oil)
         step = (hot - stress) / (1.0 - heating * slope)
-        last, stress = stress, stress + step
-        if (np.abs(step) <= SMALL_STEP * stress).all():
+        last, stress, size = stress, stress + step, np.abs(step)
+        if (size <= SMALL_STEP * stress).all():
             break
         above = hot > last
-        np.copyto(low, last, where=above)
-        np.copyto(high, last, where=~above)
-        left = (stress < low) | (stress > high)
+        low, high = np.where(above, last, low), np.where(above, high, last)
+        left = (stress < low) | (stress > high) | (size > moved / 2.0)
         if left.any():
-            stress = np.where(left, (low + high) / 2.0, stress)
+            stress = np.where(left, np.minimum((low + high) / 2.0, 2.0 * last), stress)
+        moved = np.abs(stress - last)
     return np.where(sheared, stress, 0.0)
