@@ -368,26 +368,13 @@ class Switch:
 
 @dataclass(frozen=True, slots=True)
 class Train:
-    """The stages of a file and the shafts between them.
+    """The stages of a file and the shafts between them."""
 
-    Attributes
-    ----------
-    unit : Component
-        The gear unit, or the first stage if the file has none.
-    sets : dict of str to PlanetarySet or Pair
-        By their names in the case.
-    shafts : dict of str to Shaft
-        By their names.
-    switches : tuple of Switch
-    bearings : dict of str to Joint
-        All but those of planets, by their names in the case.
-    """
-
-    unit: Component
-    sets: dict[str, PlanetaryParts | Pair]
+    unit: Component  # The gear unit, or the first stage if the file has none.
+    sets: dict[str, PlanetaryParts | Pair]  # By their names in the case, as shafts and bearings.
     shafts: dict[str, Shaft]
     switches: tuple[Switch, ...]
-    bearings: dict[str, Joint]
+    bearings: dict[str, Joint]  # All but those of planets.
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
