@@ -35,10 +35,6 @@ class Mesh:
     stage: Component
     gears: tuple[Component, Component]
 
-    def mate(self, gear: Component) -> Component:
-        """The other gear."""
-        return self.gears[1] if self.gears[0].id == gear.id else self.gears[0]
-
 
 @dataclass(frozen=True, slots=True)
 class Pair:
