@@ -90,8 +90,8 @@ class Kind:
 class Group:
     """One table of a case: its keys, and the tables in it."""
 
-    key: str  # Dotted, as in ``--set``; its last part.
-    name: str  # Dotted, as in ``--set``; its last part.
+    key: str  # Dotted, as in ``--set``.
+    name: str  # Its last part.
     about: str
     entries: tuple[Entry, ...]
     groups: tuple[Group, ...]

@@ -458,7 +458,7 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
         elif not isinstance(found, ResultRecord):
             write_map(found, path, name)
         elif path.suffix == ".json":
-            known = quick_known(study.case, found.result, brief=True)
+            known = quick_known(study.case, found.result)
             path.write_text(f"{result_json(found.result, known)}\n", encoding="utf-8")
         else:
             save(found.result, path)
