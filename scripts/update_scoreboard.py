@@ -14,17 +14,18 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from epicyclic.oil.oil import LIMITING_TRACTION as LIMITS
 from epicyclic.schema.read import plain
 from epicyclic.show.plots.style import figure_bytes
 from epicyclic.units import percent
-from epicyclic.validation.pages import score_markdown
+from epicyclic.validation.pages import SCORE_HEADS, score_rows
 from epicyclic.validation.plots import scores_figure
 from epicyclic.validation.scoreboard import (
     DEFAULTS,
     MeasuredSet,
     Score,
-    model_factor,
     read_sets,
     scoreboard,
     scored,
@@ -41,6 +42,19 @@ RANGES: dict[str, tuple[float, float]] = {
     LIMITING_TRACTION: (0.9, 1.1),  # Times that of the oil; estimate.
 }
 """Ends of what parameters of mixed lubrication may be. [1]"""
+
+
+def score_markdown(scores: Sequence[Score]) -> str:
+    """`score_rows` as the manual shows them."""
+    heads = ("measured set", *SCORE_HEADS[1:])
+    cells = [heads, ("---",) * len(heads), *score_rows(scores)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in cells).replace("|  |", "| |")
+
+
+def model_factor(scores: Sequence[Score]) -> float:
+    """Lognormal factor of a model: exp of the rms of ln(computed/measured), all sets alike."""
+    squares = [np.nanmean(np.log1p(score.errors) ** 2) for score in scores]
+    return float(np.exp(np.sqrt(np.mean(squares))))
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -162,7 +162,7 @@ FILE, REMEDY = "FILE", "Name another file."
 
 def check_place(path: Path) -> None:
     """Raise `InputError` unless a file can be written to `path`."""
-    with _plain_errors(path, FILE):
+    with _plain_errors(path):
         folder = path.absolute().parent
         with suppress(FileNotFoundError):
             path.lstat()  # raises for a name that is too long
@@ -197,14 +197,14 @@ def check_folder(path: Path, option: str = FILE) -> None:
 
 
 @contextmanager
-def whole_file(path: Path, option: str = FILE) -> Iterator[Path]:
+def whole_file(path: Path) -> Iterator[Path]:
     """A file to be written in a private folder; it replaces `path` if nothing goes wrong.
 
     A file that is replaced keeps its permissions, a new one gets those that the umask of the user
     leaves it. A link is followed. Raises `InputError` if the file cannot be written: the disk is
-    full, the name is too long. `option` is that of its problem.
+    full, the name is too long.
     """
-    with _plain_errors(path, option):
+    with _plain_errors(path):
         target = path.resolve()
         if target.exists() and not os.access(target, os.W_OK):
             raise PermissionError(errno.EACCES, "it is write-protected")
@@ -228,7 +228,7 @@ def write_file(path: Path, content: str | bytes) -> None:
     Raises `InputError`: As for `whole_file`.
     """
     data = content.encode() if isinstance(content, str) else content
-    with _plain_errors(path, FILE):
+    with _plain_errors(path):
         if path.exists() and not path.is_file():
             path.write_bytes(data)  # must not be replaced by a file
             return
@@ -237,7 +237,7 @@ def write_file(path: Path, content: str | bytes) -> None:
 
 
 @contextmanager
-def _plain_errors(path: Path, option: str) -> Iterator[None]:
+def _plain_errors(path: Path) -> Iterator[None]:
     """What the system and the libraries raise if a file cannot be written, as `InputError`."""
     try:
         _check_name(path)
@@ -246,12 +246,12 @@ def _plain_errors(path: Path, option: str) -> Iterator[None]:
         raise
     except OSError as error:
         reason = f"cannot be written: {error.strerror or error}."
-        raise _error(path, option, reason, REMEDY) from None
+        raise _error(path, FILE, reason, REMEDY) from None
     except RuntimeError as error:
         if not str(error).startswith("NetCDF: "):
             raise
         allowed = f"cannot be written: {error} (a full disk is one cause)."
-        raise _error(path, option, allowed, REMEDY) from None
+        raise _error(path, FILE, allowed, REMEDY) from None
 
 
 def _check_name(path: Path) -> None:

@@ -21,6 +21,7 @@ def test_a_train_is_started_checked_and_run(epicyclic):
     assert checked.returncode == 0, checked.stderr
     assert checked.stdout.startswith("axle.toml: a valid train case; 3 points to check:\n")
     assert "-7.8996" in checked.stdout
+    assert "motor_seal seals motor, housing" in " ".join(checked.stdout.split())
     run = epicyclic("run", "axle.toml", "--details", *SMALL)
     assert run.returncode == 0, run.stderr
     assert "ratio -7.8996 " in run.stdout

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from frozen.entries import Maker, outcome_of
-from frozen.texts import OTHERWISE, frozen_texts, improved, kept
+from frozen.texts import IMPROVED, OTHERWISE, frozen_texts, improved, kept
 
 FROZEN = frozen_texts()
 ENTRIES = [
@@ -31,4 +31,4 @@ def test_texts_are_the_frozen_ones(name, tmp_path, maker):
     if entry["call"] == "command" and entry["with"][:1] == ["run"] and "output" in entry["outcome"]:
         entry = entry | {"with": [*entry["with"], "--details"]}  # with which it prints that now
     found = outcome_of(entry, FROZEN["bases"], tmp_path, maker)
-    assert kept(found) == improved(entry["outcome"])
+    assert kept(found) == improved(entry["outcome"]), f"see the head of {IMPROVED}"

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 __all__ = [
+    "IMPROVED",
     "OTHERWISE",
     "TEXTS",
     "changed_words",

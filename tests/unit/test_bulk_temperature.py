@@ -10,7 +10,6 @@ from epicyclic.contact.temperatures import (
     bulk_rise_of_loss,
     iso_mean_friction,
     mates_factor,
-    relief_factor,
     roughness_factor,
 )
 from reference.heat_transfer import bulk_rise_of_integral_flash
@@ -20,7 +19,7 @@ def test_bulk_temperature_over_loss_size_and_cooling():
     base = bulk_rise_of_loss(1e3, 0.1, 0.02, 1.0)
     assert bulk_rise_of_loss(0.0, 0.1, 0.02, 1.0) == 0.0
     assert bulk_rise_of_loss(2e3, 0.2, 0.02, 1.0) == pytest.approx(base, rel=1e-12)  # by area
-    assert bulk_rise_of_loss(1e3, 0.1, 0.02, 1.2, 1.5) == pytest.approx(base * 0.8, rel=1e-12)
+    assert bulk_rise_of_loss(1e3, 0.1, 0.02, 1.2) == pytest.approx(base * 1.2, rel=1e-12)
 
 
 def test_mean_friction_in_printed_units():
@@ -29,13 +28,6 @@ def test_mean_friction_in_printed_units():
     assert rough == pytest.approx(2.2 * 0.04**0.25, rel=1e-12)
     found = iso_mean_friction(500e3, 5.0, 10e-3, 20e-3, rough, 0.8)
     assert found == pytest.approx(0.045 * 10**0.2 * 20**-0.05 * rough * 0.8, rel=1e-12)
-
-
-def test_tip_relief_cools():
-    # without relief the factor is near 1, with the best one the polynomial at 1
-    assert relief_factor(0.8, 0.0) == pytest.approx(1.06, abs=0.002)
-    assert relief_factor(1.0, 1.0) == pytest.approx(1 + 0.24 + 0.71, rel=1e-12)
-    assert relief_factor(0.0, 1.0) == 1.0
 
 
 def test_a_gear_with_more_mates_is_hotter():

@@ -26,14 +26,16 @@ def terms_of(kind):
 def test_losses_of_an_element_have_an_error(kind):
     terms = terms_of(kind)
     assert terms
-    assert {term for term in terms if model_form_of(f"part.{term}") == "other"} == set()
+    lacking = {term for term in terms if model_form_of(f"part.{term}") == "other"}
+    assert lacking == set(), "add a [[model_form]] to library/uncertainty.toml"
     assert model_form_of("part.unheard_of") == "other"
 
 
 def test_kinds_of_errors_are_in_the_manual():
     text = (DOCS / "how-to" / "uncertainty.md").read_text(encoding="utf-8")
     kinds = {entry["kind"] for entry in library.uncertainty_table()["model_form"]}
-    assert {kind for kind in kinds if f"`{kind}`" not in text} == set()
+    lacking = {kind for kind in kinds if f"`{kind}`" not in text}
+    assert lacking == set(), "name them in docs/how-to/uncertainty.md"
 
 
 def test_figures_of_parts_are_in_the_manual():
@@ -41,4 +43,4 @@ def test_figures_of_parts_are_in_the_manual():
     own = [it for it in PartFigures.__subclasses__() if it.__module__.startswith("epicyclic.")]
     assert len(own) >= len(_BUILDERS)
     missing = [it.__qualname__ for it in own if f"{it.__module__}.{it.__qualname__}" not in text]
-    assert missing == []
+    assert missing == [], "add them to docs/reference/results.md"

@@ -522,7 +522,6 @@ def test_tolerance_gives_a_band_around_every_variant():
     assert math.isclose(float((data.loss_high + data.loss_low)[0]), 2 * float(data.loss[0]))
 
 
-@pytest.mark.slow
 def test_harmonics_for_rotor_dynamics_give_back_stiffness_and_transmission_error():
     case = load_case(gear_pair(), {"numerics.mesh_positions": 40, "numerics.contact_segments": 6})
     found = rotor_dynamics(case)

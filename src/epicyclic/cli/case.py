@@ -70,7 +70,7 @@ def run(
         check_result_output(save)
     with telling_contacts(loaded):
         result = solve(loaded)
-    known = quick_known(loaded, result, brief=True)
+    known = quick_known(loaded, result)
     if save is not None:
         from epicyclic.show.record import record, save_result
 
@@ -100,7 +100,7 @@ def telling_contacts(case: Case) -> Iterator[None]:
         with progress_bar("contacts of the mesh") as progress, contact_progress(progress):
             yield
     elif sys.stderr.isatty():
-        with working("solving"):  # pockets may take minutes too
+        with working():  # pockets may take minutes too
             yield
     else:
         yield

@@ -150,15 +150,15 @@ def tell_compilation() -> None:
 
 
 @contextmanager
-def working(noun: str) -> Iterator[None]:
+def working() -> Iterator[None]:
     """A bar without an end, and the time, for what takes long and tells nothing of itself."""
     console = Console(stderr=True)
     if not console.is_terminal or _is_off():
         yield
         return
-    columns = (TextColumn(noun), BarColumn(), TimeElapsedColumn())
+    columns = (TextColumn("solving"), BarColumn(), TimeElapsedColumn())
     bar = Progress(*columns, console=console, transient=True)
-    bar.add_task(noun, total=None)
+    bar.add_task("solving", total=None)
     begin = threading.Timer(LONG_SECONDS, bar.start)
     begin.daemon = True
     begin.start()

@@ -63,7 +63,7 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     if animate is not None:
         check_ending("--animate", animate, (ANIMATION,))
     loaded = load_with(case, changes)
-    with working("solving"):
+    with working():
         meshes = pocket_details(loaded)
     terminal().print(pocket_tables(meshes))
     for key, mesh in meshes.items():

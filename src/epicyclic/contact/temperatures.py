@@ -148,34 +148,15 @@ def roughness_factor(
     return 2.2 * math.pow(roughness * MICROMETRE / (radius * MM), 0.25)
 
 
-def relief_factor(
-    # The greater of eps_1 and eps_2, parts of the transverse contact ratio. [1]
-    tip_contact_ratio: float,
-    # Tip relief over the one that takes up the deflection of the teeth, C_a/C_eff, at most 1. [1]
-    relief_share: float,
-) -> float:
-    """X_Ca of ISO/TS 6336-22, second hand: tip relief cools. Theory (W6). [1]
-
-    For flanks without adequate tip relief the rise is taken with 1 instead.
-
-    Examples
-    --------
-    >>> round(relief_factor(0.8, 1.0), 3)
-    1.646
-    """
-    linear = 0.06 + 0.18 * relief_share
-    square = 0.02 + 0.69 * relief_share
-    return 1 + linear * tip_contact_ratio + square * tip_contact_ratio**2
-
-
 def bulk_rise_of_loss(
     loss: float,  # Load-dependent loss of the mesh, P mu_m H_V. [W]
     center_distance: float,  # [m]
     face_width: float,  # [m]
     lubrication_factor: float,  # X_S, one of `LUBRICATION_FACTORS`. [1]
-    relief_factor: float = 1.0,  # X_Ca. [1]
 ) -> float:
     """Bulk temperature above that of the oil, ISO/TS 6336-22, second hand. Theory (W4). [K]
+
+    X_Ca is 1, as for flanks without adequate tip relief.
 
     Examples
     --------
@@ -186,7 +167,7 @@ def bulk_rise_of_loss(
     37.7
     """
     density = loss / 1e3 / (center_distance * MM * face_width * MM)  # kW/mm^2
-    return 7400 * math.pow(density, 0.72) * lubrication_factor / (1.2 * relief_factor)
+    return 7400 * math.pow(density, 0.72) * lubrication_factor / 1.2
 
 
 def bulk_rise_of_flash(

@@ -48,20 +48,11 @@ LEAST_SHIFT, LARGEST_SHIFT = -3.0, 5.0  # What a case may state.
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A value that the case does not state.
-
-    Attributes
-    ----------
-    key : str
-    value : str
-        With unit, as a message shows it.
-    how : str
-        Where it comes from.
-    """
+    """A value that the case does not state."""
 
     key: str
-    value: str
-    how: str
+    value: str  # With unit, as a message shows it.
+    how: str  # Where it comes from.
 
     def __str__(self) -> str:
         return f"{self.key} = {self.value}: {self.how}"

@@ -159,18 +159,6 @@ def sommerfeld_number(slenderness: float, eccentricity: float) -> tuple[float, f
     return journal_curves(slenderness).at(math.log(eccentricity / (1 - eccentricity)))
 
 
-def friction_variable(sommerfeld: float, eccentricity: float, attitude: float) -> float:
-    """(R/C) f of the moving surface, with a full film all around. Theory (Z3). [1]
-
-    Examples
-    --------
-    >>> round(friction_variable(0.6245, 0.2, math.radians(77.7)), 2)
-    12.68
-    """
-    shear = 2 * math.pi**2 * sommerfeld / math.sqrt(1 - eccentricity**2)
-    return shear + eccentricity * math.sin(attitude) / 2
-
-
 def asperity_force(bearing: JournalBearing, eccentricity: FloatArray) -> FloatArray:
     """Force of the asperities along the lines of centres, for each eccentricity. Theory (Z4). [N]
 

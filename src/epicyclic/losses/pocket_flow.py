@@ -84,15 +84,7 @@ def study_flow(geometry: PocketGeometry) -> NetworkFlow:
 
 
 class _Network:
-    """Cells, openings and one solved period.
-
-    Parameters
-    ----------
-    geometry, slices, steps, end_length
-        As for `pocket_flow`; `end_length` is None for slices of one width.
-    at : slice
-        The times of the cells at which openings are taken, one for each step: its middle.
-    """
+    """Cells, openings and one solved period. Arguments as for `pocket_flow`."""
 
     def __init__(
         self,
@@ -100,7 +92,7 @@ class _Network:
         slices: int,
         steps: int,
         end_length: float | None,
-        at: slice = slice(1, None, 2),
+        at: slice = slice(1, None, 2),  # Times of the openings among those of cells: mid-step.
     ) -> None:
         end = None if end_length is None else end_length * geometry.mesh.gear1.rack.normal_module
         cells = pocket_cells(geometry, slices, steps, end, inner=0.5)

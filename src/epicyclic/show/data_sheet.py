@@ -12,6 +12,7 @@ from rich.text import Text
 
 from epicyclic import library
 from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.tables.elements import between
 from epicyclic.gears.gear import HOUSING
 from epicyclic.oil.oil import GoldLaw, Oil, OilState, oil_state
 from epicyclic.show import page
@@ -188,11 +189,14 @@ def _oil(case: Case) -> str | None:
 
 
 def state_tables(case: TrainCase) -> RenderableType:
-    """Shafts of a train with their members, and the ratio of every state."""
+    """Shafts of a train with their members, parts between them, and the ratio of every state."""
     states = train_states(case)
     shafts = plain_table("Shafts", Column("", no_wrap=True), "turns as one body")
     for name, members in case.shape.shafts.items():
         shafts.add_row("housing, at rest" if name == HOUSING else name, ", ".join(members))
+    parts = plain_table("Parts", "", "kind", "between")
+    for kind, name, part in case.elements:
+        parts.add_row(name, kind.replace("_", " "), ", ".join(between(part, case.shape.names)))
     title = f"Ratio: speed of {case.operation.input} over speed of {case.operation.output}"
     numbers = (Column(head, justify="right", no_wrap=True) for head in ("ratio", "step"))
     table = plain_table(title, "state", *numbers, "held", "joined", "")
@@ -207,7 +211,7 @@ def state_tables(case: TrainCase) -> RenderableType:
             state.remark,
         )
         before = state
-    return Group(shafts, Text(), table)
+    return Group(shafts, Text(), *((parts, Text()) if parts.rows else ()), table)
 
 
 def _step(before: StateKinematics | None, state: StateKinematics) -> str:

@@ -130,10 +130,6 @@ def record(
     groups : collection of str, optional
         Groups of fields to keep, of those of `ResultRecord`. Default: all.
 
-    Returns
-    -------
-    ResultRecord
-
     Raises
     ------
     ConvergenceError

@@ -206,10 +206,6 @@ def solve_for(
     progress : callable, optional
         Called with the numbers of steady states found and expected.
 
-    Returns
-    -------
-    Found
-
     Raises
     ------
     InputError

@@ -42,10 +42,6 @@ def heat_balance(case: CaseSource) -> HeatBalance:
     case : PlanetaryCase or GearPairCase
         The network of all parts is solved, whatever its ``models.temperatures`` is.
 
-    Returns
-    -------
-    HeatBalance
-
     Raises
     ------
     InputError

@@ -49,10 +49,6 @@ def load_case(
     changes : mapping of str to object, optional
         Keys to change, as in `PlanetaryCase.updated`; also keys missing in a REXS file.
 
-    Returns
-    -------
-    PlanetaryCase or GearPairCase
-
     Raises
     ------
     InputError

@@ -97,25 +97,13 @@ _TURNS = ("1/min", "min-1", "min^-1", "min⁻¹", "u/min", "upm", "r/min")
 
 @dataclass(frozen=True, slots=True)
 class TableForm:
-    """How a table is to be read, where it does not say so itself.
+    """How a table is to be read, where it does not say so itself."""
 
-    Attributes
-    ----------
-    columns : mapping of str to str
-        Headers of the file, with or without their units, by the columns that they are: ``{"speed
-        [rpm]": "nMot"}``.
-    sheet : str
-        Of an Excel workbook. Default: the one that has a table of this kind.
-    rows : tuple of int, optional
-        First and last line of the file to be read, of those below its head.
-    decimal : {"", "point", "comma"}
-        What divides decimals. Default: as its numbers show.
-    """
-
+    # Headers of the file, with or without units, by what they are: ``{"speed [rpm]": "nMot"}``.
     columns: Mapping[str, str] = field(default_factory=dict)
-    sheet: str = ""
-    rows: tuple[int, int] | None = None
-    decimal: str = ""
+    sheet: str = ""  # Of an Excel workbook. Default: the one that has a table of this kind.
+    rows: tuple[int, int] | None = None  # First and last line to be read, below the head.
+    decimal: str = ""  # "point" or "comma". Default: as the numbers show.
 
 
 AS_IT_IS = TableForm()

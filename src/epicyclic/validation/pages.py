@@ -138,30 +138,6 @@ def band_rows(rows: Sequence[MeasuredFigure]) -> list[tuple[str, ...]]:
     ]
 
 
-def band_markdown(rows: Sequence[MeasuredFigure]) -> str:
-    """`band_rows` as the manual shows them."""
-    head = ("Measured figure", "Measured", "Computed", "95 % band", "")
-    cells = [head, ("---",) * len(head), *band_rows(rows)]
-    return "\n".join(f"| {' | '.join(row)} |".replace("|  |", "| |") for row in cells)
-
-
-def missed_markdown(rows: Sequence[Comparison]) -> str:
-    """What differs in the dissertation, and why, as the manual shows it."""
-    head = ("Figure", "Printed", "Computed", "Cause")
-    cells = [head, ("---",) * len(head)]
-    cells += [
-        (
-            f"{row.what} ({row.source.partition(', ')[2]})",
-            f"{published_text(row)} {unit_text(row.unit)}".rstrip(),
-            f"{shown(row.computed, 3)} {unit_text(row.unit)}".rstrip(),
-            row.missed,
-        )
-        for row in rows
-        if row.verdict == "differs" and row.source.startswith("Talbot")
-    ]
-    return "\n".join(f"| {' | '.join(row)} |" for row in cells)
-
-
 def bands_table(rows: Sequence[MeasuredFigure]) -> RenderableType:
     """One row for each measured figure."""
     title = "Measured figures, and the 95 % band by the shipped distributions"
@@ -195,13 +171,6 @@ def score_rows(scores: Sequence[Score]) -> Iterator[tuple[str, ...]]:
             *(MISSING if math.isnan(trend) else f"{100 * trend:+z.0f}" for trend in trends),
             MISSING if inside is None else str(inside),
         )
-
-
-def score_markdown(scores: Sequence[Score]) -> str:
-    """`score_rows` as the manual shows them."""
-    heads = ("measured set", *SCORE_HEADS[1:])
-    cells = [heads, ("---",) * len(heads), *score_rows(scores)]
-    return "\n".join(f"| {' | '.join(row)} |" for row in cells).replace("|  |", "| |")
 
 
 def scores_table(scores: Sequence[Score]) -> RenderableType:

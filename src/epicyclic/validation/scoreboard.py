@@ -468,12 +468,6 @@ def model_runs(case: Case) -> dict[str, Keys]:
     return runs | {"schlenk, no rolling": {"models.friction": "schlenk", **without}}
 
 
-def model_factor(scores: Sequence[Score]) -> float:
-    """Lognormal factor of a model: exp of the rms of ln(computed/measured), all sets alike."""
-    squares = [np.nanmean(np.log1p(score.errors) ** 2) for score in scores]
-    return float(np.exp(np.sqrt(np.mean(squares))))
-
-
 def in_band(scores: Sequence[Score]) -> str:
     """How many measured values lie in the bands that the defaults give, as a sentence."""
     counted = [it for it in scores if it.run == DEFAULTS and it.inside is not None]

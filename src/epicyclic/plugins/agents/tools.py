@@ -159,7 +159,7 @@ def run(case: Case, changes: Changes = (), details: bool = False) -> dict[str, A
 
     loaded = load_with(case, changes)
     result = solve(loaded)
-    known = quick_known(loaded, result, brief=True)
+    known = quick_known(loaded, result)
     terminal().print(
         result_tables(result, tuple(remarks(loaded, result)), band_texts(known))
         if details

@@ -90,8 +90,8 @@ class Kind:
 class Group:
     """One table of a case: its keys, and the tables in it."""
 
-    key: str  # Dotted, as in ``--set``; its last part.
-    name: str  # Dotted, as in ``--set``; its last part.
+    key: str  # Dotted, as in ``--set``.
+    name: str  # Its last part.
     about: str
     entries: tuple[Entry, ...]
     groups: tuple[Group, ...]
@@ -584,17 +584,7 @@ class Shelf:
 
 
 class Shelves:
-    """The shelves of all tabs.
-
-    Parameters
-    ----------
-    desk : Desk
-        The case that tabs begin with.
-    folder : Path
-        For uploaded files.
-    most : int
-        Tabs that may be open at a time.
-    """
+    """The shelves of all tabs, which begin with `desk`; at most so many are open at a time."""
 
     def __init__(self, desk: Desk, folder: Path, most: int = MOST_TABS) -> None:
         self._desk, self._folder, self.most = desk, folder, most

@@ -88,16 +88,7 @@ Call = Callable[[], Awaitable[None]]
 
 
 class Form:
-    """Fields of a desk.
-
-    Parameters
-    ----------
-    desk : Desk
-    changed : callable
-        Called after the desk has changed.
-    moved : callable
-        Called while a slider changes it.
-    """
+    """Fields of a desk, and what to call after it has changed or while a slider changes it."""
 
     def __init__(self, desk: Desk, changed: Call, moved: Call) -> None:
         self._desk, self._changed, self._moved = desk, changed, moved

@@ -68,14 +68,8 @@ HEADERS = {
 class Guard:
     """An ASGI application before another one; refuses what does not come from its own page.
 
-    Parameters
-    ----------
-    app : ASGI application
-    token : str
-        In the first address; a cookie has it from then on.
-    hosts : collection of str
-        What the browser may call the app, with the port: another name that leads to this machine
-        is an attack by rebinding.
+    The token is in the first address, and from then on in a cookie. A name with port that is not
+    among the hosts, but leads to this machine, is an attack by rebinding.
     """
 
     def __init__(self, app: Any, token: str, hosts: Collection[str]) -> None:
@@ -285,12 +279,7 @@ def add_assets() -> None:
 
 
 class Page:
-    """What a browser shows of the open case.
-
-    Parameters
-    ----------
-    shelf : Shelf
-    """
+    """What a browser shows of the open case."""
 
     def __init__(self, shelf: Shelf) -> None:
         self._shelf = shelf

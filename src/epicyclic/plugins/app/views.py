@@ -100,20 +100,14 @@ def save_buttons(name: str, draw: Callable[[str], Awaitable[bytes]]) -> None:
 
 
 class Place:
-    """Where a figure stands, with a sign as long as its picture is of an earlier case.
-
-    Parameters
-    ----------
-    title, name : str
-        Shown until it is drawn; of its files.
-    classes : str
-        Classes of the frame.
-    draw : callable
-        Draws it in a format.
-    """
+    """Where a figure stands, with a sign as long as its picture is of an earlier case."""
 
     def __init__(
-        self, title: str, name: str, classes: str, draw: Callable[[str], Awaitable[bytes]]
+        self,
+        title: str,  # Shown until it is drawn.
+        name: str,  # Of its files.
+        classes: str,  # Of the frame.
+        draw: Callable[[str], Awaitable[bytes]],  # In a format.
     ) -> None:
         self.name = name
         self.drawn: Study | None = None
@@ -201,12 +195,7 @@ def mark_behind(element: Element, is_behind: bool) -> None:
 class Sheet:
     """What is shown of a study in one place, and of others of the same form after it.
 
-    Parameters
-    ----------
-    do : callable
-    study : Study
-    wide : iterable of str
-        Figures of several panels.
+    Figures of several panels are `wide`.
     """
 
     def __init__(self, do: Do, study: Study, wide: Iterable[str] = ()) -> None:
@@ -315,13 +304,7 @@ PERIODS, STEP = 4, 0.005  # Range and step of the slider. [mesh periods]
 
 
 class TurningView:
-    """A slider, and the sets and meshes that follow it.
-
-    Parameters
-    ----------
-    do : callable
-        Has a task done.
-    """
+    """A slider, and the sets and meshes that follow it."""
 
     def __init__(self, do: Do) -> None:
         self._do = do
@@ -396,15 +379,7 @@ _TOLD = "Keep the current case, then change it: both are shown here side by side
 
 
 class MapView:
-    """Loss and efficiency over speed and torque.
-
-    Parameters
-    ----------
-    desk : callable
-        The desk as it is now.
-    worker : Worker
-        That computes the map, beside those of the page.
-    """
+    """Loss and efficiency over speed and torque, by a worker beside those of the page."""
 
     title = "Map"
 
@@ -518,17 +493,7 @@ def _values(axis: str, part: OperatingValue, text: str) -> str:
 
 
 class CompareView:
-    """The case beside another one.
-
-    Parameters
-    ----------
-    desk : callable
-        The desk as it is now.
-    do : callable
-        Has a task done.
-    choose : callable
-        Asks for the other case, and calls what it is given with its desk.
-    """
+    """The case beside another one, which `choose` asks for: it calls what it is given with it."""
 
     title = "Compare"
 
@@ -620,17 +585,7 @@ class CompareView:
 
 
 class DesignView:
-    """The front of a search for designs; a click on a point opens that design.
-
-    Parameters
-    ----------
-    folder : Path
-        For uploaded files.
-    worker : Worker
-        Searches.
-    then : callable
-        Opens a desk.
-    """
+    """The front of a search for designs; a click on a point opens that design."""
 
     title = "Designs"
     _failed: Failure
@@ -731,28 +686,15 @@ def _group_of(name: str) -> str:
 
 
 class Chapters:
-    """Tabs, one for each chapter and view.
-
-    Parameters
-    ----------
-    shelf : Shelf
-        Knows the chapter that is open, also after the page was loaded again.
-    do : callable
-        Has a task done.
-    views : dict of str to View
-    want : callable
-        Has the chapter that was opened follow the case.
-    tell : callable
-        Called with a study and its key figures once their bands are known.
-    """
+    """Tabs, one for each chapter and view."""
 
     def __init__(
         self,
-        shelf: Shelf,
+        shelf: Shelf,  # Knows the open chapter, also after the page was loaded again.
         do: Do,
         views: dict[str, View],
-        want: Callable[[], Awaitable[None]],
-        tell: Callable[[Study, Sequence[KeyFigure]], None],
+        want: Callable[[], Awaitable[None]],  # Has the opened chapter follow the case.
+        tell: Callable[[Study, Sequence[KeyFigure]], None],  # Once the bands are known.
     ) -> None:
         self._shelf, self._do, self._views, self._want = shelf, do, views, want
         self._tell = tell

@@ -59,12 +59,8 @@ if TYPE_CHECKING:
 class Latest:
     """Does work again after each change, for the last one: what comes meanwhile never queues.
 
-    Work that has begun is done to its end, so that it follows a value that never stands still.
-
-    Parameters
-    ----------
-    work : callable
-        Looks itself at what is to be done.
+    Work that has begun is done to its end, so that it follows a value that never stands still. It
+    looks itself at what is to be done.
     """
 
     def __init__(self, work: Callable[[], Awaitable[None]]) -> None:
@@ -108,10 +104,7 @@ class WorkError(EpicyclicError):
 class Worker:
     """Does one thing after the other, each in the same process as long as none is ended.
 
-    Parameters
-    ----------
-    niceness : int
-        How far its process stands back behind others, on systems that know this.
+    Its process stands back behind others by its niceness, on systems that know this.
     """
 
     def __init__(self, niceness: int = 0) -> None:
@@ -211,13 +204,7 @@ def _serve(pipe: Connection, niceness: int) -> None:
 
 
 class Doing:
-    """The line; it is there while something is done.
-
-    Parameters
-    ----------
-    end : callable
-        Ends it.
-    """
+    """The line; it is there while something is done."""
 
     def __init__(self, end: Callable[[], None]) -> None:
         with ui.row().classes("state idle") as self._row:
@@ -471,7 +458,7 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
         elif not isinstance(found, ResultRecord):
             write_map(found, path, name)
         elif path.suffix == ".json":
-            known = quick_known(study.case, found.result, brief=True)
+            known = quick_known(study.case, found.result)
             path.write_text(f"{result_json(found.result, known)}\n", encoding="utf-8")
         else:
             save(found.result, path)

@@ -210,10 +210,6 @@ def characterise_oil(
     progress : callable, optional
         Called with the numbers of finished, of all, and of failed simulations.
 
-    Returns
-    -------
-    OilModel
-
     Raises
     ------
     InputError

@@ -96,15 +96,8 @@ def thinning_factor(
 ) -> tuple[float, float, float]:
     """Factor by which sliding eases the pressure flow, the viscosity over that of a small change.
 
-    Theory (H12), (H27), (H28).
-
-    Returns
-    -------
-    factor : float
-    exponent : float
-        d(ln factor)/d(ln Sigma), Sigma = mu u_s/(tau_0 h).
-    softening : float
-        d(ln Sigma)/dP by the stress of the law alone.
+    Behind the factor d(ln factor)/d(ln Sigma), Sigma = mu u_s/(tau_0 h), and d(ln Sigma)/dP by the
+    stress of the law alone. Theory (H12), (H27), (H28).
     """
     if fluid.shear_law == NEWTONIAN:
         return 1.0, 0.0, 0.0

@@ -171,44 +171,26 @@ def hold_back(
 
 @kernel
 def solve_step(
-    pressure: FloatArray, film: FloatArray, approach: float,
-    kernel_row: FloatArray, order: FloatArray, history: FloatArray, fluid: ScaledFluid, dx: float,
-    load: float, active: BoolArray, groups: Groups, held: float, tolerance: float,
-    linear_tolerance: float, max_iterations: int, space: Space,
-) -> tuple[float, int, float]:  # fmt: skip
+    pressure: FloatArray,  # Started from; the first and last one stay.
+    film: FloatArray,
+    approach: float,  # H_0 to start from.
+    kernel_row: FloatArray,  # As for `deflect`.
+    order: FloatArray,  # Factor of the mass now.
+    history: FloatArray,  # What earlier masses contribute.
+    fluid: ScaledFluid,
+    dx: float,
+    load: float,
+    active: BoolArray,  # Nodes with a full film, changed to the solution.
+    groups: Groups,  # As for `update_groups`.
+    held: float,  # As for `hold_back`, over the compliance of a node to its own pressure.
+    tolerance: float,  # Of the last change of a pressure over the largest or p_h, and of load.
+    linear_tolerance: float,  # As `tolerance` for `solve_linear`.
+    max_iterations: int,
+    space: Space,  # As for `solve_linear`.
+) -> tuple[float, int, float]:
     """Pressure and film after one time step, in place. Theory (H21), (H22).
 
-    Parameters
-    ----------
-    pressure, film : ndarray, shape (n,)
-        Started from, and changed to the solution; the first and last pressure stay.
-    approach : float
-        H_0 to start from.
-    kernel_row : ndarray, shape (2 n - 1,)
-        As for `deflect`.
-    order, history : ndarray, shape (n,)
-        Factor of the mass now, and what earlier masses contribute.
-    active : ndarray of bool, shape (n,)
-        Nodes with a full film, changed to the solution.
-    groups : Groups
-        As for `update_groups`.
-    held : float
-        As for `hold_back`, over the compliance of a node to its own pressure.
-    tolerance : float
-        Largest change of a pressure in the last step, over the largest or p_h, and largest
-        relative lack of load.
-    linear_tolerance : float
-        As `tolerance` for `solve_linear`.
-    max_iterations : int
-    space : Space
-        As for `solve_linear`.
-
-    Returns
-    -------
-    approach : float
-    iterations : int
-    error : float
-        What `tolerance` bounds; not a number if the iteration broke down.
+    Returns H_0, the iterations and what `tolerance` bounds: not a number if they broke down.
     """
     n = pressure.size
     rho, d_rho = np.empty(n), np.empty(n)
@@ -361,56 +343,38 @@ def measure(
 
 @kernel
 def march(
-    pressure: FloatArray, film: FloatArray, now: FloatArray, before: FloatArray,
-    active: BoolArray, approach: float, smooth: FloatArray, base: FloatArray,
-    kernel_row: FloatArray, groups: Groups, heights1: FloatArray, heights2: FloatArray,
-    shift1: float, shift2: float, stride: int, center: int, first: int,
-    growth: int, fluid: ScaledFluid, thinned: FloatArray, dx: float, load: float,
-    contact_film: float, boundary_friction: float, tolerance: float, linear_tolerance: float,
-    max_iterations: int, records: FloatArray,
-) -> float:  # fmt: skip
+    pressure: FloatArray,  # At the nodes, as the next arrays but the profiles.
+    film: FloatArray,
+    now: FloatArray,  # Mass one step ago.
+    before: FloatArray,  # Two steps ago.
+    active: BoolArray,  # Nodes with a full film.
+    approach: float,  # H_0.
+    smooth: FloatArray,  # Pressure of the smooth contact; what exceeds it moves with the oil.
+    base: FloatArray,  # Smooth gap, with the deflection by the pressure outside the grid.
+    kernel_row: FloatArray,  # As for `deflect`.
+    groups: Groups,  # As for `update_groups`.
+    heights1: FloatArray,  # Profiles with the spacing of the nodes, as for `lower_by`.
+    heights2: FloatArray,
+    shift1: float,  # Nodes by which each surface moves in a step, `stride` times u_k/u_r.
+    shift2: float,
+    stride: int,  # Nodes by which the entrained mass moves in a step.
+    center: int,  # Node at X = 0.
+    first: int,  # Steps done before, negative before any roughness.
+    growth: int,  # Steps in which it grows from zero.
+    fluid: ScaledFluid,  # With `stride` times its conductance.
+    thinned: FloatArray,  # As for `mean_shear`.
+    dx: float,
+    load: float,  # On the grid.
+    contact_film: float,  # Film below which surfaces touch.
+    boundary_friction: float,  # Friction there over the pressure.
+    tolerance: float,  # As for `solve_step`.
+    linear_tolerance: float,
+    max_iterations: int,
+    records: FloatArray,  # Shape (steps, 10), see `Column`.
+) -> float:
     """Time steps, as many as `records` has rows; state arrays change in place. Theory (H21), (H25).
 
-    Parameters
-    ----------
-    pressure, film : ndarray, shape (n,)
-    now, before : ndarray, shape (n,)
-        Mass at each node one and two steps ago.
-    active : ndarray of bool, shape (n,)
-        Nodes with a full film.
-    approach : float
-        H_0.
-    smooth : ndarray, shape (n,)
-        Pressure of the smooth contact; what exceeds it is expected to move with the oil.
-    base : ndarray, shape (n,)
-        Smooth gap, with the deflection by the pressure outside the grid.
-    kernel_row, groups
-        As for `deflect` and `update_groups`.
-    heights1, heights2 : ndarray, shape (m1,), (m2,)
-        Profiles with the spacing of the nodes, as for `lower_by`.
-    shift1, shift2 : float
-        Nodes by which each surface moves in a step, `stride` times u_k/u_r.
-    stride : int
-        Nodes by which the entrained mass moves in a step.
-    center : int
-        Node at X = 0.
-    first, growth : int
-        Steps done before, negative before any roughness; steps in which it grows from zero.
-    fluid, dx, load
-        Oil, with `stride` times its conductance; spacing; load on the grid.
-    thinned : ndarray, shape (n,)
-        As for `mean_shear`.
-    contact_film, boundary_friction : float
-        Film below which surfaces touch; friction there over the pressure.
-    tolerance, max_iterations
-        As for `solve_step`.
-    records : ndarray, shape (steps, 10)
-        See `Column`.
-
-    Returns
-    -------
-    float
-        H_0.
+    Returns H_0.
     """
     n = pressure.size
     gap, bent = np.empty(n), np.empty(n)

@@ -81,13 +81,8 @@ def _flows(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Mass flow through the faces between nodes, with its local derivatives.
 
+    Those of face i + 1/2 are in film and pressure of the nodes i - 1, i, i + 1, shape (n - 1, 3).
     Theory (H11), (H12), (H13).
-
-    Returns
-    -------
-    flow : ndarray, shape (n - 1,)
-    d_film, d_pressure : ndarray, shape (n - 1, 3)
-        Derivatives in film and pressure of the nodes i - 1, i, i + 1 of face i + 1/2.
     """
     n = x.size
     flow = np.zeros(n - 1)
@@ -209,17 +204,8 @@ def solve_steady(
 ) -> tuple[FloatArray, FloatArray, FloatArray, float, int, float]:
     """Pressure and film of a steady contact. Theory (H4), (H14), (H15).
 
-    Returns
-    -------
-    pressure, film : ndarray, shape (n,)
-    flow : ndarray, shape (n - 1,)
-        Mass flow through the faces between the nodes.
-    approach : float
-        H_0.
-    iterations : int
-        Negative if `tolerance` was not met.
-    error : float
-        The measure that `tolerance` bounds.
+    Behind them the mass flow through the faces between the nodes, H_0, the number of iterations,
+    negative if `tolerance` was not met, and the measure that `tolerance` bounds.
     """
     n = x.size
     weights = quadrature_weights(x)

@@ -103,6 +103,7 @@ class ReferenceFilm:
 
 TEST_ROUGHNESS, TEST_WIDTH, TEST_SPEED = 0.5e-6, 14e-3, 2250 * math.pi / 30
 LOAD_AT_A = 236.3e3 / 265.1  # Line load at A over the torque; print-out. [1/m2]
+TEST_OIL = 90 + ZERO_CELSIUS  # Temperature of the oil. [K]
 _TEST_MODULUS, _TEST_EFFUSIVITY = 206e9 / (1 - 0.3**2), 12.427e3
 
 
@@ -122,12 +123,10 @@ def fzg_mesh() -> Mesh:
 
 
 @cache
-def reference_film(
-    oil: Oil, stage: int, oil_temperature: float = 90 + ZERO_CELSIUS
-) -> ReferenceFilm:
+def reference_film(oil: Oil, stage: int) -> ReferenceFilm:
     """What the oil bears in the test FVA 54/7: the film at A in its failure load stage."""
     mesh, torque = fzg_mesh(), MICROPITTING_TORQUES[stage]
-    state = oil_state(oil, oil_temperature)
+    state = oil_state(oil, TEST_OIL)
     base = mesh.gear1.base_radius
     speed = 2 * TEST_SPEED * mesh.pitch_point
     radius = mesh.equivalent_radius(mesh.pitch_point)
@@ -140,7 +139,7 @@ def reference_film(
         oil.lubricant_factor.value,
     )
     loss = torque * TEST_SPEED * friction * ohlendorf_loss_factor(mesh)
-    bulk = oil_temperature + bulk_rise_of_loss(
+    bulk = TEST_OIL + bulk_rise_of_loss(
         loss, mesh.center_distance, TEST_WIDTH, LUBRICATION_FACTORS["spray"]
     )
     at_a = mesh.path_start

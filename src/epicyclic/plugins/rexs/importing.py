@@ -156,10 +156,6 @@ def read_rexs(
     load_case : int, optional
         Id of a load case of the load spectrum, whose values come before those of the components.
 
-    Returns
-    -------
-    RexsImport
-
     Raises
     ------
     InputError

@@ -35,10 +35,6 @@ class Mesh:
     stage: Component
     gears: tuple[Component, Component]
 
-    def mate(self, gear: Component) -> Component:
-        """The other gear."""
-        return self.gears[1] if self.gears[0].id == gear.id else self.gears[0]
-
 
 @dataclass(frozen=True, slots=True)
 class Pair:
@@ -368,26 +364,13 @@ class Switch:
 
 @dataclass(frozen=True, slots=True)
 class Train:
-    """The stages of a file and the shafts between them.
+    """The stages of a file and the shafts between them."""
 
-    Attributes
-    ----------
-    unit : Component
-        The gear unit, or the first stage if the file has none.
-    sets : dict of str to PlanetarySet or Pair
-        By their names in the case.
-    shafts : dict of str to Shaft
-        By their names.
-    switches : tuple of Switch
-    bearings : dict of str to Joint
-        All but those of planets, by their names in the case.
-    """
-
-    unit: Component
-    sets: dict[str, PlanetaryParts | Pair]
+    unit: Component  # The gear unit, or the first stage if the file has none.
+    sets: dict[str, PlanetaryParts | Pair]  # By their names in the case, as shafts and bearings.
     shafts: dict[str, Shaft]
     switches: tuple[Switch, ...]
-    bearings: dict[str, Joint]
+    bearings: dict[str, Joint]  # All but those of planets.
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:

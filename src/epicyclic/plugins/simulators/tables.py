@@ -170,18 +170,12 @@ def modelica_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
 
 
 def loss_table(data: xr.Dataset) -> tuple[FloatArray, FloatArray]:
-    """The table `lossTable` of LossyGear, and how far the torque loss that it gives is off.
+    """The table `lossTable` of LossyGear, and how far its torque loss is off that of the map.
 
-    At each speed by least squares over all torques: tau_loss = (1 - eta_mf1) tau + tau_bf for
+    A row for each speed has its magnitude [rad/s], eta_mf1, eta_mf2, tau_bf1, tau_bf2 [N m]. They
+    follow by least squares over all torques: tau_loss = (1 - eta_mf1) tau + tau_bf for
     tau >= 0, (1 - 1/eta_mf2) tau + tau_bf for tau < 0, with efficiencies up to 1 and one
     tau_bf >= 0 for both, so that the sign of the torque is the direction of the power.
-
-    Returns
-    -------
-    table : array, shape (speeds, 5)
-        \\|w\\| [rad/s], eta_mf1, eta_mf2, \\|tau_bf1\\|, \\|tau_bf2\\| [N m].
-    deviation : array, shape (speeds, torques)
-        Deviation of the table less that of the map. [N m]
     """
     from scipy.optimize import lsq_linear  # 40 MB that maps do without
 

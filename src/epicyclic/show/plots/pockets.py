@@ -223,28 +223,13 @@ def roll_angles(mesh: xr.Dataset, end: str) -> FloatArray:
 
 
 class Section:
-    """Teeth and pockets at one end of the face, at any moment of the mesh period.
-
-    Parameters
-    ----------
-    mesh : Dataset
-        As `epicyclic.pocket_details` returns it.
-    end : str
-        ``"first"`` or ``"last"``.
-
-    Attributes
-    ----------
-    roll : ndarray, shape (2, steps)
-        Roll angles of the pockets at this end of the face. [deg]
-    stride : int
-        Mesh positions in a period: steps between pockets that live at the same time.
-    """
+    """Teeth and pockets at one end of the face, at any moment of the mesh period."""
 
     def __init__(self, mesh: xr.Dataset, end: str) -> None:
         self._mesh = mesh
         self._end = end
-        self.roll = roll_angles(mesh, end)
-        self.stride = mesh.sizes["mesh_position"]
+        self.roll = roll_angles(mesh, end)  # Of the pockets, shape (2, steps). [deg]
+        self.stride = mesh.sizes["mesh_position"]  # Steps between pockets that live together.
         self._outlines = _upright(mesh["outline"].sel(end=end).to_numpy())
         self._living = np.isfinite(self._outlines[:, :, 0, 0])
         points = self._outlines[self._living].reshape(-1, 2)
@@ -406,10 +391,6 @@ class MeshScene:
     """Sections at both ends of the face, the pressure across it and the power, at one moment.
 
     Without a helix both ends are alike, and one is drawn.
-
-    Attributes
-    ----------
-    figure : Figure
     """
 
     figure: Figure

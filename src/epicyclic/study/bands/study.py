@@ -329,10 +329,10 @@ def quick_band(nearby: Nearby) -> Band:
     return Band(nearby, results, _parts(nearby, shifts, factors))
 
 
-def quick_known(case: Case, result: Result, *, brief: bool = False) -> Known | None:
+def quick_known(case: Case, result: Result) -> Known | None:
     """What `quick_dataset` says of the total, without a dataset.
 
-    None if a solution takes minutes, or nothing is uncertain. For `brief` see `model_remarks`.
+    None if a solution takes minutes, or nothing is uncertain; without remarks that take long.
     """
     band = _band(case, result)
     if band is None:
@@ -349,7 +349,7 @@ def quick_known(case: Case, result: Result, *, brief: bool = False) -> Known | N
         shares=dict(band.drivers),
         names={key: name for key, (name, _) in remedies.items()},
         advice={key: advice for key, (_, advice) in remedies.items()},
-        remarks=tuple(model_remarks(case, result, brief=brief)),
+        remarks=tuple(model_remarks(case, result, brief=True)),
     )
 
 

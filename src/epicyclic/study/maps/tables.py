@@ -211,13 +211,9 @@ class Lookup:
         self,
         *point: FloatArray,  # As the axes, in their units.
     ) -> tuple[IntArray, FloatArray]:
-        """The nodes around points, and their weights. A point outside is taken at the border.
+        """The nodes around points, counted as in `total`, and their weights, both (corners, n).
 
-        Returns
-        -------
-        nodes : array, shape (corners, n)
-            Numbers of the nodes, counted as in `total`.
-        weights : array, shape (corners, n)
+        A point outside is taken at the border.
         """
         brackets = [_bracket(axis, values) for axis, values in zip(self.axes, point, strict=True)]
         sides = [range(min(axis.size, 2)) for axis in self.axes]

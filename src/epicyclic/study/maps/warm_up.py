@@ -134,19 +134,13 @@ def _heat(machine: Machine, solution: Solution, nodes: Sequence[str]) -> dict[So
 
 
 class HeatTables:
-    """Curves over temperature of the heat and the paths of every operating point. Theory (W36).
-
-    Parameters
-    ----------
-    model : NetworkModel
-    knots : sequence of float
-        Temperatures, rising. [K]
-    samples : sequence of sequence of HeatSample
-        For each temperature one of every point.
-    """
+    """Curves over temperature of the heat and the paths of every operating point. Theory (W36)."""
 
     def __init__(
-        self, model: NetworkModel, knots: Sequence[float], samples: Sequence[Sequence[HeatSample]]
+        self,
+        model: NetworkModel,
+        knots: Sequence[float],  # Temperatures, rising. [K]
+        samples: Sequence[Sequence[HeatSample]],  # For each temperature one of every point.
     ) -> None:
         every = [sample for row in samples for sample in row]
         self.capacities = model.capacities()

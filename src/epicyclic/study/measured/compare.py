@@ -264,10 +264,6 @@ def compare_measured(
     tell : callable, optional
         Called with a sentence on how the fit gets on, in every round.
 
-    Returns
-    -------
-    MeasuredComparison
-
     Raises
     ------
     InputError

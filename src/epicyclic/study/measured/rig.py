@@ -25,22 +25,13 @@ _PLACE = "the comparison"
 
 @dataclass(frozen=True, slots=True)
 class Rig:
-    """How the rows of a table become losses of the set under test.
+    """How the rows of a table become losses of the set under test."""
 
-    Attributes
-    ----------
-    baseline : str
-        ``"COLUMN=VALUE"``: the rows in which the reaction set was the same as the set under test,
-        so that each has half of the loss. The other half is taken off the other rows.
-    unloaded : bool
-        True to take the loss without torque off each loss under load.
-    torque_uncertainty : str
-        Standard uncertainty of a torque, where no column states it: ``"0.11 N*m"``, ``"0.05 %"``.
-    """
-
+    # ``"COLUMN=VALUE"``: the rows in which the reaction set was the same as the set under test, so
+    # that each has half of the loss. The other half is taken off the other rows.
     baseline: str = ""
-    unloaded: bool = False
-    torque_uncertainty: str = ""
+    unloaded: bool = False  # True to take the loss without torque off each loss under load.
+    torque_uncertainty: str = ""  # ``"0.11 N*m"``, ``"0.05 %"``, where no column states it.
 
     def grid(self, grid: Grid) -> Grid:
         """The cells with the uncertainty of the torque as a column of its own."""

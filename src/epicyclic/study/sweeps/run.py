@@ -670,15 +670,7 @@ AS_TESTED: LoadDependent = "as-tested"
 
 
 def with_unloaded(points: Sequence[Mapping[str, Any]]) -> tuple[Points, IntArray]:
-    """Points, behind them the same without torque, each once.
-
-    Returns
-    -------
-    tuple of mapping
-        Keys that each point changes.
-    ndarray of int, shape (n,)
-        Number of the one without torque that belongs to each of the `points`.
-    """
+    """Points, behind them the same without torque, each once; and the number of each's own."""
     added: dict[tuple[tuple[str, str], ...], tuple[int, dict[str, Any]]] = {}
     numbers = []
     for point in points:

@@ -67,13 +67,7 @@ class Row:
 
 
 class Rows:
-    """All points of a study, by number: columns, which take a tenth of the memory of rows.
-
-    Attributes
-    ----------
-    status, message, warnings : list of str
-        As of a `Row`; `NOT_COMPUTED` until it is there.
-    """
+    """All points of a study, by number: columns, which take a tenth of the memory of rows."""
 
     def __init__(self, size: int) -> None:
         self.status = [NOT_COMPUTED] * size
