@@ -344,6 +344,20 @@ def test_values_that_cannot_be_are_cut_off_and_told(case):
 
 
 @pytest.mark.slow
+def test_a_case_without_any_uncertainty_is_told_and_can_be_compared(case):
+    exact = {value.key: {"exact": True} for value in uncertain_values(case, ep.solve(case))}
+    known = case.updated({"uncertainty": exact})
+    for ask in (ep.uncertainty, lambda it, samples: ep.compare_cases(it, it, samples=samples)):
+        with pytest.raises(InputError, match="so nothing is uncertain"):
+            ask(known, samples=16)
+    found = ep.compare_cases(known, case, samples=16).sel(result="total")
+    other = ep.compare_cases(case, known, samples=16).sel(result="total")
+    assert found["standard_uncertainty"] == other["standard_uncertainty"] > 0
+    assert found["low"] == -other["high"]
+    with pytest.raises(InputError, match="must be true, or left out"):
+        case.updated({"uncertainty": {"gear.roughness": {"exact": False}}})
+
+
 def test_samples_without_a_result_are_counted(case):
     """Centre distances of which some make the gears jam."""
     jams = {"gears.center_distance": {"tolerance": ["-0.45 mm", "0.7 mm"]}}

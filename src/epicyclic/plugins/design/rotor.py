@@ -68,7 +68,7 @@ def _mesh(duty: MeshDuty, count: int) -> dict[str, Any]:
 
 def _waves(name: str, unit: str, loaded: LoadedMesh, values: FloatArray) -> dict[str, Any]:
     """Mean, amplitudes and phases over the mesh period, whose positions are not quite even."""
-    lines = loaded.lines
+    lines = loaded.compliance.lines
     orders = np.arange(1, min(HARMONICS, len(lines.position) // POSITIONS) + 1)
     waves = np.exp(-2j * math.pi * np.outer(orders, lines.position))
     found = 2 * waves @ (lines.weight * values)

@@ -100,7 +100,8 @@ def compare_cases(
             [quantiles(it, rows[it.key if it.key in shared else f"{mark}{it.key}"]) for it in at]
             for at in known
         ]
-        evaluated.append(_evaluate(case, own[0], known, np.array(found), changes, weights, runner))
+        taken = np.array(found).reshape(len(changes), len(known[0]), samples)  # also of no values
+        evaluated.append(_evaluate(case, own[0], known, taken, changes, weights, runner))
         nominal.append(_nominal(own, evaluated[-1][0].names, weights))
     return _dataset(cases, nominal, evaluated, sorted(shared))
 
