@@ -348,7 +348,7 @@ def test_a_case_without_any_uncertainty_is_told_and_can_be_compared(case):
     exact = {value.key: {"exact": True} for value in uncertain_values(case, ep.solve(case))}
     known = case.updated({"uncertainty": exact})
     for ask in (ep.uncertainty, lambda it, samples: ep.compare_cases(it, it, samples=samples)):
-        with pytest.raises(InputError, match="so nothing is uncertain"):
+        with pytest.raises(InputError, match="leaves nothing uncertain"):
             ask(known, samples=16)
     found = ep.compare_cases(known, case, samples=16).sel(result="total")
     other = ep.compare_cases(case, known, samples=16).sel(result="total")

@@ -141,8 +141,7 @@ def _sobol(size: int, count: int, seed: int) -> FloatArray:
     from scipy import stats
 
     if not size:
-        allowed = "has exact = true for every value and model, so nothing is uncertain."
-        raise one_problem("uncertainty", "", allowed, "Run the case as it is.")
+        raise one_problem("uncertainty", "", "leaves nothing uncertain.", "Run the case as it is.")
     points = stats.qmc.Sobol(size, rng=np.random.default_rng(seed), bits=64)
     drawn: FloatArray = points.random(count).T
     return drawn
