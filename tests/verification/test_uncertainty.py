@@ -285,6 +285,12 @@ def test_a_paired_difference_is_known_better_than_an_unpaired_one(case):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("times", [(), (0.0,), (-1.0, 2.0), (math.nan, 1.0), (math.inf,)])
+def test_times_of_a_compared_cycle_are_not_negative(case, times):
+    with pytest.raises(InputError, match="points: must have times of 0 or more, not all 0"):
+        ep.compare_cases(case, case, samples=16, points=[(time, {}) for time in times])
+
+
 def test_a_cycle_is_compared_with_the_same_draw_at_all_its_points(case):
     other = case.updated({"gear.roughness": "0.31 um", "gears.center_distance": "108.03 mm"})
     times = 3.0, 1.7
