@@ -95,8 +95,7 @@ def compare_cases(
     drawn = probabilities([*values[0][0], *_renamed(others, shared)], samples, seed)
     keys = [it.key for it in values[0][0]] + [f"{OWN}{it.key}" for it in others]
     rows = dict(zip(keys, drawn, strict=True))
-    runner = Runner(jobs, dask, None, None, progress)
-    weights /= weights.sum()
+    runner, weights = Runner(jobs, dask, None, None, progress), weights / weights.sum()
     evaluated, nominal = [], []
     for case, own, known, mark in zip(cases, results, values, ("", OWN), strict=True):
         found = [
