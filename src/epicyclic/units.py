@@ -534,6 +534,7 @@ Number = Annotated[float, _Dimensionless()]
 
 Length = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5, open_low=True)]
 SmallLength = Annotated[float, Quantity("a length", "m", "um", low=0.0, high=1e4)]
+Play = Annotated[float, Quantity("a length", "m", "um", low=0.0, high=1e4, open_low=True)]
 Deviation = Annotated[float, Quantity("a deviation", "m", "um", low=-1e4, high=1e4)]
 Mass = Annotated[float, Quantity("a mass", "kg", "kg", low=0.0, high=1e6)]
 Angle = Annotated[float, Quantity("an angle", "rad", "deg", low=-360.0, high=360.0)]

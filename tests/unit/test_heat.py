@@ -125,6 +125,7 @@ def test_a_temperature_may_be_a_number_of_kelvin():
             "71 degC",
             "oil at 71 degC: cannot be reached: with unlimited thermal.oil_flow",
         ),
+        ("oil_flow", "90 degC", "with unlimited thermal.oil_flow it is at 90 degC"),
         ("cooler_power", "150 degC", "with thermal.cooler_power = 0 W it is at 9"),
         ("input_power", "20 degC", r"with operation.torque = 0 N\*m it is at 90"),
         ("oil_flow", "hot", "temperature = "),

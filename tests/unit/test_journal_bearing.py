@@ -337,6 +337,7 @@ def test_heat_network_has_plain_pins(plain):
             "race_roughness": "0.2 um"}}, "planet_pin"),
         ({"planet_pin.pin_diameter": "170 mm"}, "planet_pin.pin_diameter"),
         ({"planet_pin.length": None}, "planet_pin.length"),
+        ({"planet_pin.diametral_clearance": "0 um"}, "planet_pin.diametral_clearance"),
         ({"models.planet_tilt": "coupled"}, "models.planet_tilt"),
     ],
 )  # fmt: skip

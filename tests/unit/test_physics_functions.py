@@ -79,6 +79,55 @@ def test_bad_arguments_are_named(changes, key):
     assert error.value.problems[0].key == key
 
 
+AT = {"speed": "3000 rpm", "temperature": "80 degC", "oil": "iso-vg-100-pao"}
+DISC = AT | {"diameter": "100 mm", "width": "20 mm"}
+PIN = AT | {"diameter": "25 mm", "length": "25 mm", "clearance": "50 um", "force": "1 kN"}
+FORCES = AT | {"radial_force": "1 kN", "axial_force": "1 kN"}
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "key"),
+    [
+        (ep.line_contact, CONTACT | {"modulus": -1.0}, "modulus"),
+        (ep.line_contact, CONTACT | {"modulus": math.nan}, "modulus"),
+        (ep.line_contact, CONTACT | {"radius": []}, "radius"),
+        (ep.oil_properties, {"oil": "iso-vg-100-pao", "temperature": []}, "temperature"),
+        (ep.plain_pin, PIN | {"roughness": "0 um"}, "roughness"),
+        (ep.plain_pin, PIN | {"conductance": -1}, "conductance"),
+        (ep.plain_pin, PIN | {"conductance": math.inf}, "conductance"),
+        (ep.windage, DISC | {"oil_share": "5 %"}, "oil_share"),
+        (ep.windage, DISC | {"teeth": -30}, "teeth"),
+        (ep.windage, DISC | {"teeth": 30.5}, "teeth"),
+        (ep.windage, DISC | {"teeth": True}, "teeth"),
+        (ep.windage, DISC | {"pitch_diameter": "90 mm"}, "pitch_diameter"),
+        (ep.windage, DISC | {"teeth": 30, "pitch_diameter": "110 mm"}, "pitch_diameter"),
+        (ep.bearing_loss, FORCES | {"designation": "51108"}, "radial_force"),
+        (ep.bearing_loss, FORCES | {"designation": "NKI 40/30"}, "axial_force"),
+        (ep.bearing_loss, FORCES | {"designation": "6208", "model": "zhou-hoeprich"}, "model"),
+        (ep.bearing_loss, FORCES | {"designation": "6208", "model": "table"}, "model"),
+    ],
+)
+def test_impossible_arguments_are_named(function, arguments, key):
+    with pytest.raises(ep.InputError) as error:
+        function(**arguments)
+    assert [problem.key for problem in error.value.problems] == [key]
+
+
+def test_arguments_that_were_numbers_may_be_texts_and_arrays():
+    found = ep.plain_pin(**PIN, conductance=["0 W/K", "2 W/K"])
+    assert found["temperature"][1] < found["temperature"][0]
+    assert found["watts"][0] == ep.plain_pin(**PIN)["watts"]
+    modulus = ep.line_contact(**CONTACT, modulus="220 GPa")
+    assert modulus == ep.line_contact(**CONTACT, modulus=220e9)
+
+
+@pytest.mark.parametrize("model", ["doleschel", "matsumoto"])
+def test_separated_flanks_have_the_fluid_friction_of_a_case(model):
+    smooth = {"roughness1": "0.001 um", "roughness2": "0.001 um", "sliding_speed": "1 m/s"}
+    fluid = ep.load_case("talbot-2012").models.fluid_friction
+    assert ep.friction(model, **CONTACT | smooth) == pytest.approx(fluid, rel=1e-3)
+
+
 def test_a_mean_of_a_mesh_is_no_model_of_a_contact():
     with pytest.raises(ep.InputError, match="benedict-kelley"):
         ep.friction("schlenk", **CONTACT, sliding_speed=1.0)

@@ -235,6 +235,21 @@ def test_examples_of_functions_give_what_they_show(module):
     assert doctest.testmod(module).failed == 0
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"operation.torque": "1e6 N*m"},  # flashes of thousands of kelvins
+        {"operation.torque": "20 N*m", "operation.oil_inlet_temperature": "-40 degC"},
+    ],
+)
+def test_safeties_are_above_zero_in_any_flash_and_any_cold(changes):
+    coarse = {"numerics.mesh_positions": 4, "numerics.contact_segments": 4}
+    coarse["losses.mesh_pocketing.include"] = False
+    found = rating.strength(load_case("talbot-2012-pair", coarse | changes)).least()
+    assert set(found) == {"pitting", "bending", "micropitting", "scuffing", "integral_scuffing"}
+    assert all(0 < safety < math.inf for safety in found.values()), found
+
+
 def test_scuffing_is_as_printed():
     permissible = lubricated.scuffing_temperature(14, 30.09e-3, 1.0)
     assert permissible - 273.15 == pytest.approx(451.98, abs=0.01)

@@ -240,6 +240,14 @@ def test_all_problems_of_a_task_are_told_at_once():
     assert keys == {"choices.pinion_teeth", "case.sun", "case.lubricant"}
 
 
+def test_no_choice_is_given_twice_and_a_cycle_moves():
+    raw = task_of("pair", module=["2 mm", "0.002 m"])
+    raw["cycle"] = [raw["operation"] | {"speed": "0 rpm"}, raw["operation"] | {"torque": "0 N*m"}]
+    with pytest.raises(InputError) as error:
+        read_task(raw)
+    assert [problem.key for problem in error.value.problems] == ["cycle", "choices.module"]
+
+
 def test_no_choice_may_be_empty_or_out_of_range():
     raw = task_of("planetary")
     raw["cycle"] = [raw["operation"] | {"torque": "17 N*m"}]
@@ -279,7 +287,7 @@ def test_materials_of_gears_reach_every_arrangement(name, named):
     raw = task_of(name, ratio=RATIOS[name])
     stated = {"sun": {"material": "nitrided-mq"}, "ring": {"material": "nitrided-mq"}}
     raw["case"]["strength"]["gears"] = stated
-    raw["choices"]["arrangements"] = [name, "planetary", "pair"]
+    raw["choices"]["arrangements"] = list(dict.fromkeys([name, "planetary", "pair"]))
     task = read_task(raw)
     found = screen(task)
     row = found.table[found.table.arrangement == name].iloc[0].dropna().to_dict()

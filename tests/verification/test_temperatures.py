@@ -94,8 +94,17 @@ def test_the_coefficient_of_part_1_is_that_from_oil_to_air(coefficient):
     assert ways["oil-housing"] == pytest.approx(driven, rel=1e-9)
 
 
-def test_a_measured_outlet_temperature_gives_the_flow():
-    case = ep.load_case(planetary())
+@pytest.mark.parametrize(
+    "others",
+    [
+        {},
+        {"thermal.housing.area": "0.2 m^2"},
+        {"thermal.housing.area": "0.2 m^2", "thermal.ambient_temperature": "190 degC"},
+        {"thermal.cooler_conductance": "5 W/K", "thermal.cooler_power": "30 W"},
+    ],
+)
+def test_a_measured_outlet_temperature_gives_the_flow(others):
+    case = ep.load_case(planetary()).updated(others)
     known = ep.solve(case.updated(FLOW))
     outlet = f"{known.heat.temperatures['oil']!r} K"
     changes = {"models.temperatures": "network", "thermal.oil_outlet_temperature": outlet}
@@ -103,6 +112,23 @@ def test_a_measured_outlet_temperature_gives_the_flow():
     assert found.total == pytest.approx(known.total, rel=1e-7)
     for node, value in known.heat.temperatures.items():
         assert found.heat.temperatures[node] == pytest.approx(value, abs=3 * AGREEMENT), node
+
+
+def test_an_outlet_temperature_that_other_paths_prevent_is_told():
+    changes = {"thermal.oil_outlet_temperature": "120 degC", "thermal.housing.area": "50 m^2"}
+    case = ep.load_case(planetary()).updated({"models.temperatures": "network"} | changes)
+    with pytest.raises(ep.ConvergenceError, match="the oil cannot leave at 120 degC: other paths"):
+        ep.solve(case)
+
+
+def test_the_faster_the_air_the_cooler_the_housing():
+    case = ep.load_case(planetary()).updated(FLOW | {"thermal.housing.area": "0.3 m^2"})
+    speeds = ("0 m/s", "0.001 m/s", "0.3 m/s", "1 m/s", "10 m/s")
+    found = [ep.solve(case.updated({"thermal.housing.air_speed": it})).heat for it in speeds]
+    walls = [heat.temperatures["housing"] for heat in found]
+    assert walls == sorted(walls, reverse=True)
+    assert walls[1] == pytest.approx(walls[0], abs=1e-6)
+    assert walls[-1] < walls[0] - 1
 
 
 def test_flank_rises_by_the_flash_of_its_own_meshes():

@@ -284,6 +284,12 @@ def test_a_paired_difference_is_known_better_than_an_unpaired_one(case):
     assert not same["difference"].sel(result="total").any()
 
 
+@pytest.mark.parametrize("times", [(), (0.0,), (-1.0, 2.0), (math.nan, 1.0), (math.inf,)])
+def test_times_of_a_compared_cycle_are_not_negative(case, times):
+    with pytest.raises(InputError, match="points: must have times of 0 or more, not all 0"):
+        ep.compare_cases(case, case, samples=16, points=[(time, {}) for time in times])
+
+
 @pytest.mark.slow
 def test_a_cycle_is_compared_with_the_same_draw_at_all_its_points(case):
     other = case.updated({"gear.roughness": "0.31 um", "gears.center_distance": "108.03 mm"})
@@ -341,6 +347,20 @@ def test_values_that_cannot_be_are_cut_off_and_told(case):
     assert (drawn > 0).all()
     assert cut_off(value) == pytest.approx(0.0912, abs=1e-4)
     assert standard_uncertainty(uniform("x", 1.0, 4.0)) == pytest.approx(3 / math.sqrt(12))
+
+
+def test_a_case_without_any_uncertainty_is_told_and_can_be_compared(case):
+    exact = {value.key: {"exact": True} for value in look_nearby(case, ep.solve(case)).values}
+    known = case.updated({"uncertainty": exact})
+    for ask in (ep.uncertainty, lambda it, samples: ep.compare_cases(it, it, samples=samples)):
+        with pytest.raises(InputError, match="leaves nothing uncertain"):
+            ask(known, samples=16)
+    found = ep.compare_cases(known, case, samples=16).sel(result="total")
+    other = ep.compare_cases(case, known, samples=16).sel(result="total")
+    assert found["standard_uncertainty"] == other["standard_uncertainty"] > 0
+    assert found["low"] == -other["high"]
+    with pytest.raises(InputError, match="must be true, or left out"):
+        case.updated({"uncertainty": {"gear.roughness": {"exact": False}}})
 
 
 @pytest.mark.slow

@@ -294,6 +294,8 @@ LEAST_INSIDE = 10.0
 """Conductance from oil to wall over that from oil to air, at least, by ISO/TR 14179-1. [1]"""
 SAME = 1e-13  # Relative error of the temperature of the housing. [1]
 WALLS = (1.0, 1e7)  # Between which the housing may be while temperatures settle. [K]
+OUTFLOW = "oil-outflow"  # Path of the oil that leaves.
+LEAST_FLOW = 1e-9  # With which the oil is warmest, over that which carries all heat. [1]
 AT_REST = 1.0  # Conductance that makes a part without heat as warm as the oil. [W/K]
 LEAST_SHARE = 0.01
 """Oil for a part without heat over that for one with all the heat: an estimate. [1]"""
@@ -318,12 +320,10 @@ class Housing:
 
     def outside(self, wall: float, air: float) -> float:
         """Coefficient from the wall to the air. Theory (W9), (W10), (W11). [W/(m^2 K)]"""
-        if self.air_speed:
-            convection = shell.forced_convection(
-                self.air_speed, self.length, self.height, wall, air
-            )
-        else:
-            convection = shell.free_convection(self.height, wall, air)
+        convection = shell.free_convection(self.height, wall, air)
+        if self.air_speed:  # slow air cools no less than air at rest
+            sizes = self.length, self.height
+            convection = max(convection, shell.forced_convection(self.air_speed, *sizes, wall, air))
         return self.fin_factor * convection + shell.radiation(self.emissivity, wall, air)
 
     def links(self, wall: float, air: float) -> Iterator[Link]:
@@ -446,8 +446,10 @@ class NetworkModel:
         Raises `InputError` if the heat of a part has no way out.
         """
         heat = self._heat(solution)
-        fixed = self._fixed_links(temperatures[OIL], solution, heat)
-        network = self._with_wall(fixed, heat, self._wall(fixed, heat))
+        own, at = self.settings, (temperatures[OIL], solution, heat)
+        others = own.outlet is not None and (own.housing is not None or own.cooler > 0)
+        is_open = others and sum(heat.values()) > 0 and OUTFLOW not in own.changes
+        network = self._to_outlet(*at) if is_open else self._with_flow(*at)
         found = network.steady(heat)
         flows = network.flows(found)
         whole = max(sum(map(abs, heat.values())), *map(abs, flows.values()))
@@ -459,6 +461,35 @@ class NetworkModel:
             given=network.given,
             residual=left / whole if whole else 0.0,
         )
+
+    def _with_flow(
+        self, around: float, solution: Solution, heat: dict[str, float], flow: float | None = None
+    ) -> Network:
+        fixed = self._fixed_links(around, solution, heat, flow)
+        return self._with_wall(fixed, heat, self._wall(fixed, heat))
+
+    def _to_outlet(self, around: float, solution: Solution, heat: dict[str, float]) -> Network:
+        """The network with as much flow as lets the oil leave at its stated temperature."""
+        from scipy.optimize import brentq
+
+        outlet = self.settings.outlet
+        assert outlet is not None
+
+        def excess(flow: float) -> float:
+            return self._with_flow(around, solution, heat, flow).steady(heat)[OIL] - outlet
+
+        most = sum(heat.values()) / (outlet - self.settings.inlet)
+        least = LEAST_FLOW * most
+        if (left := excess(least)) < 0:
+            raise ConvergenceError(
+                f"the oil cannot leave at {CELSIUS.text(outlet, 4)}: other paths would keep it "
+                f"at {CELSIUS.text(outlet + left, 4)} even if none left. Correct "
+                "thermal.oil_outlet_temperature or these paths, or give thermal.oil_flow."
+            )
+        while excess(most) > 0:  # heat comes in on other paths
+            most *= 2
+        flow = float(brentq(excess, least, most, xtol=SAME, rtol=SAME))
+        return self._with_flow(around, solution, heat, flow)
 
     def network(self, temperature: float, solution: Solution) -> Network:
         """The network with oil and housing at one temperature. [K]"""
@@ -519,11 +550,15 @@ class NetworkModel:
         around: float,  # Temperature of the oil, for its properties. [K]
         solution: Solution,  # Speeds, and loads of the bearings.
         heat: Mapping[str, float],  # That arises at each node, less the power of a cooler. [W]
+        carried: float | None = None,  # Heat capacity of the flow; None: as stated. [W/K]
     ) -> tuple[Link, ...]:
         """All paths of the heat but that to the air."""
         own = self.settings
         oil, mixture = self.media_at(around)
-        carried = self._carried(oil, sum(heat.values()))
+        if carried is None and own.outlet is not None:
+            carried = max(sum(heat.values()), 0.0) / (own.outlet - own.inlet)
+        elif carried is None:
+            carried = oil.density * oil.heat_capacity * own.flow
         shares = self._jet_shares(heat)
 
         def wetting(wet: Wet) -> Wetting:
@@ -574,13 +609,6 @@ class NetworkModel:
         raise_any(problems)
         return {node: value for node, value in known.items() if value is not None}
 
-    def _carried(self, oil: Fluid, heat: float) -> float:
-        """Heat capacity of the flow of oil. [W/K]"""
-        own = self.settings
-        if own.outlet is not None:
-            return max(heat, 0.0) / (own.outlet - own.inlet)
-        return oil.density * oil.heat_capacity * own.flow
-
     def _jet_shares(self, heat: Mapping[str, float]) -> dict[str, float]:
         """The oil goes where the heat arises, unless the user says otherwise. Theory (W30)."""
         given = self.settings.jet_shares
@@ -623,7 +651,7 @@ class NetworkModel:
 
     def _of_oil(self, carried: float) -> Iterator[Link]:
         if carried:
-            yield Link("oil-outflow", OIL, INLET, carried, "flow of oil", "energy balance")
+            yield Link(OUTFLOW, OIL, INLET, carried, "flow of oil", "energy balance")
         if self.settings.cooler:
             yield Link("oil-coolant", OIL, COOLANT, self.settings.cooler, "cooler", "given")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence, Set
@@ -150,7 +151,8 @@ def _remedy(place: Place, kind: str, value: Any) -> str:
         number = None if match is None or match[2] else float(match[1])
         if number is not None and not _is_within(number, low, high, is_open):
             return range_remedy(number, low, high, open_low=is_open)
-        return _number_remedy(value)
+        is_whole = kind == "int_type" and match is not None and not match[1].isdigit()
+        return _number_remedy(number if is_whole and number is not None else value)
     if table_of(place.annotation) is not None:
         return _table_remedy(place.path, value)
     return _REMEDIES.get(kind, "correct this value")
@@ -174,7 +176,7 @@ def _number_remedy(value: Any) -> str:
     if isinstance(value, float) and value.is_integer():
         return f"write {format_number(value, 15)}"
     if isinstance(value, float):
-        return "round it"
+        return "round it" if math.isfinite(value) else _REMEDIES["finite_number"]
     if isinstance(value, bool):
         return "write a number"
     match = _PLAIN_NUMBER.fullmatch(value[:100]) if isinstance(value, str) else None

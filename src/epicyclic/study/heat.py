@@ -265,7 +265,7 @@ def _bracket(
     over = excess(before)
     for _ in range(MOST_STEPS):
         next_over = excess(number)
-        if over * next_over <= 0:
+        if over * next_over <= 0 and (over or search.start is None):  # oil is never at its inlet
             return before, number
         if abs(next_over) > abs(over) - STILL:
             break

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
+from numbers import Real
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -18,10 +19,11 @@ from pydantic_core import PydanticCustomError
 from epicyclic.arrays import FloatArray
 from epicyclic.build.elements import build_element
 from epicyclic.build.machine import oil_medium
+from epicyclic.case.tables.base import Roughness
 from epicyclic.case.tables.elements import Force, ShaftBearingTable
 from epicyclic.case.tables.operation import Lubricant
 from epicyclic.contact.line_contact import Flanks, LineContacts
-from epicyclic.errors import InputError, one_problem
+from epicyclic.errors import InputError, one_problem, raise_any
 from epicyclic.gears.gear import involute
 from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings
@@ -46,7 +48,9 @@ from epicyclic.schema.validation import validate
 from epicyclic.units import (
     METRE_PER_SECOND,
     NEWTON_PER_MM,
+    Conductance,
     Length,
+    Modulus,
     RotationalSpeed,
     SmallLength,
     Speed,
@@ -63,6 +67,7 @@ LOCAL_FRICTION = (
 )  # fmt: skip
 """Friction models that need no more than the contact; the others are means over a gear mesh."""
 
+TEETH = range(5, 2001)  # Numbers of teeth of a case.
 _LINE_LOAD = replace(NEWTON_PER_MM, low=0.0, high=1e6)
 _MEASURES: dict[str, Any] = {
     "line_load": Annotated[float, _LINE_LOAD],
@@ -71,7 +76,9 @@ _MEASURES: dict[str, Any] = {
     "sliding_speed": Annotated[float, METRE_PER_SECOND],
     "roughness1": SmallLength,
     "roughness2": SmallLength,
-    "roughness": SmallLength,
+    "roughness": Roughness,
+    "modulus": Modulus,
+    "conductance": Conductance,
     "temperature": Temperature,
     "diameter": Length,
     "pitch_diameter": Length,
@@ -90,6 +97,8 @@ _MEASURES: dict[str, Any] = {
 def _si(key: str, given: Any) -> FloatArray:
     """Numbers in SI, and texts with units."""
     if not isinstance(given, str) and np.ndim(given):
+        if not np.size(given):
+            raise one_problem(key, written(given), "has no values.", "Give one or more.")
         return np.array([_si(key, one) for one in given])
     quantity = quantity_of(_MEASURES[key])
     assert quantity is not None
@@ -187,19 +196,19 @@ def _at_contacts(
     sliding_speed: Any = 0.0,
     roughness1: Any = "0.4 um",
     roughness2: Any = "0.4 um",
-    modulus: float = STEEL,
+    modulus: Any = STEEL,
 ) -> list[FloatArray]:
     """What a function makes of each contact."""
     liquid = _oil(oil)
 
-    def at(rq1: float, rq2: float, t: float, *local: float) -> tuple[float, ...]:
+    def at(e_eq: float, rq1: float, rq2: float, t: float, *local: float) -> tuple[float, ...]:
         load, own, rolling, sliding = (np.array([one]) for one in local)
-        flanks = Flanks(modulus, rq1, rq2)
+        flanks = Flanks(e_eq, rq1, rq2)
         contact = LineContacts(load, own, rolling, sliding, flanks, oil_state(liquid, t))
         return tuple(float(np.ravel(one)[0]) for one in function(contact))
 
     return _each(
-        at, roughness1=roughness1, roughness2=roughness2, temperature=temperature,
+        at, modulus=modulus, roughness1=roughness1, roughness2=roughness2, temperature=temperature,
         line_load=line_load, radius=radius, rolling_speed=rolling_speed,
         sliding_speed=sliding_speed,
     )  # fmt: skip
@@ -226,7 +235,7 @@ def line_contact(**contact: Any) -> LineContact:
         As for `oil_properties`.
     roughness1, roughness2 : float, str or array_like
         Rms roughness Rq of both surfaces. [m]
-    modulus : float
+    modulus : float, str or array_like
         E_eq = 2/[(1 - nu1^2)/E1 + (1 - nu2^2)/E2]. Default: steel on steel. [Pa]
 
     Returns
@@ -367,9 +376,12 @@ def windage(
     """
     liquid = _oil(oil)
     _chosen(model, DRAG_METHODS, tuple(name for name in DRAG_METHODS if name != LAMINAR_RIMS))
-    if not 0 <= oil_share <= 1:
+    if not (isinstance(oil_share, Real) and 0 <= oil_share <= 1):
         allowed = "must be from 0 to 1."
         raise one_problem("oil_share", written(oil_share), allowed, "Give parts of the volume.")
+    if teeth is not None and (isinstance(teeth, bool) or teeth not in TEETH):
+        allowed = f"must be a whole number >= {TEETH[0]} and <= {TEETH[-1]}."
+        raise one_problem("teeth", written(teeth), allowed, "Give their number, or none at all.")
 
     def at(size: float, face: float, omega: float, t: float, pitch: float) -> tuple[float]:
         state = oil_state(liquid, t)
@@ -386,6 +398,9 @@ def windage(
     pitch = pitch_diameter
     if pitch is None:
         pitch = _si("diameter", diameter) * (teeth / (teeth + 2) if teeth else 1.0)
+    elif teeth is None or np.any(_si("pitch_diameter", pitch) > _si("diameter", diameter)):
+        allowed = "is the reference diameter of teeth, whose tips are at diameter."
+        raise one_problem("pitch_diameter", written(pitch), allowed, "Correct it, or give teeth.")
     return _each(
         at, diameter=diameter, width=width, speed=speed, temperature=temperature,
         pitch_diameter=pitch,
@@ -434,10 +449,12 @@ def bearing_loss(
     [14.9, 116.0]
     """
     liquid = _oil(oil)
-    given = {"shaft": "shaft", "designation": designation, "model": model, "radial_force": "1 N"}
+    forces = {"radial_force": radial_force, "axial_force": axial_force}
+    given = {"shaft": "shaft", "designation": designation, "model": model}
+    given |= {key: f"{np.max(_si(key, force))} N" for key, force in forces.items()}
     read = validate(ShaftBearingTable, given)
-    if read.case is None:
-        raise InputError(read.problems)
+    raise_any(read.problems or [*read.case.problems()] if read.case else read.problems)
+    assert read.case is not None
     made = build_element(
         "bearings", "bearing", read.case, shafts={"shaft": "shaft"}, oil=liquid, folder=Path()
     )
@@ -449,10 +466,7 @@ def bearing_loss(
         )
         return (sum(part.watts for part in parts),)
 
-    return _each(
-        at, speed=speed, temperature=temperature, radial_force=radial_force,
-        axial_force=axial_force,
-    )[0]  # fmt: skip
+    return _each(at, speed=speed, temperature=temperature, **forces)[0]
 
 
 def plain_pin(
@@ -465,7 +479,7 @@ def plain_pin(
     temperature: Any,
     oil: OilName,
     roughness: Any = "0.5 um",
-    conductance: float = 0.0,
+    conductance: Any = 0.0,
     moment: Any = 0.0,
 ) -> dict[str, FloatArray]:
     """Film, temperature and loss of a journal bearing: a planet on a plain pin.
@@ -485,7 +499,7 @@ def plain_pin(
         Of the oil as it enters, as for `oil_properties`.
     roughness : float, str or array_like
         Rms, of both surfaces together. [m]
-    conductance : float
+    conductance : float, str or array_like
         From the film to pin and planet; 0: all heat leaves with the oil. [W/K]
     moment : float, str or array_like
         Tilts the planet, in the plane of its axis across the force, as helical meshes do. [N m]
@@ -507,10 +521,10 @@ def plain_pin(
     names = ("watts", *(one.name for one in fields(JournalState)))
 
     def at(*values: float) -> tuple[float, ...]:
-        inner, long, gap, rough, load, omega, t, couple = values
+        inner, long, gap, rough, load, omega, t, couple, outward = values
         state = oil_state(liquid, t)
         bearing = JournalBearing(
-            inner, long, gap, rough, STEEL / 2, state.boundary_friction, conductance
+            inner, long, gap, rough, STEEL / 2, state.boundary_friction, outward
         )
         capacity = oil_medium(liquid, t).heat_capacity
         found = solve_journal(bearing, load, omega, state, capacity, complex(0.0, couple))
@@ -519,5 +533,6 @@ def plain_pin(
     columns = _each(
         at, diameter=diameter, length=length, clearance=clearance, roughness=roughness,
         force=force, speed=speed, temperature=temperature, moment=moment,
+        conductance=conductance,
     )  # fmt: skip
     return dict(zip(names, columns, strict=True))

@@ -24,7 +24,7 @@ from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
-from epicyclic.units import Length, Number, Quantity, SmallLength, Temperature, VolumeFlow
+from epicyclic.units import Length, Number, Play, Quantity, SmallLength, Temperature, VolumeFlow
 
 if TYPE_CHECKING:
     from epicyclic.losses.loss_table import LossTable
@@ -124,7 +124,7 @@ class PlanetPin(Table):
 
     pin_diameter: Length
     length: Length = Field(description="Of the bore that runs on the pin.")
-    diametral_clearance: SmallLength
+    diametral_clearance: Play
     pin_roughness: Roughness
     bore_roughness: Roughness
     boundary_friction: Number | None = option(

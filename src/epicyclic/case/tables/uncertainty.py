@@ -194,8 +194,8 @@ def _spread(
     if table.tolerance is not None:
         low, high = (_difference(limit, value, quantity) for limit in table.tolerance)
         return "uniform", (value + low, value + high)
-    assert table.uniform is not None
-    limits = table.uniform
+    if (limits := table.uniform) is None:
+        raise PydanticCustomError("exact", "must be true, or left out", {"remedy": "Delete it"})
     if quantity is None:
         return "uniform", (_number(limits[0]), _number(limits[1]))
     return "uniform", tuple(quantity.to_display(quantity.parse(limit)) for limit in limits)

@@ -27,6 +27,7 @@ from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.losses.mesh import ohlendorf_loss_factor
+from epicyclic.machine.heat import HOTTEST
 from epicyclic.oil.oil import Oil, oil_state
 
 Numbers = FloatArray | float
@@ -47,14 +48,14 @@ class FilmOil:
 
     def viscosity(self, temperature: Numbers) -> FloatArray:
         """eta, dynamic, at temperatures in kelvin. [Pa s]"""
-        values = np.atleast_1d(np.asarray(temperature, dtype=float))
+        values = np.minimum(np.atleast_1d(temperature), HOTTEST)  # hotter flashes leave no film
         found = np.array([oil_state(self.oil, it).dynamic_viscosity for it in values])
         return found.reshape(np.shape(temperature))
 
     def pressure_viscosity(self, temperature: Numbers) -> FloatArray:
         """alpha from that at 38 degC. ISO/TS 6336-22, Eq. 9. [1/Pa]"""
         at38 = oil_state(self.oil, REFERENCE).pressure_viscosity
-        return np.asarray(at38 * (1 + 516 * (1 / np.asarray(temperature) - 1 / REFERENCE)))
+        return np.asarray(at38 * (1 + 516 * (1 / np.minimum(temperature, HOTTEST) - 1 / REFERENCE)))
 
 
 def film_thickness(
@@ -224,4 +225,5 @@ def flash_safety(scuffing: float, contact: float, oil: float) -> float:
 
 def integral_safety(scuffing: float, integral: float) -> float:
     """S_intS: temperatures in degC, permissible over weighted mean. ISO/TS 6336-21. [1]"""
-    return (scuffing - ZERO_CELSIUS) / (integral - ZERO_CELSIUS)
+    mean = max(integral - ZERO_CELSIUS, 1.0)  # below 0 degC, in cold oil, it has no meaning
+    return (scuffing - ZERO_CELSIUS) / mean

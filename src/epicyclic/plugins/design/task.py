@@ -180,8 +180,12 @@ def _problems(task: Task) -> list[Problem]:
         problems.append(
             Problem("case.lubricant", "", "is missing.", 'Add [case.lubricant] oil = "...".')
         )
-    if task.cycle and not any(point.torque for point in task.cycle):
-        problems.append(Problem("cycle", "", "has no torque.", "Give points with torque."))
+    if task.cycle and not any(point.torque * point.speed for point in task.cycle):
+        problems.append(Problem("cycle", "", "has no torque at a speed.", "Give points with both."))
+    for key, values in task.choices:
+        if key != "pinion_teeth" and isinstance(values, tuple) and len({*values}) < len(values):
+            twice = f"choices.{key}", "", "has the same value twice.", "Give each value once."
+            problems.append(Problem(*twice))
     if task.operation.torque <= 0 or task.operation.speed <= 0:
         allowed = "must have a positive torque and speed."
         problems.append(Problem("operation", "", allowed, "Give the point of the largest load."))

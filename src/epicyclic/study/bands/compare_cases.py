@@ -12,7 +12,7 @@ import numpy as np
 from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import UncertainValue
-from epicyclic.errors import ConvergenceError
+from epicyclic.errors import ConvergenceError, one_problem
 from epicyclic.result.result import Result, versions
 from epicyclic.study.bands.plan import (
     INPUT_POWER,
@@ -83,6 +83,9 @@ def compare_cases(
         If a case, or hardly any pair of samples, can be solved.
     """
     check_samples(samples, seed)
+    weights = np.array([time for time, _ in points], dtype=float)
+    if not ((weights >= 0).all() and 0 < weights.sum() < np.inf):
+        raise one_problem("points", "", "must have times of 0 or more, not all 0.", "Correct them.")
     cases, changes = (as_case(first), as_case(second)), [dict(change) for _, change in points]
     results = [[solve(case.updated(it) if it else case) for it in changes] for case in cases]
     values = [values_at(case, own[0], changes) for case, own in zip(cases, results, strict=True)]
@@ -92,15 +95,15 @@ def compare_cases(
     drawn = probabilities([*values[0][0], *_renamed(others, shared)], samples, seed)
     keys = [it.key for it in values[0][0]] + [f"{OWN}{it.key}" for it in others]
     rows = dict(zip(keys, drawn, strict=True))
-    runner = Runner(jobs, dask, None, None, progress)
-    weights = np.array([time for time, _ in points]) / sum(time for time, _ in points)
+    runner, weights = Runner(jobs, dask, None, None, progress), weights / weights.sum()
     evaluated, nominal = [], []
     for case, own, known, mark in zip(cases, results, values, ("", OWN), strict=True):
         found = [
             [quantiles(it, rows[it.key if it.key in shared else f"{mark}{it.key}"]) for it in at]
             for at in known
         ]
-        evaluated.append(_evaluate(case, own[0], known, np.array(found), changes, weights, runner))
+        taken = np.array(found).reshape(len(changes), len(known[0]), samples)  # also of no values
+        evaluated.append(_evaluate(case, own[0], known, taken, changes, weights, runner))
         nominal.append(_nominal(own, evaluated[-1][0].names, weights))
     return _dataset(cases, nominal, evaluated, sorted(shared))
 

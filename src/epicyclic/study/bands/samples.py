@@ -12,6 +12,7 @@ import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.tables.uncertainty import UncertainValue
+from epicyclic.errors import one_problem
 
 # Distributions of uncertain values, cut off where a case has no such values.
 
@@ -139,6 +140,8 @@ def probabilities(values: Sequence[UncertainValue], count: int, seed: int) -> Fl
 def _sobol(size: int, count: int, seed: int) -> FloatArray:
     from scipy import stats
 
+    if not size:
+        raise one_problem("uncertainty", "", "leaves nothing uncertain.", "Run the case as it is.")
     points = stats.qmc.Sobol(size, rng=np.random.default_rng(seed), bits=64)
     drawn: FloatArray = points.random(count).T
     return drawn
