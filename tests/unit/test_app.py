@@ -56,6 +56,12 @@ def test_numbers_are_shown_in_the_unit_of_the_field_and_typed_in_it(talbot):
     assert (torque.text, torque.unit) == ("1000", "N·m")
     assert torque.value("730") == "730 N*m"
     assert torque.value("0.73 kN*m") == "0.73 kN*m"
+    assert [torque.shown(it) for it in ("0.73 kN*m", "7", "nan", "3 kg")] == [
+        "730",
+        "7",
+        "nan",
+        "3 kg",
+    ]
     assert torque.value("  ") is None
     faster = form_of(talbot.updated({"operation.speed": "25 rev/s"}).given())
     assert {it.key: it.text for it in faster.walk()}["operation.speed"] == "1500"
@@ -499,6 +505,9 @@ def test_the_page_shows_form_and_losses_and_the_message_beside_a_wrong_field(sim
         await user.should_see("has a unit that measures something else", retries=50)
         assert "measures something else" in field.error
         assert desk.case is None
+        found.clear().type("0.5 kN*m").trigger("change")
+        await user.should_not_see("has a unit that measures something else", retries=50)
+        assert (field.value, desk.case["operation.torque"]) == ("500", 500.0)
 
     simulate(desk, script)
 

@@ -17,7 +17,7 @@ from epicyclic.cli.common import parse_size
 from epicyclic.result.result import of_gear
 from epicyclic.show.page import Cell, Table
 from epicyclic.show.plots.arrangement import arrangement_of
-from epicyclic.show.plots.catalogue import draw, figure_of
+from epicyclic.show.plots.catalogue import draw, explorable, figure_of
 from epicyclic.show.plots.drawing import plot_gear_set
 from epicyclic.show.plots.loss_map import limits_of, limits_of_band, limits_of_half_width
 from epicyclic.show.plots.losses import banded, plot_loss_sum, plot_losses
@@ -202,6 +202,8 @@ def test_the_scale_of_roller_loads_is_apart_from_the_bars(talbot_record):
         carrying = moved["azimuth"].to_numpy()[load > 0.05 * load.max()]
         apart = (ax.get_rlabel_position() - carrying + 180) % 360 - 180
         assert abs(apart).min() >= 0.4 * 360 / moved.sizes["roller"]
+    chart = explorable(ax)
+    assert chart["layout"]["polar"]["domain"]["y"][1] < 0.95, "the label above the circle has room"
 
 
 def test_long_labels_beside_low_axes_are_broken():

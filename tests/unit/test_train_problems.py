@@ -387,3 +387,8 @@ def test_a_listed_gear_that_cannot_be_read_hides_no_mistake_of_the_others():
     assert not any(
         key.startswith("sets.w.gears.sun.") for key in keys - {"sets.w.gears.sun.face_width"}
     )
+
+
+def test_a_set_without_its_table_is_told_where_the_sets_are():
+    (problem,) = problems_of(ep.load_case, "train-8hp70", {"a.sun.teeth": 30})
+    assert problem.remedy == "A set is sets.NAME, here sets.P1, sets.P2, sets.P3, sets.P4."

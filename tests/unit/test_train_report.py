@@ -64,6 +64,8 @@ def test_tables_of_an_axle_tell_everything_and_fit():
     for title in ("Losses in W", "Shafts", "Rolling power", "Meshes of pair", "Meshes of planets",
                   "Planet bearings", "Shaft bearings", "Seals", "Oil"):  # fmt: skip
         assert f"\n{title}" in text
+    assert "radial, N" in text
+    assert "lip, m/s" in text
     row = next(line.split() for line in text.splitlines() if line.startswith("total"))
     assert float(row[-5]) == pytest.approx(result.total, abs=0.06)
     assert "nan" not in text

@@ -20,6 +20,7 @@ from epicyclic.losses.ranges import (
     held_in_range,
     weight_of,
 )
+from epicyclic.show.result_page import _limits
 from epicyclic.show.summary import first_remarks, first_warnings
 from epicyclic.units import CELSIUS, GIGAPASCAL, MILLIMETRE
 
@@ -318,3 +319,7 @@ def test_a_warning_weighs_by_how_far_its_limit_is_exceeded():
     assert weight_of(10.0, [left(None, 2, 1, 90.0)]) == pytest.approx(100.0)
     assert weight_of(10.0, [left(None, 2, 1, 2.2, could_be=83.0)]) == pytest.approx(83.0)
     assert weight_of(math.nan, [near]) == math.inf
+
+
+def test_one_value_is_no_range_in_the_table():
+    assert (_limits(85.9, 85.9), _limits(0.1, 2.0)) == ("85.9", "0.1 to 2")

@@ -55,7 +55,7 @@ def test_bands_hold_errors_that_all_tests_share(figures):
     """They are as wide over 64 tests as over one: nothing averages out."""
     slope, single = (
         next(row for row in figures if name in row.what)
-        for name in ("shaved, 90 degC", "load-dependent loss, 3 planets, 90 degC")
+        for name in ("shaved, 90 °C", "load-dependent loss, 3 planets, 90 °C")
     )
     widths = [(row.high - row.low) / row.computed for row in (slope, single)]
     assert widths[0] == pytest.approx(widths[1], rel=0.15)

@@ -195,12 +195,12 @@ def test_tolerances_of_the_first_issue_hold(rows):
     """89 W and the roughness ratio within 10 %; slope and total against the prediction, 6 %."""
     by_what = {row.what: row for row in rows}
     limits = {
-        "planet bearing loss, branch 333 N·m, 4000 rpm, 90 degC, S_co 0.063 um": 0.10,
-        "planet bearing loss at S_co 0.180 um over that at 0.063 um, 4000 rpm ('nearly three "
+        "planet bearing loss, branch 333 N·m, 4000 rpm, 90 °C, S_co 0.063 µm": 0.10,
+        "planet bearing loss at S_co 0.180 µm over that at 0.063 µm, 4000 rpm ('nearly three "
         "times')": 0.10,
-        "slope of the branch loss over the branch power, line with intercept, shaved, 90 degC, "
+        "slope of the branch loss over the branch power, line with intercept, shaved, 90 °C, "
         "predicted there": 0.06,
-        "load-dependent loss, 3 planets, 90 degC, 1000 N·m, 4000 rpm, predicted there": 0.06,
+        "load-dependent loss, 3 planets, 90 °C, 1000 N·m, 4000 rpm, predicted there": 0.06,
     }
     for what, limit in limits.items():
         assert abs(by_what[what].difference) <= limit, what

@@ -421,6 +421,7 @@ def test_every_assumption_has_a_source():
         values, problems = uncertain_values(own, ("sliding", "seals"))
         assert not problems
         assert all(value.source for value in values)
+        assert not any(value.text.endswith(" um") for value in values)
         pairs = itertools.pairwise(sorted(value.key for value in values))
         assert all(one != two for one, two in pairs)
 

@@ -592,7 +592,7 @@ class TrainCase(_TrainHead):
             remedy = "Split the train at a shaft, and compute each part as a train of its own."
             raise one_problem("sets", f"{len(named)} sets", allowed, remedy, source)
         sound = {} if before is None else before._unchanged(tables)
-        whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound)
+        whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound, named)
         if (
             isinstance(before, TrainCase)
             and whole.case is not None

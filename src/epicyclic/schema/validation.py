@@ -80,6 +80,7 @@ def unknown_key(
     value: Any,
     # Names and classes of the tables in which the key might belong.
     tables: Iterable[tuple[str, type[BaseModel]]],
+    sets: Iterable[str] = (),  # Names of the sets of a train, of which one might be meant.
 ) -> Problem:
     """The problem of a key that the schema does not have."""
     name = str(place.path[-1])
@@ -90,6 +91,8 @@ def unknown_key(
         remedy = f'Write {_OF_KEYS}."{dotted(place.path[1:])}", with the key in quotes.'
     elif not remedy and homes:
         remedy = f"Write {either(homes)}."
+    elif not remedy and len(place.path) == 1 and isinstance(value, dict) and sets:
+        remedy = f"A set is sets.NAME, here {', '.join(dotted(('sets', it)) for it in sets)}."
     if not remedy:
         remedy = f"The keys are {', '.join(known)}." if known else "Remove it."
     return Problem(dotted(place.path), written(value), "is not a known key.", remedy)
@@ -202,11 +205,15 @@ class Validation(Generic[AnyCase]):
 
 
 def validate(
-    kind: type[AnyCase], raw: dict[str, Any], sound: Mapping[str, Table] = MappingProxyType({})
+    kind: type[AnyCase],
+    raw: dict[str, Any],
+    sound: Mapping[str, Table] = MappingProxyType({}),
+    sets: Iterable[str] = (),
 ) -> Validation[AnyCase]:
     """Hold `raw`, plain values, against the schema of a `kind` of case.
 
-    Of the tables that are `sound`, what became of them is known.
+    Of the tables that are `sound`, what became of them is known. Of `sets`, held elsewhere, the
+    names are.
 
     A misspelt key counts as the key that was meant, and a key that cannot be used is replaced where
     no other check depends on it, so that one mistake hides no other.
@@ -216,7 +223,9 @@ def validate(
     while unknown := [locate(kind, it["loc"]) for it in details if it["type"] == "extra_forbidden"]:
         # repeated, as a table that was misspelt itself may have unknown keys of its own
         tables = tables_of(kind).items()
-        problems += [unknown_key(place, value_at(raw, place.path), tables) for place in unknown]
+        problems += [
+            unknown_key(place, value_at(raw, place.path), tables, sets) for place in unknown
+        ]
         raw = _mend_names(raw, unknown)
         if isinstance(own := raw.get(_OF_KEYS), dict):  # those without quotes are told
             raw[_OF_KEYS] = {key: table for key, table in own.items() if table != {}}

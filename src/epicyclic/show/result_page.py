@@ -153,7 +153,7 @@ def _validity(result: Result) -> tuple[Table | Listing, ...]:
         rows = tuple(
             (
                 Cell(flag.quantity),
-                Cell(f"{_number(flag.found_low)} to {_number(flag.found_high)}", about="nowrap"),
+                Cell(_limits(flag.found_low, flag.found_high), about="nowrap"),
                 Cell(_limits(flag.low, flag.high), about="nowrap"),
                 Cell(unit_text(flag.unit), about="nowrap"),
                 Cell(str(flag.use)),
@@ -173,7 +173,7 @@ def _validity(result: Result) -> tuple[Table | Listing, ...]:
 def _limits(low: float | None, high: float | None) -> str:
     if low is None or high is None:
         return f"up to {_number(high)}" if low is None else f"from {_number(low)}"
-    return f"{_number(low)} to {_number(high)}"
+    return " to ".join(dict.fromkeys((_number(low), _number(high))))
 
 
 def _number(value: float | None) -> str:

@@ -473,7 +473,7 @@ def part_tables(result: Result) -> Iterator[Table]:
     losses = result.stage_losses
     for (kind, _), parts in kinds.items():
         heads = (
-            f"{SHORT_HEADS.get(it.key, it.label)} {unit_text(it.unit)}".rstrip()
+            f"{SHORT_HEADS.get(it.key, it.label)}, {unit_text(it.unit)}".rstrip(", ")
             for it in figures(next(iter(parts.values())))
         )
         rows = tuple(

@@ -406,11 +406,11 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
                 "cut off."
             )
     idle = [str(key) for key in data["input"].values if not _moves(data, str(key))]
+    names = _names(data)
     if idle:
-        yield f"Without effect here: {', '.join(idle)}."
+        yield f"Without effect here: {', '.join(names[key] for key in idle)}."
     yield from _of_points(data)
     sources: dict[str, list[str]] = {}
-    names = _names(data)
     for key in sorted(set(map(str, data["input"].values)) - set(idle)):
         source = str(data["distribution_source"].sel(input=key).values)
         sources.setdefault(source, []).append(f"{names[key]} ({key})")

@@ -63,8 +63,8 @@ def validation_table(
     for row in rows:
         table.add_row(
             Text.assemble(row.what, ("\n" + "\n".join(remarks(row)), "dim")),
-            f"{published_text(row)} {row.unit}".rstrip(),
-            f"{shown(row.computed)} {row.unit}".rstrip(),
+            f"{published_text(row)} {unit_text(row.unit)}".rstrip(),
+            f"{shown(row.computed)} {unit_text(row.unit)}".rstrip(),
             _difference(row),
             Text(verdict_text(row), style=_STYLES[row.verdict]),
         )
@@ -76,7 +76,7 @@ def closure_table(rows: Sequence[ClosureFigure]) -> Table:
     causes = dict.fromkeys(f"{percent(row.tolerance, 0)}: {row.cause}" for row in rows)
     cells = [
         (
-            Cell(f"{row.what}, {row.unit}".rstrip(", ")),
+            Cell(f"{row.what}, {unit_text(row.unit)}".rstrip(", ")),
             aligned(published_text(row)),
             *(
                 aligned(f"{shown(row.computed[name])} {'agrees' if row.holds(name) else 'differs'}")
@@ -104,7 +104,7 @@ def settled_table(rows: Sequence[SettledFigure], estimates: Sequence[Estimate]) 
     table = number_table(title, *heads, no_wrap=(False, True))
     for row in rows:
         table.add_row(
-            f"{row.what}, {row.unit}",
+            f"{row.what}, {unit_text(row.unit)}",
             " to ".join(map(shown, row.published)) or MISSING,
             *map(shown, (row.inlet, row.flank, row.network)),
             f"{shown(row.low)} to {shown(row.high)}",
@@ -128,7 +128,7 @@ def band_rows(rows: Sequence[MeasuredFigure]) -> list[tuple[str, ...]]:
     """Figure, measured, computed, its 95 % band, and whether the measurement lies inside."""
     return [
         (
-            f"{row.what}, {row.unit}".rstrip(", "),
+            f"{row.what}, {unit_text(row.unit)}".rstrip(", "),
             shown(row.measured),
             shown(row.computed, 3),
             f"{shown(row.low, 3)} to {shown(row.high, 3)}",

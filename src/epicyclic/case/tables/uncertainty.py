@@ -18,7 +18,7 @@ from epicyclic.errors import Problem
 from epicyclic.messages import did_you_mean, dotted, path_of, refused, value_at, written
 from epicyclic.schema.fields import quantity_of
 from epicyclic.schema.table import Table, option
-from epicyclic.units import CELSIUS, Number, Quantity, format_number
+from epicyclic.units import CELSIUS, Number, Quantity, format_number, unit_text
 
 if TYPE_CHECKING:
     from epicyclic.case.case import CaseTable
@@ -91,8 +91,8 @@ class UncertainValue:
 
     @property
     def text(self) -> str:
-        """The distribution in words: ``"normal, 0.05 um"``."""
-        unit = f" {self.unit}".rstrip()
+        """The distribution in words: ``"normal, 0.05 µm"``."""
+        unit = f" {unit_text(self.unit)}".rstrip()
         if self.kind == "normal":
             difference = " K" if self.unit == CELSIUS.display else unit
             return f"normal, {format_number(self.spread[0], 4)}{difference}"

@@ -64,6 +64,10 @@ class Entry:
     is_text: bool  # True if what is typed is not read as a number or a list.
     is_own: bool = False  # True if the user chose the name.
 
+    def shown(self, text: str) -> str:
+        """What was typed in the unit of the field, if it is a value in another one."""
+        return _shown(text, self.quantity)
+
     def value(self, text: str) -> Any:
         """What a case file has for what was typed; None for nothing."""
         text = text.strip()

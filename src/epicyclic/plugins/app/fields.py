@@ -241,7 +241,9 @@ class Form:
         await self._moved()
 
     async def _take(self, entry: Entry) -> None:
-        self._desk.change(entry.key, entry.value(str(self._fields[entry.key].value or "")))
+        text = str(self._fields[entry.key].value or "")
+        self._desk.change(entry.key, entry.value(text))
+        self._fields[entry.key].set_value(entry.shown(text))
         await self._changed()
 
 

@@ -80,7 +80,7 @@ async def download(do: Do, study: Study, name: str, original: str | None, stem: 
     try:
         suffix, content = await do(tasks.saved, study, name, original)
     except EpicyclicError as error:
-        ui.notify(str(error), multi_line=True)
+        ui.notify(str(error), multi_line=True, timeout=0, close_button="Close")
         return
     ui.download(content, f"{stem}{suffix}")
 

@@ -539,7 +539,8 @@ def _bar_labels(ax: Axes) -> dict[float, str]:
 
 def _polar_layout() -> dict[str, Any]:
     angular = {"rotation": 90, "direction": "counterclockwise"}
-    return {"polar": {"angularaxis": angular}}
+    # room for the label above
+    return {"polar": {"angularaxis": angular, "domain": {"y": [0.0, 0.92]}}}
 
 
 def _shape(ax: Axes, mark: Line2D | Patch) -> dict[str, Any] | None:
