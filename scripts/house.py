@@ -52,8 +52,8 @@ ADDED_TO_CASE = {
 }
 """Lines of what was added since the house was built, which the changelog counts apart."""
 CEILINGS = {
-    "lines": 71_600 + sum(ADDED.values()),
-    "lines of the core": 55_340 + sum(ADDED_TO_THE_CORE.values()),
+    "lines": 71_655 + sum(ADDED.values()),
+    "lines of the core": 55_375 + sum(ADDED_TO_THE_CORE.values()),
     "lines of case": 4_500 + sum(ADDED_TO_CASE.values()),
     "files": 280,
     "longest chain of imports": 25,
