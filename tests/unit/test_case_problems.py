@@ -147,7 +147,7 @@ def test_values_are_shown_as_they_were_written(every_kind):
         ("sun", "teeth", True, "sun.teeth", "Write a number."),
         ("sun", "teeth", 10**400, "sun.teeth", "Reduce it to 2000 or less."),
         ("sun", "teeth", -(10**30), "sun.teeth", "Increase it to 5 or more."),
-        ("sun", "teeth", float("inf"), "sun.teeth", "Round it."),
+        ("sun", "teeth", float("inf"), "sun.teeth", "Give a finite number."),
         ("sun", "teeth", [73], "sun.teeth", "Write a plain number"),
         ("sun", "teeth", {"a": 73}, "sun.teeth", "Write a plain number"),
         ("sun", "face_width", True, "sun.face_width", "mm"),

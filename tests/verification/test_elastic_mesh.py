@@ -121,7 +121,7 @@ def test_tip_is_softer_than_root(standard_gear):
 def test_loads_sum_to_the_force_and_none_pulls(talbot_meshes):
     for mesh in talbot_meshes:
         loaded = load_mesh_elastically(mesh, STEEL, STEEL, 20, 20, 5000.0)
-        total = (loaded.line_load * loaded.lines.length).sum(axis=(1, 2))
+        total = (loaded.line_load * loaded.compliance.lines.length).sum(axis=(1, 2))
         normal = 5000.0 / math.cos(mesh.gear1.rack.base_helix_angle)
         np.testing.assert_allclose(total, normal, rtol=1e-12)  # the approach is solved for it
         assert loaded.line_load.min() >= 0
@@ -143,8 +143,8 @@ def test_approach_is_the_same_on_all_loaded_segments(talbot_meshes):
 def test_spur_pair_carries_alone_between_its_double_contacts(standard_mesh):
     mesh = standard_mesh(30, 60)
     loaded = load_mesh_elastically(mesh, STEEL, STEEL, 40, 9, 4000.0)
-    pairs = (loaded.lines.length[:, :, 0] > 0).sum(axis=1)
-    load_of_pair = (loaded.line_load * loaded.lines.length).sum(axis=2)
+    pairs = (loaded.compliance.lines.length[:, :, 0] > 0).sum(axis=1)
+    load_of_pair = (loaded.line_load * loaded.compliance.lines.length).sum(axis=2)
     single = pairs == 1
     np.testing.assert_allclose(load_of_pair[single].max(axis=1), 4000.0, rtol=1e-12)
     assert set(pairs) == {1, 2}
@@ -161,7 +161,7 @@ def test_equal_gears_share_symmetrically(standard_mesh):
     # the same load on both halves of the face, and at mirrored places of the path of contact:
     # rounding of the influence
     np.testing.assert_allclose(loaded.line_load, loaded.line_load[:, :, ::-1], rtol=1e-6)
-    x = loaded.lines.curvature1 - mesh.pitch_point
+    x = loaded.compliance.lines.curvature1 - mesh.pitch_point
     carrying = loaded.line_load > 0
     where, load = x[carrying], loaded.line_load[carrying]
     order = np.lexsort((load, np.round(where / mesh.path_end, 9)))
@@ -221,8 +221,8 @@ def test_relief_beyond_the_deflection_takes_a_pair_out_of_contact(standard_mesh)
     relief = relieved(mesh, 1e-3, 0.3)
     plain = load_mesh_elastically(mesh, STEEL, STEEL, 40, 9, 4000.0)
     deep = load_mesh_elastically(mesh, STEEL, STEEL, 40, 9, 4000.0, relief)
-    used = plain.lines.length[:, :, 0] > 0
-    gap = np.where(used, relief.separation(mesh, plain.lines)[:, :, 0], np.inf)
+    used = plain.compliance.lines.length[:, :, 0] > 0
+    gap = np.where(used, relief.separation(mesh, plain.compliance.lines)[:, :, 0], np.inf)
     single = used.sum(axis=1) == 1
     softest = plain.normal_approach.max()
     alone = ~single & (np.diff(np.sort(gap, axis=1)[:, :2], axis=1)[:, 0] > 1.5 * softest)
@@ -240,7 +240,9 @@ def test_small_relief_takes_load_from_the_tips_and_evens_the_transmission_error(
     mesh = standard_mesh(30, 60)
     plain = load_mesh_elastically(mesh, STEEL, STEEL, 60, 5, 12000.0)
     eased = load_mesh_elastically(mesh, STEEL, STEEL, 60, 5, 12000.0, relieved(mesh, 10e-6, 0.3))
-    at_start = plain.lines.curvature1 < mesh.path_start + 0.1 * (mesh.path_end - mesh.path_start)
+    at_start = plain.compliance.lines.curvature1 < mesh.path_start + 0.1 * (
+        mesh.path_end - mesh.path_start
+    )
     assert eased.line_load[at_start].max() < 0.7 * plain.line_load[at_start].max()
     assert eased.transmission_error_range < plain.transmission_error_range
 
@@ -251,10 +253,10 @@ def test_misalignment_opens_one_end_and_larger_loads_close_it(talbot_meshes):
     shares = []
     for force in (500.0, 2000.0, 8000.0):
         loaded = load_mesh_elastically(mesh, STEEL, STEEL, 20, 20, force, tilted)
-        force_at = (loaded.line_load * loaded.lines.length).ravel()
-        where = loaded.lines.face_position.ravel() / mesh.face_width
+        force_at = (loaded.line_load * loaded.compliance.lines.length).ravel()
+        where = loaded.compliance.lines.face_position.ravel() / mesh.face_width
         shares.append(float(force_at @ where / force_at.sum()))
-        assert loaded.pattern.sum() < (loaded.lines.length > 0).sum() or force > 5000
+        assert loaded.pattern.sum() < (loaded.compliance.lines.length > 0).sum() or force > 5000
     assert shares == sorted(shares)  # the load moves back towards the middle of the face
     assert 0 < shares[0] < shares[-1] < 0.5
 

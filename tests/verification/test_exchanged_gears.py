@@ -65,8 +65,8 @@ def test_misaligned_teeth_carry_at_the_end_of_the_face_where_contact_begins():
         built = build(case.updated({"operation.torque": torque}))
         (duty,) = built.loaded_duties(built.loaded_state()).values()
         loads = elastic_loads(duty)
-        force = loads.line_load * loads.lines.length
-        middle = float((force * loads.lines.face_position).sum() / force.sum())
+        force = loads.line_load * loads.compliance.lines.length
+        middle = float((force * loads.compliance.lines.face_position).sum() / force.sum())
         middles.append(middle / duty.gears.mesh.face_width)
     assert middles[0] < 0.4
     assert middles[1] > 0.6

@@ -44,11 +44,11 @@ def test_bearing_and_meshes_are_in_balance(talbot):
     duties = loaded_duties(talbot).values()
     moments = []
     for key, mesh in ep.loaded_meshes(talbot).items():
-        height = mesh.lines.face_position - 24.4e-3 / 2
+        height = mesh.compliance.lines.face_position - 24.4e-3 / 2
         beta_b = math.radians(12.109)  # sin(beta_b) = sin(13.124 deg) cos(22.5 deg)
-        force = mesh.line_load * mesh.lines.length * math.cos(beta_b)
+        force = mesh.line_load * mesh.compliance.lines.length * math.cos(beta_b)
         assert force.sum(axis=(1, 2)) == pytest.approx(mesh.force, rel=1e-4), key
-        moments.append(float((force * height).sum(axis=(1, 2)) @ mesh.lines.weight))
+        moments.append(float((force * height).sum(axis=(1, 2)) @ mesh.compliance.lines.weight))
     sun, ring = duties
     contacts = [PlanetContact(sun, 2, (0.0, 1.0), 1), PlanetContact(ring, 1, (0.0, -1.0), -1)]
     load = planet_load(contacts, 0.0, moments)
@@ -177,11 +177,11 @@ def test_tilt_is_found_in_drawn_sets_down_to_light_loads(number, share):
     duties = {duty.gears.key: duty for duty in built.sets[""].mean_duties(state)}
     tilted, load = planet.load(duties, state.speeds["carrier"])
     moments = [
-        own.mean((own.line_load * own.lines.length * height).sum(axis=(1, 2)))
+        own.mean((own.line_load * own.compliance.lines.length * height).sum(axis=(1, 2)))
         * math.cos(duty.gears.mesh.gear1.rack.base_helix_angle)
         for duty in tilted
         for own in (elastic_loads(duty),)
-        for height in (own.lines.face_position - duty.gears.mesh.face_width / 2,)
+        for height in (own.compliance.lines.face_position - duty.gears.mesh.face_width / 2,)
     ]
     contacts = planet._contacts({duty.gears.key: duty for duty in tilted})
     signed = [contact.face_sense * m for contact, m in zip(contacts, moments, strict=True)]
