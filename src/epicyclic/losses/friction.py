@@ -248,7 +248,7 @@ class FrictionSettings:
     constant: float = 0.0  # Coefficient of the model constant. [1]
     # Coefficients of dry and of separated contact in the film-share models. [1]
     boundary: float | None = None  # None: that of each model.
-    fluid: float = 0.02
+    fluid: float = 0.0
     table: FrictionMap | None = None
     oil_held: bool = True  # False to continue the model mixed-ehl beyond its oil.
     load_factor: float = 1.0  # K_A K_gamma, for the model niemann-winter. [1]

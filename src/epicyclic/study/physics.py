@@ -21,7 +21,9 @@ from epicyclic.build.elements import build_element
 from epicyclic.build.machine import oil_medium
 from epicyclic.case.tables.base import Roughness
 from epicyclic.case.tables.elements import Force, ShaftBearingTable
+from epicyclic.case.tables.models import GearPairModels
 from epicyclic.case.tables.operation import Lubricant
+from epicyclic.case.train_tables import Teeth as TeethTable
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import InputError, one_problem, raise_any
 from epicyclic.gears.gear import involute
@@ -44,6 +46,7 @@ from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.messages import refused, written
 from epicyclic.oil.oil import Oil, mixture_state, oil_state
 from epicyclic.schema.fields import quantity_of
+from epicyclic.schema.read import plain
 from epicyclic.schema.validation import validate
 from epicyclic.units import (
     METRE_PER_SECOND,
@@ -67,7 +70,6 @@ LOCAL_FRICTION = (
 )  # fmt: skip
 """Friction models that need no more than the contact; the others are means over a gear mesh."""
 
-TEETH = range(5, 2001)  # Numbers of teeth of a case.
 _LINE_LOAD = replace(NEWTON_PER_MM, low=0.0, high=1e6)
 _MEASURES: dict[str, Any] = {
     "line_load": Annotated[float, _LINE_LOAD],
@@ -288,7 +290,8 @@ def friction(model: str, **contact: Any) -> FloatArray:
     [0.0596, 0.0507]
     """
     chosen = _chosen(model, FRICTION_MODELS, LOCAL_FRICTION)
-    return _at_contacts(lambda it: (chosen.function(it, FrictionSettings()),), **contact)[0]
+    settings = FrictionSettings(fluid=GearPairModels.model_fields["fluid_friction"].default)
+    return _at_contacts(lambda it: (chosen.function(it, settings),), **contact)[0]
 
 
 def rolling_loss(model: str, **contact: Any) -> FloatArray:
@@ -379,9 +382,8 @@ def windage(
     if not (isinstance(oil_share, Real) and 0 <= oil_share <= 1):
         allowed = "must be from 0 to 1."
         raise one_problem("oil_share", written(oil_share), allowed, "Give parts of the volume.")
-    if teeth is not None and (isinstance(teeth, bool) or teeth not in TEETH):
-        allowed = f"must be a whole number >= {TEETH[0]} and <= {TEETH[-1]}."
-        raise one_problem("teeth", written(teeth), allowed, "Give their number, or none at all.")
+    if teeth is not None:
+        raise_any(validate(TeethTable, {"teeth": plain(teeth)}).problems)
 
     def at(size: float, face: float, omega: float, t: float, pitch: float) -> tuple[float]:
         state = oil_state(liquid, t)

@@ -223,7 +223,10 @@ def flash_safety(scuffing: float, contact: float, oil: float) -> float:
     return (scuffing - oil) / (contact - oil)
 
 
+LEAST_MEAN = 1.0
+"""Integral temperature in degC, at least: the quotient has no meaning below, in cold oil. [K]"""
+
+
 def integral_safety(scuffing: float, integral: float) -> float:
     """S_intS: temperatures in degC, permissible over weighted mean. ISO/TS 6336-21. [1]"""
-    mean = max(integral - ZERO_CELSIUS, 1.0)  # below 0 degC, in cold oil, it has no meaning
-    return (scuffing - ZERO_CELSIUS) / mean
+    return (scuffing - ZERO_CELSIUS) / max(integral - ZERO_CELSIUS, LEAST_MEAN)
