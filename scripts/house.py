@@ -52,7 +52,7 @@ ADDED_TO_CASE = {
 }
 """Lines of what was added since the house was built, which the changelog counts apart."""
 CEILINGS = {
-    "lines": 71_655 + sum(ADDED.values()),
+    "lines": 71_660 + sum(ADDED.values()),
     "lines of the core": 55_375 + sum(ADDED_TO_THE_CORE.values()),
     "lines of case": 4_500 + sum(ADDED_TO_CASE.values()),
     "files": 280,
