@@ -324,6 +324,10 @@ class Built:
             settled = Settled(solution, Answer({}), 1)
         else:
             settled = settle(self.machine, self.operation, self.thermal)
+        return self.sound(settled)
+
+    def sound(self, settled: Settled) -> Settled:
+        """What was found, if all losses are numbers; raises `ConvergenceError` else."""
         losses = settled.solution.losses
         bad = [name for name, loss in losses.items() if not math.isfinite(loss.watts)]
         if bad:

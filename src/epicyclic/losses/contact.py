@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray, IntArray
+from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.contact.elastic_teeth import (
     UNMODIFIED,
     GearBody,
@@ -22,6 +22,7 @@ from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
 from epicyclic.gears.mesh import Mesh
 from epicyclic.oil.oil import OilState
+from epicyclic.points import Each, Points, of_points, pointwise
 
 if TYPE_CHECKING:
     from epicyclic.losses.friction import FrictionModel
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 # section of the helicoid, rho_n = rho_t/cos(beta_b).
 
 
+@pointwise
 @dataclass(frozen=True, eq=False)
 class MeshContact(LineContacts):
     """A mesh under load and in motion, point by point.
@@ -68,6 +70,11 @@ class MeshContact(LineContacts):
     weight: FloatArray
     path: FloatArray
     around: OilState | None = None
+
+    @property
+    def loaded(self) -> BoolArray:
+        """Which segments carry load: all but of several points, which touch in different places."""
+        return self.line_load > 0
 
     def seen_by(self, model: FrictionModel) -> MeshContact:
         """The contact with the oil at the temperature that a friction model was made for."""
@@ -121,9 +128,13 @@ def mesh_contact(
 ) -> MeshContact:
     """Conditions at the loaded segments of `lines`. Theory (C2)."""
     touching = _touching(mesh, lines)
-    load = line_load.ravel()[touching.place]
+    if isinstance(line_load, Points):
+        load = line_load.reshape(len(line_load), -1)[:, touching.place]
+        touching = touching._replace(weight=touching.weight * (load > 0))
+    else:
+        load = line_load.ravel()[touching.place]
     loaded = load > 0
-    if not loaded.all():
+    if not isinstance(load, Points) and not loaded.all():
         kept: list[Any] = [values[loaded] for values in touching]
         touching, load = _Touching(*kept), load[loaded]
     speed2 = speed1 / mesh.ratio
@@ -241,12 +252,25 @@ def _in_proportion(name: str, load: MeshLoad, positions: int, segments: int) -> 
 
 
 def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
+    if isinstance(load.force, Points):
+        return _elastic_each(load, positions, segments)
     rest = (load.force, load.deviations)
     if load.last is None:
         loaded = load_mesh_elastically(load.mesh, *load.bodies, positions, segments, *rest)
     else:
         loaded = load_mesh_next_to(load.last, *rest)
     return LineLoads(loaded.compliance.lines, loaded.line_load, loaded)
+
+
+def _elastic_each(load: MeshLoad, positions: int, segments: int) -> LineLoads:
+    """The loads of several points, each by itself."""
+    last = [None] * len(load.force) if load.last is None else load.last
+    single = [
+        _elastic(replace(load, force=force, last=own), positions, segments)
+        for force, own in zip(load.force[:, 0].tolist(), last, strict=True)
+    ]
+    line_load = of_points([one.line_load for one in single])
+    return LineLoads(single[0].lines, line_load, Each(one.elastic for one in single))
 
 
 LOAD_DISTRIBUTIONS: dict[str, LoadDistribution] = {

@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.windage import rim_coefficient
 from epicyclic.oil.oil import MixtureState
+from epicyclic.points import larger, pointwise, pow, smaller, sqrt
 from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
 # Load-independent losses of bearings and of bodies turning in the mixture of oil and air.
@@ -56,7 +57,7 @@ def bearing_viscous_loss(
     """
     rpm = abs(speed) / RPM
     product = kinematic_viscosity * 1e6 * rpm
-    group = max(160.0, math.pow(product, 2 / 3))
+    group = larger(160.0, pow(product, 2 / 3))
     moment = 1e-7 * factor * group * (pitch_diameter * 1e3) ** 3 * 1e-3
     return moment * abs(speed)
 
@@ -72,6 +73,7 @@ def speed_parameter(speed: float, pitch_diameter: float) -> float:
     return abs(speed) / RPM * pitch_diameter * 1e3
 
 
+@pointwise
 class DiscDrag(NamedTuple):
     """Drag of a disc, in two parts."""
 
@@ -95,7 +97,7 @@ def disc_drag(
     rim = 4 * math.pi * mixture.dynamic_viscosity * width * radius**2 * omega**2
     if reynolds_number(radius, omega, mixture) <= TRANSITION_REYNOLDS:
         return DiscDrag(rim, _laminar_faces(radius, omega, mixture))
-    laminar = math.sqrt(TRANSITION_REYNOLDS * mixture.kinematic_viscosity / omega)
+    laminar = sqrt(TRANSITION_REYNOLDS * mixture.kinematic_viscosity / omega)
     faces = (
         _laminar_faces(laminar, omega, mixture)
         + _turbulent_faces(radius, omega, mixture)
@@ -106,13 +108,13 @@ def disc_drag(
 
 def _laminar_faces(radius: float, omega: float, mixture: MixtureState) -> float:
     """First branch of Talbot (2012), Eq. 5.5. Theory (V4). [W]"""
-    group = math.sqrt(mixture.kinematic_viscosity) * math.pow(omega, 2.5)
+    group = sqrt(mixture.kinematic_viscosity) * pow(omega, 2.5)
     return 0.41 * math.pi * mixture.density * group * radius**4
 
 
 def _turbulent_faces(radius: float, omega: float, mixture: MixtureState) -> float:
     """Second branch of Talbot (2012), Eq. 5.5. Theory (V4). [W]"""
-    group = math.pow(mixture.kinematic_viscosity, 0.14) * math.pow(omega, 2.86)
+    group = pow(mixture.kinematic_viscosity, 0.14) * pow(omega, 2.86)
     return 0.025 * math.pi * mixture.density * group * math.pow(radius, 4.72)
 
 
@@ -257,7 +259,7 @@ def changenet_velex(
     if not (omega**2) or not part.immersed:
         return 0.0
     parameter = acceleration_parameter(part, omega)
-    slow = min(max((FAST - parameter) / (FAST - SLOW), 0.0), 1.0)
+    slow = smaller(larger((FAST - parameter) / (FAST - SLOW), 0.0), 1.0)
     if oil.smooth:
         slow = slow**2 * (3 - 2 * slow)
     coefficient = slow * _slow_coefficient(part, omega, oil)
@@ -274,8 +276,8 @@ def _slow_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
         1.366
         * math.pow(part.immersed, 0.45)
         * math.pow(volume, 0.1)
-        * math.pow(root_froude, 2 * -0.6)
-        * math.pow(reynolds, -0.21)
+        * pow(root_froude, 2 * -0.6)
+        * pow(reynolds, -0.21)
     )
 
 
@@ -287,7 +289,7 @@ def _fast_coefficient(part: Dipped, omega: float, oil: SumpOil) -> float:
         3.644
         * math.pow(part.immersed, 0.1)
         * math.pow(volume, -0.35)
-        * math.pow(root_froude, 2 * -0.88)
+        * pow(root_froude, 2 * -0.88)
         * math.pow(part.width / (2 * part.radius), 0.85)
     )
 
@@ -411,5 +413,5 @@ def jet_loss(
     ...  for side in ("in-mesh", "radial", "out-of-mesh")]
     [27.67, 69.17, 110.67]
     """
-    gained = max(pitch_speed + _ALONG[side] * jet_speed, 0.0)
+    gained = larger(pitch_speed + _ALONG[side] * jet_speed, 0.0)
     return density * flow * pitch_speed * gained

@@ -624,6 +624,7 @@ FRICTION_MODELS = {
     for model in (
         FrictionFormula(
             name="mixed-lubrication",
+            several=True,
             title="film and asperities sharing the load",
             source="S. Aihara, J. Tribol. 109 (1987) 471; P. K. Gupta et al., J. Tribol. 114 "
             "(1992) 55; C. R. Evans and K. L. Johnson, Proc. IMechE C 200 (1986) 303",

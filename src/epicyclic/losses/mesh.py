@@ -16,6 +16,7 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction import FrictionModel
 from epicyclic.losses.ranges import Flags, SomeFlags
 from epicyclic.losses.rolling import RollingModel
+from epicyclic.points import pointwise, total
 
 # Flash temperature along the contact lines of a mesh, and which gear the heat goes to.
 
@@ -26,11 +27,11 @@ def heat_share1(
     materials: tuple[Solid, Solid],  # Materials of both gears.
 ) -> float:
     """Share of the heat of sliding that gear 1 takes up. Theory (W2). [1]"""
-    total = float(heat.sum())
-    if not total > 0:
+    whole = total(heat)
+    if not whole > 0:
         return 0.5
     share1 = heat_share(*contact.surface_speeds, *(solid.effusivity for solid in materials))
-    return float((heat * share1).sum()) / total
+    return total(heat * share1) / whole
 
 
 def flash_temperatures(
@@ -58,6 +59,7 @@ def flash_temperatures(
 CLOSED_LIMIT = 1.0  # Tip contact ratio up to which Ohlendorf's closed form holds. [1]
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class MeshLoss:
     """Loss of one mesh."""
@@ -82,8 +84,8 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
     local_sliding = coefficient * sliding_power
     local_rolling = rolling.loss_density(contact) * contact.weight
     return MeshLoss(
-        sliding=float(local_sliding.sum()),
-        rolling=float(local_rolling.sum()),
+        sliding=total(local_sliding),
+        rolling=total(local_rolling),
         friction=coefficient,
         heat=local_sliding,
         flags=Flags(
@@ -136,12 +138,12 @@ def ohlendorf_loss_factor(mesh: Mesh) -> float:
     corners = {-tip2, tip1, 0.0}
     corners |= {-tip2 + k for k in range(1, reach)} | {tip1 - k for k in range(1, reach)}
     ordered = sorted(corner for corner in corners if -tip2 <= corner <= tip1)
-    total = 0.0
+    integral = 0.0
     for start, end in pairwise(ordered):
         middle = (start + end) / 2
         pairs = math.floor(tip1 - middle) + math.floor(middle + tip2) + 1
-        total += 2 * abs(middle) * (end - start) / pairs
-    return _ratio_term(mesh) * total
+        integral += 2 * abs(middle) * (end - start) / pairs
+    return _ratio_term(mesh) * integral
 
 
 def ohlendorf_closed_form(mesh: Mesh) -> float:

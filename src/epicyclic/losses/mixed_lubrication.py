@@ -36,6 +36,7 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.kernels.mixed_lubrication import film_stress
 from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState
+from epicyclic.points import log
 
 MEAN_FLASH = 2 / 3
 """Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
@@ -149,18 +150,17 @@ def mixed_friction(
     return mu
 
 
-@lru_cache(maxsize=64)
-def _oil_constants(oil: OilState) -> FloatArray:
+def _oil_constants(oil: OilState) -> list[float]:
     """As `eyring_stress` takes them: the line of ASTM D341 that touches at this temperature."""
     viscosity = oil.kinematic_viscosity / MM2_PER_S
     shifted = viscosity + D341_OFFSET
     # -d(log log(nu + 0.7))/d(log T) from beta = -d(ln nu)/dT
-    slope = oil.thermoviscosity * oil.temperature * viscosity / (shifted * math.log(shifted))
-    return np.array(
+    slope = oil.thermoviscosity * oil.temperature * viscosity / (shifted * log(shifted))
+    return (
         [
             oil.temperature,
-            math.log(shifted),
-            math.log(viscosity),
+            log(shifted),
+            log(viscosity),
             slope,
             oil.density * MM2_PER_S,
             oil.pressure_viscosity,

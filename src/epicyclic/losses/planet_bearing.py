@@ -7,6 +7,7 @@ first roller stands under the load, as in Talbot (2012), Fig. 3.1.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING
@@ -34,6 +35,7 @@ from epicyclic.losses.ranges import (
 )
 from epicyclic.losses.rolling import FittedRolling, RaceContacts, weight_of_fit
 from epicyclic.oil.oil import OilState
+from epicyclic.points import Points, of_points, point_by_point, pointwise, taken, total
 from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,
@@ -171,6 +173,7 @@ class RollerBearing:
         return self.pitch_diameter * abs(speed) * (1 - ratio**2) / 4
 
 
+@pointwise
 @dataclass(frozen=True, slots=True, eq=False)
 class RollerLoads:
     """Load distribution of a bearing.
@@ -192,7 +195,15 @@ class RollerLoads:
     displacement: FloatArray
     iterations: int
 
+    @property
+    def loaded(self) -> BoolArray:
+        """Which slices carry load; of several points, shape (points, n)."""
+        several = isinstance(self.intensity, Points)
+        flat = self.intensity.reshape(len(self.intensity), -1) if several else self.intensity
+        return flat > 0
 
+
+@pointwise
 @dataclass(frozen=True, slots=True)
 class BearingLoss:
     """Rolling loss of one bearing and its flags."""
@@ -200,6 +211,20 @@ class BearingLoss:
     loss: float
     flags: SomeFlags = ()
     rolling: float = 1.0  # Share found as rolling in oil, of which (V1) is the least. [1]
+
+
+def each_roller_loads(find: Callable[..., RollerLoads], *loads: float) -> RollerLoads:
+    """`find` of the loads; of several points those of each, put together."""
+    count = next((len(load) for load in loads if isinstance(load, Points)), None)
+    if count is None:
+        return find(*loads)
+    ones = [find(*(taken(load, row) for load in loads)) for row in range(count)]
+    return RollerLoads(
+        ones[0].azimuth,
+        of_points([one.intensity for one in ones]),
+        of_points([one.displacement for one in ones]),
+        0,
+    )
 
 
 @lru_cache(maxsize=1024)
@@ -222,10 +247,10 @@ def roller_loads(
 
 
 def roller_loads_next_to(
-    last: RollerLoads,
     # bearing, force, moment_x, moment_y: As for `roller_loads`, which has the same solution but for
     # its tolerance.
     bearing: RollerBearing,
+    last: RollerLoads,
     force: float,
     moment_x: float,
     moment_y: float,
@@ -342,7 +367,7 @@ def mixed_ehl_rolling_loss(
     outside Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
-    carried: FloatArray = loads.intensity[loads.intensity > 0]
+    carried = carried_by(loads)
     if carried.size == 0 or speed == 0:
         return BearingLoss(0.0)
     modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
@@ -354,21 +379,31 @@ def mixed_ehl_rolling_loss(
     alike = np.ones_like(carried)
     held_pressure = held_in_range(hertz_pressure(carried, radius * alike, modulus), _PRESSURE)
     held_radius, held_speed = held_in_range(radius, _RADIUS), held_in_range(rolling, _SPEED)
-    density = needle_rolling_loss_at(
+    roughness = math.hypot(bearing.race_roughness, bearing.roller_roughness)
+    density = point_by_point(
+        needle_rolling_loss_at,
         held_pressure,
         held_speed,
         viscosity,
         alpha,
         held_radius,
-        held_in_range(math.hypot(bearing.race_roughness, bearing.roller_roughness), _COMPOSITE),
+        held_in_range(roughness, _COMPOSITE),
         modulus,
     )
     held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
     beyond = beyond_data(carried, held_load, rolling, held_speed)
     local = bearing.slice_width * density * beyond
     return BearingLoss(
-        float(local.sum()), Flags(partial(_flags, bearing, loads, speed, oil, local))
+        total(local), Flags(partial(_flags, bearing, loads, speed, oil, local))
     )
+
+
+def carried_by(loads: RollerLoads) -> FloatArray:
+    """Load per length of the slices that carry any, shape (n,); of several points of all. [N/m]"""
+    if isinstance(loads.intensity, Points):
+        return loads.intensity.reshape(len(loads.intensity), -1)
+    carried: FloatArray = loads.intensity[loads.loaded]
+    return carried
 
 
 def _flags(
@@ -463,9 +498,9 @@ def centrifugal_forces(
 
 def pressed_alone(loads: RollerLoads, forces: FloatArray, length: float) -> RollerLoads:
     """Rollers pressed on one race over their `length`, by what of `forces` exceeds their load."""
-    carried = loads.intensity.mean(axis=2) * length
-    alone = np.maximum(np.abs(forces) - carried, 0.0) / length
-    return replace(loads, intensity=alone[:, :, None])
+    carried = loads.intensity.mean(axis=-1) * length
+    alone = np.maximum(np.abs(forces)[..., None, :] - carried, 0.0) / length
+    return replace(loads, intensity=alone[..., None])
 
 
 @dataclass(frozen=True, slots=True)

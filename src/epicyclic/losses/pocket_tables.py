@@ -32,6 +32,7 @@ from epicyclic.losses.pocket_flow import (
 from epicyclic.losses.pocket_geometry import PocketGeometry, pocket_geometry
 from epicyclic.netcdf_file import read_attribute
 from epicyclic.oil.oil import MixtureState
+from epicyclic.points import Alone, Points, larger, pointwise, sqrt
 from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
 
 # Flows through the pockets of a mesh that differ in one number only.
@@ -45,6 +46,7 @@ LEAST_NUMBER = 1e-3
 and at next to no speed pressures drown in rounding. [1/m]"""
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class FlowFigures:
     """What a result reports of the flow through the pockets of a mesh."""
@@ -103,7 +105,7 @@ class FlowFamily:
     @staticmethod
     def number(speed: float, mixture: MixtureState, pressure: float) -> float:
         """Speed over the root of pressure over density, held at the least. Theory (Q21). [1/m]"""
-        return max(speed * math.sqrt(mixture.density / pressure), LEAST_NUMBER)
+        return larger(speed * sqrt(mixture.density / pressure), LEAST_NUMBER)
 
     def scales(self, speed: float, mixture: MixtureState, pressure: float) -> bool:
         """Whether the flow is another one times density and powers of the speed."""
@@ -113,15 +115,17 @@ class FlowFamily:
             limit = void_number(self.geometry, self.slices, self.steps, self.end_length)
         except ValueError:  # no tooth outline: the solution says so
             return False
-        return self.number(speed, mixture, pressure) <= limit
+        return bool(self.number(speed, mixture, pressure) <= limit)
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
         """Figures of the flow itself. Parameters as for `pocket_flow`."""
-        least = self.number(speed, mixture, pressure) == LEAST_NUMBER
+        least = bool(self.number(speed, mixture, pressure) == LEAST_NUMBER)
         if least or self.scales(speed, mixture, pressure):
             scaled = kept_figures(self, LEAST_NUMBER)
             if np.isfinite(scaled).all():
                 return from_scaled(scaled, speed, mixture.density)
+        if isinstance(speed, Points):
+            raise Alone
         return flow_figures(self.flow(speed, mixture, pressure))
 
     def scaled(self, number: float) -> FloatArray:
@@ -427,7 +431,7 @@ class KnownFlows:
     ) -> KnownFlows:
         """These flows and another one."""
         number = FlowFamily.number(speed, mixture, pressure)
-        if number == LEAST_NUMBER:  # it is scaled, and its speed may be too small to divide by
+        if isinstance(number, Points) or number == LEAST_NUMBER:  # it is scaled, and its speed may be too small to divide by
             return self
         place, scaled = math.log(number), scaled_figures(figures, speed, mixture.density)
         return KnownFlows({**self.flows, (family, place): (scaled, figures)})

@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
+from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar, cast
 
 import numpy as np
 
 from epicyclic.arrays import FloatArray
+from epicyclic.points import pointwise
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
@@ -116,6 +117,7 @@ class Formula(RangeFlags):
     reliability: str  # How well it is known to be right, and against what, as a phrase.
     ranges: tuple[Range, ...] = ()
     made_for: RegressionFluid | None = None
+    several: bool = False  # Whether contacts may be those of several points.
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +182,7 @@ class ValidityFlag:
     could_be: float = 0.0
 
 
+@pointwise
 class Sought(Generic[Item]):
     """What is looked for when somebody reads it.
 
@@ -191,11 +194,16 @@ class Sought(Generic[Item]):
     def __init__(self, *looks: Callable[[], Iterable[Item]]) -> None:
         self._looks = looks
 
+    def with_taken(self, take: Callable[[Any], Any]) -> Self:
+        """What of it belongs to some points."""
+        return type(self)(*map(take, self._looks))
+
     def __iter__(self) -> Iterator[Item]:
         for look in self._looks:
             yield from look()
 
 
+@pointwise
 class Flags(Sought[ValidityFlag]):
     __slots__ = ()
 

@@ -124,6 +124,7 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
 
 CONTAINED = RollingFormula(
     name="contained",
+    several=True,
     title="rolling loss contained in the friction",
     source="the tests of the friction model",
     reliability="that of the friction, which was fitted to the whole load-dependent loss",
@@ -156,6 +157,7 @@ ROLLING_MODELS = {
         ),
         RollingFormula(
             name="goksem-hargreaves",
+            several=True,
             title="rolling loss of Goksem and Hargreaves",
             source="Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346; light load: "
             "H. M. Martin, Engineering 102 (1916) 119",

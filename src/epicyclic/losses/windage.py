@@ -7,10 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from numpy.linalg import norm
-
 from epicyclic.losses.ranges import Range
 from epicyclic.oil.oil import MixtureState
+from epicyclic.points import exp, larger, log, norm, pointwise, pow, smaller, sqrt
 from epicyclic.units import NUMBER
 
 DragModel = Literal[
@@ -106,19 +105,19 @@ def rim_coefficient(
     """
     laminar, transition = 4 / reynolds, RIM_TRANSITION
     # w + ln w = z by Newton's method from below: the import of Lambert's function takes long
-    z = math.log(reynolds / SLOPE) - OFFSET / SLOPE
-    w = math.exp(min(z, 1.0) - 1)
+    z = log(reynolds / SLOPE) - OFFSET / SLOPE
+    w = exp(smaller(z, 1.0) - 1)
     for _ in range(8):
-        w *= (1 + z - math.log(w)) / (1 + w)
+        w = w * (1 + z - log(w)) / (1 + w)
     turbulent = (SLOPE * w) ** -2
     if gap is not None:
         laminar /= 1 - (1 + gap) ** -2
         transition = max(transition, TAYLOR_NUMBER * gap**-1.5)
         within = gap * reynolds
-        walls = [1.03 / math.sqrt(within), 0.065 * math.pow(within, -0.2)]
-        held = math.pow(gap, 0.3) / 2 * float(norm(walls, LARGEST))
-        turbulent = float(norm([held, turbulent], -LARGEST))
-    share = 1 / (1 + math.pow(transition / reynolds, TRANSITION_POWER))
+        walls = [1.03 / sqrt(within), 0.065 * pow(within, -0.2)]
+        held = math.pow(gap, 0.3) / 2 * norm(walls, LARGEST)
+        turbulent = norm([held, turbulent], -LARGEST)
+    share = 1 / (1 + pow(transition / reynolds, TRANSITION_POWER))
     return laminar + share * (turbulent - laminar)
 
 
@@ -138,17 +137,17 @@ def face_coefficient(
     >>> round(face_coefficient(1e4, 0.02), 5)
     0.03201
     """
-    root = math.sqrt(reynolds)
-    laminar = 3.87 / root * float(norm([64 / (3 * 3.87) / root, 1.0], LARGEST))
-    share = 1 / (1 + math.pow(FACE_TRANSITION / reynolds, TRANSITION_POWER))
-    free = laminar + share * (0.146 * math.pow(reynolds, -0.2) - laminar)
+    root = sqrt(reynolds)
+    laminar = 3.87 / root * norm([64 / (3 * 3.87) / root, 1.0], LARGEST)
+    share = 1 / (1 + pow(FACE_TRANSITION / reynolds, TRANSITION_POWER))
+    free = laminar + share * (0.146 * pow(reynolds, -0.2) - laminar)
     if gap is None:
         return free
     creeping = 64 / (3 * reynolds)
-    apart = [creeping, 3.7 / root, 0.102 * math.pow(reynolds, -0.2)]
-    held = float(norm([math.pow(gap, 0.1) * float(norm(apart, LARGEST)), free], -LARGEST))
-    merged = 0.08 * math.pow(gap, -1 / 6) / math.sqrt(root)
-    return float(norm([2 * math.pi / (gap * reynolds), merged, held], LARGEST))
+    apart = [creeping, 3.7 / root, 0.102 * pow(reynolds, -0.2)]
+    held = norm([math.pow(gap, 0.1) * norm(apart, LARGEST), free], -LARGEST)
+    merged = 0.08 * math.pow(gap, -1 / 6) / sqrt(root)
+    return norm([2 * math.pi / (gap * reynolds), merged, held], LARGEST)
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +180,7 @@ def tooth_coefficient(teeth: Teeth, flange: float | None = None) -> float:
     near = 1.0
     if flange is not None:
         near = math.pow(flange / (FREE_FLANGE * teeth.pitch_radius), 0.56)
-        near = float(norm([near, 1.0], -LARGEST))
+        near = norm([near, 1.0], -LARGEST)
     return open_gear * (1 - cosine) * (1 + cosine) ** 3 * near
 
 
@@ -200,6 +199,7 @@ class Turning:
     across: float = 0.0
 
 
+@pointwise
 class Parts(NamedTuple):
     """Drag of a body, by what causes it."""
 
@@ -238,14 +238,14 @@ def drag(
     form = BLUNT / 2 * mist.density * body.across * omega**3
     if model == "anderson-loewenthal" and teeth is not None:
         shape = math.pow(teeth.pitch_radius, 4.6) + 2.3 * teeth.width * teeth.pitch_radius**3.6
-        thickness = math.pow(0.028e3 * oil_viscosity + 0.019, 0.2)
-        watts = 2.82e-4 * shape * math.pow(omega * 30 / math.pi, 2.8) * thickness
+        thickness = pow(0.028e3 * oil_viscosity + 0.019, 0.2)
+        watts = 2.82e-4 * shape * pow(omega * 30 / math.pi, 2.8) * thickness
         return Parts(0.0, 0.0, form + watts)
     if model == "diab-ville-velex" and teeth is not None:
         coefficient = tooth_coefficient(teeth, body.axial_gap)
         form += coefficient * mist.density * omega**3 * teeth.pitch_radius**5 / 2
     around, beside = (None if it is None else it / r for it in (body.radial_gap, body.axial_gap))
-    held = max(reynolds, LEAST_REYNOLDS)
+    held = larger(reynolds, LEAST_REYNOLDS)
     group = held * mixture.dynamic_viscosity * omega**2 * r**2
     return Parts(
         math.pi * rim_coefficient(held, around) * group * body.width,

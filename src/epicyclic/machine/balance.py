@@ -14,6 +14,7 @@ import numpy as np
 from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.machine import Machine, Operation, Terms
+from epicyclic.points import Apart, apart, hypot, largest, side_by_side
 
 # Systems of as many linear equations as unknowns.
 
@@ -24,9 +25,15 @@ def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
         inverse = np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
         return None
-    found = inverse @ right
-    refined: FloatArray = found + inverse @ (right - matrix @ found)
+    found = _times(inverse, right)
+    refined: FloatArray = found + _times(inverse, right - _times(matrix, found))
     return refined
+
+
+def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Product of each matrix with its vector, the last axes."""
+    product: FloatArray = (matrix * vector[..., None, :]).sum(axis=-1)
+    return product
 
 
 # Speeds of all bodies from the constraints of meshes and clutches.
@@ -85,18 +92,17 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
     """
     bodies = machine.bodies
     matrix = _matrix(machine, list(given))
-    known = np.zeros(len(matrix))
-    if given:
-        known[-len(given) :] = list(given.values())
+    known = side_by_side([*[0.0] * (len(matrix) - len(given)), *given.values()])
     if matrix.shape[0] == matrix.shape[1]:
         found = solution_of(matrix, known)
         assert found is not None, "the speeds are determined, as the checks of the case ensure"
     else:
-        least = np.linalg.lstsq(matrix, known, rcond=SINGULAR)[0]
-        found = least + np.linalg.lstsq(matrix, known - matrix @ least, rcond=SINGULAR)[0]
-    speeds = dict(zip(bodies, map(float, found), strict=True)) | dict(given)
+        inverse = np.linalg.pinv(matrix, rcond=SINGULAR)
+        least = _times(inverse, known)
+        found = least + _times(inverse, known - _times(matrix, least))
+    speeds = dict(zip(bodies, apart(found), strict=True)) | dict(given)
     # bodies that turn together do so exactly, and still ones stand still
-    limit = TOGETHER * max(map(abs, speeds.values()), default=0.0)
+    limit = TOGETHER * largest(speeds.values())
     joined = {HOUSING: 0.0}
     last = 0.0
     for body, speed in sorted(speeds.items(), key=lambda item: abs(item[1])):
@@ -239,13 +245,13 @@ class Statics:
     ) -> Balance:
         """Torques and mesh loads from the balance of every body. Theory (T3), (T5), (T6)."""
         rows, couplings, speeds = self.machine.rows, self.machine.couplings, self.speeds
-        matrix, scale = self._fixed[0].copy(), []
-        for number, row in enumerate(rows):  # the term of the driven gear is reduced
+        columns, scale = [], []
+        for row in rows:  # the term of the driven gear is reduced
             lost = efficiencies[row.key]
             column, length = self._column(
                 row.terms(1.0, lost) if drives[row.key] else row.terms(lost, 1.0)
             )
-            matrix[:, number] = column
+            columns.append(side_by_side(column))
             scale.append(length)
         scale += self._fixed[1]
         known_of = {body: self._given[body] for body in self._place}  # with those of friction (T6)
@@ -255,15 +261,20 @@ class Statics:
             if difference:
                 torque = friction.watts / difference
                 if one in known_of:
-                    known_of[one] -= torque
+                    known_of[one] = known_of[one] - torque
                 if two in known_of:
-                    known_of[two] += torque
-        known = np.array([*known_of.values()])
+                    known_of[two] = known_of[two] + torque
+        known = side_by_side(known_of.values())
+        fixed = self._fixed[0]
+        matrix = np.empty((*known.shape[:-1], *fixed.shape))
+        matrix[...] = fixed
+        for number, column in enumerate(columns):
+            matrix[..., number] = column
         found, unique = _least(matrix, -known)
-        values = found.tolist()
-        size = max(map(abs, (*known.tolist(), *values)), default=0.0)
-        values = [0.0 if abs(value) <= ROUNDING * size else value for value in values]
-        left = matrix @ np.array(values) + known
+        values = apart(found)
+        size = largest((*apart(known), *values))
+        values = [value * (abs(value) > ROUNDING * size) + 0.0 for value in values]  # no -0.0
+        left = _times(matrix, side_by_side(values)) + known
         lambdas = [value / length for value, length in zip(values, scale, strict=False)]
         outside = self._given | dict(zip(self._unknown, values[len(scale) :], strict=True))
         meshes = {row.key: -value * row.teeth[0] for row, value in zip(rows, lambdas, strict=False)}
@@ -277,7 +288,7 @@ class Statics:
             powers={
                 row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier]) for row in rows
             },
-            residual=max(map(abs, left.tolist()), default=0.0) / size if size else 0.0,
+            residual=largest(apart(left)) / size if size else 0.0,
             unique=unique,
         )
 
@@ -316,27 +327,34 @@ class Statics:
         for body, coefficient in terms:
             if body != HOUSING:
                 column[self._place[body]] += coefficient
-        length = math.hypot(*column) or 1.0
+        length = hypot(*column) or 1.0
         return [coefficient / length for coefficient in column], length
 
 
 def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     """The smallest solution of a linear system, and whether it is the only one."""
-    if matrix.shape[0] == matrix.shape[1]:
+    if matrix.shape[-2] == matrix.shape[-1]:
         only = solution_of(matrix, known)
-        size = max(map(abs, known.tolist()), default=0.0)
-        if only is not None and max(map(abs, only.tolist()), default=0.0) <= LARGEST_FACTOR * size:
-            return only, True
+        if only is not None:
+            size = largest(apart(known))
+            if largest(apart(only)) <= LARGEST_FACTOR * size:
+                return only, True
+    if known.ndim > 1 and len(known) > 1:
+        raise Apart(np.arange(len(known)) == 0)
+    shape, matrix, known = known.shape, matrix.reshape(matrix.shape[-2:]), known.ravel()
     least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR_BALANCE)
     found = np.asarray(least, float)
     found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR_BALANCE)[0]
-    return found, int(rank) == matrix.shape[1]
+    return found.reshape((*shape[:-1], -1)), int(rank) == matrix.shape[1]
 
 
 def drives_first(powers: Mapping[str, float], before: Mapping[str, bool]) -> dict[str, bool]:
     """For each mesh whether its first gear drives; as `before` where no power flows."""
-    limit = NO_POWER * max(map(abs, powers.values()), default=0.0)
-    return {key: before[key] if abs(power) <= limit else power > 0 for key, power in powers.items()}
+    limit = NO_POWER * largest(powers.values())
+    return {
+        key: before[key] if abs(power) <= limit else bool(power > 0)
+        for key, power in powers.items()
+    }
 
 
 # Which gear drives each mesh: the directions of the rolling powers that agree with themselves.

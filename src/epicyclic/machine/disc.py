@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import (
@@ -23,17 +24,19 @@ from epicyclic.losses.drag import (
     jet_loss,
     viscous_flags,
 )
-from epicyclic.losses.ranges import ModelUse, ValidityFlag, check_ranges
+from epicyclic.losses.ranges import Flags, ModelUse, ValidityFlag, check_ranges
 from epicyclic.losses.windage import (
     DISCS,
     DRAG_METHODS,
     LAMINAR_RIMS,
     MIST_SHARE,
     DragModel,
+    Parts,
     Turning,
     drag,
 )
 from epicyclic.machine.element import LOAD_INDEPENDENT, Loss, State
+from epicyclic.oil.oil import MixtureState
 
 BESIDE: Mapping[str, tuple[DragModel, bool]] = {
     "theodorsen-regier": ("theodorsen-regier", False),
@@ -43,7 +46,7 @@ BESIDE: Mapping[str, tuple[DragModel, bool]] = {
 }
 """Models of the drag of gears that a result shows beside one another, and whether all oil flows."""
 
-Outcome = tuple[Loss, tuple[ValidityFlag, ...]]
+Outcome = tuple[Loss, Flags]
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +111,7 @@ def disc_loss(
     struck: int = 1,  # Gears that turn and share the oil of the jets.
 ) -> Outcome:
     """The drag of `discs` together, each on its own shaft, and its flags. Theory (N2)."""
-    flags: tuple[ValidityFlag, ...] = ()
+    flags = Flags()
     drags: dict[tuple[str, str], float] = {}
     methods: dict[str, str] = {}
     by_model: dict[str, float] = {}
@@ -118,28 +121,24 @@ def disc_loss(
         if disc.sump is not None and disc.dips:
             model = CHURNING_MODELS[disc.sump.model]
             watts = disc.sump.power(disc.sump.model, speed, state)
-            flags += churning_flags(disc.sump.model, disc.where, disc.sump.part, speed)
+            flags += Flags(
+                partial(churning_flags, disc.sump.model, disc.where, disc.sump.part, speed)
+            )
             title, methods[model.title] = model.title, model.source
         else:
             mixture = state.fluids.mixed(disc.oil_fraction)
             if disc.model == LAMINAR_RIMS:
                 smooth = disc_drag(body.radius, body.width, speed, mixture)
                 watts = sum(smooth)
-                flags += disc_drag_flags(disc.where, body.radius, smooth, speed, mixture)
+                flags += Flags(
+                    partial(disc_drag_flags, disc.where, body.radius, smooth, speed, mixture)
+                )
             else:
                 mist = state.fluids.mixed(min(disc.oil_fraction, MIST_SHARE))
                 viscosity = state.fluids.oil.dynamic_viscosity
                 parts = drag(body, speed, mixture, mist, viscosity, disc.model)
                 watts = disc.count * sum(parts)
-                if parts.faces:
-                    reynolds = abs(speed) * body.radius**2 / mixture.kinematic_viscosity
-                    flags += check_ranges(
-                        ModelUse("drag", disc.model, disc.where),
-                        (DISCS,),
-                        {"reynolds_number": reynolds},
-                        part=parts.faces / sum(parts),
-                        watts=disc.count * parts.faces,
-                    )
+                flags += Flags(partial(_face_flags, disc, speed, mixture, parts))
             title = DRAG_METHODS[disc.model].title
             methods[title] = DRAG_METHODS[disc.model].source
         if disc.jets is not None:
@@ -153,6 +152,21 @@ def disc_loss(
     shares = tuple((title, own / total) for title, own in several.items())
     method, source = "; ".join(methods), "; ".join(methods.values())
     return Loss(LOAD_INDEPENDENT, total, method, source, brakes=brakes, shares=shares), flags
+
+
+def _face_flags(
+    disc: Disc, speed: float, mixture: MixtureState, parts: Parts
+) -> tuple[ValidityFlag, ...]:
+    if not parts.faces:
+        return ()
+    reynolds = abs(speed) * disc.turning.radius**2 / mixture.kinematic_viscosity
+    return check_ranges(
+        ModelUse("drag", disc.model, disc.where),
+        (DISCS,),
+        {"reynolds_number": reynolds},
+        part=parts.faces / sum(parts),
+        watts=disc.count * parts.faces,
+    )
 
 
 def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:
@@ -210,5 +224,5 @@ def thrust_loss(bearing: ThrustBearing, state: State) -> Outcome:
             VISCOUS_SOURCE,
             brakes=((*bearing.between, 1.0),),
         ),
-        viscous_flags("thrust bearing", speed, bearing.mean_diameter),
+        Flags(partial(viscous_flags, "thrust bearing", speed, bearing.mean_diameter)),
     )

@@ -18,6 +18,7 @@ from epicyclic.oil.oil import (
     mixture_state,
     oil_state,
 )
+from epicyclic.points import pointwise
 from epicyclic.units import (
     CELSIUS,
     KILOGRAM_PER_CUBIC_METRE,
@@ -37,6 +38,7 @@ _VISCOSITY = Range(
 )
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class Fluids:
     """The oil, its mixture with air, and flags on both."""
@@ -125,6 +127,7 @@ class Figure:
     unit: str
 
 
+@pointwise
 class Figures(Mapping[str, "DataclassInstance"]):
     """Figures by what they describe, found when somebody reads them.
 
@@ -136,6 +139,10 @@ class Figures(Mapping[str, "DataclassInstance"]):
     def __init__(self, finds: Mapping[str, Callable[[], DataclassInstance]]) -> None:
         self._finds = finds
         self._found: dict[str, DataclassInstance] = {}
+
+    def with_taken(self, take: Callable[[Any], Any]) -> Figures:
+        """What of them belongs to some points."""
+        return Figures({key: take(find) for key, find in self._finds.items()})
 
     def __getitem__(self, key: str) -> DataclassInstance:
         if key not in self._found:
@@ -193,6 +200,7 @@ def joined_key(element: str, name: str) -> str:
     return f"{element}.{name}" if element else name
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class State:
     """What an element sees of the machine."""
@@ -213,6 +221,7 @@ class State:
     earlier: Mapping[str, ElementResult] = field(default_factory=dict[str, Any])
 
 
+@pointwise
 class Loss(NamedTuple):
     """Power that an element loses, or why it loses none."""
 
@@ -253,6 +262,7 @@ def note_watts(note: str) -> float:
     return getattr(note, "watts", math.inf)
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class ElementResult:
     """What an element answers to a state."""

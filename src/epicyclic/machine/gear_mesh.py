@@ -55,6 +55,7 @@ from epicyclic.machine.pocket_flow import (
     pocketing_method,
 )
 from epicyclic.oil.oil import OilState
+from epicyclic.points import Alone, Points, pointwise
 from epicyclic.units import (
     CELSIUS,
     DEGREE,
@@ -105,6 +106,7 @@ class GearMesh:
     nodes: tuple[str, str]  # The thermal nodes of both gears.
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class MeshDuty:
     """A mesh and what it has to do, relative to the carrier, for one planet."""
@@ -180,6 +182,7 @@ class MeshFigures:
     flash_temperature_max: float = figure("largest flash temperature", KELVIN)
 
 
+@pointwise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeshResult(ElementResult):
     """Losses, figures and flags of one mesh, and what the next pass goes on from."""
@@ -251,6 +254,10 @@ def solve_mesh(
     """
     friction = duty.gears.models.friction if last is None else last.friction
     rolling = duty.gears.models.rolling
+    if isinstance(duty.speed1, Points) and not (
+        friction.several and rolling.several and not duty.gears.models.by_loss_factor
+    ):
+        raise Alone
     loads = None
     if duty.torque1 != 0 and duty.speed1 != 0:
         loads = distribute_load(duty, None if last is None else last.elastic)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
 from epicyclic.losses.pocket_tables import KnownFlows
-from epicyclic.losses.ranges import Flags, ModelUse, Sought, ValidityFlag
+from epicyclic.losses.ranges import Flags, ModelUse, SomeFlags, Sought, ValidityFlag
 from epicyclic.machine.disc import Disc, ThrustBearing, disc_loss, thrust_loss
 from epicyclic.machine.element import (
     LOAD_INDEPENDENT,
@@ -42,6 +42,7 @@ from epicyclic.machine.planets import (
     tilt_planet,
 )
 from epicyclic.machine.pocket_flow import MeshFlow, mesh_flows
+from epicyclic.points import pointwise
 from epicyclic.units import NEWTON, format_number
 
 WORTH_A_NOTE = 0.1
@@ -171,16 +172,18 @@ class Planet:
         ]
 
 
+@pointwise
 class Drags(NamedTuple):
     """Losses that depend on the speeds only, and their flags."""
 
     losses: Mapping[str, Loss]
-    flags: tuple[ValidityFlag, ...]
+    flags: SomeFlags
 
 
 Flows = Mapping[str, MeshFlow]  # Flow through the pockets of each mesh, by its key.
 
 
+@pointwise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearSetResult(ElementResult):
     """Losses, figures, flags of a set; meshes and bearings are those of its most loaded planet.
@@ -197,6 +200,7 @@ class GearSetResult(ElementResult):
     known_flows: KnownFlows  # Through pockets, also those at other temperatures.
 
 
+@pointwise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Branch(ElementResult):
     """Losses of all planets with one and the same share, and the figures of one."""
@@ -260,7 +264,7 @@ class GearSet:
         return GearSetResult(
             losses={name: found[name] for name in self.choices},
             figures=first.figures,
-            flags=Flags(partial(_widest, branches)) + drags.flags,
+            flags=Flags(partial(_widest, [branch.flags for branch in branches])) + drags.flags,
             notes=first.notes,
             shares=shares if self.planets else (),
             drags=drags,
@@ -348,7 +352,7 @@ class GearSet:
         duties = []
         for mesh in self.meshes:
             torque, speed = share * torques[mesh.key], state.speeds[mesh.bodies[0]] - carrier
-            duties.append(MeshDuty(mesh, torque, speed, torque * speed >= 0))
+            duties.append(MeshDuty(mesh, torque, speed, bool(torque * speed >= 0)))
         return tuple(duties)
 
     def shares(self, state: State, torques: Mapping[str, float]) -> tuple[float, ...]:
@@ -376,7 +380,7 @@ class GearSet:
         for key, torque in passed.items():
             added = own * self.reference.levers[key]
             whole = torque + added
-            torques[key] = 0.0 if abs(whole) <= ROUNDING * abs(added) else whole
+            torques[key] = whole * (abs(whole) > ROUNDING * abs(added)) + 0.0
         return torques
 
     def _pocket_duties(
@@ -400,9 +404,9 @@ class GearSet:
         losses = {
             name: Loss(LOAD_INDEPENDENT, left_out=reason) for name, reason in self.missing.items()
         }
-        flags: tuple[ValidityFlag, ...] = ()
+        flags = Flags()
         struck = sum(
-            disc.jets is not None and state.speeds[disc.body] != 0
+            disc.jets is not None and bool(state.speeds[disc.body] != 0)
             for discs in self.discs.values()
             for disc in discs
         )
@@ -566,10 +570,10 @@ def _mean_heat(losses: Sequence[Loss]) -> tuple[tuple[str, float], ...]:
     return tuple(shares.items())
 
 
-def _widest(branches: Sequence[_Branch]) -> tuple[ValidityFlag, ...]:
+def _widest(branches: Sequence[SomeFlags]) -> tuple[ValidityFlag, ...]:
     """For each model and quantity the flag of the most loaded planet that raises one."""
     flags: dict[tuple[ModelUse, str, str], ValidityFlag] = {}
     for branch in branches:
-        for flag in branch.flags:
+        for flag in branch:
             flags.setdefault((flag.use, flag.quantity, flag.source), flag)
     return tuple(flags.values())

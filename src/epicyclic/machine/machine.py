@@ -13,6 +13,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.machine.element import Element
+from epicyclic.points import Alone, Points, pointwise
 from epicyclic.units import NEWTON, torque_text
 
 # Statics of a shaft: forces of its gear meshes, and what its bearings answer.
@@ -260,6 +261,8 @@ def forces_of(
     """
     forces: dict[str, BearingLoad] = {}
     for layout in layouts:
+        if any(isinstance(torques[seat.mesh], Points) for seat in layout.seats):
+            raise Alone
         loads = [seat.load(torques[seat.mesh]) for seat in layout.seats]
         try:
             reactions = bearing_reactions(tuple(layout.supports.values()), loads)
@@ -311,6 +314,7 @@ class Coupling:
         return ((self.first, 1.0), (self.second, -1.0))
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class Operation:
     """How a machine is driven."""

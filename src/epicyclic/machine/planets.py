@@ -39,6 +39,7 @@ from epicyclic.losses.planet_bearing import (
     RollerLoads,
     Rubbing,
     centrifugal_forces,
+    each_roller_loads,
     fitted_rolling_loss,
     mixed_ehl_rolling_loss,
     palmgren_flags,
@@ -50,7 +51,7 @@ from epicyclic.losses.planet_bearing import (
     rubbing,
     tilting_moments,
 )
-from epicyclic.losses.ranges import Flags
+from epicyclic.losses.ranges import Flags, Sought
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.losses.shaft_bearing import (
     BearingType,
@@ -75,6 +76,7 @@ from epicyclic.machine.element import (
 )
 from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.oil.oil import OilState
+from epicyclic.points import Alone, Points, larger, phase, pointwise, total
 from epicyclic.units import (
     CELSIUS,
     DEGREE,
@@ -204,6 +206,7 @@ FLATTER = 0.5  # Slope of the energy at the end of a step over that at its start
 SLOPE = 1e-4  # Step of differences, over the size of the tilt. [1]
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class PlanetLoad:
     """Load of one planet on its bearing, x along the radial force."""
@@ -275,16 +278,16 @@ def planet_load(
         couple = contact.axial_force * radius  # operating radius of the planet in this mesh
         moment += couple * complex(*contact.outward)
     force = radial_force(contacts, centrifugal)
-    turned = moment * cmath.rect(1.0, -cmath.phase(force))
+    turned = moment * abs(force) / force if force else moment
     # the bore of a pushed planet meets its pin on the other side: those rollers carry
-    outward = math.pi / 2 - cmath.phase(-force)
+    outward = math.pi / 2 - phase(-force)
     return PlanetLoad(abs(force), turned.real, turned.imag, outward)
 
 
 def radial_force(contacts: Contacts, centrifugal: float) -> complex:
     """Force of all meshes and of rotation on the planet, t + i r. [N]"""
     forces = (contact.duty.force * contact.direction for contact in contacts)
-    return sum(forces, complex(0.0, centrifugal))
+    return sum(forces, 1j * centrifugal)
 
 
 def _axes(force: complex) -> tuple[FloatArray, FloatArray]:
@@ -546,6 +549,7 @@ Carried = RollerLoads | JournalState | None
 """What the bearing of a planet carried in the last pass."""
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class BearingResult(ElementResult):
     """Losses of the planet bearings, and the figures of one of them."""
@@ -602,10 +606,12 @@ def solve_bearing(
     bearing, where = own.bearing, key.replace("_", " ")
     if own.aligns_itself:
         load = PlanetLoad(load.force, 0.0, 0.0, load.outward)
+    moments = load.moment_x, load.moment_y
     if isinstance(last, RollerLoads):
-        loads = roller_loads_next_to(last, bearing, load.force, load.moment_x, load.moment_y)
+        next_to = partial(roller_loads_next_to, bearing)
+        loads = each_roller_loads(next_to, last, load.force, *moments)
     else:
-        loads = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y)
+        loads = each_roller_loads(partial(roller_loads, bearing), load.force, 0.0, *moments)
     loss = _by_load(own, loads, load.force, speed, oil)
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
@@ -614,14 +620,14 @@ def solve_bearing(
         bearing, loads.azimuth, own.roller_density, pin_radius, carrier, speed, load.outward
     )
     alone = pressed_alone(loads, forces, bearing.roller_length)
-    held = float(alone.intensity.sum()) * bearing.roller_length
+    held = total(alone.intensity) * bearing.roller_length
     watts = loss.loss
     notes: tuple[str, ...] = ()
     if held:  # on one race each, by slices as long as the roller
         found = _by_load(own, alone, held / bearing.slices, speed, oil, alone=True)
         watts += found.loss * bearing.slices / 2
     if not own.viscous_added:
-        watts = max(0.0, watts - loss.rolling * viscous_loss)
+        watts = larger(0.0, watts - loss.rolling * viscous_loss)
     if own.model == FULL_COMPLEMENT:
         volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
         pull = own.roller_density * volume * pin_radius * carrier**2
@@ -629,7 +635,7 @@ def solve_bearing(
         watts += rubbed.between + rubbed.skewed
         notes = (_rubbing_note(where, rubbed),)
     known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
-    notes += _limit_notes(where, known, own.limiting_speed, carried, abs(speed), watts)
+    limits = partial(_limit_notes, where, known, own.limiting_speed, carried, abs(speed), watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
         {
@@ -639,8 +645,8 @@ def solve_bearing(
             ),
         },
         Figures({key: figures}),
-        loss.flags + viscous_flags(where, speed, bearing.pitch_diameter),
-        notes,
+        loss.flags + Flags(partial(viscous_flags, where, speed, bearing.pitch_diameter)),
+        Sought(notes.__iter__, limits),
         loads=loads,
     )
 
@@ -721,6 +727,8 @@ def _by_load(
     alone: bool = False,  # As of `fitted_rolling_loss`.
 ) -> BearingLoss:
     """Loss that grows with the load, after the model of the bearing."""
+    if isinstance(speed, Points) and own.model not in ("mixed-ehl", "palmgren"):
+        raise Alone
     if isinstance(own.model, FittedRolling):
         beyond = _palmgren(own, loads, force, speed) if own.palmgren_beyond else None
         return fitted_rolling_loss(own.bearing, loads, speed, oil, own.model, beyond, alone=alone)

@@ -29,6 +29,7 @@ from epicyclic.losses.pocket_tables import (
 from epicyclic.losses.ranges import Range
 from epicyclic.machine.element import Fluids, Note
 from epicyclic.oil.oil import MixtureState
+from epicyclic.points import Alone, Points, pointwise, smaller
 from epicyclic.units import BAR, DEGREE, METRE_PER_SECOND, MILLIMETRE, WATT, format_number, percent
 
 if TYPE_CHECKING:
@@ -72,6 +73,7 @@ class PocketSettings:
     any_order: bool = False
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class MeshFlow:
     """Flow through the pockets of a mesh."""
@@ -95,7 +97,7 @@ def oil_in_mesh(duty: MeshDuty) -> float:
     passing = abs(duty.speed1) / (2 * math.pi) * (one + mesh.gear1.teeth / mesh.gear2.teeth * two)
     if not settings.fed or not passing:
         return settings.oil_fraction
-    return min(1.0, settings.oil_fraction + settings.fed / passing)
+    return smaller(1.0, settings.oil_fraction + settings.fed / passing)
 
 
 def flow_family(duty: MeshDuty) -> FlowFamily:
@@ -187,6 +189,8 @@ def mesh_flows(
     for key, request in wanted.items():
         figures = None
         if not request[0].scales(*request[1:]):
+            if isinstance(request[1], Points):
+                raise Alone
             if request[0] in tables[key]:
                 figures = tables[key][request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
@@ -227,11 +231,17 @@ def _begin(families: tuple[FlowFamily, ...]) -> None:
                 pool.submit(kept_figures, family, LEAST_NUMBER)
 
 
-@lru_cache(maxsize=256)
 def _solve_all(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
     """All flows at once: their kernels release the interpreter."""
     if all(it[0].scales(*it[1:]) for it in requests):  # threads would cost more
         return tuple(map(_solve, requests))
+    return _solve_in_threads(requests)
+
+
+@lru_cache(maxsize=256)
+def _solve_in_threads(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
+    if isinstance(requests[0][1], Points):
+        raise Alone
     with ThreadPoolExecutor(len(requests)) as pool:
         return tuple(pool.map(_solve, requests))
 

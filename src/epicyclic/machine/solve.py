@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
-from epicyclic.errors import ConvergenceError
+from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.errors import ConvergenceError, EpicyclicError
 from epicyclic.machine.balance import (
     Balance,
     Directions,
@@ -31,6 +31,17 @@ from epicyclic.machine.element import (
     joined_key,
 )
 from epicyclic.machine.machine import Machine, Operation, forces_of
+from epicyclic.points import (
+    Alone,
+    Apart,
+    isfinite,
+    joined,
+    larger,
+    largest,
+    pointwise,
+    smaller,
+    taken,
+)
 
 # What elements have answered so far, and what they would answer to loads next to those.
 #
@@ -83,8 +94,8 @@ class Answer:
                 return None
             off += step.error(loss.watts, older) * loss.watts
             line = loss.watts + step.part * (loss.watts - older)
-            watts = max(min(0.0, loss.watts), line)  # no prediction makes a loss negative
-            losses[name] = loss._replace(watts=watts) if watts != loss.watts else loss
+            # no prediction makes a loss negative
+            losses[name] = loss._replace(watts=larger(smaller(0.0, loss.watts), line))
         if not CAUTION * off <= allowed * sum(loss.watts for loss in losses.values()):
             return None
         return replace(self.result, losses=losses)
@@ -104,16 +115,16 @@ class Answer:
         keys = loss.follows or tuple(loads)
         before = (self.before or self).loads
         new, last, old = ([those[key] for key in keys] for those in (loads, self.loads, before))
-        largest = max(map(abs, new), default=0.0)
+        size = largest(new)
         ways = [one - two for one, two in zip(last, old, strict=True)]
         length = sum(way**2 for way in ways)
-        if not length > (ROUNDING * largest) ** 2:
+        if not length > (ROUNDING * size) ** 2:
             return _Step(0.0, 0.0, _apart(last, new), 0.0)
         ahead = sum((one - two) * way for one, two, way in zip(new, last, ways, strict=True))
         part = ahead / length
         on_line = [two + part * way for two, way in zip(last, ways, strict=True)]
         aside = _apart(on_line, new)
-        return _Step(part, _apart(old, last), _apart(last, new), aside if aside > ROUNDING else 0.0)
+        return _Step(part, _apart(old, last), _apart(last, new), aside * (aside > ROUNDING))
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,10 +159,10 @@ class _Step:
 
 def _apart(old: list[float], new: list[float]) -> float:
     """Largest change of a load, relative to the largest load. [1]"""
-    largest = max(map(abs, new), default=0.0)
-    if not largest:
+    size = largest(new)
+    if not size:
         return 0.0
-    return max(abs(two - one) for one, two in zip(old, new, strict=True)) / largest
+    return largest(two - one for one, two in zip(old, new, strict=True)) / size
 
 
 AGREEMENT = 5e-10
@@ -175,6 +186,7 @@ MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class Solution:
     """A machine in balance."""
@@ -238,7 +250,7 @@ class Solution:
     def _powers(self) -> list[float]:
         """Powers of all bodies, without what is rounding. [W]"""
         powers = [torque * self.speeds[body] for body, torque in self.torques.items()]
-        limit = NO_POWER * max(map(abs, powers), default=0.0)
+        limit = NO_POWER * largest(powers)
         return [power for power in powers if abs(power) > limit]
 
 
@@ -302,6 +314,7 @@ def solve_machine(
     fluids: Fluids | None,  # None if every loss is given.
     start: Start | None = None,  # As from `start_of`, for solutions that differ in the oil only.
     earlier: Solution | None = None,  # At nearly the same temperatures, to begin with.
+    evaluations: Evaluations | None = None,  # Filled; those of a block of which this is a part.
 ) -> Solution:
     """Torques and losses that agree. Theory (T5), (T6).
 
@@ -311,7 +324,16 @@ def solve_machine(
         start = start_of(machine, operation)
     speeds, lossless, directions = start.speeds, start.lossless, start.directions
     efficiencies = start.efficiencies
-    branch = _Branch(machine, operation, start, fluids, {}, earlier, directions.drives)
+    branch = _Branch(
+        machine,
+        operation,
+        start,
+        fluids,
+        {},
+        earlier,
+        directions.drives,
+        evaluations=Evaluations() if evaluations is None else evaluations,
+    )
     drives = _led(branch)
     tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
@@ -355,6 +377,47 @@ def solve_machine(
     )
 
 
+def solve_machines(
+    machine: Machine, operations: Sequence[Operation], fluids: Sequence[Fluids]
+) -> list[Solution | Exception]:
+    """`solve_machine` for several operating points, or what it raises for each of them."""
+    found: dict[int, Solution | Exception] = {}
+
+    def alone(rows: Sequence[int]) -> None:
+        for row in rows:
+            try:
+                found[row] = solve_machine(machine, operations[row], fluids[row])
+            except Exception as error:
+                found[row] = error
+
+    def together(rows: Sequence[int], evaluations: Evaluations) -> None:
+        try:
+            one = joined([operations[row] for row in rows])
+            oils = joined([replace(fluids[row], flags=()) for row in rows])
+            solution = solve_machine(machine, one, oils, evaluations=evaluations)
+        except Alone:
+            alone(rows)
+        except Apart as parting:
+            part(rows, parting.rows, evaluations)
+        except EpicyclicError as error:
+            if len(rows) == 1:
+                found[rows[0]] = error
+            else:
+                part(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
+        else:
+            for place, row in enumerate(rows):
+                own = taken(solution, place)
+                found[row] = replace(own, state=replace(own.state, fluids=fluids[row]))
+
+    def part(rows: Sequence[int], side: BoolArray, evaluations: Evaluations) -> None:
+        for places in (np.flatnonzero(side), np.flatnonzero(~side)):
+            together([rows[place] for place in places], evaluations.part(places))
+
+    if operations:
+        together(range(len(operations)), Evaluations())
+    return [found[row] for row in range(len(operations))]
+
+
 def next_solution(
     machine: Machine,
     operation: Operation,
@@ -383,6 +446,35 @@ def next_solution(
     return lagging, isinstance(found, _Pass)
 
 
+@dataclass
+class Evaluations:
+    """Answers of elements in the order in which they were asked, also of a block that parted."""
+
+    before: Sequence[tuple[State, ElementResult]] = ()  # Of the block of which this is a part.
+    done: list[tuple[State, ElementResult]] = field(default_factory=list)
+
+    def of(
+        self, element: Element, state: State, last: ElementResult | None = None
+    ) -> ElementResult:
+        """The answer to a state, known if the block before asked the same."""
+        number = len(self.done)
+        if number < len(self.before) and _alike(state, self.before[number][0]):
+            result = self.before[number][1]
+        else:
+            self.before = ()
+            result = element.evaluate(state, last)
+        self.done.append((state, result))
+        return result
+
+    def part(self, rows: Any) -> Evaluations:
+        """Those of some points."""
+        return Evaluations([taken(pair, rows) for pair in self.done])
+
+
+def _alike(one: State, two: State) -> bool:
+    return all(np.array_equal(load, two.torques[key]) for key, load in one.torques.items())
+
+
 class _Known(NamedTuple):
     """What an element has answered: each pass goes on from it."""
 
@@ -398,22 +490,23 @@ def _answered(
     state: State,
     known: _Known | None,
     allowed: float,  # Relative error of predicted losses.
+    evaluations: Evaluations,
 ) -> _Known:
     """The answer of an element to a state: the last one, one predicted from it, or a new one."""
     if known is None:
-        loads, result = element.loads(state), element.evaluate(state)
+        loads, result = element.loads(state), evaluations.of(element, state)
         return _Known(Answer(loads, result), result, loads, state.drives)
     loads = element.loads(state, known.result)
     if known.drives != state.drives:
-        result = element.evaluate(state, known.result)
+        result = evaluations.of(element, state, known.result)
         return _Known(Answer(loads, result), result, loads, state.drives)
     if _agrees(known.loads, loads):
         return known
     passed = _apart([known.loads[key] for key in loads], [*loads.values()])
-    predicted = known.answer.predicted(loads, max(allowed, PREDICTED * passed))
+    predicted = known.answer.predicted(loads, larger(allowed, PREDICTED * passed))
     if predicted is not None:
         return _Known(known.answer, predicted, loads, state.drives)
-    result = element.evaluate(state, known.result)
+    result = evaluations.of(element, state, known.result)
     last = known.answer
     before = replace(last, before=None) if last.alike(loads, result) else None
     return _Known(Answer(loads, result, before), result, loads, state.drives)
@@ -441,6 +534,7 @@ class _Branch:
     drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
     braking: Collection[str] = ()  # Meshes whose losses are friction, whichever gear drives.
     passes: int = 0  # So far.
+    evaluations: Evaluations = field(default_factory=lambda: Evaluations())
     state: State = field(init=False, repr=False)  # That the elements saw in the last of them.
 
     @cached_property
@@ -489,19 +583,21 @@ class _Branch:
         # an error of the losses changes the loads about as much as the losses do of which it is
         # that share: it may change them by less than they have to agree
         moved = _apart([self.unlost.meshes[key] for key in found.meshes], [*found.meshes.values()])
-        allowed = min(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
+        allowed = smaller(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
         with np.errstate(over="ignore"):  # a loss may be too large for a number
             self.known = {
-                element.key: _answered(element, state, self.known.get(element.key), allowed)
+                element.key: _answered(
+                    element, state, self.known.get(element.key), allowed, self.evaluations
+                )
                 for element in self.machine.elements
             }
         results = self.results.values()
-        if not math.isfinite(sum(loss.watts for it in results for loss in it.losses.values())):
+        if not isfinite(sum(loss.watts for it in results for loss in it.losses.values())):
             raise self.disagreement()
         new, efficiencies = self._with_losses(found)
         if _agrees(found.meshes, new.meshes):
             return _Pass(new, self.drives, efficiencies)
-        if not max(map(abs, new.meshes.values()), default=0.0) < MOST_TORQUE:
+        if not largest(new.meshes.values()) < MOST_TORQUE:
             raise self.disagreement()
         return new
 
@@ -605,9 +701,9 @@ def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
 
 
 def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
-    largest = max(map(abs, new.values()), default=0.0)
+    size = largest(new.values())
     return all(
-        abs(load - old[key]) <= AGREEMENT * abs(load) + ROUNDING * largest
+        abs(load - old[key]) <= AGREEMENT * abs(load) + ROUNDING * size
         for key, load in new.items()
     )
 

@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from epicyclic.arrays import FloatArray
+from epicyclic.points import pointwise, pow
 from epicyclic.units import (
     CELSIUS,
     SQUARE_MM_PER_SECOND,
@@ -288,6 +289,7 @@ DEFAULT_CONDUCTIVITY = 0.14
 SLOPE_STEP = 0.5  # Temperature step of the slope of the viscosity. [K]
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class OilState:
     """Oil at one temperature and ambient pressure."""
@@ -312,6 +314,7 @@ class OilState:
         return load
 
 
+@pointwise
 @dataclass(frozen=True, slots=True)
 class MixtureState:
     """Mixture of oil and air around the gears."""
@@ -371,7 +374,7 @@ def mixture_state(oil: OilState, oil_fraction: float, pressure: float) -> Mixtur
 
 def air_viscosity(temperature: float) -> float:
     """Dynamic viscosity of air, Sutherland's law, 100 to 1900 K. ISO 2533. Theory (L9). [Pa s]"""
-    return SUTHERLAND_CONSTANT * math.pow(temperature, 1.5) / (temperature + SUTHERLAND_TEMPERATURE)
+    return SUTHERLAND_CONSTANT * pow(temperature, 1.5) / (temperature + SUTHERLAND_TEMPERATURE)
 
 
 def _kinematic_viscosity(oil: Oil, temperature: float) -> float:

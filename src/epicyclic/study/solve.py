@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from epicyclic.build.machine import Built, build
@@ -13,7 +14,9 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figures, table_around
 from epicyclic.machine.element import OIL
 from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
+from epicyclic.machine.heat import Answer, Settled
 from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
+from epicyclic.machine.solve import solve_machines
 from epicyclic.result.physical import judged
 from epicyclic.result.result import Result
 from epicyclic.study.load import CaseSource, as_case
@@ -62,6 +65,42 @@ def solve(
         unloaded = solve(without_torque(case), flow_tables=flow_tables)
         result = replace(result, unloaded=unloaded.total)
     return judged(result)
+
+
+def solve_together(cases: Sequence[Case], flow_tables: FlowTables) -> list[Result | Exception]:
+    """The losses of cases that differ in their operation, or what is wrong with each of them.
+
+    As `solve` has them but for rounding, whichever cases are solved together.
+    """
+    built = [build(case, flow_tables) for case in cases]
+    together = [
+        row
+        for row, (case, one) in enumerate(zip(cases, built, strict=True))
+        if one.machine is built[0].machine
+        and one.thermal is None
+        and one.known_fluids is not None
+        and case.models.load_dependent != "as-tested"
+    ]
+    solutions = solve_machines(
+        built[0].machine,
+        [built[row].operation for row in together],
+        [built[row].fluids for row in together],
+    )
+    found = dict(zip(together, solutions, strict=True))
+    results: list[Result | Exception] = []
+    for row, case in enumerate(cases):
+        try:
+            solution = found.get(row)
+            if isinstance(solution, Exception):
+                raise solution
+            if solution is None:
+                results.append(solve(case, flow_tables=flow_tables))
+            else:
+                settled = Settled(solution, Answer({}), 1)
+                results.append(judged(assemble(case, built[row], built[row].sound(settled))))
+        except Exception as error:
+            results.append(error)
+    return results
 
 
 def losses_and_power(case: Case, flow_tables: FlowTables) -> tuple[dict[str, float], float]:

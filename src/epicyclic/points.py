@@ -1,0 +1,257 @@
+"""Numbers of several operating points at once, through the functions of one point.
+
+A sweep solves its points in blocks: what differs from point to point is a column with one row for
+each of them, `Points`, and takes the place of a number. A decision is one for the whole block;
+where points part, `Apart` says which, and each part is solved by itself. No result depends on which
+points share a block.
+"""
+
+from __future__ import annotations
+
+import cmath
+import dataclasses
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial, reduce
+from types import MethodType, MethodWrapperType
+from typing import Any, TypeVar
+
+import numpy as np
+
+from epicyclic.arrays import BoolArray, FloatArray
+
+T = TypeVar("T")
+
+
+class Apart(Exception):  # noqa: N818 - no error: the points of a block part
+    """A decision that is not the same for all points of a block."""
+
+    def __init__(self, rows: BoolArray) -> None:
+        self.rows = rows  # True for those of one side. Shape (points,).
+
+
+class Alone(Exception):  # noqa: N818 - no error
+    """Something that is only known how to do for one point at a time."""
+
+
+class Points(np.ndarray[Any, Any]):
+    """One number for each point, shape (points, 1), or for each point and place, (points, n)."""
+
+    def __bool__(self) -> bool:
+        truth = np.asarray(self, dtype=bool)
+        if truth.ndim and truth.shape[1:] != (1,):
+            raise ValueError("the truth of several places has no meaning")
+        if truth.all():
+            return True
+        if truth.any():
+            raise Apart(truth[:, 0])
+        return False
+
+    def __complex__(self) -> complex:
+        raise TypeError("several points are no number")
+
+    def __float__(self) -> float:
+        raise TypeError("several points are no number")
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return id(self)
+
+
+def of_points(values: Any) -> Points:
+    """The values of several points, first axis, as `Points`."""
+    return np.asarray(values, dtype=float).view(Points)
+
+
+def _either(single: Callable[..., Any], several: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of numbers that takes `Points`, too; of numbers `math` is the faster one."""
+
+    def function(*args: Any) -> Any:
+        try:
+            return single(*args)
+        except TypeError:
+            return several(*args)
+
+    return function
+
+
+sqrt = _either(math.sqrt, np.sqrt)
+cbrt = _either(math.cbrt, np.cbrt)
+exp = _either(math.exp, np.exp)
+log = _either(math.log, np.log)
+pow = _either(math.pow, np.power)  # noqa: A001 - as `math` has it
+isfinite = _either(math.isfinite, np.isfinite)
+phase = _either(cmath.phase, np.angle)
+hypot = _either(math.hypot, lambda *sides: np.sqrt(sum(side * side for side in sides)))
+
+
+def larger(one: Any, two: Any) -> Any:
+    """The larger of two numbers, point by point."""
+    several = isinstance(one, Points) or isinstance(two, Points)
+    return np.maximum(one, two) if several else max(one, two)
+
+
+def smaller(one: Any, two: Any) -> Any:
+    """The smaller of two numbers, point by point."""
+    several = isinstance(one, Points) or isinstance(two, Points)
+    return np.minimum(one, two) if several else min(one, two)
+
+
+def largest(values: Iterable[Any]) -> Any:
+    """Largest magnitude, point by point; 0 of none."""
+    return reduce(larger, map(abs, values), 0.0)
+
+
+def norm(values: Sequence[Any], order: float) -> Any:
+    """(sum of the powers of positive numbers)^(1/order), point by point."""
+    if any(isinstance(value, Points) for value in values):
+        most = reduce(np.maximum if order > 0 else np.minimum, values)
+        return most * sum((value / most) ** order for value in values) ** (1 / order)
+    return float(np.linalg.norm(values, order))
+
+
+def total(values: FloatArray) -> Any:
+    """Sum over all places, point by point."""
+    if isinstance(values, Points):
+        return values.reshape(len(values), -1).sum(axis=1, keepdims=True)
+    return float(values.sum())
+
+
+def side_by_side(values: Iterable[Any]) -> FloatArray:
+    """Numbers as an array, along its last axis; of `Points` the points are the first one."""
+    values = list(values)
+    count = next((len(value) for value in values if isinstance(value, Points)), None)
+    if count is None:
+        return np.array(values, dtype=float)
+    table = np.empty((count, len(values)))
+    for place, value in enumerate(values):
+        table[:, place : place + 1] = value
+    return table
+
+
+def apart(table: FloatArray) -> list[Any]:
+    """The numbers that `side_by_side` put together."""
+    if table.ndim == 1:
+        return table.tolist()
+    return [table[:, place : place + 1].view(Points) for place in range(table.shape[1])]
+
+
+# Points put together, and taken out again.
+
+POINTWISE: set[type] = set()
+"""Classes whose objects may hold `Points`; what is in no such object is shared by all points."""
+
+
+def pointwise(cls: type[T]) -> type[T]:
+    """Mark a class of objects that may hold `Points`."""
+    POINTWISE.add(cls)
+    return cls
+
+
+class Each(tuple[Any, ...]):
+    """One object for each point."""
+
+    __slots__ = ()
+
+
+def joined(values: Sequence[Any]) -> Any:
+    """Objects of several points as one object, whose numbers are `Points`.
+
+    Raises `Alone` if they differ in more than numbers. Numbers that do not differ are `Points`,
+    too: what shares a block must not matter.
+    """
+    first = values[0]
+    if isinstance(first, float):
+        return of_points(values).reshape(-1, 1)
+    if isinstance(first, Mapping):
+        if any(value.keys() != first.keys() for value in values):
+            raise Alone
+        return {key: joined([value[key] for value in values]) for key in first}
+    if dataclasses.is_dataclass(first) and type(first) in POINTWISE:
+        fields = [it.name for it in dataclasses.fields(first) if it.init]
+        parts = {name: joined([getattr(value, name) for value in values]) for name in fields}
+        return type(first)(**parts)
+    if any(value is not first and value != first for value in values):
+        raise Alone
+    return first
+
+
+def taken(value: Any, rows: Any) -> Any:
+    """What of an object belongs to one point, a number, or to some, an array of their numbers."""
+    return _Taking(rows).of(value)
+
+
+@dataclasses.dataclass
+class _Taking:
+    """What of objects belongs to some points, each object once."""
+
+    rows: Any
+    found: dict[tuple[int, int], Any] = dataclasses.field(default_factory=dict)
+    # Which places of the contact that is looked at carry load at this point; None if all do.
+    kept: BoolArray | None = None
+    masks: list[BoolArray] = dataclasses.field(default_factory=list)  # Alive, as `found` has them.
+
+    def of(self, value: Any) -> Any:
+        cls = type(value)
+        if cls is Points:
+            return self._number(value)
+        if cls is dict:
+            return {key: self.of(it) for key, it in value.items()}
+        if cls is tuple or cls is list:
+            return cls(self.of(it) for it in value)
+        if cls is Each:
+            one = isinstance(self.rows, int)
+            return value[self.rows] if one else Each(value[row] for row in self.rows)
+        if cls is not partial and cls not in POINTWISE:
+            if cls is MethodType or cls is MethodWrapperType:
+                return getattr(self.of(value.__self__), value.__name__)
+            return value
+        mark = id(value), id(self.kept)
+        if mark not in self.found:
+            self.found[mark] = self._object(cls, value)
+        return self.found[mark]
+
+    def _number(self, value: Points) -> Any:
+        if not isinstance(self.rows, int):
+            return value[self.rows]
+        own = np.asarray(value)[self.rows]
+        if own.shape == (1,):
+            return float(own[0])
+        return own[self.kept] if self.kept is not None and own.shape == self.kept.shape else own
+
+    def _object(self, cls: Any, value: Any) -> Any:
+        if hasattr(value, "with_taken"):
+            return value.with_taken(self.of)
+        if cls is partial:
+            before = self.kept
+            for it in value.args:
+                if hasattr(it, "loaded"):
+                    self.kept = self._kept(it.loaded)
+            found = partial(self.of(value.func), *map(self.of, value.args))
+            self.kept = before
+            return found
+        if isinstance(value, tuple):
+            return cls(*map(self.of, value))
+        before = self.kept
+        if hasattr(value, "loaded"):
+            self.kept = self._kept(value.loaded)
+        names = [it.name for it in dataclasses.fields(value) if it.init]
+        found = cls(**{name: self.of(getattr(value, name)) for name in names})
+        self.kept = before
+        return found
+
+    def _kept(self, loaded: BoolArray) -> BoolArray | None:
+        if not isinstance(self.rows, int) or not isinstance(loaded, Points):
+            return None
+        kept: BoolArray = np.asarray(loaded)[self.rows]
+        if kept.all():
+            return None
+        self.masks.append(kept)
+        return kept
+
+
+def point_by_point(function: Callable[..., FloatArray], *args: Any) -> FloatArray:
+    """A function of one point, of several for each by itself."""
+    count = next((len(it) for it in args if isinstance(it, Points)), None)
+    if count is None:
+        return function(*args)
+    return of_points([function(*(taken(it, row) for it in args)) for row in range(count)])
