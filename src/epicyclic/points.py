@@ -12,7 +12,7 @@ import cmath
 import dataclasses
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial, reduce
+from functools import cache, partial, reduce
 from types import MethodType, MethodWrapperType
 from typing import Any, TypeVar
 
@@ -180,6 +180,15 @@ def taken(value: Any, rows: Any) -> Any:
     return _Taking(rows).of(value)
 
 
+_PLAIN = {str, float, int, bool, type(None), np.ndarray}
+
+
+@cache
+def _names(cls: Any) -> tuple[str, ...]:
+    """Fields of a class."""
+    return tuple(it.name for it in dataclasses.fields(cls) if it.init)
+
+
 @dataclasses.dataclass
 class _Taking:
     """What of objects belongs to some points, each object once."""
@@ -192,12 +201,14 @@ class _Taking:
 
     def of(self, value: Any) -> Any:
         cls = type(value)
+        if cls in _PLAIN:
+            return value
         if cls is Points:
             return self._number(value)
         if cls is dict:
             return {key: self.of(it) for key, it in value.items()}
         if cls is tuple or cls is list:
-            return cls(self.of(it) for it in value)
+            return cls([self.of(it) for it in value]) if value else value
         if cls is Each:
             one = isinstance(self.rows, int)
             return value[self.rows] if one else Each(value[row] for row in self.rows)
@@ -234,8 +245,12 @@ class _Taking:
         before = self.kept
         if hasattr(value, "loaded"):
             self.kept = self._kept(value.loaded)
-        names = [it.name for it in dataclasses.fields(value) if it.init]
-        found = cls(**{name: self.of(getattr(value, name)) for name in names})
+        names, left = _names(cls), {}
+        if isinstance(self.rows, int) and hasattr(value, "of_last_pass"):
+            left = value.of_last_pass()
+        found = cls(
+            **{name: left[name] if name in left else self.of(getattr(value, name)) for name in names}
+        )
         self.kept = before
         return found
 

@@ -208,13 +208,17 @@ class Flags(Sought[ValidityFlag]):
     __slots__ = ()
 
     def __add__(self, other: Flags | tuple[ValidityFlag, ...]) -> Flags:
-        return Flags(self.__iter__, other.__iter__)
+        return Flags(*self._looks, *_looks_of(other))
 
     def __radd__(self, other: tuple[ValidityFlag, ...]) -> Flags:
-        return Flags(other.__iter__, self.__iter__)
+        return Flags(*_looks_of(other), *self._looks)
 
 
 SomeFlags = Flags | tuple[ValidityFlag, ...]
+
+
+def _looks_of(flags: SomeFlags) -> Sequence[Callable[[], Iterable[ValidityFlag]]]:
+    return flags._looks if isinstance(flags, Flags) else (flags.__iter__,) if flags else ()
 
 
 def held_in_range(value: Real, item: Range) -> Real:

@@ -199,6 +199,16 @@ class GearSetResult(ElementResult):
     rollers: Mapping[tuple[str, float], Carried]  # By planet and share of the load.
     known_flows: KnownFlows  # Through pockets, also those at other temperatures.
 
+    def of_last_pass(self) -> dict[str, Any]:
+        """What nothing goes on from: these fields, empty."""
+        return {
+            "drags": Drags({}, ()),
+            "flows": {},
+            "meshes": {},
+            "rollers": {},
+            "known_flows": KnownFlows(),
+        }
+
 
 @pointwise
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -34,6 +34,7 @@ from epicyclic.machine.machine import Machine, Operation, forces_of
 from epicyclic.points import (
     Alone,
     Apart,
+    Points,
     isfinite,
     joined,
     larger,
@@ -669,6 +670,8 @@ def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
     from scipy.optimize import NoConvergence, broyden1  # takes a third of a second, rarely needed
 
     last: Balance | _Pass = first
+    if any(isinstance(load, Points) for load in first.meshes.values()):
+        raise Alone
     start = np.array(list(first.meshes.values()))
     size = np.where(start, np.abs(start), 1.0)
 
