@@ -13,6 +13,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial, reduce
+from itertools import repeat
 from types import MethodType, MethodWrapperType
 from typing import Any, TypeVar
 
@@ -175,9 +176,10 @@ def joined(values: Sequence[Any]) -> Any:
     return first
 
 
-def taken(value: Any, rows: Any) -> Any:
-    """What of an object belongs to one point, a number, or to some, an array of their numbers."""
-    return _Taking(rows).of(value)
+def taken(value: Any, rows: Sequence[Any]) -> list[Any]:
+    """What of an object belongs to one point, a number in `rows`, or to some, an array of them."""
+    found = _Taking(rows).of(value)
+    return [value] * len(rows) if found is None else found
 
 
 _PLAIN = {str, float, int, bool, type(None), np.ndarray}
@@ -185,83 +187,93 @@ _PLAIN = {str, float, int, bool, type(None), np.ndarray}
 
 @cache
 def _names(cls: Any) -> tuple[str, ...]:
-    """Fields of a class."""
     return tuple(it.name for it in dataclasses.fields(cls) if it.init)
 
 
 @dataclasses.dataclass
 class _Taking:
-    """What of objects belongs to some points, each object once."""
+    """What of objects belongs to each of some points; None of one that is the same for all."""
 
-    rows: Any
+    rows: Sequence[Any]
     found: dict[tuple[int, int], Any] = dataclasses.field(default_factory=dict)
-    # Which places of the contact that is looked at carry load at this point; None if all do.
-    kept: BoolArray | None = None
-    masks: list[BoolArray] = dataclasses.field(default_factory=list)  # Alive, as `found` has them.
+    # Which places of the contact that is looked at carry load at each point; empty if all do.
+    kept: Sequence[BoolArray] = ()
 
-    def of(self, value: Any) -> Any:
+    def of(self, value: Any) -> list[Any] | None:
         cls = type(value)
         if cls in _PLAIN:
-            return value
+            return None
         if cls is Points:
-            return self._number(value)
+            return self._numbers(value)
         if cls is dict:
-            return {key: self.of(it) for key, it in value.items()}
+            return self._made(lambda row: dict(zip(value, row, strict=True)), value.values())
         if cls is tuple or cls is list:
-            return cls([self.of(it) for it in value]) if value else value
+            return self._made(cls, value)
         if cls is Each:
-            one = isinstance(self.rows, int)
-            return value[self.rows] if one else Each(value[row] for row in self.rows)
+            return [
+                value[row] if isinstance(row, int) else Each(value[own] for own in row)
+                for row in self.rows
+            ]
+        if cls is MethodType or cls is MethodWrapperType:
+            owners = self.of(value.__self__)
+            return None if owners is None else [getattr(it, value.__name__) for it in owners]
         if cls is not partial and cls not in POINTWISE:
-            if cls is MethodType or cls is MethodWrapperType:
-                return getattr(self.of(value.__self__), value.__name__)
-            return value
+            return None
         mark = id(value), id(self.kept)
         if mark not in self.found:
-            self.found[mark] = self._object(cls, value)
+            self.found[mark] = self._objects(cls, value)
         return self.found[mark]
 
-    def _number(self, value: Points) -> Any:
-        if not isinstance(self.rows, int):
-            return value[self.rows]
-        own = np.asarray(value)[self.rows]
-        if own.shape == (1,):
-            return float(own[0])
-        return own[self.kept] if self.kept is not None and own.shape == self.kept.shape else own
-
-    def _object(self, cls: Any, value: Any) -> Any:
-        if hasattr(value, "with_taken"):
-            return value.with_taken(self.of)
-        if cls is partial:
-            before = self.kept
-            for it in value.args:
-                if hasattr(it, "loaded"):
-                    self.kept = self._kept(it.loaded)
-            found = partial(self.of(value.func), *map(self.of, value.args))
-            self.kept = before
-            return found
-        if isinstance(value, tuple):
-            return cls(*map(self.of, value))
-        before = self.kept
-        if hasattr(value, "loaded"):
-            self.kept = self._kept(value.loaded)
-        names, left = _names(cls), {}
-        if isinstance(self.rows, int) and hasattr(value, "of_last_pass"):
-            left = value.of_last_pass()
-        found = cls(
-            **{name: left[name] if name in left else self.of(getattr(value, name)) for name in names}
+    def _made(self, make: Callable[[Any], Any], parts: Iterable[Any]) -> list[Any] | None:
+        """Objects made of the parts that belong to each point."""
+        parts = list(parts)
+        columns = list(map(self.of, parts))
+        if all(column is None for column in columns):
+            return None
+        filled = (
+            repeat(part, len(self.rows)) if column is None else column
+            for part, column in zip(parts, columns, strict=True)
         )
+        return list(map(make, zip(*filled, strict=True)))
+
+    def _numbers(self, value: Points) -> list[Any]:
+        if not isinstance(self.rows[0], int):
+            return [value[row] for row in self.rows]
+        if value.shape[1:] == (1,):
+            return np.asarray(value)[self.rows, 0].tolist()
+        own = list(np.asarray(value)[self.rows])
+        if self.kept and self.kept[0].shape == own[0].shape:
+            return [values[kept] for values, kept in zip(own, self.kept, strict=True)]
+        return own
+
+    def _objects(self, cls: Any, value: Any) -> list[Any] | None:
+        before = self.kept
+        for it in (value, *(value.args if cls is partial else ())):
+            if isinstance(loaded := getattr(it, "loaded", None), Points):
+                self._keep(np.asarray(loaded))
+        if cls is partial:
+            found = self._made(lambda row: partial(*row), (value.func, *value.args))
+        elif hasattr(value, "parts"):
+            found = self._made(lambda row: cls(*row), value.parts)
+        elif isinstance(value, tuple):
+            found = self._made(cls._make, value)
+        else:
+            names = _names(cls)
+            left: Mapping[str, Any] = {}
+            if isinstance(self.rows[0], int) and hasattr(value, "of_last_pass"):
+                left = value.of_last_pass()
+            found = self._made(
+                lambda row: cls(**dict(zip(names, row, strict=True))),
+                [left[name] if name in left else getattr(value, name) for name in names],
+            )
         self.kept = before
         return found
 
-    def _kept(self, loaded: BoolArray) -> BoolArray | None:
-        if not isinstance(self.rows, int) or not isinstance(loaded, Points):
-            return None
-        kept: BoolArray = np.asarray(loaded)[self.rows]
-        if kept.all():
-            return None
-        self.masks.append(kept)
-        return kept
+    def _keep(self, loaded: BoolArray) -> None:
+        self.kept = ()
+        if isinstance(self.rows[0], int) and not loaded.all():
+            self.kept = list(loaded[self.rows])
+            self.found[id(self.kept), -1] = self.kept  # no other gets its mark
 
 
 def point_by_point(function: Callable[..., FloatArray], *args: Any) -> FloatArray:
@@ -269,4 +281,4 @@ def point_by_point(function: Callable[..., FloatArray], *args: Any) -> FloatArra
     count = next((len(it) for it in args if isinstance(it, Points)), None)
     if count is None:
         return function(*args)
-    return of_points([function(*(taken(it, row) for it in args)) for row in range(count)])
+    return of_points([function(*own) for own in taken(args, range(count))])

@@ -317,6 +317,12 @@ class Built:
         assert self.known_fluids is not None, "a machine of given efficiencies has no oil"
         return self.known_fluids
 
+    @property
+    def together(self) -> bool:
+        """Whether it can be solved for several operating points at once."""
+        several = all(getattr(element, "several", False) for element in self.machine.elements)
+        return self.thermal is None and self.known_fluids is not None and several
+
     def solve(self) -> Settled:
         """Torques, losses and temperatures that agree."""
         if self.thermal is None:

@@ -218,7 +218,7 @@ def each_roller_loads(find: Callable[..., RollerLoads], *loads: float) -> Roller
     count = next((len(load) for load in loads if isinstance(load, Points)), None)
     if count is None:
         return find(*loads)
-    ones = [find(*(taken(load, row) for load in loads)) for row in range(count)]
+    ones = [find(*own) for own in taken(loads, range(count))]
     return RollerLoads(
         ones[0].azimuth,
         of_points([one.intensity for one in ones]),

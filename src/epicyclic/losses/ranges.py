@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar, cast
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -194,9 +194,10 @@ class Sought(Generic[Item]):
     def __init__(self, *looks: Callable[[], Iterable[Item]]) -> None:
         self._looks = looks
 
-    def with_taken(self, take: Callable[[Any], Any]) -> Self:
-        """What of it belongs to some points."""
-        return type(self)(*map(take, self._looks))
+    @property
+    def parts(self) -> tuple[Callable[[], Iterable[Item]], ...]:
+        """What it is made of."""
+        return self._looks
 
     def __iter__(self) -> Iterator[Item]:
         for look in self._looks:

@@ -140,9 +140,10 @@ class Figures(Mapping[str, "DataclassInstance"]):
         self._finds = finds
         self._found: dict[str, DataclassInstance] = {}
 
-    def with_taken(self, take: Callable[[Any], Any]) -> Figures:
-        """What of them belongs to some points."""
-        return Figures({key: take(find) for key, find in self._finds.items()})
+    @property
+    def parts(self) -> tuple[Mapping[str, Callable[[], DataclassInstance]]]:
+        """What they are made of."""
+        return (self._finds,)
 
     def __getitem__(self, key: str) -> DataclassInstance:
         if key not in self._found:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
@@ -235,6 +235,7 @@ class GearSet:
     choices: Mapping[str, LossChoice]
     # None: each mesh carries what the losses leave, and its losses act on its own bodies.
     reference: Reference | None = None
+    several: ClassVar = True  # Whether it is solved for several operating points at once.
 
     def evaluate(self, state: State, last: ElementResult | None = None) -> GearSetResult:
         """Losses, figures and flags in a state; `last`, under nearly these loads, saves work."""

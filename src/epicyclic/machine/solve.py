@@ -406,8 +406,7 @@ def solve_machines(
             else:
                 part(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
         else:
-            for place, row in enumerate(rows):
-                own = taken(solution, place)
+            for row, own in zip(rows, taken(solution, range(len(rows))), strict=True):
                 found[row] = replace(own, state=replace(own.state, fluids=fluids[row]))
 
     def part(rows: Sequence[int], side: BoolArray, evaluations: Evaluations) -> None:
@@ -469,7 +468,7 @@ class Evaluations:
 
     def part(self, rows: Any) -> Evaluations:
         """Those of some points."""
-        return Evaluations([taken(pair, rows) for pair in self.done])
+        return Evaluations(taken(self.done, [rows])[0])
 
 
 def _alike(one: State, two: State) -> bool:

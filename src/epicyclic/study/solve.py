@@ -16,7 +16,7 @@ from epicyclic.machine.element import OIL
 from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
 from epicyclic.machine.heat import Answer, Settled
 from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
-from epicyclic.machine.solve import solve_machines
+from epicyclic.machine.solve import Solution, solve_machines
 from epicyclic.result.physical import judged
 from epicyclic.result.result import Result
 from epicyclic.study.load import CaseSource, as_case
@@ -72,35 +72,35 @@ def solve_together(cases: Sequence[Case], flow_tables: FlowTables) -> list[Resul
 
     As `solve` has them but for rounding, whichever cases are solved together.
     """
-    built = [build(case, flow_tables) for case in cases]
-    together = [
-        row
-        for row, (case, one) in enumerate(zip(cases, built, strict=True))
-        if one.machine is built[0].machine
-        and one.thermal is None
-        and one.known_fluids is not None
-        and case.models.load_dependent != "as-tested"
-    ]
-    solutions = solve_machines(
-        built[0].machine,
-        [built[row].operation for row in together],
-        [built[row].fluids for row in together],
-    )
-    found = dict(zip(together, solutions, strict=True))
-    results: list[Result | Exception] = []
-    for row, case in enumerate(cases):
+    built: dict[int, Built] = {}
+    found: dict[int, Result | Exception] = {}
+    machines: dict[int, list[int]] = {}
+    for number, case in enumerate(cases):
         try:
-            solution = found.get(row)
+            one = built[number] = build(case, flow_tables)
+        except Exception as error:
+            found[number] = error
+            continue
+        if one.together and case.models.load_dependent != "as-tested":
+            machines.setdefault(id(one.machine), []).append(number)
+    solutions: dict[int, Solution | Exception] = {}
+    for group in machines.values():
+        points = [(built[number].operation, built[number].fluids) for number in group]
+        machine = built[group[0]].machine
+        solutions |= zip(group, solve_machines(machine, *zip(*points, strict=True)), strict=True)
+    for number, one in built.items():
+        try:
+            solution = solutions.get(number)
             if isinstance(solution, Exception):
                 raise solution
             if solution is None:
-                results.append(solve(case, flow_tables=flow_tables))
+                found[number] = solve(cases[number], flow_tables=flow_tables)
             else:
-                settled = Settled(solution, Answer({}), 1)
-                results.append(judged(assemble(case, built[row], built[row].sound(settled))))
+                settled = one.sound(Settled(solution, Answer({}), 1))
+                found[number] = judged(assemble(cases[number], one, settled))
         except Exception as error:
-            results.append(error)
-    return results
+            found[number] = error
+    return [found[number] for number in range(len(cases))]
 
 
 def losses_and_power(case: Case, flow_tables: FlowTables) -> tuple[dict[str, float], float]:

@@ -11,6 +11,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
@@ -24,12 +25,12 @@ from epicyclic.errors import InputError, Problem, Status, one_problem, printable
 from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
-from epicyclic.result.result import number_fields, origin
+from epicyclic.result.result import Result, number_fields, origin
 from epicyclic.schema.fields import is_array, quantity_of
 from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES, STATE_KEY, key_of
-from epicyclic.study.solve import pocket_flow_numbers, solve
+from epicyclic.study.solve import pocket_flow_numbers, solve, solve_together
 from epicyclic.study.sweeps.axes import (
     MOST_POINTS,
     ROW,
@@ -173,15 +174,41 @@ class CasePlan(Plan):
             "files": [hashlib.sha256(content).hexdigest() for content in contents],
         }
 
+    @property
+    def together(self) -> bool:
+        """Whether points are solved together: they differ in their operation, at least."""
+        return False
+
+    def solve_all(self, indices: Sequence[int]) -> list[Row]:
+        """Rows of points; those that share all but their operation are solved together."""
+        if not self.together:
+            return Plan.solve_all(self, indices)
+        cases: dict[int, Case] = {}
+
+        def failing(index: int) -> Row:
+            cases[index] = self.case.updated(self.changes(index))
+            return Row("")
+
+        rows = {index: self._row(partial(failing, index)) for index in indices}
+        found = solve_together(list(cases.values()), self.flow_tables)
+        for index, result in zip(cases, found, strict=True):
+            rows[index] = self._row(partial(_row_of, result))
+        return list(rows.values())
+
     def _solve(self, index: int) -> Row:
         """One case as a flat record."""
         case = self.case.updated(self.changes(index))
-        result = solve(case, flow_tables=self.flow_tables)
-        if result.status is not Status.CONVERGED:
-            return Row(str(result.status), message=result.notes[0])
-        return Row(
-            status=str(result.status), warnings=" | ".join(result.warnings), numbers=result.values()
-        )
+        return _row_of(solve(case, flow_tables=self.flow_tables))
+
+
+def _row_of(result: Result | Exception) -> Row:
+    if isinstance(result, Exception):
+        raise result
+    if result.status is not Status.CONVERGED:
+        return Row(str(result.status), message=result.notes[0])
+    return Row(
+        status=str(result.status), warnings=" | ".join(result.warnings), numbers=result.values()
+    )
 
 
 def _files(case: Case) -> Iterator[str]:
@@ -235,6 +262,14 @@ class SweepPlan(CasePlan):
         """The keys that case number `index` changes; raises `InputError` if a link has no value."""
         return self.point(index).followed()
 
+    @property
+    def together(self) -> bool:
+        """See `CasePlan`."""
+        count = math.prod(
+            len(axis.values) for axis in self.axes if all(map(_operates, axis.keys))
+        )
+        return count > 1 and all(key.startswith(_OPERATION) for key in self.links)
+
     def axes_behind(self, key: str) -> list[int]:
         """Numbers of the axes that the linked `key` follows."""
         behind = keys_behind(key, self.links)
@@ -266,6 +301,13 @@ class SweepPlan(CasePlan):
         return content | ({"links": dict(self.links)} if self.links else {})
 
 
+_OPERATION = "operation."
+
+
+def _operates(part: Any) -> bool:
+    return part.key.startswith(_OPERATION)
+
+
 def _is_operating(key: str) -> bool:
     return key.split(".")[0] in _OPERATING_TABLES
 
@@ -281,6 +323,11 @@ class PointList(CasePlan):
     def size(self) -> int:
         """Number of points."""
         return len(self.points)
+
+    @property
+    def together(self) -> bool:
+        """See `CasePlan`."""
+        return all(key.startswith(_OPERATION) for point in self.points for key in point)
 
     def changes(self, index: int) -> dict[str, Any]:
         """The keys that point number `index` changes."""

@@ -15,7 +15,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, partial
 from importlib import metadata
 from itertools import groupby
 from pathlib import Path
@@ -318,9 +318,17 @@ class Plan(ABC):
         """Numbers of all points, those next to each other that share most."""
 
     def solve(self, index: int) -> Row:
-        """Row of one point, with the reason if it fails; raises nothing but an interruption."""
+        """Row of one point, as of several."""
+        return self.solve_all([index])[0]
+
+    def solve_all(self, indices: Sequence[int]) -> list[Row]:
+        """Rows of points, with the reason if one fails; raises nothing but an interruption."""
+        return [self._row(partial(self._solve, index)) for index in indices]
+
+    def _row(self, find: Callable[[], Row]) -> Row:
+        """What is found, or a row that says what is raised."""
         try:
-            return self._solve(index)
+            return find()
         except InputError as error:
             return failed_row(_told(error))
         except EpicyclicError as error:
@@ -462,8 +470,8 @@ def _run_here(
     plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None
 ) -> Iterator[Batch]:
     """Finished points, in any order: here as long as that pays, then in worker processes."""
-    start = time.perf_counter()
-    for done, index in enumerate(indices):
+    start, done = time.perf_counter(), 0
+    while done < len(indices):
         if done == 1:  # the first point also pays for compilation
             start = time.perf_counter()
         workers_pay = jobs is None and _workers_pay(
@@ -472,7 +480,9 @@ def _run_here(
         if workers_pay or jobs not in (None, 1):
             yield from _run_in_workers(plan, indices[done:], jobs or -1, journal)
             return
-        yield _solve_batch(plan, [index], journal)
+        batch = indices[done : done + (plan.batch if done else 1)]
+        yield _solve_batch(plan, batch, journal)
+        done += len(batch)
 
 
 def _workers_pay(done: int, seconds: float, left: int) -> bool:
@@ -611,12 +621,10 @@ def _solve_there(indices: Sequence[int], plan: Plan, version: str) -> Batch:
 
 
 def _solve_batch(plan: Plan, indices: Sequence[int], journal: Journal | None) -> Batch:
-    rows = []
-    for index in indices:
-        row = plan.solve(index)
-        if journal is not None:
+    rows = list(zip(indices, plan.solve_all(indices), strict=True))
+    if journal is not None:
+        for index, row in rows:
             journal.append(index, row)
-        rows.append((index, row))
     return rows
 
 
