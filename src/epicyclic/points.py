@@ -190,6 +190,14 @@ def _names(cls: Any) -> tuple[str, ...]:
     return tuple(it.name for it in dataclasses.fields(cls) if it.init)
 
 
+@dataclasses.dataclass(frozen=True)
+class _Later:
+    """A call with what belongs to some points, which is taken when single ones are."""
+
+    call: Any  # A `partial`.
+    rows: Any
+
+
 @dataclasses.dataclass
 class _Taking:
     """What of objects belongs to each of some points; None of one that is the same for all."""
@@ -217,7 +225,11 @@ class _Taking:
         if cls is MethodType or cls is MethodWrapperType:
             owners = self.of(value.__self__)
             return None if owners is None else [getattr(it, value.__name__) for it in owners]
-        if cls is not partial and cls not in POINTWISE:
+        single = isinstance(self.rows[0], int)
+        if cls in (partial, _Later) and not single:
+            call, rows = (value, None) if cls is partial else (value.call, value.rows)
+            return [_Later(call, row if rows is None else rows[row]) for row in self.rows]
+        if cls not in (partial, _Later) and cls not in POINTWISE:
             return None
         mark = id(value), id(self.kept)
         if mark not in self.found:
@@ -247,6 +259,8 @@ class _Taking:
         return own
 
     def _objects(self, cls: Any, value: Any) -> list[Any] | None:
+        if cls is _Later:
+            return _Taking(value.rows[self.rows].tolist()).of(value.call)
         before = self.kept
         for it in (value, *(value.args if cls is partial else ())):
             if isinstance(loaded := getattr(it, "loaded", None), Points):
@@ -257,6 +271,11 @@ class _Taking:
             found = self._made(lambda row: cls(*row), value.parts)
         elif isinstance(value, tuple):
             found = self._made(cls._make, value)
+        elif hasattr(value, "loaded") and hasattr(value, "__dict__"):  # with what follows from it
+            found = self._made(
+                lambda row: _with_fields(cls, dict(zip(vars(value), row, strict=True))),
+                vars(value).values(),
+            )
         else:
             names = _names(cls)
             left: Mapping[str, Any] = {}
@@ -274,6 +293,12 @@ class _Taking:
         if isinstance(self.rows[0], int) and not loaded.all():
             self.kept = list(loaded[self.rows])
             self.found[id(self.kept), -1] = self.kept  # no other gets its mark
+
+
+def _with_fields(cls: Any, fields: Mapping[str, Any]) -> Any:
+    made = object.__new__(cls)
+    vars(made).update(fields)
+    return made
 
 
 def point_by_point(function: Callable[..., FloatArray], *args: Any) -> FloatArray:
