@@ -155,14 +155,12 @@ def _oil_constants(oil: OilState) -> list[float]:
     shifted = viscosity + D341_OFFSET
     # -d(log log(nu + 0.7))/d(log T) from beta = -d(ln nu)/dT
     slope = oil.thermoviscosity * oil.temperature * viscosity / (shifted * log(shifted))
-    return (
-        [
-            oil.temperature,
-            log(shifted),
-            log(viscosity),
-            slope,
-            oil.density * MM2_PER_S,
-            oil.pressure_viscosity,
-            oil.pressure_viscosity_exponent,
-        ]
-    )
+    return [
+        oil.temperature,
+        log(shifted),
+        log(viscosity),
+        slope,
+        oil.density * MM2_PER_S,
+        oil.pressure_viscosity,
+        oil.pressure_viscosity_exponent,
+    ]

@@ -393,9 +393,7 @@ def mixed_ehl_rolling_loss(
     held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
     beyond = beyond_data(carried, held_load, rolling, held_speed)
     local = bearing.slice_width * density * beyond
-    return BearingLoss(
-        total(local), Flags(partial(_flags, bearing, loads, speed, oil, local))
-    )
+    return BearingLoss(total(local), Flags(partial(_flags, bearing, loads, speed, oil, local)))
 
 
 def carried_by(loads: RollerLoads) -> FloatArray:

@@ -431,7 +431,9 @@ class KnownFlows:
     ) -> KnownFlows:
         """These flows and another one."""
         number = FlowFamily.number(speed, mixture, pressure)
-        if isinstance(number, Points) or number == LEAST_NUMBER:  # it is scaled, and its speed may be too small to divide by
+        if (
+            isinstance(number, Points) or number == LEAST_NUMBER
+        ):  # it is scaled, and its speed may be too small to divide by
             return self
         place, scaled = math.log(number), scaled_figures(figures, speed, mixture.density)
         return KnownFlows({**self.flows, (family, place): (scaled, figures)})

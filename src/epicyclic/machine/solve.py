@@ -705,8 +705,7 @@ def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
 def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
     size = largest(new.values())
     return all(
-        abs(load - old[key]) <= AGREEMENT * abs(load) + ROUNDING * size
-        for key, load in new.items()
+        abs(load - old[key]) <= AGREEMENT * abs(load) + ROUNDING * size for key, load in new.items()
     )
 
 

@@ -145,6 +145,9 @@ _OPERATING_TABLES = (
 )
 
 
+TOGETHER = 64  # Points solved together, at most: their arrays still fit near the processor.
+
+
 @dataclass(frozen=True, slots=True)
 class CasePlan(Plan):
     """Cases to be solved: one case, and what each point changes in it."""
@@ -176,8 +179,13 @@ class CasePlan(Plan):
 
     @property
     def together(self) -> bool:
-        """Whether points are solved together: they differ in their operation, at least."""
+        """Whether points are solved together: some share all but their operation."""
         return False
+
+    @property
+    def batch(self) -> int:
+        """See `Plan`."""
+        return TOGETHER if self.together else super(CasePlan, self).batch
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
         """Rows of points; those that share all but their operation are solved together."""
@@ -265,9 +273,7 @@ class SweepPlan(CasePlan):
     @property
     def together(self) -> bool:
         """See `CasePlan`."""
-        count = math.prod(
-            len(axis.values) for axis in self.axes if all(map(_operates, axis.keys))
-        )
+        count = math.prod(len(axis.values) for axis in self.axes if all(map(_operates, axis.keys)))
         return count > 1 and all(key.startswith(_OPERATION) for key in self.links)
 
     def axes_behind(self, key: str) -> list[int]:
