@@ -63,14 +63,15 @@ def of_points(values: Any) -> Points:
     return np.asarray(values, dtype=float).view(Points)
 
 
-def _either(single: Callable[..., Any], several: Callable[..., Any]) -> Callable[..., Any]:
+def _either(single: Callable[..., float], several: Callable[..., Any]) -> Callable[..., float]:
     """A function of numbers that takes `Points`, too; of numbers `math` is the faster one."""
 
-    def function(*args: Any) -> Any:
+    def function(*args: Any) -> float:
         try:
             return single(*args)
         except TypeError:
-            return several(*args)
+            found: float = several(*args)
+            return found
 
     return function
 
@@ -79,48 +80,50 @@ sqrt = _either(math.sqrt, np.sqrt)
 cbrt = _either(math.cbrt, np.cbrt)
 exp = _either(math.exp, np.exp)
 log = _either(math.log, np.log)
-pow = _either(math.pow, np.power)  # noqa: A001 - as `math` has it
+pow = _either(math.pow, np.power)
 isfinite = _either(math.isfinite, np.isfinite)
 phase = _either(cmath.phase, np.angle)
 hypot = _either(math.hypot, lambda *sides: np.sqrt(sum(side * side for side in sides)))
 
 
-def larger(one: Any, two: Any) -> Any:
+def larger(one: float, two: float) -> float:
     """The larger of two numbers, point by point."""
     several = isinstance(one, Points) or isinstance(two, Points)
     return np.maximum(one, two) if several else max(one, two)
 
 
-def smaller(one: Any, two: Any) -> Any:
+def smaller(one: float, two: float) -> float:
     """The smaller of two numbers, point by point."""
     several = isinstance(one, Points) or isinstance(two, Points)
     return np.minimum(one, two) if several else min(one, two)
 
 
-def largest(values: Iterable[Any]) -> Any:
+def largest(values: Iterable[float]) -> float:
     """Largest magnitude, point by point; 0 of none."""
     return reduce(larger, map(abs, values), 0.0)
 
 
-def norm(values: Sequence[Any], order: float) -> Any:
+def norm(values: Sequence[float], order: float) -> float:
     """(sum of the powers of positive numbers)^(1/order), point by point."""
     if any(isinstance(value, Points) for value in values):
-        most = reduce(np.maximum if order > 0 else np.minimum, values)
-        return most * sum((value / most) ** order for value in values) ** (1 / order)
+        most: Any = reduce(larger if order > 0 else smaller, values)
+        found: float = most * sum((value / most) ** order for value in values) ** (1 / order)
+        return found
     return float(np.linalg.norm(values, order))
 
 
-def total(values: FloatArray) -> Any:
+def total(values: FloatArray) -> float:
     """Sum over all places, point by point."""
     if isinstance(values, Points):
-        return values.reshape(len(values), -1).sum(axis=1, keepdims=True)
+        sums: Any = values.reshape(len(values), -1).sum(axis=1, keepdims=True)
+        return sums
     return float(values.sum())
 
 
 def side_by_side(values: Iterable[Any]) -> FloatArray:
     """Numbers as an array, along its last axis; of `Points` the points are the first one."""
     values = list(values)
-    count = next((len(value) for value in values if isinstance(value, Points)), None)
+    count = count_of(values)
     if count is None:
         return np.array(values, dtype=float)
     table = np.empty((count, len(values)))
@@ -157,23 +160,36 @@ class Each(tuple[Any, ...]):
 def joined(values: Sequence[Any]) -> Any:
     """Objects of several points as one object, whose numbers are `Points`.
 
-    Raises `Alone` if they differ in more than numbers. Numbers that do not differ are `Points`,
-    too: what shares a block must not matter.
+    Numbers that do not differ are `Points`, too: what shares a block must not matter. Raises
+    `Apart` if the objects differ in more than numbers.
     """
-    first = values[0]
-    if isinstance(first, float):
+    first, cls = values[0], type(values[0])
+    if cls is float:
         return of_points(values).reshape(-1, 1)
     if isinstance(first, Mapping):
-        if any(value.keys() != first.keys() for value in values):
-            raise Alone
+        _alike([tuple(value) for value in values])
         return {key: joined([value[key] for value in values]) for key in first}
-    if dataclasses.is_dataclass(first) and type(first) in POINTWISE:
-        fields = [it.name for it in dataclasses.fields(first) if it.init]
-        parts = {name: joined([getattr(value, name) for value in values]) for name in fields}
-        return type(first)(**parts)
-    if any(value is not first and value != first for value in values):
-        raise Alone
+    if isinstance(first, tuple):
+        _alike(list(map(len, values)))
+        parts = [joined(column) for column in zip(*values, strict=True)]
+        return cls(parts) if cls is tuple else cls(*parts)
+    if cls in POINTWISE:
+        return cls(
+            **{name: joined([getattr(value, name) for value in values]) for name in _names(cls)}
+        )
+    _alike(values)
     return first
+
+
+def _alike(values: Sequence[Any]) -> None:
+    same = np.array([value is values[0] or value == values[0] for value in values])
+    if not same.all():
+        raise Apart(same)
+
+
+def count_of(numbers: Iterable[Any]) -> int | None:
+    """How many points numbers belong to; None if they are those of one."""
+    return next((len(number) for number in numbers if isinstance(number, Points)), None)
 
 
 def taken(value: Any, rows: Sequence[Any]) -> list[Any]:
@@ -234,7 +250,8 @@ class _Taking:
         mark = id(value), id(self.kept)
         if mark not in self.found:
             self.found[mark] = self._objects(cls, value)
-        return self.found[mark]
+        found: list[Any] | None = self.found[mark]
+        return found
 
     def _made(self, make: Callable[[Any], Any], parts: Iterable[Any]) -> list[Any] | None:
         """Objects made of the parts that belong to each point."""
@@ -252,7 +269,8 @@ class _Taking:
         if not isinstance(self.rows[0], int):
             return [value[row] for row in self.rows]
         if value.shape[1:] == (1,):
-            return np.asarray(value)[self.rows, 0].tolist()
+            numbers: list[Any] = np.asarray(value)[self.rows, 0].tolist()
+            return numbers
         own = list(np.asarray(value)[self.rows])
         if self.kept and self.kept[0].shape == own[0].shape:
             return [values[kept] for values, kept in zip(own, self.kept, strict=True)]
@@ -303,7 +321,6 @@ def _with_fields(cls: Any, fields: Mapping[str, Any]) -> Any:
 
 def point_by_point(function: Callable[..., FloatArray], *args: Any) -> FloatArray:
     """A function of one point, of several for each by itself."""
-    count = next((len(it) for it in args if isinstance(it, Points)), None)
-    if count is None:
-        return function(*args)
-    return of_points([function(*own) for own in taken(args, range(count))])
+    if count := count_of(args):
+        return of_points([function(*own) for own in taken(args, range(count))])
+    return function(*args)

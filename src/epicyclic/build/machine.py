@@ -320,8 +320,7 @@ class Built:
     @property
     def together(self) -> bool:
         """Whether it can be solved for several operating points at once."""
-        several = all(getattr(element, "several", False) for element in self.machine.elements)
-        return self.thermal is None and self.known_fluids is not None and several
+        return self.thermal is None and self.known_fluids is not None
 
     def solve(self) -> Settled:
         """Torques, losses and temperatures that agree."""

@@ -22,7 +22,7 @@ from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
 from epicyclic.gears.mesh import Mesh
 from epicyclic.oil.oil import OilState
-from epicyclic.points import Each, Points, of_points, pointwise
+from epicyclic.points import Each, Points, of_points, pointwise, taken
 
 if TYPE_CHECKING:
     from epicyclic.losses.friction import FrictionModel
@@ -262,15 +262,15 @@ def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
     return LineLoads(loaded.compliance.lines, loaded.line_load, loaded)
 
 
-def _elastic_each(load: MeshLoad, positions: int, segments: int) -> LineLoads:
+def _elastic_each(load: Any, positions: int, segments: int) -> LineLoads:
     """The loads of several points, each by itself."""
-    last = [None] * len(load.force) if load.last is None else load.last
     single = [
-        _elastic(replace(load, force=force, last=own), positions, segments)
-        for force, own in zip(load.force[:, 0].tolist(), last, strict=True)
+        _elastic(replace(load, force=force, last=last), positions, segments)
+        for force, last in taken((load.force, load.last), range(len(load.force)))
     ]
     line_load = of_points([one.line_load for one in single])
-    return LineLoads(single[0].lines, line_load, Each(one.elastic for one in single))
+    elastic: Any = Each(one.elastic for one in single)
+    return LineLoads(single[0].lines, line_load, elastic)
 
 
 LOAD_DISTRIBUTIONS: dict[str, LoadDistribution] = {

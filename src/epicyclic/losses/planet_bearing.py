@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -35,7 +35,7 @@ from epicyclic.losses.ranges import (
 )
 from epicyclic.losses.rolling import FittedRolling, RaceContacts, weight_of_fit
 from epicyclic.oil.oil import OilState
-from epicyclic.points import Points, of_points, point_by_point, pointwise, taken, total
+from epicyclic.points import Points, count_of, of_points, point_by_point, pointwise, taken, total
 from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,
@@ -213,9 +213,9 @@ class BearingLoss:
     rolling: float = 1.0  # Share found as rolling in oil, of which (V1) is the least. [1]
 
 
-def each_roller_loads(find: Callable[..., RollerLoads], *loads: float) -> RollerLoads:
+def each_roller_loads(find: Callable[..., RollerLoads], *loads: Any) -> RollerLoads:
     """`find` of the loads; of several points those of each, put together."""
-    count = next((len(load) for load in loads if isinstance(load, Points)), None)
+    count = count_of(loads)
     if count is None:
         return find(*loads)
     ones = [find(*own) for own in taken(loads, range(count))]

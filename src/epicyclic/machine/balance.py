@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice
+from typing import Any
 
 import numpy as np
 
@@ -26,14 +27,12 @@ def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
     except np.linalg.LinAlgError:
         return None
     found = _times(inverse, right)
-    refined: FloatArray = found + _times(inverse, right - _times(matrix, found))
-    return refined
+    return found + _times(inverse, right - _times(matrix, found))
 
 
-def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+def _times(matrix: Any, vector: FloatArray) -> Any:
     """Product of each matrix with its vector, the last axes."""
-    product: FloatArray = (matrix * vector[..., None, :]).sum(axis=-1)
-    return product
+    return (matrix * vector[..., None, :]).sum(axis=-1)
 
 
 # Speeds of all bodies from the constraints of meshes and clutches.
@@ -268,8 +267,8 @@ class Statics:
         fixed = self._fixed[0]
         matrix = np.empty((*known.shape[:-1], *fixed.shape))
         matrix[...] = fixed
-        for number, column in enumerate(columns):
-            matrix[..., number] = column
+        for number, filled in enumerate(columns):
+            matrix[..., number] = filled
         found, unique = _least(matrix, -known)
         values = apart(found)
         size = largest((*apart(known), *values))
@@ -341,11 +340,12 @@ def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
                 return only, True
     if known.ndim > 1 and len(known) > 1:
         raise Apart(np.arange(len(known)) == 0)
-    shape, matrix, known = known.shape, matrix.reshape(matrix.shape[-2:]), known.ravel()
+    points = known.shape[:-1]
+    matrix, known = matrix.reshape(matrix.shape[-2:]), known.ravel()
     least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR_BALANCE)
     found = np.asarray(least, float)
     found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR_BALANCE)[0]
-    return found.reshape((*shape[:-1], -1)), int(rank) == matrix.shape[1]
+    return found.reshape((*points, -1)), int(rank) == matrix.shape[1]
 
 
 def drives_first(powers: Mapping[str, float], before: Mapping[str, bool]) -> dict[str, bool]:

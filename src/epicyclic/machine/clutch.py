@@ -83,6 +83,7 @@ def film_drag(
 class Clutch:
     """An open clutch or synchronizer between two bodies."""
 
+    several: ClassVar = False
     key: str  # First part of the key of its loss.
     between: tuple[str, str]  # The two bodies, one of which may be `HOUSING`.
     gaps: int

@@ -291,6 +291,10 @@ class Element(Protocol):
     def figure_types(self) -> tuple[tuple[str, type[DataclassInstance]], ...]:
         """Names and types of its figures."""
 
+    @property
+    def several(self) -> bool:
+        """Whether it takes states of several points at once."""
+
     def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
         """What of a state it depends on beside the speeds: loads in one unit, by their names."""
 

@@ -76,7 +76,7 @@ from epicyclic.machine.element import (
 )
 from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.oil.oil import OilState
-from epicyclic.points import Alone, Points, larger, phase, pointwise, total
+from epicyclic.points import Alone, Each, Points, joined, larger, phase, pointwise, taken, total
 from epicyclic.units import (
     CELSIUS,
     DEGREE,
@@ -629,6 +629,8 @@ def solve_bearing(
     if not own.viscous_added:
         watts = larger(0.0, watts - loss.rolling * viscous_loss)
     if own.model == FULL_COMPLEMENT:
+        if isinstance(speed, Points):
+            raise Alone
         volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
         pull = own.roller_density * volume * pin_radius * carrier**2
         rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
@@ -727,8 +729,12 @@ def _by_load(
     alone: bool = False,  # As of `fitted_rolling_loss`.
 ) -> BearingLoss:
     """Loss that grows with the load, after the model of the bearing."""
-    if isinstance(speed, Points) and own.model not in ("mixed-ehl", "palmgren"):
-        raise Alone
+    if isinstance(speed, Points) and isinstance(own.model, FittedRolling):
+        asked = taken((loads, force, speed, oil), range(len(speed)))
+        ones = [_by_load(own, *point, alone=alone) for point in asked]
+        flags = Flags(partial(iter, Each(one.flags for one in ones)))
+        losses, shares = (joined([getattr(it, key) for it in ones]) for key in ("loss", "rolling"))
+        return BearingLoss(losses, flags, shares)
     if isinstance(own.model, FittedRolling):
         beyond = _palmgren(own, loads, force, speed) if own.palmgren_beyond else None
         return fitted_rolling_loss(own.bearing, loads, speed, oil, own.model, beyond, alone=alone)

@@ -62,6 +62,7 @@ class TableLossFigures(PartFigures):
 class TableLoss:
     """Drag between two bodies over their speed difference and the oil temperature."""
 
+    several: ClassVar = False
     key: str  # First part of the key of its loss.
     between: tuple[str, str]  # The two bodies, one of which may be `HOUSING`.
     table: LossTable  # Over speed and temperature.
@@ -217,6 +218,7 @@ class SealFigures(PartFigures):
 class Seal:
     """A radial lip seal between a shaft and the housing, or between two shafts."""
 
+    several: ClassVar = False
     key: str  # First part of the key of its loss.
     between: tuple[str, str]  # The shaft that runs under the lip, and the body that holds the seal.
     diameter: float  # Diameter of the shaft under the lip. [m]
@@ -286,6 +288,7 @@ class ShaftBearingFigures(PartFigures):
 class ShaftBearing:
     """A rolling bearing between a shaft and the housing, or between two shafts."""
 
+    several: ClassVar = False
     key: str  # First part of the keys of its losses; `State.forces` has its load under this key.
     between: tuple[str, str]  # The bodies of its two rings.
     bearing: CatalogueBearing

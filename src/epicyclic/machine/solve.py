@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.errors import ConvergenceError, EpicyclicError
+from epicyclic.losses.ranges import Flags, Sought
 from epicyclic.machine.balance import (
     Balance,
     Directions,
@@ -25,6 +26,7 @@ from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     Element,
     ElementResult,
+    Figures,
     Fluids,
     Loss,
     State,
@@ -34,7 +36,9 @@ from epicyclic.machine.machine import Machine, Operation, forces_of
 from epicyclic.points import (
     Alone,
     Apart,
+    Each,
     Points,
+    count_of,
     isfinite,
     joined,
     larger,
@@ -396,8 +400,6 @@ def solve_machines(
             one = joined([operations[row] for row in rows])
             oils = joined([replace(fluids[row], flags=()) for row in rows])
             solution = solve_machine(machine, one, oils, evaluations=evaluations)
-        except Alone:
-            alone(rows)
         except Apart as parting:
             part(rows, parting.rows, evaluations)
         except EpicyclicError as error:
@@ -405,13 +407,15 @@ def solve_machines(
                 found[rows[0]] = error
             else:
                 part(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
+        except Exception:  # `Alone`, or whatever single points tell of themselves
+            alone(rows)
         else:
             for row, own in zip(rows, taken(solution, range(len(rows))), strict=True):
                 found[row] = replace(own, state=replace(own.state, fluids=fluids[row]))
 
     def part(rows: Sequence[int], side: BoolArray, evaluations: Evaluations) -> None:
         for places in (np.flatnonzero(side), np.flatnonzero(~side)):
-            together([rows[place] for place in places], evaluations.part(places))
+            together([rows[place] for place in places.tolist()], evaluations.part(places))
 
     if operations:
         together(range(len(operations)), Evaluations())
@@ -462,13 +466,60 @@ class Evaluations:
             result = self.before[number][1]
         else:
             self.before = ()
-            result = element.evaluate(state, last)
+            result = _evaluated(element, state, last)
         self.done.append((state, result))
         return result
 
     def part(self, rows: Any) -> Evaluations:
         """Those of some points."""
         return Evaluations(taken(self.done, [rows])[0])
+
+
+@pointwise
+@dataclass(frozen=True, slots=True)
+class _Several(ElementResult):
+    """Answers of an element to the states of several points, each found by itself."""
+
+    ones: Any = ()  # `Each` of them.
+
+
+def _evaluated(element: Element, state: State, last: ElementResult | None) -> ElementResult:
+    """The answer of an element, for several points each by itself if it knows no other way."""
+    count = count_of(state.speeds.values())
+    if count is None or element.several:
+        return element.evaluate(state, last)
+    before = last.ones if isinstance(last, _Several) else last
+    asked = taken((state, before), range(count))
+    ones = Each(element.evaluate(own, one) for own, one in asked)
+    return _Several(
+        losses=joined([one.losses for one in ones]),
+        figures=Figures(
+            {
+                key: partial(_figure, Each(one.figures for one in ones), key)
+                for key in ones[0].figures
+            }
+        ),
+        flags=Flags(partial(iter, Each(one.flags for one in ones))),
+        notes=Sought(partial(iter, Each(one.notes for one in ones))),
+        ones=ones,
+    )
+
+
+def _figure(figures: Any, key: str) -> Any:
+    return figures[key]
+
+
+def _loads(
+    element: Element, state: State, last: ElementResult | None = None
+) -> Mapping[str, float]:
+    """`Element.loads`, for several points as `_evaluated`."""
+    count = count_of(state.speeds.values())
+    if count is None or element.several:
+        return element.loads(state, last)
+    before = last.ones if isinstance(last, _Several) else last
+    asked = taken((state, before), range(count))
+    found: Mapping[str, float] = joined([element.loads(own, one) for own, one in asked])
+    return found
 
 
 def _alike(one: State, two: State) -> bool:
@@ -494,9 +545,9 @@ def _answered(
 ) -> _Known:
     """The answer of an element to a state: the last one, one predicted from it, or a new one."""
     if known is None:
-        loads, result = element.loads(state), evaluations.of(element, state)
+        loads, result = _loads(element, state), evaluations.of(element, state)
         return _Known(Answer(loads, result), result, loads, state.drives)
-    loads = element.loads(state, known.result)
+    loads = _loads(element, state, known.result)
     if known.drives != state.drives:
         result = evaluations.of(element, state, known.result)
         return _Known(Answer(loads, result), result, loads, state.drives)

@@ -89,10 +89,11 @@ def solve_together(cases: Sequence[Case], flow_tables: FlowTables) -> list[Resul
         machine = built[group[0]].machine
         solutions |= zip(group, solve_machines(machine, *zip(*points, strict=True)), strict=True)
     for number, one in built.items():
+        solution = solutions.get(number)
+        if isinstance(solution, Exception):
+            found[number] = solution
+            continue
         try:
-            solution = solutions.get(number)
-            if isinstance(solution, Exception):
-                raise solution
             if solution is None:
                 found[number] = solve(cases[number], flow_tables=flow_tables)
             else:

@@ -311,7 +311,7 @@ _OPERATION = "operation."
 
 
 def _operates(part: Any) -> bool:
-    return part.key.startswith(_OPERATION)
+    return str(part.key).startswith(_OPERATION)
 
 
 def _is_operating(key: str) -> bool:
