@@ -192,9 +192,12 @@ def count_of(numbers: Iterable[Any]) -> int | None:
     return next((len(number) for number in numbers if isinstance(number, Points)), None)
 
 
-def taken(value: Any, rows: Sequence[Any]) -> list[Any]:
-    """What of an object belongs to one point, a number in `rows`, or to some, an array of them."""
-    found = _Taking(rows).of(value)
+def taken(value: Any, rows: Sequence[Any], *, final: bool = False) -> list[Any]:
+    """What of an object belongs to one point, a number in `rows`, or to some, an array of them.
+
+    If it is `final`, without what only a next pass would read.
+    """
+    found = _Taking(rows, final).of(value)
     return [value] * len(rows) if found is None else found
 
 
@@ -213,12 +216,16 @@ class _Later:
     call: Any  # A `partial`.
     rows: Any
 
+    def __call__(self) -> Any:
+        return taken(self.call, [self.rows], final=True)[0]()
+
 
 @dataclasses.dataclass
 class _Taking:
     """What of objects belongs to each of some points; None of one that is the same for all."""
 
     rows: Sequence[Any]
+    final: bool = False
     found: dict[tuple[int, int], Any] = dataclasses.field(default_factory=dict)
     # Which places of the contact that is looked at carry load at each point; empty if all do.
     kept: Sequence[BoolArray] = ()
@@ -241,10 +248,10 @@ class _Taking:
         if cls is MethodType or cls is MethodWrapperType:
             owners = self.of(value.__self__)
             return None if owners is None else [getattr(it, value.__name__) for it in owners]
-        single = isinstance(self.rows[0], int)
-        if cls in (partial, _Later) and not single:
+        if cls in (partial, _Later) and not self.final:
             call, rows = (value, None) if cls is partial else (value.call, value.rows)
-            return [_Later(call, row if rows is None else rows[row]) for row in self.rows]
+            own = self.rows if rows is None else [rows[row] for row in self.rows]
+            return [_Later(call, row if np.ndim(row) else int(row)) for row in own]
         if cls not in (partial, _Later) and cls not in POINTWISE:
             return None
         mark = id(value), id(self.kept)
@@ -278,7 +285,7 @@ class _Taking:
 
     def _objects(self, cls: Any, value: Any) -> list[Any] | None:
         if cls is _Later:
-            return _Taking(value.rows[self.rows].tolist()).of(value.call)
+            return _Taking(value.rows[self.rows].tolist(), final=True).of(value.call)
         before = self.kept
         for it in (value, *(value.args if cls is partial else ())):
             if isinstance(loaded := getattr(it, "loaded", None), Points):
@@ -297,7 +304,7 @@ class _Taking:
         else:
             names = _names(cls)
             left: Mapping[str, Any] = {}
-            if isinstance(self.rows[0], int) and hasattr(value, "of_last_pass"):
+            if self.final and hasattr(value, "of_last_pass"):
                 left = value.of_last_pass()
             found = self._made(
                 lambda row: cls(**dict(zip(names, row, strict=True))),

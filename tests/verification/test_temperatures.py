@@ -126,7 +126,7 @@ def test_the_faster_the_air_the_cooler_the_housing():
     speeds = ("0 m/s", "0.001 m/s", "0.3 m/s", "1 m/s", "10 m/s")
     found = [ep.solve(case.updated({"thermal.housing.air_speed": it})).heat for it in speeds]
     walls = [heat.temperatures["housing"] for heat in found]
-    assert walls == sorted(walls, reverse=True)
+    assert all(slow >= fast - 1e-9 for slow, fast in itertools.pairwise(walls))
     assert walls[1] == pytest.approx(walls[0], abs=1e-6)
     assert walls[-1] < walls[0] - 1
 

@@ -248,7 +248,10 @@ def load_shape(
 
 def _in_proportion(name: str, load: MeshLoad, positions: int, segments: int) -> LineLoads:
     lines, shape = load_shape(load.mesh, name, positions, segments)
-    return LineLoads(lines, load.force * shape)
+    force: Any = load.force
+    if isinstance(force, Points):
+        force = force[..., None, None]
+    return LineLoads(lines, force * shape)
 
 
 def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:

@@ -22,7 +22,6 @@ from epicyclic.losses.drag import (
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.oil.oil import OilState
-from epicyclic.points import pointwise
 from epicyclic.units import NUMBER
 from epicyclic.units import RPM as SPEED
 
@@ -127,7 +126,6 @@ AXIAL_RATIO = Range(
 )
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class BearingLoad:
     """Load on a bearing."""

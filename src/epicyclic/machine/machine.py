@@ -13,7 +13,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.machine.element import Element
-from epicyclic.points import count_of, joined, pointwise, taken
+from epicyclic.points import pointwise
 from epicyclic.units import NEWTON, torque_text
 
 # Statics of a shaft: forces of its gear meshes, and what its bearings answer.
@@ -252,7 +252,7 @@ class ShaftLayout:
 
 
 def forces_of(
-    layouts: Sequence[ShaftLayout],
+    layouts: Iterable[ShaftLayout],
     torques: Mapping[str, float],  # That each mesh takes up at its first gear. [N m]
 ) -> dict[str, BearingLoad]:
     """Forces on the bearings of all shafts, by the keys of their elements.
@@ -260,11 +260,6 @@ def forces_of(
     Raises `ConvergenceError` if the bearings of a shaft cannot take the forces of its gears.
     """
     forces: dict[str, BearingLoad] = {}
-    count = count_of(torques.values())
-    if count is not None and layouts:
-        own = taken(torques, range(count))
-        found: dict[str, BearingLoad] = joined([forces_of(layouts, one) for one in own])
-        return found
     for layout in layouts:
         loads = [seat.load(torques[seat.mesh]) for seat in layout.seats]
         try:

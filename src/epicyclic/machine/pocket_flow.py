@@ -219,6 +219,8 @@ def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigur
     """From the stored table; None if there is none, or it does not hold the flow."""
     if settings.file is None:
         return None
+    if isinstance(request[1], Points):
+        raise Alone
     return stored_table(settings.file, request[0]).figures(*request[1:])
 
 

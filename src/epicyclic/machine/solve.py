@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.errors import ConvergenceError, EpicyclicError
-from epicyclic.losses.ranges import Flags, Sought
 from epicyclic.machine.balance import (
     Balance,
     Directions,
@@ -26,7 +25,6 @@ from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     Element,
     ElementResult,
-    Figures,
     Fluids,
     Loss,
     State,
@@ -36,9 +34,7 @@ from epicyclic.machine.machine import Machine, Operation, forces_of
 from epicyclic.points import (
     Alone,
     Apart,
-    Each,
     Points,
-    count_of,
     isfinite,
     joined,
     larger,
@@ -187,6 +183,7 @@ MOST_TORQUE = 1e15
 """Torque at a mesh, far above what a case can state, from which losses and torques only drive each
 other up. [N m]"""
 MOST_BRANCHES = 8  # Directions of the rolling powers that are tried with the losses of elements.
+FEWEST = 8  # Points from which on they are solved together: fewer take longer than one by one.
 MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 
@@ -388,29 +385,28 @@ def solve_machines(
     """`solve_machine` for several operating points, or what it raises for each of them."""
     found: dict[int, Solution | Exception] = {}
 
-    def alone(rows: Sequence[int]) -> None:
-        for row in rows:
+    def alone(rows: Sequence[int], evaluations: Sequence[Evaluations]) -> None:
+        for row, own in zip(rows, evaluations, strict=True):
             try:
-                found[row] = solve_machine(machine, operations[row], fluids[row])
+                found[row] = solve_machine(machine, operations[row], fluids[row], evaluations=own)
             except Exception as error:
                 found[row] = error
 
     def together(rows: Sequence[int], evaluations: Evaluations) -> None:
+        if len(rows) < FEWEST or not all(element.several for element in machine.elements):
+            return alone(rows, evaluations.single(len(rows)))
         try:
             one = joined([operations[row] for row in rows])
             oils = joined([replace(fluids[row], flags=()) for row in rows])
             solution = solve_machine(machine, one, oils, evaluations=evaluations)
         except Apart as parting:
             part(rows, parting.rows, evaluations)
-        except EpicyclicError as error:
-            if len(rows) == 1:
-                found[rows[0]] = error
-            else:
-                part(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
+        except EpicyclicError:
+            part(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
         except Exception:  # `Alone`, or whatever single points tell of themselves
-            alone(rows)
+            alone(rows, [Evaluations() for _ in rows])
         else:
-            for row, own in zip(rows, taken(solution, range(len(rows))), strict=True):
+            for row, own in zip(rows, taken(solution, range(len(rows)), final=True), strict=True):
                 found[row] = replace(own, state=replace(own.state, fluids=fluids[row]))
 
     def part(rows: Sequence[int], side: BoolArray, evaluations: Evaluations) -> None:
@@ -466,7 +462,7 @@ class Evaluations:
             result = self.before[number][1]
         else:
             self.before = ()
-            result = _evaluated(element, state, last)
+            result = element.evaluate(state, last)
         self.done.append((state, result))
         return result
 
@@ -474,52 +470,9 @@ class Evaluations:
         """Those of some points."""
         return Evaluations(taken(self.done, [rows])[0])
 
-
-@pointwise
-@dataclass(frozen=True, slots=True)
-class _Several(ElementResult):
-    """Answers of an element to the states of several points, each found by itself."""
-
-    ones: Any = ()  # `Each` of them.
-
-
-def _evaluated(element: Element, state: State, last: ElementResult | None) -> ElementResult:
-    """The answer of an element, for several points each by itself if it knows no other way."""
-    count = count_of(state.speeds.values())
-    if count is None or element.several:
-        return element.evaluate(state, last)
-    before = last.ones if isinstance(last, _Several) else last
-    asked = taken((state, before), range(count))
-    ones = Each(element.evaluate(own, one) for own, one in asked)
-    return _Several(
-        losses=joined([one.losses for one in ones]),
-        figures=Figures(
-            {
-                key: partial(_figure, Each(one.figures for one in ones), key)
-                for key in ones[0].figures
-            }
-        ),
-        flags=Flags(partial(iter, Each(one.flags for one in ones))),
-        notes=Sought(partial(iter, Each(one.notes for one in ones))),
-        ones=ones,
-    )
-
-
-def _figure(figures: Any, key: str) -> Any:
-    return figures[key]
-
-
-def _loads(
-    element: Element, state: State, last: ElementResult | None = None
-) -> Mapping[str, float]:
-    """`Element.loads`, for several points as `_evaluated`."""
-    count = count_of(state.speeds.values())
-    if count is None or element.several:
-        return element.loads(state, last)
-    before = last.ones if isinstance(last, _Several) else last
-    asked = taken((state, before), range(count))
-    found: Mapping[str, float] = joined([element.loads(own, one) for own, one in asked])
-    return found
+    def single(self, count: int) -> list[Evaluations]:
+        """Those that are known of each of all points."""
+        return [Evaluations(before) for before in taken(self.before, range(count))]
 
 
 def _alike(one: State, two: State) -> bool:
@@ -545,9 +498,9 @@ def _answered(
 ) -> _Known:
     """The answer of an element to a state: the last one, one predicted from it, or a new one."""
     if known is None:
-        loads, result = _loads(element, state), evaluations.of(element, state)
+        loads, result = element.loads(state), evaluations.of(element, state)
         return _Known(Answer(loads, result), result, loads, state.drives)
-    loads = _loads(element, state, known.result)
+    loads = element.loads(state, known.result)
     if known.drives != state.drives:
         result = evaluations.of(element, state, known.result)
         return _Known(Answer(loads, result), result, loads, state.drives)

@@ -26,14 +26,7 @@ from epicyclic.study.maps.tables import Lookup, check_map, map_case, map_inputs
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
-from epicyclic.study.sweeps.run import (
-    TOGETHER,
-    PointList,
-    SweepPlan,
-    by_keys,
-    make_plan,
-    to_dataset,
-)
+from epicyclic.study.sweeps.run import PointList, SweepPlan, by_keys, make_plan, to_dataset
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
 from epicyclic.units import NEWTON_METRE, RPM, WATT, format_number, unit_text
 
@@ -336,9 +329,8 @@ class MapPlan(SweepPlan):
 
     @property
     def batch(self) -> int:
-        """Points next to each other that differ in torque only, or several such rows."""
-        row = len(self.axes[-1].values)
-        return row * max(1, TOGETHER // row) if self.together else row
+        """Points next to each other that differ in torque only."""
+        return len(self.axes[-1].values)
 
 
 def loss_map(

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
@@ -146,6 +147,7 @@ _OPERATING_TABLES = (
 
 
 TOGETHER = 64  # Points solved together, at most: their arrays still fit near the processor.
+FEWEST_BLOCKS = 4  # That a study is cut into, so that several processes can share it.
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,14 +185,19 @@ class CasePlan(Plan):
         return False
 
     @property
-    def batch(self) -> int:
-        """See `Plan`."""
-        return TOGETHER if self.together else super(CasePlan, self).batch
+    def block(self) -> int:
+        """See `Plan`: large enough for `solve_together`, if there are enough points."""
+        return max(1, min(TOGETHER, self.size // FEWEST_BLOCKS)) if self.together else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
         """Rows of points; those that share all but their operation are solved together."""
         if not self.together:
             return Plan.solve_all(self, indices)
+        place = {index: at for at, index in enumerate(self.order())}
+        blocks = groupby(indices, lambda index: place[index] // self.block)
+        return [row for _, block in blocks for row in self._solve_block(list(block))]
+
+    def _solve_block(self, indices: Sequence[int]) -> list[Row]:
         cases: dict[int, Case] = {}
 
         def failing(index: int) -> Row:

@@ -304,6 +304,14 @@ class Plan(ABC):
         return 16
 
     @property
+    def block(self) -> int:
+        """Number of points, cut by their place in the order, that are always solved together.
+
+        So no row depends on shards, workers or interruptions.
+        """
+        return 1
+
+    @property
     def source(self) -> str:
         """The file whose folder holds the files that a case names; empty if there is none."""
         return ""
@@ -409,7 +417,12 @@ class Runner:
             kept = journal.read()
             yield [(index, kept[index]) for index in left if index in kept]
             journal.begin(heading(plan, self.shard, self.output))
-            left = [index for index in left if index not in kept]
+            left = [
+                index
+                for block in _blocks(plan, left)
+                if not kept.keys() >= {*block}
+                for index in block
+            ]
         if not left:
             return
         plan = plan.prepared(left, self.jobs)
@@ -436,7 +449,9 @@ def share_of(plan: Plan, shard: tuple[int, int] | None) -> list[int]:
     if shard is None:
         return order
     number, count = shard
-    return order[len(order) * (number - 1) // count : len(order) * number // count]
+    blocks = -(-len(order) // plan.block)
+    start, end = (blocks * part // count * plan.block for part in (number - 1, number))
+    return order[start:end]
 
 
 def parse_shard(text: str | None) -> tuple[int, int] | None:
@@ -470,19 +485,19 @@ def _run_here(
     plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None
 ) -> Iterator[Batch]:
     """Finished points, in any order: here as long as that pays, then in worker processes."""
-    start, done = time.perf_counter(), 0
-    while done < len(indices):
-        if done == 1:  # the first point also pays for compilation
-            start = time.perf_counter()
+    start, done, first = time.perf_counter(), 0, 0
+    blocks = _blocks(plan, indices)
+    while blocks:
+        if done and not first:  # the first block also pays for compilation
+            start, first = time.perf_counter(), done
         workers_pay = jobs is None and _workers_pay(
-            done - 1, time.perf_counter() - start, len(indices) - done
+            done - first, time.perf_counter() - start, len(indices) - done
         )
         if workers_pay or jobs not in (None, 1):
             yield from _run_in_workers(plan, indices[done:], jobs or -1, journal)
             return
-        batch = indices[done : done + (plan.batch if done else 1)]
-        yield _solve_batch(plan, batch, journal)
-        done += len(batch)
+        yield _solve_batch(plan, blocks[0], journal)
+        done += len(blocks.pop(0))
 
 
 def _workers_pay(done: int, seconds: float, left: int) -> bool:
@@ -545,6 +560,15 @@ def _belong_to(parent: int) -> None:
 def _batches(plan: Plan, indices: list[int], workers: int) -> list[list[int]]:
     """`indices` cut at multiples of one size in the order of all points, whatever is done."""
     size = min(plan.batch, max(1, len(indices) // (BATCHES_PER_WORKER * workers)))
+    return _cut(plan, indices, max(1, size // plan.block) * plan.block)
+
+
+def _blocks(plan: Plan, indices: list[int]) -> list[list[int]]:
+    """`indices` in the blocks of a plan."""
+    return _cut(plan, indices, plan.block)
+
+
+def _cut(plan: Plan, indices: list[int], size: int) -> list[list[int]]:
     place = {index: i for i, index in enumerate(plan.order())}
     return [list(batch) for _, batch in groupby(indices, lambda index: place[index] // size)]
 

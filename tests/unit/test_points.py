@@ -1,0 +1,192 @@
+"""Several operating points solved at once: as each of them alone, whatever shares their block."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import epicyclic as ep
+from epicyclic.errors import ConvergenceError
+from epicyclic.machine import gear_set, solve
+from epicyclic.points import (
+    Apart,
+    Each,
+    Points,
+    apart,
+    joined,
+    larger,
+    largest,
+    log,
+    norm,
+    of_points,
+    point_by_point,
+    pointwise,
+    side_by_side,
+    smaller,
+    taken,
+    total,
+)
+from epicyclic.study.solve import solve_together
+from epicyclic.study.sweeps.run import make_plan
+from epicyclic.study.sweeps.runner import Runner
+
+TORQUES = (-310.0, -75.0, 0.0, 6.5, 48.0, 130.0, 270.0, 410.0, 555.0, 690.0, 820.0, 930.0)
+
+
+def _column(*values: float) -> Points:
+    return of_points(values).reshape(-1, 1)
+
+
+def _cases(name: str, **changes: str) -> list[ep.PlanetaryCase]:
+    case = ep.load_case(name).updated(changes)
+    return [
+        case.updated(
+            {
+                "operation.torque": f"{torque} N*m",
+                "operation.speed": f"{700 + 230 * number} rpm",
+                "operation.oil_inlet_temperature": f"{38 + 4.5 * number} degC",
+            }
+        )
+        for number, torque in enumerate((*TORQUES, *TORQUES[4:]))
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("talbot-2012", {}),
+        ("talbot-2012", {"models.load_distribution": "uniform"}),
+        ("talbot-2012", {"models.bearing": "palmgren"}),
+        ("talbot-2012", {"models.drag": "diab-ville-velex"}),
+        ("talbot-2012", {"load_sharing.method": "mesh-load-factor"}),
+        ("talbot-2012-pair", {}),
+    ],
+)
+def test_points_together_are_as_each_alone(
+    name: str, changes: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cases = _cases(name, **changes)
+    alone = [ep.solve(case) for case in cases]
+    asked = []
+    evaluate = gear_set.GearSet.evaluate
+
+    def counted(self: gear_set.GearSet, state: solve.State, *last: object) -> object:
+        asked.append(any(isinstance(speed, Points) for speed in state.speeds.values()))
+        return evaluate(self, state, *last)
+
+    monkeypatch.setattr(gear_set.GearSet, "evaluate", counted)
+    together = solve_together(cases, {})
+    assert any(asked), "no block was solved at once"
+    assert len(asked) < 2 * len(cases)
+    for one, other in zip(alone, together, strict=True):
+        assert not isinstance(other, Exception)
+        assert other.values() == pytest.approx(one.values(), rel=1e-12, abs=1e-15, nan_ok=True)
+        assert other.warnings == one.warnings
+        assert other.to_dict().keys() == one.to_dict().keys()
+
+
+def test_a_point_does_not_depend_on_shards_or_interruptions(tmp_path: Path) -> None:
+    torques = [f"{torque} N*m" for torque in np.linspace(-90, 960, 12)]
+    speeds = [f"{speed} rpm" for speed in (800, 1900, 2600, 3700)]
+    case = ep.load_case("talbot-2012")
+    plan = make_plan(case, {"operation.speed": speeds, "operation.torque": torques})
+    assert plan.block == 12
+    whole = Runner(jobs=1).run(plan)
+    journal = tmp_path / "half.partial"
+    first = Runner(jobs=1, journal=journal, shard=(1, 2)).run(plan)
+    lines = journal.read_bytes().splitlines(keepends=True)
+    journal.write_bytes(b"".join(lines[:-5]))  # ended within a block
+    again = Runner(jobs=1, journal=journal).run(plan)
+    shards = [Runner(jobs=1, shard=(number, 3)).run(plan) for number in (1, 2, 3)]
+    assert sum(status == "converged" for status in first.status) == 24
+    for name in whole.names:
+        expected = whole.numbers(name)
+        found = np.array([shard.numbers(name) for shard in shards])
+        assert np.array_equal(again.numbers(name), expected, equal_nan=True), name
+        one = np.where(
+            np.isnan(found[0]), np.where(np.isnan(found[1]), found[2], found[1]), found[0]
+        )
+        assert np.array_equal(one, expected, equal_nan=True), name
+
+
+def test_a_point_without_solution_leaves_the_others_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    cases = _cases("talbot-2012")[4:]
+    right = [ep.solve(case).total for case in cases]
+    evaluate = gear_set.GearSet.evaluate
+    wrong = cases[3].operation.oil_inlet_temperature
+
+    def failing(self: gear_set.GearSet, state: solve.State, *last: object) -> object:
+        if np.any(np.isclose(np.asarray(state.fluids.oil.temperature, dtype=float), wrong)):
+            raise ConvergenceError("not found")
+        return evaluate(self, state, *last)
+
+    monkeypatch.setattr(gear_set.GearSet, "evaluate", failing)
+    found = solve_together(cases, {})
+    assert isinstance(found[3], ConvergenceError)
+    others = [one.total for one in found if not isinstance(one, Exception)]
+    assert others == pytest.approx(right[:3] + right[4:], rel=1e-12)
+
+
+def test_a_decision_is_one_for_all_or_parts_them() -> None:
+    assert _column(1.0, 2.0) > 0
+    assert not _column(1.0, 2.0) > 3
+    with pytest.raises(Apart) as parting:
+        bool(_column(1.0, -2.0, 3.0) > 0)
+    assert parting.value.rows.tolist() == [True, False, True]
+    with pytest.raises(ValueError, match="several places"):
+        bool(of_points([[1.0, 2.0], [3.0, 4.0]]) > 0)
+
+
+def test_functions_of_numbers_go_point_by_point() -> None:
+    column = _column(0.3, 4.0)
+    assert log(2.5) == math.log(2.5)
+    assert log(column)[:, 0] == pytest.approx([math.log(0.3), math.log(4.0)])
+    assert larger(column, 1.0)[:, 0].tolist() == [1.0, 4.0]
+    assert smaller(1.0, column)[:, 0].tolist() == [0.3, 1.0]
+    assert largest([column, -2.0])[:, 0].tolist() == [2.0, 4.0]
+    assert largest([]) == 0.0
+    for order in (8, -8):
+        ones = [norm([own, 1.5], order) for own in (0.3, 4.0)]
+        assert norm([column, 1.5], order)[:, 0] == pytest.approx(ones)
+    assert total(of_points([[1.0, 2.0], [3.0, 5.0]]))[:, 0].tolist() == [3.0, 8.0]
+    assert total(np.array([1.0, 2.5])) == 3.5
+    doubled = point_by_point(lambda number, places: number * places, column, np.array([1.0, 2.0]))
+    assert doubled.tolist() == [[0.3, 0.6], [4.0, 8.0]]
+
+
+def test_numbers_lie_side_by_side_and_come_apart() -> None:
+    column = _column(0.3, 4.0)
+    table = side_by_side([1.5, column])
+    assert table.tolist() == [[1.5, 0.3], [1.5, 4.0]]
+    assert [one[:, 0].tolist() for one in apart(table)] == [[1.5, 1.5], [0.3, 4.0]]
+    assert apart(side_by_side([1.5, 2.0])) == [1.5, 2.0]
+
+
+@pointwise
+@dataclasses.dataclass(frozen=True)
+class _Thing:
+    name: str
+    number: float
+    numbers: dict[str, float]
+
+
+def test_objects_are_joined_and_taken_apart() -> None:
+    things = [_Thing("it", float(n), {"a": n + 0.5, "b": 7.0}) for n in range(3)]
+    one = joined(things)
+    assert one.number[:, 0].tolist() == [0.0, 1.0, 2.0]
+    assert one.numbers["b"][:, 0].tolist() == [7.0, 7.0, 7.0]  # whatever else shares the block
+    assert taken(one, range(3)) == things
+    (some,) = taken(one, [np.array([0, 2])])
+    assert taken(some, range(2)) == [things[0], things[2]]
+    call = partial(lambda thing, each: (thing, each), one, Each("xyz"))
+    (later,) = taken(call, [np.array([2, 1])])
+    calls = taken(later, range(2), final=True)
+    assert [made() for made in calls] == [(things[2], "z"), (things[1], "y")]
+    with pytest.raises(Apart) as parting:
+        joined([things[0], dataclasses.replace(things[1], name="other"), things[2]])
+    assert parting.value.rows.tolist() == [True, False, True]
