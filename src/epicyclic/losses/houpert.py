@@ -17,7 +17,7 @@ import numpy as np
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.kernels.line_contact import inlet_film_factor, power
-from epicyclic.losses.mixed_lubrication import RUN_IN, mixed_friction
+from epicyclic.losses.mixed_lubrication import mixed_friction
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
     AXIAL_RATIO,
@@ -28,7 +28,7 @@ from epicyclic.losses.shaft_bearing import (
     load_flags,
 )
 from epicyclic.losses.skf_2018 import SkfModel
-from epicyclic.losses.zhou_hoeprich import POSITIONS, STEEL, film_parts, roller_loads
+from epicyclic.losses.zhou_hoeprich import AS_MADE, POSITIONS, STEEL, film_parts, roller_loads
 from epicyclic.oil.oil import OilState
 from epicyclic.units import NUMBER
 
@@ -36,8 +36,8 @@ HOUPERT_SOURCE = "N. Biboulet and L. Houpert, Proc. IMechE J 224 (2010) 777"
 CONFORMITIES = (0.52, 0.53)
 """Radii of the grooves of inner and outer ring over D_w, ISO 281, second hand. [1]"""
 THRUST_CONFORMITIES = (0.54, 0.54)  # The same of the washers of thrust ball bearings. [1]
-BALL_ROUGHNESS = 0.067e-6
-"""Rms of race (0.06 um) and ball (0.03 um) of a bearing 51205, Balan et al. (2015). [m]"""
+BALL_ROUGHNESS = (0.06e-6, 0.03e-6)
+"""Rms of race and ball of a bearing 51205, Balan et al. (2015). [m]"""
 THRUST_SHARES = (0.37, 0.85)
 """D_w over D - d of thrust ball bearings, share of the pitch circle that balls fill: with ISO 76
 C0 of 33 bearings 511 to 513 of a catalogue (ISB, thrust ball bearings, p. 211) within 18 %. [1]"""
@@ -149,7 +149,7 @@ def ball_moments(
     speed: float,  # Speed of one ring against the other. [rad/s]
     oil: OilState,  # In the bearing.
 ) -> BallMoments:
-    """Friction moments of a ball bearing. Theory (J38) to (J42)."""
+    """Friction moments of a ball bearing. Theory (J38), (J40), (J41), (J42)."""
     omega, D_w = abs(speed), model.ball_diameter
     if not omega or not (load.radial or load.axial):
         return BallMoments(0.0, 0.0, 0.0)
@@ -189,10 +189,10 @@ def ball_moments(
         radius=STEEL * b / (4 * line),
         rolling_speed=np.full_like(Q, u),
         sliding_speed=slip,
-        flanks=Flanks(STEEL, BALL_ROUGHNESS, 0.0),
+        flanks=Flanks(STEEL, *BALL_ROUGHNESS),
         oil=oil,
     )
-    mu = mixed_friction(contact, RUN_IN, film=film, roughness=BALL_ROUGHNESS)
+    mu = mixed_friction(contact, AS_MADE, film=film)
     of_all = model.balls / POSITIONS / omega
     return BallMoments(
         float(rolling.sum()) * of_all, float((mu * Q * slip).sum()) * of_all, float(2 * U.max())

@@ -99,7 +99,7 @@ _MEANS = "mean coefficients of a bearing type, whose scatter was not found in pr
 SHAFT_BEARING_RELIABILITY = {
     "houpert": "mean error against regressions of a four-point bearing 17 %, of a thrust one 24 %",
     "zhou-hoeprich": "mean error against three sets of measured tapered bearings 10, 14 and 9 %, "
-    "against two of a cylindrical one 8 and 3 %, of a thrust one 30 and 35 %",
+    "against two of a cylindrical one 8 and 3 %, of a thrust one 10 and 7 %",
     "skf-2018": "formulas of a catalogue that states no error",
     "palmgren": _MEANS,
     "harris": _MEANS,

@@ -28,7 +28,7 @@ from epicyclic.losses.drag import (
     VISCOUS_SOURCE,
     bearing_viscous_loss,
 )
-from epicyclic.losses.mixed_lubrication import RUN_IN, mixed_friction
+from epicyclic.losses.mixed_lubrication import Surfaces, mixed_friction
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
     AXIAL_RATIO,
@@ -63,8 +63,10 @@ ROLLER_SHARES: Mapping[BearingType, tuple[float, float, float]] = {
 """Roller diameter over D - d, share of the pitch circle that rollers fill, roller length over B, of
 thrust bearings over D - d. Estimates, those of bearings by designation; those of thrust bearings
 have with ISO 76 the static rating of an 81107. [1]"""
-THRUST_ROUGHNESS = 0.18e-6
-"""Rms of race (0.15 um) and roller (0.1 um) as of planets by designation; estimate. [m]"""
+THRUST_ROUGHNESS = (0.15e-6, 0.1e-6)
+"""Rms of race and roller, estimates, those of planets by designation. [m]"""
+AS_MADE = Surfaces(running_in=1.0)
+"""Bearings are so fine that they hardly run in."""
 POSITIONS = 72
 """Azimuths at which rolling is summed: few rollers lose more or less by where they stand."""
 
@@ -347,8 +349,8 @@ def thrust_sliding(
         radius=np.array([model.roller_diameter / 2]),
         rolling_speed=np.array([abs(speed) * bearing.pitch_diameter / 4]),
         sliding_speed=np.array([abs(speed) * model.roller_length / 8]),
-        flanks=Flanks(STEEL, THRUST_ROUGHNESS, 0.0),
+        flanks=Flanks(STEEL, *THRUST_ROUGHNESS),
         oil=oil,
     )
-    mu = float(mixed_friction(contact, RUN_IN, roughness=THRUST_ROUGHNESS)[0])
+    mu = float(mixed_friction(contact, AS_MADE)[0])
     return mu * axial * model.roller_length / 4
