@@ -43,7 +43,7 @@ THRUST_SHARES = (0.37, 0.85)
 C0 of 33 bearings 511 to 513 of a catalogue (ISB, thrust ball bearings, p. 211) within 18 %. [1]"""
 TRANSITION = 6.6  # Of M between rigid and elastic contacts, Biboulet and Houpert, Eq. 32. [1]
 CURVATURE = 0.0806
-"""Mean slip over that at the end of the ellipse, twice: by quadrature of the pressure. [1]"""
+"""Half the mean of |y^2 - c| over the ellipse by pressure, c with no force in all; derived. [1]"""
 _SPEED_NUMBER = Range(
     "speed_number", "dimensionless speed in the contacts of balls", None, 1.6e-10, NUMBER,
     f"solutions of {HOUPERT_SOURCE}",
