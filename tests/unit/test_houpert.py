@@ -129,6 +129,11 @@ def test_auto_takes_balls_unless_f0_or_f1_is_stated():
     assert built(**ball).model.balls == 18
     stated = built(**ball, rollers=20, roller_diameter="6.35 mm").model
     assert (stated.balls, stated.ball_diameter) == (20, pytest.approx(6.35e-3))
+    angular = {"designation": "7208B", "radial_force": "1 kN", "roller_diameter": "11 mm"}
+    assert built(**angular, rollers=14).model.balls == 14
+    for own, key in ((angular, "roller_length"), (ball, "rib_height")):
+        table = ShaftBearingTable.model_validate({"shaft": "shaft", **own, key: "5 mm"})
+        assert [problem.key for problem in table.problems()] == [key]
     for key in ("viscous_factor", "palmgren_coefficient"):
         assert isinstance(built(**ball, **{key: 0.001}).model, PalmgrenModel)
     chosen = built(**ball, viscous_factor=1.0, model="houpert").model
