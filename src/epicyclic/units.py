@@ -374,7 +374,7 @@ class Quantity:
 
     def _converted(self, number: float, unit: str) -> float:
         try:
-            return _convert(number + 0.0, unit, self.si)  # one zero, whatever was read before
+            return _convert(number, unit, self.si) + 0.0  # one zero, whatever was read before
         except _UnitError as error:
             remedy = error.remedy or self._remedy_of_unit(number, unit)
             raise self._error(str(error), remedy) from None
