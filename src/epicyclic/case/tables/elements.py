@@ -63,18 +63,10 @@ class PlanetBearing(Table):
     """The roller bearing between planet and pin."""
 
     STAND_INS: ClassVar[dict[str, object]] = {
-        "rows": 1,
-        "roller_length": "1 mm",
-        "roller_roughness": "1 um",
-        "race_roughness": "1 um",
-        "viscous_factor": None,
-        "cage": None,
-        "palmgren_coefficient": None,
-        "crown_drop": None,
-        "crown_length_fraction": None,
-        "row_gap": None,
-        "material": None,
-    }
+        "rows": 1, "roller_length": "1 mm", "roller_roughness": "1 um", "race_roughness": "1 um",
+        "viscous_factor": None, "cage": None, "palmgren_coefficient": None, "crown_drop": None,
+        "crown_length_fraction": None, "row_gap": None, "material": None,
+    }  # fmt: skip
 
     designation: PlanetDesignation | None = option(
         "NU 2210, SL18 5010, 22220, NKI 40/30, K 40x48x20: the rollers that fit into the sizes of "
