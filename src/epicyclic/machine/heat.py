@@ -34,7 +34,7 @@ from epicyclic.machine.heat_paths import (
 from epicyclic.machine.machine import Machine, Operation
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, next_solution, solve_machine, start_of
-from epicyclic.units import CELSIUS
+from epicyclic.units import CELSIUS, known_text
 
 AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
@@ -169,7 +169,7 @@ def _by_secants(
 
 
 def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
-    """What to say of temperatures beyond all bounds, or that do not settle."""
+    """What to say of temperatures beyond all bounds, or that do not settle within them."""
     for _, answer in found:  # the first to leave the bounds tells on which side they are left
         coldest, hottest = (end(answer.temperatures.values()) for end in (min, max))
         if coldest < COLDEST:
@@ -182,11 +182,18 @@ def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
             )
         if hottest > HOTTEST:
             break
-    temperatures = found[-1][1].temperatures
+    before, temperatures = (answer.temperatures for _, answer in found[-2:])
     node = max(temperatures, key=temperatures.__getitem__)
     reached = f"{node.replace('_', ' ')} {CELSIUS.text(temperatures[node], 4)}"
     if OIL in temperatures and node != OIL:
         reached += f", oil {CELSIUS.text(temperatures[OIL], 4)}"
+    if hottest <= HOTTEST:
+        change = max(abs(value - before[node]) for node, value in temperatures.items())
+        return ConvergenceError(
+            f"temperatures and losses do not settle: after {len(found)} passes they still change "
+            f"by {change:.2g} K, near {reached}, because a loss jumps or scatters there. Change "
+            'the operating point a little, or set models.temperatures = "inlet".'
+        )
     return ConvergenceError(
         f"thermal runaway: the heat balance closes only above {CELSIUS.text(HOTTEST, 4)}, the "
         f"highest temperature at which losses are computed. After {len(found)} passes the "
@@ -536,6 +543,13 @@ class NetworkModel:
         self._check_names(network)
         left = network.cut_off()
         if any(node == OIL or heat.get(node) for node in left):
+            lost, power = sum(heat.values()) + own.cooler_power, own.cooler_power
+            if own.outlet is not None and 0 < power >= lost:
+                allowed = (
+                    f"leaves no heat to the oil that flows out: the losses are {known_text(lost)}."
+                )
+                remedy = "Give less, or thermal.oil_flow instead of thermal.oil_outlet_temperature."
+                raise one_problem("thermal.cooler_power", known_text(power), allowed, remedy)
             allowed = f"the heat of {', '.join(left)} has no path out of the gearbox."
             raise one_problem("thermal", "", allowed, _OUTLET_REMEDY)
         # parts at rest, which nothing heats or cools, are as warm as the oil

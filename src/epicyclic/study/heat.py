@@ -47,7 +47,7 @@ def heat_balance(case: CaseSource) -> HeatBalance:
     InputError
         If the case has no oil, or the heat has no path out.
     ConvergenceError
-        In case of thermal runaway: losses and heat flows do not balance.
+        If losses and heat flows do not balance: thermal runaway, or losses that jump.
 
     Examples
     --------
