@@ -168,6 +168,11 @@ def torque_text(torque: float, digits: int = 6) -> str:
     return f"{format_number(torque / size, digits)} {unit}"
 
 
+def celsius_text(temperature: float, digits: int = 6) -> str:
+    """A `temperature` as a sentence has it; a case file has degC. [K]"""
+    return unit_text(CELSIUS.text(temperature, digits))
+
+
 def describe_range(
     noun: str, low: float | None, high: float | None, unit: str = "", *, open_low: bool = False
 ) -> str:

@@ -81,7 +81,7 @@ TALBOT_FLUID = RegressionFluid(
 
 REGRESSION_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012)"
 _SOURCE = "Talbot (2012), Table 5.1"
-_FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 degC"
+_FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 °C"
 _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SOURCE)
 _HELD_PRESSURE = replace(_PRESSURE, low=0.25, high=5.0)
 """Where the pressure is held: lightly loaded teeth of the very tests lie below Table 5.1."""
@@ -511,7 +511,7 @@ _SUCCESSOR = "none is printed; that of the later regression, Talbot (2012), Tabl
 _REGRESSION_PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SUCCESSOR)
 _REGRESSION_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SUCCESSOR)
 _FORMULA_RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
-_VISCOSITY_SOURCE = "none is printed; a 75W-90 gear oil from 150 to 25 degC"
+_VISCOSITY_SOURCE = "none is printed; a 75W-90 gear oil from 150 to 25 °C"
 _VISCOSITY = Range(
     "dynamic_viscosity", "dynamic viscosity", 5.0, 180.0, MILLIPASCAL_SECOND, _VISCOSITY_SOURCE
 )

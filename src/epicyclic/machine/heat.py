@@ -34,7 +34,7 @@ from epicyclic.machine.heat_paths import (
 from epicyclic.machine.machine import Machine, Operation
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, next_solution, solve_machine, start_of
-from epicyclic.units import CELSIUS, known_text
+from epicyclic.units import celsius_text, known_text
 
 AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
@@ -176,7 +176,7 @@ def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
             node = min(answer.temperatures, key=answer.temperatures.__getitem__)
             return ConvergenceError(
                 f"more heat is removed than generated: the {node.replace('_', ' ')} would be "
-                f"colder than {CELSIUS.text(COLDEST, 4)}, the lowest temperature at which losses "
+                f"colder than {celsius_text(COLDEST, 4)}, the lowest temperature at which losses "
                 "are computed. Give a smaller thermal.cooler_power, or "
                 "thermal.cooler_conductance, which cannot remove more heat than is generated."
             )
@@ -184,9 +184,9 @@ def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
             break
     before, temperatures = (answer.temperatures for _, answer in found[-2:])
     node = max(temperatures, key=temperatures.__getitem__)
-    reached = f"{node.replace('_', ' ')} {CELSIUS.text(temperatures[node], 4)}"
+    reached = f"{node.replace('_', ' ')} {celsius_text(temperatures[node], 4)}"
     if OIL in temperatures and node != OIL:
-        reached += f", oil {CELSIUS.text(temperatures[OIL], 4)}"
+        reached += f", oil {celsius_text(temperatures[OIL], 4)}"
     if hottest <= HOTTEST:
         change = max(abs(value - before[node]) for node, value in temperatures.items())
         return ConvergenceError(
@@ -195,7 +195,7 @@ def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
             'the operating point a little, or set models.temperatures = "inlet".'
         )
     return ConvergenceError(
-        f"thermal runaway: the heat balance closes only above {CELSIUS.text(HOTTEST, 4)}, the "
+        f"thermal runaway: the heat balance closes only above {celsius_text(HOTTEST, 4)}, the "
         f"highest temperature at which losses are computed. After {len(found)} passes the "
         f"temperatures are: {reached}. Remove more heat (thermal.oil_flow, "
         "thermal.cooler_conductance, a larger [thermal.housing]), or transmit less power."
@@ -489,8 +489,8 @@ class NetworkModel:
         least = LEAST_FLOW * most
         if (left := excess(least)) < 0:
             raise ConvergenceError(
-                f"the oil cannot leave at {CELSIUS.text(outlet, 4)}: other paths would keep it "
-                f"at {CELSIUS.text(outlet + left, 4)} even if none left. Correct "
+                f"the oil cannot leave at {celsius_text(outlet, 4)}: other paths would keep it "
+                f"at {celsius_text(outlet + left, 4)} even if none left. Correct "
                 "thermal.oil_outlet_temperature or these paths, or give thermal.oil_flow."
             )
         while excess(most) > 0:  # heat comes in on other paths

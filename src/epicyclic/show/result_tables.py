@@ -46,6 +46,7 @@ from epicyclic.units import (
     NEWTON_METRE,
     RPM,
     WATT,
+    celsius_text,
     decimals_of,
     format_number,
     known_text,
@@ -613,7 +614,7 @@ def found_text(found: Found) -> str:
     text = f"{found.key} = {unit_text(found.unit.text(found.value))}"
     power = found.result.input_power
     also = f", input power {power:.6g} W," if found.key == "operation.torque" else ""
-    return f"With {text}{also} the oil is at {unit_text(CELSIUS.text(found.temperature))}."
+    return f"With {text}{also} the oil is at {celsius_text(found.temperature)}."
 
 
 def remarks(case: Case, result: Result) -> Iterator[str]:
