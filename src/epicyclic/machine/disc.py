@@ -27,6 +27,7 @@ from epicyclic.losses.ranges import ModelUse, ValidityFlag, check_ranges
 from epicyclic.losses.windage import (
     DISCS,
     DRAG_METHODS,
+    JETS_IN_AIR,
     LAMINAR_RIMS,
     MIST_SHARE,
     DragModel,
@@ -131,14 +132,17 @@ def disc_loss(
                 viscosity = state.fluids.oil.dynamic_viscosity
                 parts = drag(body, speed, mixture, mist, viscosity, disc.model)
                 watts = disc.count * sum(parts)
-                if parts.faces:
+                limit, part = DISCS, parts.faces
+                if disc.model == "anderson-loewenthal" and body.teeth is not None:
+                    limit, part = JETS_IN_AIR, sum(parts)
+                if part:
                     reynolds = abs(speed) * body.radius**2 / mixture.kinematic_viscosity
                     flags += check_ranges(
                         ModelUse("drag", disc.model, disc.where),
-                        (DISCS,),
-                        {"reynolds_number": reynolds},
-                        part=parts.faces / sum(parts),
-                        watts=disc.count * parts.faces,
+                        (limit,),
+                        {"reynolds_number": reynolds, "oil_share": disc.oil_fraction},
+                        part=part / sum(parts),
+                        watts=disc.count * part,
                     )
             title = DRAG_METHODS[disc.model].title
             methods[title] = DRAG_METHODS[disc.model].source
