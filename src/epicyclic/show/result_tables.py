@@ -51,6 +51,7 @@ from epicyclic.units import (
     format_number,
     known_text,
     large_unit,
+    part_text,
     percent,
     power_unit,
     unit_text,
@@ -112,7 +113,7 @@ def share_row(
     """Power, share of the total loss, share of the input power."""
     of_total = percent(watts / result.total) if result.total else ""
     of_input = percent(watts / result.input_power, 3) if result.input_power else ""
-    loss = number(watts, key, text=f"{watts / size:z.{decimals}f}")
+    loss = number(watts, key, text=part_text(watts / size, result.total / size, decimals))
     return loss, aligned(of_total), aligned(of_input)
 
 
