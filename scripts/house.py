@@ -33,6 +33,7 @@ ADDED_TO_THE_CORE = {
     "a first run in two processes, sizes of units": 185,
     "points of a sweep that share a machine": 150,
     "keys and library of strength, odds over a cycle": 170,
+    "ball and thrust bearings by film": 340,
 }
 ADDED = {
     **ADDED_TO_THE_CORE,

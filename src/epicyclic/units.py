@@ -142,8 +142,17 @@ def large_unit(largest: float, unit: str) -> tuple[str, float]:
 
     Watts and newton metres have a prefix once they are many.
     """
-    many = unit in ("W", "N*m") and abs(largest) >= KILO
-    return (f"k{unit_text(unit)}", 1e3) if many else (unit_text(unit), 1.0)
+    for prefix, size in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
+        if unit in ("W", "N*m") and abs(largest) >= size * KILO / 1e3:
+            return f"{prefix}{unit_text(unit)}", size
+    return unit_text(unit), 1.0
+
+
+def part_text(part: float, total: float, decimals: int) -> str:
+    """A part of a `total`; one that would read 0 beside a share that does not has two digits."""
+    if part and 5e-4 * abs(total) <= abs(part) < 0.5 / 10**decimals:
+        decimals = 1 - math.floor(math.log10(abs(part)))
+    return f"{part:z.{decimals}f}"
 
 
 def power_unit(power: float) -> tuple[str, float]:
@@ -166,6 +175,11 @@ def torque_text(torque: float, digits: int = 6) -> str:
     """A `torque` with its unit, for sentences and pictures. [N*m]"""
     unit, size = large_unit(torque, NEWTON_METRE.display)
     return f"{format_number(torque / size, digits)} {unit}"
+
+
+def celsius_text(temperature: float, digits: int = 6) -> str:
+    """A `temperature` as a sentence has it; a case file has degC. [K]"""
+    return unit_text(CELSIUS.text(temperature, digits))
 
 
 def describe_range(
@@ -374,7 +388,7 @@ class Quantity:
 
     def _converted(self, number: float, unit: str) -> float:
         try:
-            return _convert(number + 0.0, unit, self.si)  # one zero, whatever was read before
+            return _convert(number, unit, self.si) + 0.0  # one zero, whatever was read before
         except _UnitError as error:
             remedy = error.remedy or self._remedy_of_unit(number, unit)
             raise self._error(str(error), remedy) from None

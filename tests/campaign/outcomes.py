@@ -22,6 +22,7 @@ ENERGY = 1e-9
 UNSOLVED = {
     "the flow does not converge": "the flow through pockets is not found",
     "thermal runaway": "it runs away: no temperature at which its heat would leave",
+    "temperatures and losses do not settle": "no temperatures agree with its losses",
     "more heat is removed": "it freezes: coolers take more heat than arises",
     "the planet loads have no equilibrium": "the floating member gives way",
     "do not agree after": "losses grow with the torques that they cause",

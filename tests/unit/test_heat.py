@@ -120,12 +120,8 @@ def test_a_temperature_may_be_a_number_of_kelvin():
 @pytest.mark.parametrize(
     ("quantity", "temperature", "words"),
     [
-        (
-            "oil_flow",
-            "71 degC",
-            "oil at 71 degC: cannot be reached: with unlimited thermal.oil_flow",
-        ),
-        ("oil_flow", "90 degC", "with unlimited thermal.oil_flow it is at 90 degC"),
+        ("oil_flow", "71 degC", "oil at 71 °C: cannot be reached: with unlimited thermal.oil_flow"),
+        ("oil_flow", "90 degC", "with unlimited thermal.oil_flow it is at 90 °C"),
         ("cooler_power", "150 degC", "with thermal.cooler_power = 0 W it is at 9"),
         ("input_power", "20 degC", r"with operation.torque = 0 N\*m it is at 90"),
         ("oil_flow", "hot", "temperature = "),

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import itertools
+import re
+from pathlib import Path
 
 import pytest
 
 from epicyclic import library
 from epicyclic.case.case import read_case
 from epicyclic.case.tables.base import Material
+from epicyclic.losses.friction import FRICTION_MODELS
+from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.oil.oil import Oil
 
 TALBOT_WORDS = [[*group["words"]] for group in library.case_variants()["talbot-2012"]]
@@ -109,3 +113,17 @@ def test_finer_processes_leave_finer_flanks():
     order = ["milled", "hobbed", "ground", "honed", "chemically-polished", "superfinished"]
     values = [float(library.named("finishes")[name]["roughness"].split()[0]) for name in order]
     assert values == sorted(values, reverse=True)
+
+
+def test_degrees_in_what_users_read_have_their_sign():
+    """What a case file states has the unit degC; sources and descriptions are sentences."""
+    root = Path(library.__file__).parents[1]
+    texts = [*root.glob("library/oils/*.toml"), root / "oil" / "grades.py"]
+    lines = [line for path in texts for line in path.read_text(encoding="utf-8").splitlines()]
+    told = [
+        text for line in lines for text in re.findall(r'source = "(.*?)"|option\("(.*?)"', line)
+    ]
+    assert told
+    assert not [text for text in itertools.chain(*told) if "degC" in text]
+    models = [*FRICTION_MODELS.values(), *ROLLING_MODELS.values()]
+    assert not [it.source for model in models for it in model.ranges if "degC" in it.source]

@@ -79,3 +79,17 @@ def test_command_adds_torques_to_a_range_and_tells_the_error(tmp_path, options, 
     assert len([line for line in lines if not line.startswith("#")]) == count + 1
     assert "largest error of the total loss" in done.output
     assert any(line.startswith("# torque interpolation: ") for line in lines)
+
+
+def test_no_zero_is_below_zero(case):
+    """What a case, a point of a sweep or a function is given as -0 is 0 in every result."""
+    still = {"losses.sun_mesh_sliding.factor": -0.0, "models.boundary_friction": -0.0}
+    result = ep.solve(case.updated(still | {"operation.torque": "-0 N*m"}))
+    found = [result.losses.values(), [result.total]]
+    data = ep.sweep(case, {key: [value, 0.1] for key, value in still.items()})
+    found += [v.values.ravel() for v in data.variables.values() if v.dtype.kind == "f"]
+    share = {"oil_share": -0.0, "temperature": "-0 degC", "oil": "atf-dexron-vi"}
+    found += [[ep.windage(diameter="1 m", width="9 mm", speed="-0 rpm", **share)]]
+    zeros = [value for values in found for value in values if value == 0]
+    assert zeros
+    assert not np.signbit(zeros).any()

@@ -9,8 +9,10 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.losses.friction import FrictionSettings, friction_model
+from epicyclic.losses.rolling import ROLLING_MODELS
 from epicyclic.losses.windage import Teeth, Turning, drag
 from epicyclic.oil.oil import mixture_state, oil_state
+from epicyclic.study.physics import LOCAL_FRICTION
 
 CONTACT = {
     "line_load": "210 N/mm",
@@ -152,3 +154,16 @@ def test_teeth_of_a_gear_are_those_of_its_rack(make_gear):
     }
     assert ep.windage(**turning, teeth=41) == pytest.approx(teeth, rel=1e-9)
     assert ep.windage(**turning) < 0.5 * teeth
+
+
+AT_REST = [(ep.friction, model) for model in LOCAL_FRICTION]
+AT_REST += [(ep.rolling_loss, model) for model in ROLLING_MODELS if model != "fitted"]
+
+
+@pytest.mark.parametrize(("function", "model"), AT_REST)
+@pytest.mark.parametrize("sliding", [0.0, 1.0, 100.0])
+def test_surfaces_that_do_not_roll_have_the_limit(function, model, sliding):
+    contact = CONTACT | {"rolling_speed": [0.0, 1e-60, 1e-30], "sliding_speed": sliding}
+    limit, near, _ = function(model, **contact)
+    assert limit == pytest.approx(near, abs=1e-9)
+    assert (function(model, **contact | {"line_load": 0.0}) >= 0.0).all()

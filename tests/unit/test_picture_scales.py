@@ -32,7 +32,7 @@ from epicyclic.show.plots.pockets import plot_power, pocket_figure
 from epicyclic.show.plots.power_flow import SLIDE
 from epicyclic.show.plots.style import styled_figure
 from epicyclic.show.record import sets_of
-from epicyclic.show.result_tables import key_figures, members_table
+from epicyclic.show.result_tables import key_figures, losses_table, members_table
 from epicyclic.show.uncertainty_tables import _shown
 from epicyclic.study.operating import operating_line
 from epicyclic.study.shapes import gear_shapes
@@ -216,9 +216,27 @@ def test_long_labels_beside_low_axes_are_broken():
     assert labels[0].replace("\n", " ") == "mesh stiffness per face width, N/(mm·µm)"
 
 
-@pytest.mark.parametrize(("power", "unit"), [(0.0, "W"), (9999.0, "W"), (10_007.0, "kW")])
+@pytest.mark.parametrize(
+    ("power", "unit"),
+    [(0.0, "W"), (9999.0, "W"), (10_007.0, "kW"), (9.9e6, "kW"), (1e7, "MW"), (3e10, "GW")],
+)
 def test_large_powers_are_in_kilowatts(power, unit):
     assert power_unit(power)[0] == power_unit(-power)[0] == unit
+
+
+@pytest.mark.parametrize(("torque", "unit"), [("1e9 N*m", "MW"), ("20 kN*m", "kW")])
+def test_labels_beside_bars_are_short_and_read_as_their_share(torque, unit):
+    """A share of 0.1 % beside a loss of 0.0 says nothing, and 2068263 takes the picture's room."""
+    result = ep.solve(ep.load_case("talbot-2012", {"operation.torque": torque}))
+    for plot in (plot_losses, plot_loss_sum):
+        ax = Figure().subplots()
+        plot(result, ax)
+        assert ax.get_xlabel() == f"power loss, {unit}"
+        labels = [text.get_text() for text in ax.texts]
+        assert max(len(text.partition(" ")[0]) for text in labels) <= 5
+        assert not [text for text in labels if text.startswith("0.0 ") and "(0.0 %)" not in text]
+    cells = [[cell.text for cell in row] for row in losses_table(result).rows]
+    assert not [row for row in cells if row[1] == "0.0" and row[2] not in ("", "0.0 %")]
 
 
 def test_losses_of_one_sentence_share_unit_and_decimals():

@@ -249,3 +249,19 @@ def test_the_regimes_of_churning_pass_into_one_another_without_a_kink():
         jump = np.abs(np.diff(exponent)).max()
         assert jump < most
         assert smooth or jump > 0.5
+
+
+@pytest.mark.parametrize(
+    ("share", "told"), [(0.05, False), (0.016, False), (0.1, True), (0.01, True)]
+)
+def test_a_mist_unlike_that_of_anderson_and_loewenthal_is_told(share, told):
+    """Theirs has one part of oil in 34.25 of air; other models have no such range."""
+    quiet = {"losses.mesh_pocketing.include": False, "surroundings.oil_air_ratio": share}
+    case = ep.load_case("talbot-2012-pair", quiet | {"models.drag": "anderson-loewenthal"})
+    result = ep.solve(case)
+    flags = [it for it in result.flags if it.quantity == "share of oil around the gears"]
+    assert {it.use.where for it in flags} == ({"pinion", "gear"} if told else set())
+    assert sum(it.watts for it in flags) == pytest.approx(result.losses["drag"] * told)
+    assert all("34.25" in it.source for it in flags)
+    other = ep.solve(case.updated({"models.drag": "diab-ville-velex"}))
+    assert not [it for it in other.flags if "share of oil" in it.quantity]

@@ -55,8 +55,14 @@ REACHED = {
     "tapered LM12700, thin oil": (14.3, 15),
     "NJ 406, mineral": (8.2, 9),
     "NJ 406, PAO": (3.2, 4),
+    "QJ 308, mineral": (17.1, 18),
+    "QJ 308, PAO": (16.5, 17.5),
+    "51107, mineral": (23.8, 24.5),
+    "51107, PAO": (22.2, 23),
+    "81107, mineral": (10.4, 11),
+    "81107, PAO": (6.7, 7.5),
 }
-INSIDE = (93, 95)  # Measured values in the bands that the defaults give, and all.
+INSIDE = (125, 127)  # Measured values in the bands that the defaults give, and all.
 QUICK = ("FZG C40, mineral", "tapered HM801349, two", "NJ 406, mineral", "NJ 406, PAO")
 """Short ones."""
 

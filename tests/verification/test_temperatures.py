@@ -117,7 +117,7 @@ def test_a_measured_outlet_temperature_gives_the_flow(others):
 def test_an_outlet_temperature_that_other_paths_prevent_is_told():
     changes = {"thermal.oil_outlet_temperature": "120 degC", "thermal.housing.area": "50 m^2"}
     case = ep.load_case(planetary()).updated({"models.temperatures": "network"} | changes)
-    with pytest.raises(ep.ConvergenceError, match="the oil cannot leave at 120 degC: other paths"):
+    with pytest.raises(ep.ConvergenceError, match="the oil cannot leave at 120 °C: other paths"):
         ep.solve(case)
 
 
@@ -254,9 +254,21 @@ def test_no_way_for_the_heat_is_an_error():
         ep.solve(case.updated(FLOW | dry))
 
 
+@pytest.mark.parametrize(("power", "told"), [("120 W", ""), ("5 kW", "5000 W"), ("200 W", "200 W")])
+def test_a_cooler_leaves_heat_to_the_oil_that_flows_out(power, told):
+    outlet = {"thermal.oil_outlet_temperature": "95 degC", "thermal.cooler_power": power}
+    case = ep.load_case("talbot-2012-pair", outlet | {"models.temperatures": "network"})
+    if not told:
+        assert ep.solve(case).heat.oil == pytest.approx(273.15 + 95)
+        return
+    with pytest.raises(ep.InputError, match=r"the losses are \d+ W\. Give less") as error:
+        ep.solve(case)
+    assert [(it.key, it.value) for it in error.value.problems] == [("thermal.cooler_power", told)]
+
+
 def test_a_gearbox_that_runs_away_says_how_hot_it_gets():
     case = ep.load_case(TALBOT).updated(FLOW | {"thermal.oil_flow": "0.01 l/min"})
-    with pytest.raises(ep.ConvergenceError, match=r"thermal runaway.*oil \d+ degC"):
+    with pytest.raises(ep.ConvergenceError, match=r"thermal runaway.*oil \d+ °C"):
         ep.solve(case)
 
 

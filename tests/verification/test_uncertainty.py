@@ -407,6 +407,29 @@ def test_every_problem_of_the_table_is_told(case):
     assert "sliding" in told['uncertainty."model_form.slding"']
 
 
+@pytest.mark.parametrize(
+    ("table", "limits"),
+    [
+        ({"uniform": ["20 degC", "30 degC"]}, "20 to 30 °C"),
+        ({"tolerance": ["1 K", "2 K"]}, "71 to 72 °C"),
+        ({"uniform": ["70 degC", "72 degC"]}, ""),
+        ({"tolerance": ["-1 K", "0 K"]}, ""),
+    ],
+)
+def test_limits_without_the_value_of_the_case_are_told(case, table, limits):
+    key = "operation.oil_inlet_temperature"
+    own = case.updated({key: "70 degC", "uncertainty": {key: table}})
+    wanted = f"the limits {limits} leave out the value of the case, 70 °C"
+    (value,) = [it for it in uncertain_values(own)[0] if it.key == key]
+    assert (value.remark == wanted) if limits else not value.remark
+    told = [it for it in ep.solve(own).warnings if "leave out" in it]
+    assert told == (
+        [f'uncertainty."{key}": {wanted}. Correct the limits or the value.'] * bool(limits)
+    )
+    sources = ep.uncertainty(own, samples=16, jobs=1)["distribution_source"].values
+    assert any("leave out" in it for it in sources) == bool(limits)
+
+
 def test_an_oil_given_by_its_name_has_no_keys_of_its_own():
     key = "lubricant.oil.density_slope.value"
     case = ep.load_case("talbot-2012-pair")

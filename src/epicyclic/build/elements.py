@@ -19,6 +19,7 @@ from epicyclic.case.tables.elements import (
     between,
 )
 from epicyclic.losses.designations import DesignatedBearing, designated, with_elements
+from epicyclic.losses.houpert import CONFORMITIES, THRUST_CONFORMITIES, THRUST_SHARES, BallModel
 from epicyclic.losses.shaft_bearing import (
     DEFAULT_COEFFICIENTS,
     DEFAULT_FLANGE_COEFFICIENTS,
@@ -28,6 +29,7 @@ from epicyclic.losses.shaft_bearing import (
     CatalogueBearing,
     PalmgrenModel,
     TableModel,
+    bearing_types,
     preload_of,
 )
 from epicyclic.losses.skf_2018 import (
@@ -46,6 +48,7 @@ from epicyclic.losses.zhou_hoeprich import (
     ROLLER_SHARES,
     CylindricalModel,
     TaperedModel,
+    ThrustRollerModel,
 )
 from epicyclic.machine.clutch import Clutch
 from epicyclic.machine.element import Element
@@ -132,12 +135,11 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
         constants = skf_constants(table.type, table.series or "", table.cage)
         return _skf_model(table, oil, constants)
     kind = (table.type, table.cage)
-    stated = table.palmgren_coefficient is not None or table.flange_coefficient is not None
-    if _roller_length(table) and table.model in ("auto", "zhou-hoeprich"):
-        if table.type == "tapered":
-            return _tapered_model(table, oil)
-        if table.cage == "caged" and (table.model != "auto" or not stated):
-            return _cylindrical_model(table, oil)
+    by_film = (
+        _film_model(table, oil) if table.model in ("auto", "zhou-hoeprich", "houpert") else None
+    )
+    if by_film is not None:
+        return by_film
     constant = None
     if table.model != "harris":
         constant = table.palmgren_coefficient or DEFAULT_COEFFICIENTS[kind]
@@ -149,8 +151,57 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
     )
 
 
+def _film_model(table: ShaftBearingTable, oil: Oil) -> BearingModel | None:
+    """By the films in the contacts; None where f0 or f1 is stated, or a roller's length unknown."""
+    stated = table.palmgren_coefficient is not None or table.flange_coefficient is not None
+    chosen = table.model in ("zhou-hoeprich", "houpert")
+    if not (chosen or table.model == "auto"):
+        return None
+    if table.type in bearing_types("houpert") or table.type == "thrust-roller":
+        if not chosen and (stated or table.viscous_factor is not None):
+            return None
+        return _thrust_model(table, oil) if table.type == "thrust-roller" else _balls(table, oil)
+    if not _roller_length(table):
+        return None
+    if table.type == "tapered":
+        return _tapered_model(table, oil)
+    caged = table.cage == "caged" and (chosen or not stated)
+    return _cylindrical_model(table, oil) if caged else None
+
+
+def _balls(table: ShaftBearingTable, oil: Oil) -> BallModel:
+    bearing = catalogue_bearing(table)
+    thrust, (share, fill) = table.type == "thrust-ball", THRUST_SHARES
+    diameter = table.roller_diameter
+    if thrust and diameter is None:
+        diameter = share * (table.outside_diameter - table.bore)
+    angle = bearing.contact_angle if table.type == "angular-contact" else 0.0
+    sizes = 1e3 * table.bore, 1e3 * table.outside_diameter, 0.0, angle
+    fits = with_elements(
+        DesignatedBearing("", table.type, *sizes), None if diameter is None else 1e3 * diameter
+    )
+    fitting = int(fill * math.pi * fits.pitch_diameter / fits.element_diameter)
+    return BallModel(
+        balls=table.rollers or (fitting if thrust else fits.elements),
+        ball_diameter=fits.element_diameter,
+        conformities=THRUST_CONFORMITIES if thrust else CONFORMITIES,
+        static_load_rating=table.static_load_rating or fits.static_load_rating,
+        skf=_skf_model(table, oil, skf_supply(table.type)),
+    )
+
+
+def _thrust_model(table: ShaftBearingTable, oil: Oil) -> ThrustRollerModel:
+    diameter, count = _rollers(table)
+    return ThrustRollerModel(
+        rollers=count,
+        roller_diameter=diameter,
+        roller_length=_roller_length(table),
+        skf=_skf_model(table, oil, skf_supply(table.type)),
+    )
+
+
 def _rollers(table: ShaftBearingTable) -> tuple[float, int]:
-    """Diameter and number of the rollers of a tapered or cylindrical bearing."""
+    """Diameter and number of the rollers."""
     share, fill, _ = ROLLER_SHARES[table.type]
     diameter = table.roller_diameter or share * (table.outside_diameter - table.bore)
     pitch_circle = math.pi * (table.outside_diameter + table.bore) / 2
@@ -158,10 +209,13 @@ def _rollers(table: ShaftBearingTable) -> tuple[float, int]:
 
 
 def _roller_length(table: ShaftBearingTable) -> float:
-    """Of a tapered or cylindrical bearing; 0 where it is not known."""
+    """Of tapered, cylindrical or thrust rollers; 0 where it is not known."""
     if table.type not in ROLLER_SHARES:
         return 0.0
-    return table.roller_length or ROLLER_SHARES[table.type][2] * (table.width or 0.0)
+    across = table.width or 0.0
+    if table.type == "thrust-roller":
+        across = table.outside_diameter - table.bore
+    return table.roller_length or ROLLER_SHARES[table.type][2] * across
 
 
 def _tapered_model(table: ShaftBearingTable, oil: Oil) -> TaperedModel:

@@ -16,6 +16,7 @@ from epicyclic.build.models import SetCase, oil_share, standing_of
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
+from epicyclic.case.tables.uncertainty import stated_values
 from epicyclic.contact.fitted_models import changed_properties
 from epicyclic.gears.gear import HOUSING
 from epicyclic.gears.gearing import DEFAULT_RIM_THICKNESS, rim_thickness
@@ -553,8 +554,11 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
 
 
 def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
-    """Trains that lock themselves, parallel ways, teeth that float, and heat that scatters."""
+    """Limits without the value, self-locking, parallel ways, floating teeth, scattering heat."""
     solution = settled.solution
+    for value in stated_values(case)[0].values() if getattr(case, "uncertainty", {}) else ():
+        if value is not None and value.remark:
+            yield f'uncertainty."{value.key}": {value.remark}. Correct the limits or the value.'
     if solution.jammed and isinstance(case, TrainCase):
         yield (
             "Self-locking: under this torque on the input, friction in the meshes keeps the "

@@ -23,7 +23,7 @@ Real = TypeVar("Real", float, FloatArray)
 
 STEEL_EFFUSIVITY = 12.4e3
 """Of case-hardened steel, ISO/TS 6336-20: for contacts that do not say. [W s^0.5/(m^2 K)]"""
-LEAST_SPEED = np.finfo(float).tiny  # With which quotients of speeds are formed, at least.
+LEAST_SPEED = 1e-100  # With which quotients of speeds are formed, at least.
 CONDITIONS = (
     "slide_to_roll_ratio",
     "rolling_speed",
@@ -144,7 +144,8 @@ class LineContacts:
     def conditions(self) -> dict[str, Any]:
         """The `CONDITIONS`, with the sign of the slip: which surface is faster."""
         values = {name: getattr(self, name) for name in CONDITIONS}
-        return values | {"slide_to_roll_ratio": self.sliding_speed / self.rolling_speed}
+        ratio = np.copysign(self.slide_to_roll_ratio, self.sliding_speed)
+        return values | {"slide_to_roll_ratio": ratio}
 
     def changed(self, **conditions: FloatArray) -> LineContacts:
         """The contacts with other values of some of the `CONDITIONS`, the others as they are."""
@@ -190,7 +191,7 @@ def contacts_at(
         line_load=line_load_at_pressure(hertz_pressure, radius, equivalent_modulus),
         radius=radius,
         rolling_speed=rolling_speed,
-        sliding_speed=slide_to_roll_ratio * rolling_speed,
+        sliding_speed=slide_to_roll_ratio * np.maximum(rolling_speed, LEAST_SPEED),
         flanks=Flanks(equivalent_modulus, roughness1, roughness2),
         oil=InletOil(dynamic_viscosity, pressure_viscosity),
     )

@@ -34,7 +34,7 @@ import numpy as np
 from epicyclic import library
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.fitted_models import OilModel, read_oil_model, regression_groups
-from epicyclic.contact.line_contact import LineContacts
+from epicyclic.contact.line_contact import LEAST_SPEED, LineContacts
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
 from epicyclic.kernels.line_contact import (
     hertz_pressure,
@@ -81,7 +81,7 @@ TALBOT_FLUID = RegressionFluid(
 
 REGRESSION_SOURCE = "D. C. Talbot, PhD dissertation, Ohio State (2012)"
 _SOURCE = "Talbot (2012), Table 5.1"
-_FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 degC"
+_FLUID_SOURCE = "the fluid of Talbot (2012) at 100 and 25 °C"
 _PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SOURCE)
 _HELD_PRESSURE = replace(_PRESSURE, low=0.25, high=5.0)
 """Where the pressure is held: lightly loaded teeth of the very tests lie below Table 5.1."""
@@ -113,7 +113,7 @@ TALBOT_GEAR_RANGES = (
     Range("slide_to_roll_ratio", "slide-to-roll ratio", 0.025, 1.0, NUMBER, _SOURCE),
 )
 """Ranges of the 33,600 simulations behind Eq. 5.8 and 5.10."""
-
+LARGEST_SLIP = 2.0  # Of surfaces that move the same way, as in gears: regressions end here. [1]
 
 _HELD = {
     item.name: item.limits()
@@ -126,8 +126,7 @@ _HELD = {
         replace(_ROUGHNESS, name="roughness1"),
         replace(_ROUGHNESS, name="roughness2"),
     )
-}
-
+} | {"slide_to_roll_ratio": (None, LARGEST_SLIP)}
 
 Limits = Mapping[str, tuple[float | None, float | None]]
 _OIL = (VISCOSITY_RANGE.name, PRESSURE_VISCOSITY_RANGE.name)
@@ -135,7 +134,7 @@ _OIL = (VISCOSITY_RANGE.name, PRESSURE_VISCOSITY_RANGE.name)
 
 @lru_cache(maxsize=2)  # friction and rolling of a mesh ask for the same one
 def held_in_table(contact: LineContacts, *, oil_held: bool = True) -> LineContacts:
-    """The contacts with their conditions held in Table 5.1, but for the slip. Theory (F5).
+    """The contacts with their conditions held in Table 5.1, the slip at 2. Theory (F5).
 
     Without `oil_held` viscosity and pressure-viscosity stay as they are: the formula goes on.
     """
@@ -426,7 +425,7 @@ def _log_argument(contact: MeshContact) -> FloatArray:
     rolling = 2 * contact.rolling_speed
     sliding = np.maximum(np.abs(contact.sliding_speed), SMALLEST_SLIDING * rolling)
     viscosity = contact.oil.dynamic_viscosity * 1e3
-    return 29.66 * contact.line_load / (viscosity * sliding * rolling**2)
+    return 29.66 * contact.line_load / np.maximum(viscosity * sliding * rolling**2, LEAST_SPEED)
 
 
 _ARGUMENT = Range(
@@ -512,7 +511,7 @@ _SUCCESSOR = "none is printed; that of the later regression, Talbot (2012), Tabl
 _REGRESSION_PRESSURE = Range("hertz_pressure", "Hertz pressure", 0.5, 2.5, GIGAPASCAL, _SUCCESSOR)
 _REGRESSION_SPEED = Range("rolling_speed", "rolling speed", 1.0, 20.0, METRE_PER_SECOND, _SUCCESSOR)
 _FORMULA_RADIUS = Range("radius", "equivalent radius", 5.0, 40.0, MILLIMETRE, _SUCCESSOR)
-_VISCOSITY_SOURCE = "none is printed; a 75W-90 gear oil from 150 to 25 degC"
+_VISCOSITY_SOURCE = "none is printed; a 75W-90 gear oil from 150 to 25 °C"
 _VISCOSITY = Range(
     "dynamic_viscosity", "dynamic viscosity", 5.0, 180.0, MILLIPASCAL_SECOND, _VISCOSITY_SOURCE
 )
@@ -538,7 +537,7 @@ def xu_2007(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
     """
     b1, b2, b3, b4, b5, b6, b7, b8, b9 = XU_COEFFICIENTS
     pressure = held_in_range(contact.hertz_pressure, _REGRESSION_PRESSURE) * 1e-9
-    slip = np.maximum(contact.slide_to_roll_ratio, SMALLEST_SLIDE_TO_ROLL)
+    slip = np.clip(contact.slide_to_roll_ratio, SMALLEST_SLIDE_TO_ROLL, LARGEST_SLIP)
     viscosity = held_in_range(contact.dynamic_viscosity, _VISCOSITY) * 1e3
     roughness = held_in_range(contact.composite_roughness, _REGRESSION_ROUGHNESS) * 1e6
     group = slip * pressure * np.log10(viscosity)

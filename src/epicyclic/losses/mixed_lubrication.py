@@ -117,12 +117,13 @@ def mixed_friction(
     contact: LineContacts,
     surfaces: Surfaces,
     boundary: float | None = None,  # mu_b; None: that of the oil. [1]
+    film: FloatArray | None = None,  # None: `central_film`. [m]
 ) -> FloatArray:
     """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]"""
     oil = contact.oil
     assert isinstance(oil, OilState)
     boundary = oil.boundary_friction if boundary is None else boundary
-    film = central_film(contact)
+    film = central_film(contact) if film is None else film
     share = asperity_share(film / acting_roughness(contact, surfaces))
     pressure = np.maximum(MEAN_PRESSURE * contact.hertz_pressure, LEAST_LOAD)
     slip = np.abs(contact.sliding_speed)

@@ -192,7 +192,8 @@ def skf_constants(kind: BearingType, series: str, cage: Cage = "caged") -> SkfCo
 def skf_supply(kind: BearingType, cage: Cage = "caged") -> SkfConstants:
     """What SKF's starvation and drag take of a bearing whose series is not known."""
     geometry = _skf_tables()["types"][kind][cage]
-    return SkfConstants(0.0, 0.0, 0.0, 0.0, geometry["K_Z"], geometry["K_L"], 0, is_read=False)
+    rows = int(not geometry["K_L"])  # of balls
+    return SkfConstants(0.0, 0.0, 0.0, 0.0, geometry["K_Z"], geometry["K_L"], rows, is_read=False)
 
 
 def full_film_friction(kind: BearingType, oil_kind: str) -> float:
@@ -274,7 +275,7 @@ def skf_drag_moment(
         V_M = drag_variable(bearing, model.oil_level)
     slenderness = 2 * bearing.pitch_diameter / (bearing.outside_diameter - bearing.bore)
     K_Z, K_L = constants.bearing_factor, constants.roller_length_factor
-    if bearing.type == "deep-groove":
+    if constants.ball_rows:
         K_ball = constants.ball_rows * K_Z * slenderness * 1e-12
         elements = 0.4 * V_M * K_ball * math.pow(pitch, 5) * rpm**2
     else:

@@ -82,6 +82,15 @@ DISCS = Range(
     NUMBER,
     "tests with discs, Theodorsen and Regier, NACA Report 793 (1944)",
 )
+JETS_IN_AIR = Range(
+    "oil_share",
+    "share of oil around the gears",
+    0.014,
+    0.057,
+    NUMBER,
+    "one part of oil in 34.25 of air, half to twice that: Anderson and Loewenthal, NASA TP-1622 "
+    "(1980), second hand; the limits are of this package",
+)
 
 
 def rim_coefficient(

@@ -1,4 +1,4 @@
-"""Rolling of tapered and cylindrical roller bearings, and rib friction, after Zhou and Hoeprich.
+"""Rolling of roller bearings, and rib friction, after Zhou and Hoeprich.
 
 R. S. Zhou and M. R. Hoeprich, J. Tribol. 113 (1991) 590, read; the load of the asperities at the
 rib after Aihara (1987), read; film and roughness there after Wingertszahn et al., Lubricants 11
@@ -13,6 +13,9 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
 
+import numpy as np
+
+from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.kernels.line_contact import (
     asperity_share,
     equivalent_modulus,
@@ -25,6 +28,7 @@ from epicyclic.losses.drag import (
     VISCOUS_SOURCE,
     bearing_viscous_loss,
 )
+from epicyclic.losses.mixed_lubrication import Surfaces, mixed_friction
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
     AXIAL_RATIO,
@@ -40,7 +44,7 @@ from epicyclic.oil.oil import OilState
 from epicyclic.units import MILLIMETRE, MILLIPASCAL_SECOND, NUMBER
 
 ZHOU_HOEPRICH_SOURCE = "R. S. Zhou and M. R. Hoeprich, J. Tribol. 113 (1991) 590"
-_STEEL = equivalent_modulus(206e9, 0.3, 206e9, 0.3)  # [Pa]
+STEEL = equivalent_modulus(206e9, 0.3, 206e9, 0.3)  # [Pa]
 RIB_FRICTION = 0.2
 """Dry friction of roller ends on the rib, S. Aihara, J. Tribol. 109 (1987) 471. [1]"""
 RIB_ROUGHNESS = 0.24e-6
@@ -54,9 +58,15 @@ of SKF's series 302 to 323 within 12 %. [1]"""
 ROLLER_SHARES: Mapping[BearingType, tuple[float, float, float]] = {
     "tapered": (0.26, 0.87, 0.7),
     "cylindrical": (0.275, 0.83, 0.65),
+    "thrust-roller": (0.29, 0.66, 0.29),
 }
-"""Roller diameter over D - d, share of the pitch circle that rollers fill, roller length over B;
-estimates, those of bearings by designation. [1]"""
+"""Roller diameter over D - d, share of the pitch circle that rollers fill, roller length over B, of
+thrust bearings over D - d. Estimates, those of bearings by designation; those of thrust bearings
+have with ISO 76 the static rating of an 81107. [1]"""
+THRUST_ROUGHNESS = (0.15e-6, 0.1e-6)
+"""Rms of race and roller, estimates, those of planets by designation. [m]"""
+AS_MADE = Surfaces(running_in=1.0)
+"""Bearings are so fine that they hardly run in."""
 POSITIONS = 72
 """Azimuths at which rolling is summed: few rollers lose more or less by where they stand."""
 
@@ -79,33 +89,35 @@ class TaperedMoments:
 
 
 @dataclass(frozen=True, slots=True)
-class TaperedModel(WithoutCoefficient):
-    """Rolling and rib friction after Zhou and Hoeprich."""
+class Rollers(WithoutCoefficient):
+    """What models after Zhou and Hoeprich have in common."""
 
     rollers: int
     roller_diameter: float  # D_w, mean. [m]
     roller_length: float  # l. [m]
+
+    name: ClassVar = "zhou-hoeprich"
+    depends_on_load: ClassVar = True
+
+
+@dataclass(frozen=True, slots=True)
+class TaperedModel(Rollers):
+    """Rolling and rib friction after Zhou and Hoeprich."""
+
     rib_height: float  # e, of the contact with the rib above the raceway. [m]
     rib_roughness: float  # sigma. [m]
     skf: SkfModel  # What starvation, drag, seals and full film friction are taken from.
 
-    name: ClassVar = "zhou-hoeprich"
     terms: ClassVar = ("mechanical", "drag")
-    depends_on_load: ClassVar = True
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
     ) -> tuple[FrictionPart, ...]:
         """``mechanical``, rolling and rib, and ``drag``, with that of the seals. [W]"""
         moments = tapered_moments(self, bearing, load, speed, oil)
-        drag = skf_drag_moment(self.skf, bearing, speed, oil.kinematic_viscosity)
-        by_load, others = moments.rolling + moments.rib, drag + self.skf.seal_moment
+        moment = moments.rolling + moments.rib
         method = "rolling and rib friction after Zhou and Hoeprich"
-        skf = "drag in the oil and seals, SKF 2018"
-        return (
-            FrictionPart("mechanical", True, by_load * abs(speed), method, ZHOU_HOEPRICH_SOURCE),
-            FrictionPart("drag", False, others * abs(speed), skf, self.skf.source),
-        )
+        return film_parts(self.skf, bearing, speed, oil, moment, method, ZHOU_HOEPRICH_SOURCE)
 
     def flags(
         self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -119,18 +131,13 @@ class TaperedModel(WithoutCoefficient):
 
 
 @dataclass(frozen=True, slots=True)
-class CylindricalModel(SlidesAsSkf):
+class CylindricalModel(Rollers, SlidesAsSkf):
     """Rolling of cylindrical rollers after Zhou and Hoeprich, their sliding after SKF."""
 
-    rollers: int
-    roller_diameter: float  # D_w. [m]
-    roller_length: float  # l. [m]
     viscous_factor: float  # f0 of the idle bearing. [1]
     skf: SkfModel  # What sliding, starvation, drag and seals are taken from.
 
-    name: ClassVar = "zhou-hoeprich"
     terms: ClassVar = ("mechanical", "viscous")
-    depends_on_load: ClassVar = True
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -155,9 +162,59 @@ class CylindricalModel(SlidesAsSkf):
         )
 
 
+@dataclass(frozen=True, slots=True)
+class ThrustRollerModel(Rollers):
+    """Rolling of straight rollers after Zhou and Hoeprich, sliding by mixed friction."""
+
+    skf: SkfModel  # What starvation, drag and seals are taken from.
+
+    terms: ClassVar = ("mechanical", "drag")
+
+    def parts(
+        self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
+    ) -> tuple[FrictionPart, ...]:
+        """``mechanical``, rolling and sliding, and ``drag``, with that of the seals. [W]"""
+        moment = 0.0
+        if load.axial and speed:
+            moment = thrust_sliding(self, bearing, load.axial, speed, oil)
+            own = [load.axial / self.rollers]
+            moment += rolling_moment(self, bearing, math.pi / 2, own, speed, oil)
+        method = "rolling after Zhou and Hoeprich, sliding by mixed friction"
+        return film_parts(self.skf, bearing, speed, oil, moment, method, ZHOU_HOEPRICH_SOURCE)
+
+    def flags(
+        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
+    ) -> tuple[ValidityFlag, ...]:
+        """Flags on speed and static load."""
+        return load_flags(ModelUse("bearing", self.name, where), AXIAL_RATIO, bearing, load, speed)
+
+
+RollerModel = TaperedModel | CylindricalModel | ThrustRollerModel
+
+
+def film_parts(
+    skf: SkfModel,
+    bearing: CatalogueBearing,
+    speed: float,
+    oil: OilState,
+    moment: float,  # By load. [N m]
+    method: str,
+    source: str,
+) -> tuple[FrictionPart, ...]:
+    """``mechanical``, of a moment, and ``drag``, with that of the seals, after SKF. [W]"""
+    others = skf_drag_moment(skf, bearing, speed, oil.kinematic_viscosity) + skf.seal_moment
+    dragged = "drag in the oil and seals, SKF 2018"
+    return (
+        FrictionPart("mechanical", True, moment * abs(speed), method, source),
+        FrictionPart("drag", False, others * abs(speed), dragged, skf.source),
+    )
+
+
 @lru_cache(maxsize=256)
-def roller_loads(slope: float, rollers: int) -> tuple[float, ...]:
+def roller_loads(slope: float, rollers: int, exponent: float = 10 / 9) -> tuple[float, ...]:
     """Load of each roller over their mean, for F_r tan(alpha)/F_a. Theory (J22). [1]
+
+    `exponent` of the load over the approach, 3/2 for balls.
 
     Examples
     --------
@@ -168,7 +225,7 @@ def roller_loads(slope: float, rollers: int) -> tuple[float, ...]:
     low, high = 0.0, 1.0  # 1/(2 epsilon): 0 if all rollers carry the same, 1 if half of them carry
     while True:
         middle = (low + high) / 2 if slope else 0.0
-        loads = [max(0.0, 1 - middle * (1 - cosine)) ** (10 / 9) for cosine in cosines]
+        loads = [max(0.0, 1 - middle * (1 - cosine)) ** exponent for cosine in cosines]
         total = sum(loads)
         if not slope or high - low < 1e-12:
             return tuple(rollers * load / total for load in loads)
@@ -184,9 +241,7 @@ def rolling_force(speed_number: float, material_number: float, load_number: floa
     return 29.2 * math.pow(material_number * speed_number, 0.648) * math.pow(load_number, 0.246)
 
 
-def raceways(
-    model: TaperedModel | CylindricalModel, bearing: CatalogueBearing, axis: float
-) -> tuple[float, float]:
+def raceways(model: RollerModel, bearing: CatalogueBearing, axis: float) -> tuple[float, float]:
     """Radii of both raceways at rollers whose axis has the angle `axis`. Theory (J21). [m]"""
     offset = model.roller_diameter / bearing.pitch_diameter * math.cos(axis)
     inner, outer = ((1 + side * offset) * bearing.pitch_diameter / 2 for side in (-1, 1))
@@ -194,7 +249,7 @@ def raceways(
 
 
 def rolling_moment(
-    model: TaperedModel | CylindricalModel,
+    model: RollerModel,
     bearing: CatalogueBearing,
     axis: float,
     loads: Sequence[float],  # Of rollers evenly around the bearing, 0 of those that carry none. [N]
@@ -206,14 +261,14 @@ def rolling_moment(
     reach = 2 * inner * outer / (inner + outer)
     u = abs(speed) * reach / 2
     thermal = oil.thermal_load(u)
-    G = oil.pressure_viscosity * _STEEL
+    G = oil.pressure_viscosity * STEEL
     rolling = 0.0
     for own in filter(None, loads):
         w = own / model.roller_length
         for radius in (inner, outer):
             R = model.roller_diameter * radius / bearing.pitch_diameter
-            U, W = oil.dynamic_viscosity * u / (_STEEL * R), w / (_STEEL * R)
-            heat = inlet_film_factor(thermal, hertz_pressure(w, R, _STEEL) / _STEEL, 0.0)
+            U, W = oil.dynamic_viscosity * u / (STEEL * R), w / (STEEL * R)
+            heat = inlet_film_factor(thermal, hertz_pressure(w, R, STEEL) / STEEL, 0.0)
             force = rolling_force(U, G, W) * heat * R / oil.pressure_viscosity
             rolling += force * model.roller_length * reach
     _, starved = model.skf.reduction_factors(bearing, speed, oil.kinematic_viscosity)
@@ -253,7 +308,7 @@ def tapered_moments(
     axis = alpha - half
     inner, outer = raceways(model, bearing, axis)
     u = abs(speed) * inner * outer / (inner + outer)
-    G = oil.pressure_viscosity * _STEEL
+    G = oil.pressure_viscosity * STEEL
     apex = bearing.pitch_diameter / (2 * math.sin(axis)) + model.roller_length / 2
     across = END_RADIUS * apex
     along = across / (1 - END_RADIUS)
@@ -261,7 +316,7 @@ def tapered_moments(
     slip = model.rib_height / (model.roller_diameter * inner / bearing.pitch_diameter)
     shape = 2.69 * along * (1 - 0.61 * math.exp(-0.73 * k))
     shape *= inlet_film_factor(oil.thermal_load(u), 0.0, slip)
-    shape *= math.pow(oil.dynamic_viscosity * u / (_STEEL * along), 0.67) * math.pow(G, 0.53)
+    shape *= math.pow(oil.dynamic_viscosity * u / (STEEL * along), 0.67) * math.pow(G, 0.53)
     rib = 0.0
     least = math.inf
     mean = thrust / (math.sin(alpha) * model.rollers)
@@ -269,9 +324,33 @@ def tapered_moments(
     loads = [mean * share for share in roller_loads(slope, model.rollers)]
     for own in filter(None, loads):
         pressed = own * math.sin(2 * half)
-        film = shape * math.pow(pressed / (_STEEL * along**2), -0.067) / model.rib_roughness
+        film = shape * math.pow(pressed / (STEEL * along**2), -0.067) / model.rib_roughness
         least = min(least, film)
         dry = asperity_share(film)
         friction = dry * RIB_FRICTION + (1 - dry) * model.skf.full_film_friction
         rib += friction * pressed * model.rib_height * outer / model.roller_diameter
     return TaperedMoments(rolling_moment(model, bearing, axis, loads, speed, oil), rib, least)
+
+
+def thrust_sliding(
+    model: ThrustRollerModel,
+    bearing: CatalogueBearing,
+    axial: float,
+    speed: float,  # Speed of one washer against the other. [rad/s]
+    oil: OilState,
+) -> float:
+    """Moment by which straight rollers slide on washers, mu F_a l/4. Theory (J43). [N m]
+
+    The washers are faster outside and slower inside than the rollers, l/8 times the speed in the
+    mean.
+    """
+    contact = LineContacts(
+        line_load=np.array([axial / (model.rollers * model.roller_length)]),
+        radius=np.array([model.roller_diameter / 2]),
+        rolling_speed=np.array([abs(speed) * bearing.pitch_diameter / 4]),
+        sliding_speed=np.array([abs(speed) * model.roller_length / 8]),
+        flanks=Flanks(STEEL, *THRUST_ROUGHNESS),
+        oil=oil,
+    )
+    mu = float(mixed_friction(contact, AS_MADE)[0])
+    return mu * axial * model.roller_length / 4

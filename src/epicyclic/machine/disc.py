@@ -28,6 +28,7 @@ from epicyclic.losses.ranges import Flags, ModelUse, ValidityFlag, check_ranges
 from epicyclic.losses.windage import (
     DISCS,
     DRAG_METHODS,
+    JETS_IN_AIR,
     LAMINAR_RIMS,
     MIST_SHARE,
     DragModel,
@@ -138,7 +139,7 @@ def disc_loss(
                 viscosity = state.fluids.oil.dynamic_viscosity
                 parts = drag(body, speed, mixture, mist, viscosity, disc.model)
                 watts = disc.count * sum(parts)
-                flags += Flags(partial(_face_flags, disc, speed, mixture, parts))
+                flags += Flags(partial(_drag_flags, disc, speed, mixture, parts))
             title = DRAG_METHODS[disc.model].title
             methods[title] = DRAG_METHODS[disc.model].source
         if disc.jets is not None:
@@ -154,18 +155,21 @@ def disc_loss(
     return Loss(LOAD_INDEPENDENT, total, method, source, brakes=brakes, shares=shares), flags
 
 
-def _face_flags(
+def _drag_flags(
     disc: Disc, speed: float, mixture: MixtureState, parts: Parts
 ) -> tuple[ValidityFlag, ...]:
-    if not parts.faces:
+    limit, part = DISCS, parts.faces
+    if disc.model == "anderson-loewenthal" and disc.turning.teeth is not None:
+        limit, part = JETS_IN_AIR, sum(parts)
+    if not part:
         return ()
     reynolds = abs(speed) * disc.turning.radius**2 / mixture.kinematic_viscosity
     return check_ranges(
         ModelUse("drag", disc.model, disc.where),
-        (DISCS,),
-        {"reynolds_number": reynolds},
-        part=parts.faces / sum(parts),
-        watts=disc.count * parts.faces,
+        (limit,),
+        {"reynolds_number": reynolds, "oil_share": disc.oil_fraction},
+        part=part / sum(parts),
+        watts=disc.count * part,
     )
 
 

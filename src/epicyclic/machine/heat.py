@@ -34,7 +34,7 @@ from epicyclic.machine.heat_paths import (
 from epicyclic.machine.machine import Machine, Operation
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, next_solution, solve_machine, start_of
-from epicyclic.units import CELSIUS
+from epicyclic.units import celsius_text, known_text
 
 AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
@@ -169,26 +169,33 @@ def _by_secants(
 
 
 def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
-    """What to say of temperatures beyond all bounds, or that do not settle."""
+    """What to say of temperatures beyond all bounds, or that do not settle within them."""
     for _, answer in found:  # the first to leave the bounds tells on which side they are left
         coldest, hottest = (end(answer.temperatures.values()) for end in (min, max))
         if coldest < COLDEST:
             node = min(answer.temperatures, key=answer.temperatures.__getitem__)
             return ConvergenceError(
                 f"more heat is removed than generated: the {node.replace('_', ' ')} would be "
-                f"colder than {CELSIUS.text(COLDEST, 4)}, the lowest temperature at which losses "
+                f"colder than {celsius_text(COLDEST, 4)}, the lowest temperature at which losses "
                 "are computed. Give a smaller thermal.cooler_power, or "
                 "thermal.cooler_conductance, which cannot remove more heat than is generated."
             )
         if hottest > HOTTEST:
             break
-    temperatures = found[-1][1].temperatures
+    before, temperatures = (answer.temperatures for _, answer in found[-2:])
     node = max(temperatures, key=temperatures.__getitem__)
-    reached = f"{node.replace('_', ' ')} {CELSIUS.text(temperatures[node], 4)}"
+    reached = f"{node.replace('_', ' ')} {celsius_text(temperatures[node], 4)}"
     if OIL in temperatures and node != OIL:
-        reached += f", oil {CELSIUS.text(temperatures[OIL], 4)}"
+        reached += f", oil {celsius_text(temperatures[OIL], 4)}"
+    if hottest <= HOTTEST:
+        change = max(abs(value - before[node]) for node, value in temperatures.items())
+        return ConvergenceError(
+            f"temperatures and losses do not settle: after {len(found)} passes they still change "
+            f"by {change:.2g} K, near {reached}, because a loss jumps or scatters there. Change "
+            'the operating point a little, or set models.temperatures = "inlet".'
+        )
     return ConvergenceError(
-        f"thermal runaway: the heat balance closes only above {CELSIUS.text(HOTTEST, 4)}, the "
+        f"thermal runaway: the heat balance closes only above {celsius_text(HOTTEST, 4)}, the "
         f"highest temperature at which losses are computed. After {len(found)} passes the "
         f"temperatures are: {reached}. Remove more heat (thermal.oil_flow, "
         "thermal.cooler_conductance, a larger [thermal.housing]), or transmit less power."
@@ -482,8 +489,8 @@ class NetworkModel:
         least = LEAST_FLOW * most
         if (left := excess(least)) < 0:
             raise ConvergenceError(
-                f"the oil cannot leave at {CELSIUS.text(outlet, 4)}: other paths would keep it "
-                f"at {CELSIUS.text(outlet + left, 4)} even if none left. Correct "
+                f"the oil cannot leave at {celsius_text(outlet, 4)}: other paths would keep it "
+                f"at {celsius_text(outlet + left, 4)} even if none left. Correct "
                 "thermal.oil_outlet_temperature or these paths, or give thermal.oil_flow."
             )
         while excess(most) > 0:  # heat comes in on other paths
@@ -536,6 +543,13 @@ class NetworkModel:
         self._check_names(network)
         left = network.cut_off()
         if any(node == OIL or heat.get(node) for node in left):
+            lost, power = sum(heat.values()) + own.cooler_power, own.cooler_power
+            if own.outlet is not None and 0 < power >= lost:
+                allowed = (
+                    f"leaves no heat to the oil that flows out: the losses are {known_text(lost)}."
+                )
+                remedy = "Give less, or thermal.oil_flow instead of thermal.oil_outlet_temperature."
+                raise one_problem("thermal.cooler_power", known_text(power), allowed, remedy)
             allowed = f"the heat of {', '.join(left)} has no path out of the gearbox."
             raise one_problem("thermal", "", allowed, _OUTLET_REMEDY)
         # parts at rest, which nothing heats or cools, are as warm as the oil

@@ -9,6 +9,7 @@ from typing import ClassVar, Literal, get_args
 
 from epicyclic.losses.designations import RATING_BAND
 from epicyclic.losses.drag import RPM as ONE_RPM
+from epicyclic.losses.houpert import BallModel
 from epicyclic.losses.loss_table import LossTable
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
@@ -25,7 +26,7 @@ from epicyclic.losses.shaft_bearing import (
     thermal_speed_rating,
 )
 from epicyclic.losses.skf_2018 import SkfModel
-from epicyclic.losses.zhou_hoeprich import CylindricalModel, TaperedModel
+from epicyclic.losses.zhou_hoeprich import RollerModel
 from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
@@ -267,7 +268,7 @@ class Seal:
 # A rolling bearing of a shaft, as a catalogue states it.
 
 
-BearingModel = PalmgrenModel | SkfModel | TaperedModel | CylindricalModel | TableModel
+BearingModel = PalmgrenModel | SkfModel | RollerModel | BallModel | TableModel
 """How the friction of a bearing is computed."""
 
 

@@ -40,9 +40,9 @@ class ShortOil(BaseModel):
 
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     iso_vg: int | None = option("Grade of ISO 3448.")
-    viscosity_40: KinematicViscosity | None = option("At 40 degC.")
-    viscosity_100: KinematicViscosity | None = option("At 100 degC.")
-    density_15: OilDensity | None = option("At 15 degC.")
+    viscosity_40: KinematicViscosity | None = option("At 40 °C.")
+    viscosity_100: KinematicViscosity | None = option("At 100 °C.")
+    density_15: OilDensity | None = option("At 15 °C.")
 
 
 _SHORT_KEYS = ("iso_vg", "viscosity_40", "viscosity_100", "density_15")
@@ -88,11 +88,11 @@ def _viscosities(table: Mapping[str, Any]) -> tuple[dict[str, Any], ...]:
     grade, warm = table.get("iso_vg"), table.get("viscosity_100")
     if warm is None:
         raise _refused_oil(
-            "leaves the viscosity at 100 degC open, and no built-in oil has this grade and kind",
+            "leaves the viscosity at 100 °C open, and no built-in oil has this grade and kind",
             'Add viscosity_100 = "... mm^2/s" from the data sheet',
         )
     if grade is None and "viscosity_40" not in table:
-        raise _refused_oil("leaves the viscosity at 40 degC open", "Add iso_vg or viscosity_40")
+        raise _refused_oil("leaves the viscosity at 40 °C open", "Add iso_vg or viscosity_40")
     stated = table.get("viscosity_40", f"{_SMALL.get(grade or 0, grade)} mm^2/s")
     source = "as stated" if grade is None else "ISO 3448, middle of the grade"
     return _point("40 degC", stated, source), _point("100 degC", warm, "as stated")
@@ -128,7 +128,7 @@ def short_oil_told(table: object, preset: str | None) -> tuple[str, str] | None:
         return preset, "the built-in oil of this grade and kind ('epicyclic oils' shows it)."
     told = []
     if "density" not in table and "density_15" not in table:
-        told.append(f"density {DENSITY[table['kind']]} kg/m^3 at 15 degC, an estimate")
+        told.append(f"density {DENSITY[table['kind']]} kg/m^3 at 15 °C, an estimate")
     if "pressure_viscosity" not in table:
         told.append(
             "pressure-viscosity coefficient from Gold's constants for "

@@ -99,7 +99,7 @@ def _plain(value: Any, depth: int, budget: Iterator[int]) -> Any:
         return value
     if isinstance(value, numbers.Integral):
         return int(value)
-    return float(value) if isinstance(value, numbers.Real) else value
+    return float(value) + 0.0 if isinstance(value, numbers.Real) else value  # no zero below zero
 
 
 def _not_a_case(allowed: str) -> InputError:

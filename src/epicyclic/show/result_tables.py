@@ -46,10 +46,12 @@ from epicyclic.units import (
     NEWTON_METRE,
     RPM,
     WATT,
+    celsius_text,
     decimals_of,
     format_number,
     known_text,
     large_unit,
+    part_text,
     percent,
     power_unit,
     unit_text,
@@ -111,7 +113,7 @@ def share_row(
     """Power, share of the total loss, share of the input power."""
     of_total = percent(watts / result.total) if result.total else ""
     of_input = percent(watts / result.input_power, 3) if result.input_power else ""
-    loss = number(watts, key, text=f"{watts / size:z.{decimals}f}")
+    loss = number(watts, key, text=part_text(watts / size, result.total / size, decimals))
     return loss, aligned(of_total), aligned(of_input)
 
 
@@ -613,7 +615,7 @@ def found_text(found: Found) -> str:
     text = f"{found.key} = {unit_text(found.unit.text(found.value))}"
     power = found.result.input_power
     also = f", input power {power:.6g} W," if found.key == "operation.torque" else ""
-    return f"With {text}{also} the oil is at {unit_text(CELSIUS.text(found.temperature))}."
+    return f"With {text}{also} the oil is at {celsius_text(found.temperature)}."
 
 
 def remarks(case: Case, result: Result) -> Iterator[str]:

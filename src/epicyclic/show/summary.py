@@ -23,7 +23,7 @@ from epicyclic.show.result_tables import key_figures, locking_text, losses_table
 from epicyclic.show.terminal import Sentence, as_on_page, spaced
 from epicyclic.study.bands.advice import Known, is_on_first_screen, main_causes
 from epicyclic.study.operating import operating_line
-from epicyclic.units import CELSIUS, efficiency_text, known_text, percent, unit_text
+from epicyclic.units import celsius_text, efficiency_text, known_text, percent
 
 MOST_WARNINGS = 3  # On the first screen.
 CONCERNED = 0.01  # Part of the total loss from which a warning stands on the first screen. [1]
@@ -79,7 +79,7 @@ def headline(result: Result, known: Known | None) -> Iterator[str]:
     if result.heat is not None:
         found = result.heat.temperatures
         hottest = max(found, key=lambda node: found[node])
-        degrees = unit_text(CELSIUS.text(found[hottest], 3))
+        degrees = celsius_text(found[hottest], 3)
         yield f"{'hottest part':{_LABEL}}{degrees:{_VALUE}}{in_words(hottest)}"
 
 

@@ -18,7 +18,15 @@ from epicyclic.result.result import HeatBalance, Result
 from epicyclic.schema.fields import quantity_of
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.solve import solve
-from epicyclic.units import CELSIUS, NEWTON_METRE, Power, Quantity, Temperature, VolumeFlow
+from epicyclic.units import (
+    CELSIUS,
+    NEWTON_METRE,
+    Power,
+    Quantity,
+    Temperature,
+    VolumeFlow,
+    celsius_text,
+)
 
 NETWORK = {"models.temperatures": "network"}
 TEMPERATURE = "oil temperature"  # What ranges of formulas call the temperature of a contact.
@@ -47,7 +55,7 @@ def heat_balance(case: CaseSource) -> HeatBalance:
     InputError
         If the case has no oil, or the heat has no path out.
     ConvergenceError
-        In case of thermal runaway: losses and heat flows do not balance.
+        If losses and heat flows do not balance: thermal runaway, or losses that jump.
 
     Examples
     --------
@@ -227,7 +235,7 @@ def solve_for(
     found = tried.get(number)
     if found is None or abs(_oil(found.result) - target) > 10 * CLOSE:
         raise ConvergenceError(
-            f"no {search.key} gives an oil temperature of {CELSIUS.text(target)}: the temperature "
+            f"no {search.key} gives an oil temperature of {celsius_text(target)}: the temperature "
             f"jumps near {search.unit.text(search.value(number))}."
         )
     return found
@@ -271,11 +279,11 @@ def _bracket(
             break
         before, over, number = number, next_over, STEP * number
     ends = (
-        f"{_limit(search, at)} it is at {CELSIUS.text(excess(at) + target, 4)}"
+        f"{_limit(search, at)} it is at {celsius_text(excess(at) + target, 4)}"
         for at in (0.0, before or number)
     )
     raise one_problem(
-        f"oil at {CELSIUS.text(target)}",
+        f"oil at {celsius_text(target)}",
         "",
         f"cannot be reached: {', '.join(ends)}.",
         "Choose another temperature, or change other heat paths in [thermal].",

@@ -25,7 +25,8 @@ class ForeignCase(Protocol):
 
 
 CaseReader = Callable[[str | Path], ForeignCase]
-CaseSource = Case | str | Path | Mapping[str, Any]
+Readable = str | Path | Mapping[str, Any]
+CaseSource = Case | Readable
 """A case, or what `load_case` reads."""
 
 
@@ -36,9 +37,7 @@ def reader_of(path: str | Path) -> CaseReader | None:
     return cast("CaseReader", load("case_readers", endings[0])) if endings else None
 
 
-def load_case(
-    source: str | Path | Mapping[str, Any], changes: Mapping[str, Any] | None = None
-) -> Case:
+def load_case(source: Readable, changes: Mapping[str, Any] | None = None) -> Case:
     """Read and check a case.
 
     Parameters

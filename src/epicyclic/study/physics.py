@@ -417,13 +417,13 @@ def bearing_loss(
     oil: OilName,
     radial_force: Any,
     axial_force: Any = 0.0,
-    model: Literal["auto", "palmgren", "harris", "zhou-hoeprich"] = "auto",
+    model: Literal["auto", "houpert", "palmgren", "harris", "zhou-hoeprich"] = "auto",
 ) -> FloatArray:
     """Loss of a rolling bearing by its designation.
 
     Sizes follow from the ISO plans and load ratings are estimated (ISO 281, ISO 76; (J27)
-    in the theory). The friction is Palmgren's, M = f_1 F d_m/2 + M_0, or of tapered and caged
-    cylindrical bearings that of Zhou and Hoeprich (1991).
+    in the theory). The friction of balls is by their films, (J42), that of tapered, caged
+    cylindrical and thrust rollers after Zhou and Hoeprich (1991), of others Palmgren's.
 
     Parameters
     ----------
@@ -448,7 +448,7 @@ def bearing_loss(
     >>> import epicyclic as ep
     >>> ep.bearing_loss("6208", speed=["1500 rpm", "6000 rpm"], temperature="70 degC",
     ...     oil="iso-vg-100-pao", radial_force="2 kN").round(1).tolist()
-    [14.9, 116.0]
+    [8.1, 53.3]
     """
     liquid = _oil(oil)
     forces = {"radial_force": radial_force, "axial_force": axial_force}

@@ -63,18 +63,10 @@ class PlanetBearing(Table):
     """The roller bearing between planet and pin."""
 
     STAND_INS: ClassVar[dict[str, object]] = {
-        "rows": 1,
-        "roller_length": "1 mm",
-        "roller_roughness": "1 um",
-        "race_roughness": "1 um",
-        "viscous_factor": None,
-        "cage": None,
-        "palmgren_coefficient": None,
-        "crown_drop": None,
-        "crown_length_fraction": None,
-        "row_gap": None,
-        "material": None,
-    }
+        "rows": 1, "roller_length": "1 mm", "roller_roughness": "1 um", "race_roughness": "1 um",
+        "viscous_factor": None, "cage": None, "palmgren_coefficient": None, "crown_drop": None,
+        "crown_length_fraction": None, "row_gap": None, "material": None,
+    }  # fmt: skip
 
     designation: PlanetDesignation | None = option(
         "NU 2210, SL18 5010, 22220, NKI 40/30, K 40x48x20: the rollers that fit into the sizes of "
@@ -297,8 +289,8 @@ class BearingSealTable(Table):
     constant: DragTorque = option("K_S2.", "0 N*m")
 
 
-_OF_ROLLERS = ("rollers", "roller_diameter", "roller_length")
-_OF_TAPERED = (*_OF_ROLLERS, "rib_height", "rib_roughness")
+_OF_TAPERED = ("rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness")
+_OF_OTHERS = {"cylindrical": 3, "thrust-roller": 3, "deep-groove": 2, "thrust-ball": 2}  # of these
 
 
 class ShaftBearingTable(ElementTable):
@@ -326,14 +318,16 @@ class ShaftBearingTable(ElementTable):
     cage: Literal["caged", "full-complement"] = option(
         "full-complement: cylindrical and needle rollers only.", "caged"
     )
-    model: Literal["auto", "zhou-hoeprich", "palmgren", "harris", "skf-2018", "table"] = option(
-        "auto: tapered or caged cylindrical with width zhou-hoeprich, else palmgren; skf-2018: "
-        "needs series.",
+    model: Literal[
+        "auto", "houpert", "zhou-hoeprich", "palmgren", "harris", "skf-2018", "table"
+    ] = option(
+        "auto: balls houpert; thrust rollers, and with width tapered or caged cylindrical ones, "
+        "zhou-hoeprich; else palmgren. skf-2018: needs series.",
         "auto",
     )
-    rollers: int | None = option("Tapered or cylindrical. Default: as many as fit.", ge=4, le=200)
+    rollers: int | None = option("Rollers or balls. Default: as many as fit.", ge=4, le=200)
     roller_diameter: Length | None = option(
-        "Mean. Default: tapered 0.26 (D - d), cylindrical 0.275 (D - d)."
+        "Mean. Default: tapered 0.26 (D - d), cylindrical 0.275, balls 0.3, thrust 0.37 or 0.29."
     )
     roller_length: Length | None = option("Default: tapered 0.7, cylindrical 0.65 width.")
     rib_height: Length | None = option("Of the contact on the rib. Default: 0.03 (D - d).")
@@ -451,10 +445,8 @@ class ShaftBearingTable(ElementTable):
         yield from _roller_problems(self)
         if model == "skf-2018":
             yield from _skf_problems(self)
-        balls = kind in ("deep-groove", "angular-contact", "thrust-ball")
-        rated = self.designation and kind != "thrust-ball"
-        needs_rating = balls and model in ("harris", "skf-2018") and not rated
-        if needs_rating and not self.static_load_rating:
+        rated = kind not in bearing_types("houpert") or (self.designation and kind != "thrust-ball")
+        if model in ("harris", "skf-2018") and not (rated or self.static_load_rating):
             reason = f"is missing; the model {model} needs it for ball bearings."
             yield Problem("static_load_rating", "", reason, "Add C0 from the catalogue.")
 
@@ -491,14 +483,14 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     """The contact angle of tapered rollers and angular contact balls, stated once."""
     angles = [key for key in ("axial_factor", "contact_angle") if getattr(table, key) is not None]
     if table.type == "angular-contact":
-        for key in ("axial_factor", *_OF_TAPERED):
+        for key in ("axial_factor", *_OF_TAPERED[2:]):
             if getattr(table, key) is not None:
                 yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
         if table.contact_angle is None:
             reason, remedy = "is missing.", 'Add that of the catalogue: "40 deg" of 72 B and 73 B.'
             yield Problem("contact_angle", "", reason, remedy)
     elif table.type != "tapered":
-        foreign = _OF_TAPERED[len(_OF_ROLLERS) :] if table.type == "cylindrical" else _OF_TAPERED
+        foreign = _OF_TAPERED[_OF_OTHERS.get(table.type, 0) :]
         for key in [*angles, *(key for key in foreign if getattr(table, key) is not None)]:
             yield Problem(key, "", "belongs to tapered roller bearings.", "Delete it.")
     elif table.model != "table" and not angles:
@@ -512,11 +504,11 @@ def _angle_problems(table: ShaftBearingTable) -> Iterator[Problem]:
 
 def _roller_problems(table: ShaftBearingTable) -> Iterator[Problem]:
     """What rolling and drag of rollers cannot be computed with."""
-    wanted = table.model == "zhou-hoeprich"
-    if wanted and table.width is table.roller_length is None:
+    wanted, thrust = table.model == "zhou-hoeprich", table.type == "thrust-roller"
+    if wanted and not thrust and table.width is table.roller_length is None:
         reason = "is missing; it tells how long the rollers are."
         yield Problem("width", "", reason, "Add B from the catalogue, or roller_length.")
-    bathed = table.model == "skf-2018" or table.roller_length is not None
+    bathed = table.model == "skf-2018" or table.roller_length is not None or thrust
     if bathed and table.oil_level > 0 and table.type != "deep-groove" and table.width is None:
         reason = "is missing; the drag of rollers in an oil bath needs it."
         yield Problem("width", "", reason, "Add B from the catalogue.")

@@ -90,6 +90,14 @@ class UncertainValue:
         return self.key.removeprefix(MODEL_FORM)
 
     @property
+    def remark(self) -> str:
+        """Limits that leave out the value of the case: a slip, but for tolerances off zero."""
+        if self.kind != "uniform" or self.spread[0] <= self.value <= self.spread[1]:
+            return ""
+        limits, unit = self.text.partition(" ")[2], f" {unit_text(self.unit)}".rstrip()
+        return f"the limits {limits} leave out the value of the case, {self.value:g}{unit}"
+
+    @property
     def text(self) -> str:
         """The distribution in words: ``"normal, 0.05 µm"``."""
         unit = f" {unit_text(self.unit)}".rstrip()

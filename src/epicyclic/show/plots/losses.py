@@ -17,7 +17,7 @@ from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.plots.style import COLOURS, legend_below, write_beside
 from epicyclic.study.bands.advice import in_few_words
-from epicyclic.units import decimals_of, format_number, percent, power_unit
+from epicyclic.units import decimals_of, format_number, part_text, percent, power_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,7 +39,7 @@ def plot_losses(result: Result, ax: Axes) -> Axes:
     _draw(ax, parts, np.zeros(len(parts)))
     for row, value in enumerate(sums):
         share = f" ({percent(value / total)})" if total else ""
-        write_beside(ax, f"{value:.{decimals_of(total)}f}{share}", (value, row))
+        write_beside(ax, part_text(value, total, decimals_of(total)) + share, (value, row))
     _finish(ax, [*parts], sums)
     ax.set(title="Losses by component", xlabel=f"power loss, {unit}")
     return ax
@@ -59,7 +59,7 @@ def plot_loss_sum(result: Result, ax: Axes) -> Axes:
     _draw(ax, parts, ends - sums)
     ax.barh(len(parts), total, color=SUM_COLOUR, **EDGE)
     for row, (value, end) in enumerate(zip([*sums, total], [*ends, total], strict=True)):
-        write_beside(ax, f"{value:.{digits}f}", (end, row))
+        write_beside(ax, part_text(value, total, digits), (end, row))
     _finish(ax, [*parts, "total"], [total])
     ax.set(title="How the losses add up", xlabel=f"power loss, {unit}")
     return ax
@@ -258,7 +258,7 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     ax.axvline(nominal, color=COLOURS[1], lw=1.6, label="case")
     ax.axvline(float(one["mean"]) * scale, color="black", lw=1.2, ls="--", label="mean")
     low_text, high_text = (f"{it:.2f}" if percent else format_number(it, 3) for it in (low, high))
-    what = "total loss" if unit in {"W", "kW"} else "energy lost"
+    what = "total loss" if unit.endswith("W") else "energy lost"
     what, unit = ("efficiency", "%") if percent else (what, unit)
     ax.set(
         title=f"{what.capitalize()}: 95 % from {low_text} to {high_text} {unit}",

@@ -263,7 +263,10 @@ def about_inputs(values: Sequence[UncertainValue]) -> dict[str, Any]:
         "input_value": ([value.value for value in values], "value of the input"),
         "input_unit": ([value.unit or "1" for value in values], "unit of the input"),
         "distribution": ([value.text for value in values], "distribution of the input"),
-        "distribution_source": ([value.source for value in values], "source of the distribution"),
+        "distribution_source": (
+            [f"{value.source}{value.remark and f'; {value.remark}'}" for value in values],
+            "source of the distribution",
+        ),
         "input_uncertainty": (
             [standard_uncertainty(value) for value in values],
             "standard uncertainty of the input",

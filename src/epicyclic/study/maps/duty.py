@@ -303,7 +303,7 @@ def _temperatures(
     axis = lookup.axes[lookup.names.index("temperature")]
     if axis.size > 1:
         low, high = (format_number(float(axis[place])) for place in (0, -1))
-        allowed = f"is not a column of the cycle, and the map covers {low} to {high} degC."
+        allowed = f"is not a column of the cycle, and the map covers {low} to {high} °C."
         remedy = f'Choose one or more, as in --temperature "{high} degC".'
         raise one_problem("temperature", "", allowed, remedy, "the command")
     return (float(axis[0]),)

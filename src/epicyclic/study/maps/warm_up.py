@@ -45,6 +45,7 @@ from epicyclic.units import (
     WATT,
     Quantity,
     Temperature,
+    celsius_text,
 )
 
 if TYPE_CHECKING:
@@ -547,7 +548,7 @@ def _runaway(tables: HeatTables, course: Course) -> ConvergenceError:
     node = list(tables.capacities)[int(course.temperatures[:, row].argmax())]
     return ConvergenceError(
         f"thermal runaway: within {SECOND.text(course.times[row], 3)} {node} exceeds "
-        f"{CELSIUS.text(HOTTEST, 4)}. Remove more heat: thermal.oil_flow, "
+        f"{celsius_text(HOTTEST, 4)}. Remove more heat: thermal.oil_flow, "
         "thermal.cooler_conductance, a larger [thermal.housing]."
     )
 

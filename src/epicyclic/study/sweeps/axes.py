@@ -224,7 +224,7 @@ def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
         if abs(whole) <= _LARGEST_WHOLE:
             return whole
     elif isinstance(value, Real):
-        return float(value)
+        return float(value) + 0.0  # no zero below zero
     raise PydanticCustomError(
         "axis", "is not a value of one key", {"remedy": "give numbers, text or names"}
     )
