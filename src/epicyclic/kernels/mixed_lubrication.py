@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,7 +19,7 @@ SMALL_STEP = 1e-5  # Over the stress: what Newton's method leaves then is its sq
 
 def eyring_stress(
     temperature: FloatArray, pressure: FloatArray, log_rate: FloatArray, limit: float,
-    oil: FloatArray,
+    oil: Sequence[float],
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """tau_E arsinh(eta rate/tau_E) with tau_E = Lambda/alpha, eta of Barus. Theory (Y6). [Pa]
 
@@ -47,7 +48,7 @@ def eyring_stress(
 
 def film_stress(
     pressure: FloatArray, rate: FloatArray, warm: FloatArray, heating: FloatArray,
-    limit: float, oil: FloatArray,
+    limit: float, oil: Sequence[float],
 ) -> FloatArray:  # fmt: skip
     """Stress tau of each film at the temperature T0 + warm + heating tau. Theory (Y7). [Pa]
 
@@ -64,16 +65,18 @@ def film_stress(
     log_rate = np.log(np.where(sheared, rate, 1.0) * (oil[4] * oil[5] / limit))
     base, stress = oil[0] + warm, START * limit * pressure
     low, high = np.zeros_like(stress), np.full_like(stress, math.inf)
-    moved = high
+    moved, found = high, np.zeros_like(sheared)
     for _ in range(STEPS):  # Newton, bisection where that leaves what is known or runs in circles
         hot, slope = eyring_stress(base + heating * stress, pressure, log_rate, limit, oil)
         step = (hot - stress) / (1.0 - heating * slope)
+        step = np.where(found, 0.0, step)  # no film depends on those beside it
         last, stress, size = stress, stress + step, np.abs(step)
-        if (size <= SMALL_STEP * stress).all():
+        found = found | (size <= SMALL_STEP * stress)
+        if found.all():
             break
         above = hot > last
         low, high = np.where(above, last, low), np.where(above, high, last)
-        left = (stress < low) | (stress > high) | (size > moved / 2.0)
+        left = ~found & ((stress < low) | (stress > high) | (size > moved / 2.0))
         if left.any():
             stress = np.where(left, np.minimum((low + high) / 2.0, 2.0 * last), stress)
         moved = np.abs(stress - last)
