@@ -2,8 +2,9 @@
 
 A sweep solves its points in blocks: what differs from point to point is a column with one row for
 each of them, `Points`, and takes the place of a number. A decision is one for the whole block;
-where points part, `Apart` says which, and each part is solved by itself. No result depends on which
-points share a block.
+where points part, `Apart` says which, and each part is solved by itself. Passes go on until all
+points of a block agree, so which points share one matters within the tolerance of the passes:
+blocks are cut by the numbers of the points, whoever solves them.
 """
 
 from __future__ import annotations
@@ -86,6 +87,16 @@ phase = _either(cmath.phase, np.angle)
 hypot = _either(math.hypot, lambda *sides: np.sqrt(sum(side * side for side in sides)))
 
 
+def every(truth: Any) -> bool:
+    """Whether something holds for all points."""
+    return bool(np.asarray(truth).all()) if isinstance(truth, Points) else bool(truth)
+
+
+def some(truth: Any) -> bool:
+    """Whether something holds for any point."""
+    return bool(np.asarray(truth).any()) if isinstance(truth, Points) else bool(truth)
+
+
 def larger(one: float, two: float) -> float:
     """The larger of two numbers, point by point."""
     several = isinstance(one, Points) or isinstance(two, Points)
@@ -110,6 +121,11 @@ def norm(values: Sequence[float], order: float) -> float:
         found: float = most * sum((value / most) ** order for value in values) ** (1 / order)
         return found
     return float(np.linalg.norm(values, order))
+
+
+def first_of(number: Any) -> float:
+    """A number, of several points that of the first."""
+    return float(np.asarray(number)[0, 0]) if isinstance(number, Points) else number
 
 
 def total(values: FloatArray) -> float:

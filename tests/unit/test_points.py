@@ -85,7 +85,10 @@ def test_points_together_are_as_each_alone(
     assert len(asked) < 2 * len(cases)
     for one, other in zip(alone, together, strict=True):
         assert not isinstance(other, Exception)
-        assert other.values() == pytest.approx(one.values(), rel=1e-12, abs=1e-15, nan_ok=True)
+        assert other.losses == pytest.approx(one.losses, rel=1e-7, abs=1e-15)  # `LOSS_AGREEMENT`
+        assert other.total == pytest.approx(one.total, rel=1e-9)
+        # figures are those of loads that differ by less than `NEAR`
+        assert other.values() == pytest.approx(one.values(), rel=1e-4, abs=1e-9, nan_ok=True)
         assert other.warnings == one.warnings
         assert other.to_dict().keys() == one.to_dict().keys()
 
@@ -129,7 +132,7 @@ def test_a_point_without_solution_leaves_the_others_alone(monkeypatch: pytest.Mo
     found = solve_together(cases, {})
     assert isinstance(found[3], ConvergenceError)
     others = [one.total for one in found if not isinstance(one, Exception)]
-    assert others == pytest.approx(right[:3] + right[4:], rel=1e-12)
+    assert others == pytest.approx(right[:3] + right[4:], rel=1e-9)
 
 
 def test_a_decision_is_one_for_all_or_parts_them() -> None:

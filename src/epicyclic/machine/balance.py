@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import combinations, islice
+from itertools import combinations, islice, pairwise
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.machine import Machine, Operation, Terms
-from epicyclic.points import Apart, apart, hypot, largest, side_by_side
+from epicyclic.points import Apart, apart, first_of, hypot, largest, side_by_side
 
 # Systems of as many linear equations as unknowns.
 
@@ -104,7 +104,10 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
     limit = TOGETHER * largest(speeds.values())
     joined = {HOUSING: 0.0}
     last = 0.0
-    for body, speed in sorted(speeds.items(), key=lambda item: abs(item[1])):
+    ordered = sorted(speeds.items(), key=lambda item: first_of(abs(item[1])))
+    for (_, slower), (_, faster) in pairwise(ordered):
+        assert abs(slower) <= abs(faster) + limit  # or points part that have other orders
+    for body, speed in ordered:
         near = [known for known in (last, -last, 0.0) if abs(speed - known) <= limit]
         joined[body] = last = near[0] if near else speed
     return dict.fromkeys(machine.resting, 0.0) | joined

@@ -35,12 +35,14 @@ from epicyclic.points import (
     Alone,
     Apart,
     Points,
+    every,
     isfinite,
     joined,
     larger,
     largest,
     pointwise,
     smaller,
+    some,
     taken,
 )
 
@@ -59,6 +61,7 @@ turns from one regime into another it is more: 1.1e-7 was the most by which loss
 cases differed that were stated at either end; with 4.0 it is 4e-11, at up to half as many
 evaluations more. [1]"""
 NEAR = 3e-5  # Change of a load over which the figures of an answer serve. [1]
+TINY = 1e-300  # In place of a divisor of 0.
 ROUNDING = 1e-14  # Change, relative to the largest load, that is rounding. [1]
 
 
@@ -91,20 +94,21 @@ class Answer:
             if loss.follows not in steps:
                 steps[loss.follows] = self._step(loads, loss)
             step = steps[loss.follows]
-            if step.size > NEAR:
+            if some(step.size > NEAR):
                 return None
             off += step.error(loss.watts, older) * loss.watts
             line = loss.watts + step.part * (loss.watts - older)
             # no prediction makes a loss negative
             losses[name] = loss._replace(watts=larger(smaller(0.0, loss.watts), line))
-        if not CAUTION * off <= allowed * sum(loss.watts for loss in losses.values()):
+        if not every(CAUTION * off <= allowed * sum(loss.watts for loss in losses.values())):
             return None
         return replace(self.result, losses=losses)
 
     def alike(self, loads: Mapping[str, float], result: ElementResult) -> bool:
         """True if loads have the same signs, and losses act at the same places."""
         return all(
-            load * self.loads[key] > 0 or load == self.loads[key] for key, load in loads.items()
+            every((load * self.loads[key] > 0) | (load == self.loads[key]))
+            for key, load in loads.items()
         ) and all(
             (loss.mesh, loss.brakes)
             == (self.result.losses[name].mesh, self.result.losses[name].brakes)
@@ -119,7 +123,7 @@ class Answer:
         size = largest(new)
         ways = [one - two for one, two in zip(last, old, strict=True)]
         length = sum(way**2 for way in ways)
-        if not length > (ROUNDING * size) ** 2:
+        if not every(length > (ROUNDING * size) ** 2):
             return _Step(0.0, 0.0, _apart(last, new), 0.0)
         ahead = sum((one - two) * way for one, two, way in zip(new, last, ways, strict=True))
         part = ahead / length
@@ -144,15 +148,15 @@ class _Step:
         changes a little itself. What changed more than any power would, because it scatters or
         follows something else too, may change by as much again.
         """
-        if not self.before:
+        if not every(self.before):
             return STEEPEST * self.size
-        if watts == older:
+        if every(watts == older):
             return 0.0
-        if not watts:
+        if not every(watts):
             return math.inf
         change = abs(watts - older) / watts
         power = change / self.before
-        if power > STEEPEST:
+        if some(power > STEEPEST):
             return change + STEEPEST * self.size
         bend = power * abs(power - 1) / 2 + BENT
         return bend * self.size * (self.before + self.size) + STEEPEST * self.aside
@@ -161,9 +165,9 @@ class _Step:
 def _apart(old: list[float], new: list[float]) -> float:
     """Largest change of a load, relative to the largest load. [1]"""
     size = largest(new)
-    if not size:
+    if not some(size):
         return 0.0
-    return largest(two - one for one, two in zip(old, new, strict=True)) / size
+    return largest(two - one for one, two in zip(old, new, strict=True)) / larger(size, TINY)
 
 
 AGREEMENT = 5e-10
@@ -587,7 +591,7 @@ class _Branch:
         # an error of the losses changes the loads about as much as the losses do of which it is
         # that share: it may change them by less than they have to agree
         moved = _apart([self.unlost.meshes[key] for key in found.meshes], [*found.meshes.values()])
-        allowed = smaller(AGREEMENT / moved, LOSS_AGREEMENT) if moved else LOSS_AGREEMENT
+        allowed = smaller(AGREEMENT / larger(moved, TINY), LOSS_AGREEMENT)
         with np.errstate(over="ignore"):  # a loss may be too large for a number
             self.known = {
                 element.key: _answered(
@@ -709,7 +713,8 @@ def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
 def _agrees(old: Mapping[str, float], new: Mapping[str, float]) -> bool:
     size = largest(new.values())
     return all(
-        abs(load - old[key]) <= AGREEMENT * abs(load) + ROUNDING * size for key, load in new.items()
+        every(abs(load - old[key]) <= AGREEMENT * abs(load) + ROUNDING * size)
+        for key, load in new.items()
     )
 
 
@@ -727,7 +732,7 @@ def effects_of(
             power = 0.0 if loss.mesh in braking else abs(powers.get(loss.mesh, 0.0))
             if loss.mesh and loss.watts < MOST_OF_A_MESH * power:
                 efficiencies[loss.mesh] -= loss.watts / power
-            elif loss.watts:
+            elif some(loss.watts):
                 frictions += [
                     Friction((one, two), share * loss.watts) for one, two, share in loss.brakes
                 ]
