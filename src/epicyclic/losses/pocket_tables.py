@@ -134,9 +134,7 @@ class FlowFamily:
                 MixtureState(self.oil_fraction, 1.0, 0.0),
                 1.0,
                 self.model,
-                self.slices,
-                self.steps,
-                self.end_length,
+                *(self.slices, self.steps, self.end_length),
             )
         except ConvergenceError:
             return np.full(5, math.nan)
