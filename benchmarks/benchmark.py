@@ -245,6 +245,7 @@ def clear_caches() -> None:
         network.study_flow,
         cells.pocket_cells,
         geometry.pocket_geometry,
+        geometry._sections,
         gearing._gear,
         gearing._mesh,
         gear_sets.gear_bodies,
@@ -349,7 +350,8 @@ def pocket_seconds() -> tuple[float, float, float, float]:
     duties = list(built.mean_duties().values())
 
     def shapes() -> None:
-        for function in (geometry.pocket_geometry, cells.pocket_cells, network._free_flow):
+        kept = (geometry.pocket_geometry, geometry._sections)
+        for function in (*kept, cells.pocket_cells, network._free_flow):
             function.cache_clear()
         for duty in duties:
             pocket_geometry(duty.gears.mesh, duty.gears.tools, True)

@@ -168,6 +168,18 @@ def test_what_points_change_of_the_pockets(key, value, matters):
     assert list(sweeps._changes(plan, [0])) == [{key: value} if matters else {}]
 
 
+def test_a_wider_gear_keeps_pockets_of_the_same_common_face_and_sections_of_all():
+    case = ep.load_case("talbot-2012")
+    widths = ({}, {"sun.face_width": "32 mm"}, {"planet.face_width": "25 mm"})
+    as_given, wider_sun, wider_planets = (
+        tuple(map(flow_family, build(case.updated(change)).mean_duties().values()))
+        for change in widths
+    )
+    assert wider_sun == as_given != wider_planets
+    for one, other in zip(as_given, wider_planets, strict=True):
+        assert one.geometry.area is other.geometry.area
+
+
 def test_a_single_case_and_few_points_are_solved(case):
     assert math.isnan(ep.solve(case).meshes["mesh"].pocket_interpolation_error)
     few = ep.sweep(case, {"operation.speed": ["1000 rpm", "2000 rpm"]}, jobs=1)

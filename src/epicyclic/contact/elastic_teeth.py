@@ -169,6 +169,9 @@ def tooth_plate(
     return ToothPlate(gear, float(height[-1]), height, thickness, offset, (even, odd), face_terms)
 
 
+_gauss = lru_cache(maxsize=64)(legendre.leggauss)
+
+
 def _stiffness(
     height: FloatArray,
     thickness: FloatArray,
@@ -177,10 +180,13 @@ def _stiffness(
     poisson_ratio: float,
     face_terms: int,
 ) -> FloatArray:
-    """Stiffness matrix in (w, theta_s, theta_y), each of height by face terms. Theory (E1)."""
+    """Stiffness matrix in (w, theta_s, theta_y), each of height by face terms.
+
+    Theory (E1), (E2).
+    """
     nu = poisson_ratio
     top = float(height[-1])
-    points, weights = legendre.leggauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
+    points, weights = _gauss(HEIGHT_TERMS + QUADRATURE_MARGIN)
     t = np.interp((points + 1) / 2 * top, height, thickness)
     v = legendre.legvander(points, HEIGHT_TERMS - 1)
     slopes = legendre.legval(points, legendre.legder(np.eye(HEIGHT_TERMS)))
@@ -188,7 +194,7 @@ def _stiffness(
     bending = weights * top / 2 * elastic_modulus * t**3 / (12 * (1 - nu**2))
     shear = weights * top / 2 * SHEAR_FACTOR * elastic_modulus / (2 * (1 + nu)) * t
 
-    points, weights = legendre.leggauss(face_terms)
+    points, weights = _gauss(face_terms)
     y = legendre.legvander(points, face_terms - 1)
     slopes = legendre.legval(points, legendre.legder(np.eye(face_terms)))
     dy = np.ascontiguousarray(slopes.T) * 2 / length
@@ -209,28 +215,22 @@ def _stiffness(
     stiffness[r, w] = -np.kron(_integral(v, v, shear), ydy)
     stiffness[r, s] = np.kron(_integral(v, dv, bending * nu), ydy.T)
     stiffness[r, s] += np.kron(_integral(dv, v, twist), ydy)
-    _add_foundation(stiffness, yy, float(thickness[0]), elastic_modulus, nu)
-    for row, column in ((s, w), (r, w), (r, s)):
-        stiffness[column, row] = stiffness[row, column].T
-    return stiffness
-
-
-def _add_foundation(
-    stiffness: FloatArray, yy: FloatArray, root: float, elastic_modulus: float, nu: float
-) -> None:
-    """Add the springs under the root section of thickness `root`. Theory (E2)."""
-    n = HEIGHT_TERMS * len(yy)
+    # the springs under the root section
+    root = float(thickness[0])
     rotation = ROTATION_CONSTANT * (1 - nu**2) / (elastic_modulus * root**2)
     coupling = (1 - nu - 2 * nu**2) / (elastic_modulus * root)
     deflection = DEFLECTION_CONSTANT * (1 - nu**2) / elastic_modulus
     springs = np.linalg.inv(np.array([[deflection, coupling], [coupling, rotation]]))
     at_root = legendre.legvander(-1.0, HEIGHT_TERMS - 1)
     line = np.kron(np.outer(at_root, at_root), yy)
-    stiffness[:n, :n] += springs[0, 0] * line
-    stiffness[n : 2 * n, n : 2 * n] += springs[1, 1] * line
-    stiffness[n : 2 * n, :n] += springs[1, 0] * line
+    stiffness[w, w] += springs[0, 0] * line
+    stiffness[s, s] += springs[1, 1] * line
+    stiffness[s, w] += springs[1, 0] * line
     # the foundation does not twist the root section along the tooth: theta_y follows w there
-    stiffness[2 * n :, 2 * n :] += line / rotation
+    stiffness[r, r] += line / rotation
+    for row, column in ((s, w), (r, w), (r, s)):
+        stiffness[column, row] = stiffness[row, column].T
+    return stiffness
 
 
 def _integral(a: NDArray[Any], b: NDArray[Any], weights: FloatArray) -> FloatArray:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, TypeVar
 
 from epicyclic.arrays import FloatArray
@@ -150,6 +151,13 @@ class Mesh:
         inv2 = involute(self.gear2.pressure_angle_at(r2))
         inv_w = involute(self.operating_pressure_angle)
         return (delta1 + inv1) / self.ratio - (delta2 + inv2) + (1 - 1 / self.ratio) * inv_w
+
+
+@lru_cache(maxsize=256)
+def with_faces(mesh: Mesh, width: float) -> Mesh:
+    """The mesh of gears whose faces are both so wide. [m]"""
+    one, two = (replace(gear, face_width=width) for gear in (mesh.gear1, mesh.gear2))
+    return replace(mesh, gear1=one, gear2=two)
 
 
 # Profile shifts, centre distance and backlash of a mesh: each from the other two.

@@ -221,6 +221,10 @@ def monotone_cubic(
     read, slope : ndarray, shape (m, k)
     """
     count, columns = values.shape
+    slopes = np.empty_like(values)
+    for n in range(count):
+        for k in range(columns):
+            slopes[n, k] = _slope(values, n, k)
     read = np.empty((at.size, columns))
     slope = np.zeros((at.size, columns))
     for m in range(at.size):
@@ -230,7 +234,7 @@ def monotone_cubic(
         inside = t == place - n
         for k in range(columns):
             here, rise = values[n, k], values[n + 1, k] - values[n, k]
-            one, two = _slope(values, n, k), _slope(values, n + 1, k)
+            one, two = slopes[n, k], slopes[n + 1, k]
             bend, twist = 3 * rise - 2 * one - two, one + two - 2 * rise
             read[m, k] = here + t * (one + t * (bend + t * twist))
             if inside:

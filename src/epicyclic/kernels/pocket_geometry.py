@@ -90,13 +90,17 @@ def _closest(
                 best = distance
                 foot = _involute_point(rho_foot, base, base_half_angle, outward)
                 after = _next_to_tip(flank, int(joints[1]), rho_foot, base, outward)
+    nearly = 1 + 1e-12  # rounding
     for k in range(int(joints[0]), int(joints[1])):
         chord = flank[k + 1] - flank[k]
         to_point = point - flank[k]
         squared = chord.real**2 + chord.imag**2
         share = (to_point.real * chord.real + to_point.imag * chord.imag) / squared
         share = min(1.0, max(0.0, share))
-        distance = abs(to_point - share * chord)
+        away = to_point - share * chord
+        if away.real**2 + away.imag**2 > nearly * best**2:
+            continue  # saves the root
+        distance = abs(away)
         if distance < best:
             best = distance
             foot = flank[k] + share * chord
@@ -105,15 +109,18 @@ def _closest(
 
 
 @kernel
+def _mirrored(point: complex, mirror: float) -> complex:
+    return point if mirror > 0.0 else point.conjugate()
+
+
+@kernel
 def _place(point: complex, turn: float, mirror: float, centre: float) -> complex:
-    local = point if mirror > 0.0 else point.conjugate()
-    return centre + local * cmath.exp(1j * turn)
+    return centre + _mirrored(point, mirror) * cmath.exp(1j * turn)
 
 
 @kernel
 def _unplace(point: complex, turn: float, mirror: float, centre: float) -> complex:
-    local = (point - centre) * cmath.exp(-1j * turn)
-    return local if mirror > 0.0 else local.conjugate()
+    return _mirrored((point - centre) * cmath.exp(-1j * turn), mirror)
 
 
 @kernel
@@ -242,18 +249,18 @@ def _add_tooth(
     `after`: as of `_closest` on the flank of positive and on that of negative side; `place`: turn
     and centre.
     """
-    turn, centre = place
+    rotation, centre = cmath.exp(1j * place[0]), place[1]
     for k in range(after[0], flank.size):
-        polygon[count] = _place(flank[k], turn, 1.0, centre)
+        polygon[count] = centre + flank[k] * rotation
         count += 1
     corner = flank[flank.size - 1]
     half = cmath.phase(corner)
     for k in range(1, TIP_POINTS - 1):
         angle = half * (1 - 2 * k / (TIP_POINTS - 1))
-        polygon[count] = _place(abs(corner) * cmath.exp(1j * angle), turn, 1.0, centre)
+        polygon[count] = centre + abs(corner) * cmath.exp(1j * angle) * rotation
         count += 1
     for k in range(flank.size - 1, after[1] - 1, -1):
-        polygon[count] = _place(flank[k], turn, -1.0, centre)
+        polygon[count] = centre + flank[k].conjugate() * rotation
         count += 1
     return count
 
@@ -273,11 +280,13 @@ def _add_space(
     `after` and `turns` belong to the flank where the path begins and to the one where it ends;
     `mirror` to the first one.
     """
+    rotation = cmath.exp(1j * turns[0])
     for k in range(after[0] - 1, -1, -1):
-        polygon[count] = _place(flank[k], turns[0], mirror, centre)
+        polygon[count] = centre + _mirrored(flank[k], mirror) * rotation
         count += 1
+    rotation = cmath.exp(1j * turns[1])
     for k in range(1, after[1]):
-        polygon[count] = _place(flank[k], turns[1], -mirror, centre)
+        polygon[count] = centre + _mirrored(flank[k], -mirror) * rotation
         count += 1
     return count
 
@@ -326,15 +335,8 @@ def _add_pocket(
         count = _add_tooth(polygon, 1, flank1, (lead_after1, trail_after1), (lead, 0.0))
         polygon[count] = trail1
         polygon[count + 1] = trail2
-        count = _add_space(
-            polygon,
-            count + 2,
-            flank2,
-            (trail_after2, lead_after2),
-            (trail_turn2, lead_turn2),
-            -mirror2,
-            centre2,
-        )
+        after, turns = (trail_after2, lead_after2), (trail_turn2, lead_turn2)
+        count = _add_space(polygon, count + 2, flank2, after, turns, -mirror2, centre2)
         polygon[count] = lead2
         return count + 1
     # The leading flank of one tooth of gear 1 faces the tooth of gear 2 in the space before it;

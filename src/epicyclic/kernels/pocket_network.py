@@ -24,8 +24,8 @@ Pair = tuple[Floats, Floats]  # Values at axial faces and at gaps, unless said o
 State = tuple[Floats, Floats, Floats, Floats]
 """Pressure and full share of the cells, velocities through axial faces and gaps."""
 
-Work = tuple[Floats, Floats, Indices, tuple[Pair, Pair]]
-"""Memory of `_advance`: matrix, right side, rows of the cells, laws of the openings."""
+Work = tuple[Floats, Floats, Indices, tuple[Pair, Pair], Floats]
+"""Memory of `_advance`: matrix, right side, rows of the cells, laws of the openings, `_carry`."""
 
 SHOCK_VOID = 0.1  # Void in a cell from which on its kinetic energy is taken from upstream. [1]
 ITERATIONS_MOST = 30
@@ -85,10 +85,14 @@ def _linear_law(
 ) -> tuple[float, float]:
     """Velocity in an opening without a drop of pressure, and its derivative by the drop.
 
+    Both are zero in an opening that leads nowhere, which has no inertia.
+
     Newton's method about the velocity of the last iteration, for which the law is convex. Where
     that is too small for the drop, or the neighbours have more influence than the inertia, the
     velocity is held back, or it would overshoot. Theory (Q26).
     """
+    if inertia == 0.0:
+        return 0.0, 0.0
     loss, head, influence = law
     drive = inertia * before + drop - head
     stiffness = max(
@@ -100,61 +104,42 @@ def _linear_law(
 
 
 @kernel
-def _carried(
-    axial: Floats, share: Floats, live: Flags, i: int, j: int
-) -> tuple[float, float, float]:
-    """What an axial face has to do with its neighbours. Theory (Q24), (Q26).
+def _carry(axial: Floats, share: Floats, live: Flags, carried: Floats) -> None:
+    """What the cells of a pocket have to do with their faces. Theory (Q24), (Q26).
 
-    Returns
-    -------
-    loss, head, slope : float
-        Part of its own velocity head that it takes; head that is carried on from and to the
-        neighbours; change of that with their velocities.
+    A column of `carried` for each, and one of zeros at either end: the share of the faces in its
+    kinetic energy; the head that it gives to the face behind it, and the change of that with the
+    velocity before it; the same the other way round.
     """
-    loss, head, slope = 1.0, 0.0, 0.0
-    if j > 0 and live[i, j - 1]:
-        u = axial[i, j - 1]
-        part = 1 - share[i, j - 1] if u > 0.0 else share[i, j - 1]
-        loss -= share[i, j - 1]
-        head -= part * u * u / 2
-        slope += part * abs(u)
-    if j < live.shape[1] and live[i, j]:
-        u = axial[i, j + 1]
-        part = 1 - share[i, j] if u < 0.0 else share[i, j]
-        loss -= share[i, j]
-        head += part * u * u / 2
-        slope += part * abs(u)
-    return loss, head, slope
+    carried[:] = 0.0
+    for j in range(live.size):
+        if live[j]:
+            before, behind = axial[j], axial[j + 1]
+            down = 1 - share[j] if before > 0.0 else share[j]
+            up = 1 - share[j] if behind < 0.0 else share[j]
+            carried[0, j + 1] = share[j]
+            carried[1, j + 1], carried[2, j + 1] = down * before * before / 2, down * abs(before)
+            carried[3, j + 1], carried[4, j + 1] = up * behind * behind / 2, up * abs(behind)
 
 
 @kernel
 def _face_law(
-    axial: Floats, share: Floats, live: Flags, i: int, j: int, carries: bool
+    carried: Floats, live: Flags, i: int, j: int, carries: bool
 ) -> tuple[float, float, float]:
-    """As `_carried`; without it, only faces to the surroundings take their velocity head."""
+    """What axial face j of pocket i has to do with its neighbours, from `carried` of `_carry`.
+
+    Returns
+    -------
+    loss, head, influence : float
+        Part of its own velocity head that it takes; head that is carried on from and to the
+        neighbours; change of that with their velocities. Without all that, only faces to the
+        surroundings take their velocity head.
+    """
     if carries:
-        return _carried(axial, share, live, i, j)
+        loss = 1 - carried[0, j] - carried[0, j + 1]
+        return loss, carried[3, j + 1] - carried[1, j], carried[2, j] + carried[4, j + 1]
     inside = j > 0 and j < live.shape[1] and live[i, j - 1] and live[i, j]
     return (0.0 if inside else 1.0), 0.0, 0.0
-
-
-@kernel
-def _put(
-    ka: int, kb: int, qa: float, qb: float, rest: float, slope: float, matrix: Floats, right: Floats
-) -> None:
-    """Put a flow from a to b, `rest + slope (q_a - q_b)`, into the balances of both."""
-    if ka >= 0:
-        matrix[ka, 0] += slope
-        right[ka] -= rest
-        if kb >= 0:
-            matrix[ka, kb - ka] -= slope
-        else:
-            right[ka] += slope * qb
-    if kb >= 0:
-        matrix[kb, 0] += slope
-        right[kb] += rest
-        if ka < 0:
-            right[kb] += slope * qa
 
 
 @kernel
@@ -177,62 +162,75 @@ def _inertias(
 
 
 @kernel
-def _assemble(
-    live: Flags, openings: Openings, carries: bool, share: Floats, inertias: Pair, start: State,
-    state: State, laws: tuple[Pair, Pair], row: Indices, matrix: Floats, right: Floats,
+def _find_laws(
+    live: Flags, carries: bool, share: Floats, inertias: Pair, start: State, state: State,
+    laws: tuple[Pair, Pair], carried: Floats,
 ) -> None:  # fmt: skip
-    """Flows through all openings in the balances of volume of their cells.
-
-    Leaves for faces and gaps the velocity without a drop and its slope in `laws`.
-    """
-    q, full, axial, cross = state
-    pockets, slices = live.shape
-    area, inertia, before, (rest, slope) = openings[1], inertias[1], start[3], laws[1]
-    for i in range(pockets + 1):
-        for j in range(slices):
-            if inertia[i, j] == 0.0:
-                continue
-            u, qa, qb = cross[i, j], q[i, j + 1], q[i + 1, j + 1]
-            law = (1.0, 0.0, 0.0)
-            u0, s = _linear_law(law, inertia[i, j], before[i, j], u, qa - qb)
-            rest[i, j], slope[i, j] = u0, s
-            wet = area[i, j] * (full[i, j + 1] if u > 0.0 else full[i + 1, j + 1])
-            _put(row[i, j + 1], row[i + 1, j + 1], qa, qb, wet * u0, wet * s, matrix, right)
-    area, inertia, before, (rest, slope) = openings[0], inertias[0], start[2], laws[0]
-    for i in range(pockets):
-        for j in range(slices + 1):
-            if inertia[i, j] == 0.0:
-                continue
-            u, qa, qb = axial[i, j], q[i + 1, j], q[i + 1, j + 1]
-            law = _face_law(axial, share, live, i, j, carries)
-            u0, s = _linear_law(law, inertia[i, j], before[i, j], u, qa - qb)
-            rest[i, j], slope[i, j] = u0, s
-            wet = area[i, j] * (full[i + 1, j] if u > 0.0 else full[i + 1, j + 1])
-            _put(row[i + 1, j], row[i + 1, j + 1], qa, qb, wet * u0, wet * s, matrix, right)
+    """Velocities without a drop in all openings, and their slopes, to `laws`."""
+    q = state[0]
+    for inertia, before, last, (rest, slope), gap in (
+        (inertias[0], start[2], state[2], laws[0], 0), (inertias[1], start[3], state[3], laws[1], 1)
+    ):  # fmt: skip
+        for i in range(last.shape[0]):
+            if not gap:
+                _carry(last[i], share[i], live[i], carried)
+            for j in range(last.shape[1]):
+                law = (1.0, 0.0, 0.0) if gap else _face_law(carried, live, i, j, carries)
+                drop = q[i + 1 - gap, j + gap] - q[i + 1, j + 1]
+                found = _linear_law(law, inertia[i, j], before[i, j], last[i, j], drop)
+                rest[i, j], slope[i, j] = found
 
 
 @kernel
-def _update_velocities(
-    inertias: Pair, laws: tuple[Pair, Pair], state: State
-) -> tuple[float, float]:
+def _assemble(
+    volume: Pair, openings: Openings, turn: float, held: Floats, state: State,
+    laws: tuple[Pair, Pair], row: Indices, width: int, matrix: Floats, right: Floats,
+) -> None:  # fmt: skip
+    """Balances of volume of the cells with the flows through gaps and faces of these laws."""
+    q, full, axial, cross = state
+    pockets, slices = row.shape[0] - 2, row.shape[1] - 2
+    for i in range(pockets):
+        for j in range(slices):
+            k = row[i + 1, j + 1]
+            if k >= 0:
+                matrix[k, : width + 1] = 0.0
+                right[k] = (held[i + 1, j + 1] * volume[0][i, j] - volume[1][i, j]) / turn
+    for area, u, (rest, slope), gap in (
+        (openings[1], cross, laws[1], 1), (openings[0], axial, laws[0], 0)
+    ):  # fmt: skip
+        for i in range(pockets):
+            for j in range(slices):
+                k, own = row[i + 1, j + 1], full[i + 1, j + 1]
+                if k < 0:
+                    continue
+                a, b = i + 1 - gap, j + gap  # the cell before
+                wet = area[i, j] * (full[a, b] if u[i, j] > 0.0 else own)
+                matrix[k, 0] += wet * slope[i, j]
+                right[k] += wet * rest[i, j]
+                if row[a, b] < 0:
+                    right[k] += wet * slope[i, j] * q[a, b]
+                n, m = i + gap, j + 1 - gap
+                a, b = n + 1, m + 1  # the cell behind
+                wet = area[n, m] * (own if u[n, m] > 0.0 else full[a, b])
+                matrix[k, 0] += wet * slope[n, m]
+                right[k] -= wet * rest[n, m]
+                if row[a, b] < 0:
+                    right[k] += wet * slope[n, m] * q[a, b]
+                else:
+                    matrix[k, row[a, b] - k] -= wet * slope[n, m]
+
+
+@kernel
+def _update_velocities(laws: tuple[Pair, Pair], state: State) -> tuple[float, float]:
     """Velocities in all openings after the pressures; their largest change, and the largest."""
     q, _, axial, cross = state
     moved, largest = 0.0, 0.0
-    inertia, (rest, slope) = inertias[0], laws[0]
-    for i in range(axial.shape[0]):
-        for j in range(axial.shape[1]):
-            if inertia[i, j] > 0.0:
-                u = rest[i, j] + slope[i, j] * (q[i + 1, j] - q[i + 1, j + 1])
-                moved, largest = max(moved, abs(u - axial[i, j])), max(largest, abs(u))
-                axial[i, j] = u
-    inertia, (rest, slope) = inertias[1], laws[1]
-    for i in range(cross.shape[0]):
-        for j in range(cross.shape[1]):
-            u = 0.0
-            if inertia[i, j] > 0.0:
-                u = rest[i, j] + slope[i, j] * (q[i, j + 1] - q[i + 1, j + 1])
-            moved, largest = max(moved, abs(u - cross[i, j])), max(largest, abs(u))
-            cross[i, j] = u
+    for velocity, (rest, slope), gap in ((axial, laws[0], 0), (cross, laws[1], 1)):
+        for i in range(velocity.shape[0]):
+            for j in range(velocity.shape[1]):
+                u = rest[i, j] + slope[i, j] * (q[i + 1 - gap, j + gap] - q[i + 1, j + 1])
+                moved, largest = max(moved, abs(u - velocity[i, j])), max(largest, abs(u))
+                velocity[i, j] = u
     return moved, largest
 
 
@@ -279,17 +277,11 @@ def _advance(
 ) -> int:  # fmt: skip
     """One implicit Euler step; iterations, negative if they were too few. Theory (Q25), (Q26)."""
     q, full = state[0], state[1]
-    matrix, right, row, laws = work
+    matrix, right, row, laws, carried = work
     count, width = _number(live, full, row)
     for iteration in range(1, ITERATIONS_MOST + 1):
-        matrix[:count] = 0.0
-        for i in range(live.shape[0]):
-            for j in range(live.shape[1]):
-                k = row[i + 1, j + 1]
-                if k >= 0:
-                    held = start[1][i + 1, j + 1] * volume[0][i, j]
-                    right[k] = (held - volume[1][i, j]) / rules[0]
-        _assemble(live, openings, rules[2], share, inertias, start, state, laws, row, matrix, right)
+        _find_laws(live, rules[2], share, inertias, start, state, laws, carried)
+        _assemble(volume, openings, rules[0], start[1], state, laws, row, width, matrix, right)
         _solve_symmetric(matrix[:count], right[:count], width)
         moved_q, largest_q = 0.0, 0.0
         for i in range(1, q.shape[0] - 1):
@@ -299,7 +291,7 @@ def _advance(
                     moved_q = max(moved_q, abs(right[k] - q[i, j]))
                     largest_q = max(largest_q, abs(right[k]))
                     q[i, j] = right[k]
-        moved, largest = _update_velocities(inertias, laws, state)
+        moved, largest = _update_velocities(laws, state)
         changed = _update_voids(live, volume, openings, rules, start, state, row)
         if changed >= 1.0:
             count, width = _number(live, full, row)
@@ -331,16 +323,18 @@ def _shares(
 
 
 @kernel
-def _laws(
-    axial: Floats, share: Floats, live: Flags, inertias: Floats, carries: bool, laws: Floats
-) -> None:
+def _drops(
+    axial: Floats, share: Floats, live: Flags, inertias: Floats, carries: bool, drops: Floats,
+    carried: Floats,
+) -> None:  # fmt: skip
     """Drop of pressure that each axial face takes beside its inertia. Theory (Q26)."""
+    drops[:] = 0.0
     for i in range(axial.shape[0]):
+        _carry(axial[i], share[i], live[i], carried)
         for j in range(axial.shape[1]):
-            laws[i, j] = 0.0
             if inertias[i, j] > 0.0:
-                loss, head, _ = _face_law(axial, share, live, i, j, carries)
-                laws[i, j] = loss * abs(axial[i, j]) * axial[i, j] / 2 + head
+                loss, head, _ = _face_law(carried, live, i, j, carries)
+                drops[i, j] = loss * abs(axial[i, j]) * axial[i, j] / 2 + head
 
 
 @kernel
@@ -434,7 +428,8 @@ def periodic_network(
     laws = (
         (np.zeros_like(axial), np.zeros_like(axial)), (np.zeros_like(cross), np.zeros_like(cross))
     )  # fmt: skip
-    work = (np.zeros((pockets * slices, pockets + 1)), np.zeros(pockets * slices), row, laws)
+    matrix, right = np.zeros((pockets * slices, pockets + 1)), np.zeros(pockets * slices)
+    work = (matrix, right, row, laws, np.zeros((5, slices + 2)))
     last_work = 0.0
     figures[0] = 1.0
     for period in range(1, limits[0] + 1):
@@ -472,6 +467,7 @@ def periodic_network(
                         (work[3][0][0][part], work[3][0][1][part]),
                         (work[3][1][0][gaps], work[3][1][1][gaps]),
                     ),
+                    work[4],
                 ),
                 tolerance,
             )
@@ -486,7 +482,7 @@ def periodic_network(
                     filled = max(filled, abs(full[i + 1, j + 1] - history[1][n, i + 1, j + 1]))
             history[0][n], history[1][n], history[2][n], history[3][n] = q, full, axial, cross
             history[4][n], history[5][n] = inertias
-            _laws(axial, share, live[n], inertias[0], rules[2], history[6][n])
+            _drops(axial, share, live[n], inertias[0], rules[2], history[6][n], work[4])
         _move_on(q[1:-1], shift, 0.0)
         _move_on(full[1:-1], shift, 1.0)
         _move_on(axial, shift, 0.0)

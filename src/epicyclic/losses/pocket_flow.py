@@ -312,16 +312,9 @@ def pocket_flow(
         return _scaled_up(flow, geometry, abs(speed), mixture.density)
     used, most = 0, ITERATIONS_MOST * steps
     for finer in FINER:
+        resolution = (slices, finer * steps, end_length)
         found, used = _compressible_flow(
-            geometry,
-            speed,
-            mixture,
-            pressure,
-            model,
-            slices,
-            finer * steps,
-            end_length,
-            (used, most),
+            geometry, speed, mixture, pressure, model, *resolution, (used, most)
         )
         if found is not None:
             return found
@@ -360,15 +353,9 @@ def _compressible_flow(
     figures = np.zeros(9)
     figures[8] = iterations[0]
     periods = periodic_flow(
-        cells.shape,
-        cells.live,
-        fluid,
-        period / steps,
-        POCKETS_PER_PITCH,
+        *(cells.shape, cells.live, fluid, period / steps, POCKETS_PER_PITCH),
         (PERIODS_MOST, PERIOD_TOLERANCE, iterations[1]),
-        history,
-        work,
-        figures,
+        *(history, work, figures),
     )
     used = int(figures[8])
     if periods == 0:

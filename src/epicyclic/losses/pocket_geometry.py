@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from epicyclic.gears.cutting import Tool, tooth_outline
 from epicyclic.gears.gear import Gear, involute
-from epicyclic.gears.mesh import Mesh
+from epicyclic.gears.mesh import Mesh, with_faces
 from epicyclic.kernels import pocket_geometry as kernels
 from epicyclic.kernels.interpolation import monotone_cubic
 from epicyclic.kernels.pocket_flow import SDIRK
@@ -67,6 +67,14 @@ def pocket_geometry(
     angles: int = ANGLES,  # Angles in each table.
 ) -> PocketGeometry:
     """Pockets of `mesh`. Raises `ValueError` if a tool cannot cut its gear."""
+    return replace(_sections(with_faces(mesh, 1.0), tools, drives1, angles), mesh=mesh)
+
+
+@lru_cache(maxsize=32)
+def _sections(
+    mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool, angles: int
+) -> PocketGeometry:
+    """The same for all widths of the faces."""
     gears, figures = _section(mesh, tools, drives1)
     life = _lives(mesh, contact_clearances(mesh, drives1))
     half_pitch = math.pi / mesh.gear1.teeth
@@ -79,7 +87,9 @@ def pocket_geometry(
     gaps = np.stack(
         [kernels.gap_table(gap_angle, leading, gears, figures) for leading in (1.0, -1.0)]
     )
-    geometry = PocketGeometry(
+    for array in (life, angle, tables, gap_angle, gaps):
+        array.flags.writeable = False
+    return PocketGeometry(
         mesh=mesh,
         life=life,
         angle=angle,
@@ -90,9 +100,6 @@ def pocket_geometry(
         gap_middle=gaps[..., 1:],
         pitch=2 * half_pitch,
     )
-    for array in (life, angle, tables, gap_angle, gaps):
-        array.flags.writeable = False
-    return geometry
 
 
 def pocket_outlines(
@@ -231,17 +238,18 @@ def pocket_cells(
     # Every tooth of gear 1, and one more for the last gap: (times, teeth, stations).
     angle = times[:, None, None] + stations - (teeth * pitch)[:, None]
     spaces = [angle[:, :-1] - place * pitch / 2 for place in (0, 1)]
-    areas = [_read(geometry.angle[k], geometry.area[k][:, None], spaces[k]) for k in (0, 1)]
-    area, rate = (_along_mesh([pair[part][..., 0] for pair in areas]) for part in (0, 1))
-    centroid, gap, middle = (
-        _along_mesh([_read(angles[k], values[k], at[k])[0] for k in (0, 1)])
-        for angles, values, at in (
-            (geometry.angle, geometry.centroid, spaces),
-            ((geometry.gap_angle,) * 2, geometry.gap[..., None], (angle,) * 2),
-            ((geometry.gap_angle,) * 2, geometry.gap_middle, (angle,) * 2),
-        )
-    )
-    gap, middle = (_mean_of_ends(array[:, :-1]) for array in (gap[..., 0], middle))
+    inside = [
+        _read(geometry.angle[k], (geometry.area[k], geometry.centroid[k]), spaces[k])
+        for k in (0, 1)
+    ]
+    walls = [
+        _read(geometry.gap_angle, (geometry.gap[k], geometry.gap_middle[k]), angle)[0]
+        for k in (0, 1)
+    ]
+    area, rate = (_along_mesh([read[part][..., 0] for read in inside]) for part in (0, 1))
+    centroid = _along_mesh([read[0][..., 1:] for read in inside])
+    gap, middle = (_along_mesh([read[..., part] for read in walls]) for part in (0, np.s_[1:]))
+    gap, middle = (_mean_of_ends(array[:, :-1]) for array in (gap, middle))
     volume = width * _mean_of_ends(area)
     growth = _growth(volume, width * _mean_of_ends(rate), pitch / steps)
     cells = Cells(
@@ -323,9 +331,9 @@ def _teeth(geometry: PocketGeometry, twist: float) -> Floats:
     return np.arange(first, last + 2, dtype=np.float64)
 
 
-def _read(angle: Floats, values: Floats, at: Floats) -> tuple[Floats, Floats]:
-    """A table of shape (n, k) and its slope at angles of any shape, k last."""
-    spacing = (angle[-1] - angle[0]) / (angle.size - 1)
+def _read(angle: Floats, columns: tuple[Floats, ...], at: Floats) -> tuple[Floats, Floats]:
+    """Tables over n angles, together (n, k), and their slopes at angles of any shape, k last."""
+    values, spacing = np.column_stack(columns), (angle[-1] - angle[0]) / (angle.size - 1)
     flat = np.ascontiguousarray(at).ravel()
     read, slope = monotone_cubic(float(angle[0]), float(spacing), values, flat)
     shape = (*at.shape, values.shape[1])

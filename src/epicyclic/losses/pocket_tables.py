@@ -138,9 +138,7 @@ class FlowFamily:
                 MixtureState(self.oil_fraction, 1.0, 0.0),
                 1.0,
                 self.model,
-                self.slices,
-                self.steps,
-                self.end_length,
+                *(self.slices, self.steps, self.end_length),
             )
         except ConvergenceError:
             return np.full(5, math.nan)
@@ -581,8 +579,8 @@ def _table(path: Path, state: tuple[int, ...], family: FlowFamily) -> FlowTable:
 
 
 def _plain(family: FlowFamily) -> dict[str, _Plain]:
-    """Everything that the flows of a family depend on, by dotted names, in SI."""
-    return dict(_leaves("", asdict(family)))
+    """Everything that the flows of a family depend on, by dotted names, in SI; the face once."""
+    return {key: it for key, it in _leaves("", asdict(family)) if key != "mesh.gear2.face_width"}
 
 
 def _leaves(name: str, value: Any) -> Iterator[tuple[str, _Plain]]:

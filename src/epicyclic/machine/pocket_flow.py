@@ -10,6 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from epicyclic.gears.mesh import with_faces
 from epicyclic.losses.pocket_flow import (
     NETWORK_MODELS,
     POCKETING_MODELS,
@@ -102,12 +103,9 @@ def oil_in_mesh(duty: MeshDuty) -> float:
 
 def flow_family(duty: MeshDuty) -> FlowFamily:
     """The flows that that of a mesh belongs to."""
-    settings, mesh, tools, drives1 = (
-        duty.gears.models.pockets,
-        duty.gears.mesh,
-        duty.gears.tools,
-        duty.drives1,
-    )
+    settings, tools, drives1 = duty.gears.models.pockets, duty.gears.tools, duty.drives1
+    # what reaches beyond the common face is no part of the pockets
+    mesh = with_faces(duty.gears.mesh, duty.gears.mesh.face_width)
     # time steps follow a tooth of gear 1 of the pockets; of equal gears it is the one that drives
     one, two = (
         (it.teeth, it.tip_radius, it.root_radius, it.thickness_half_angle)
@@ -210,7 +208,7 @@ def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
     lowest = settings.void_pressure if settings.model == "incompressible" else 0.0
     mixture = fluids.mixed(oil_in_mesh(duty))
     speed = abs(duty.speed1)
-    if family.mesh is not duty.gears.mesh:  # gear 2 is gear 1 of the pockets
+    if family.mesh.gear1.name != duty.gears.mesh.gear1.name:  # gear 2 is gear 1 of the pockets
         speed /= duty.gears.mesh.ratio
     return family, speed, mixture, fluids.pressure - lowest
 
