@@ -37,7 +37,7 @@ def test_the_heat_that_leaves_is_the_loss(settled):
     assert settled.heat.residual < 1e-9
     assert leaving(settled) == pytest.approx(settled.total, rel=1e-9)
     assert sum(settled.heat.sources.values()) == pytest.approx(settled.total, rel=1e-12)
-    assert settled.heat.evaluations < 10
+    assert settled.heat.evaluations < 7
     powers = sum(member.power for member in settled.flow.members.values())
     assert powers == pytest.approx(settled.total, rel=1e-10)
 
@@ -273,13 +273,32 @@ def test_a_gearbox_that_runs_away_says_how_hot_it_gets():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("power", ["200 kW", "1 MW"])
+@pytest.mark.parametrize("power", ["500 kW", "1 MW"])
 def test_a_cooler_that_takes_more_than_there_is_is_told(power):
     case = ep.load_case(TALBOT).updated(
         FLOW | {"thermal.cooler_power": power, "thermal.housing.area": "1 m^2"}
     )
     with pytest.raises(ep.ConvergenceError, match=r"more heat is removed.*colder than -73"):
         ep.solve(case)
+
+
+def test_thick_oil_that_mostly_warms_itself_has_temperatures():
+    """The drag of oil at -30 degC would make it so hot that it drags next to nothing."""
+    ways = {
+        "models.temperatures": "network",
+        "models.friction": "doleschel",
+        "thermal.oil_flow": "1.5643 l/min",
+        "thermal.cooler_power": "436.6 W",
+        "thermal.lubrication": "submerged",
+        "surroundings.oil_air_ratio": 0.05,
+        "operation.torque": "2391.726 N*m",
+        "operation.speed": "3538.64 rpm",
+        "operation.oil_inlet_temperature": "-30 degC",
+        "lubricant.oil": "iso-vg-680-mineral",
+    }
+    result = ep.solve(ep.load_case(TALBOT).updated(ways))
+    assert result.heat.temperatures["oil"] - 273.15 == pytest.approx(53.36, abs=0.05)
+    assert leaving(result) == pytest.approx(result.total, rel=1e-9)
 
 
 def test_oil_outside_its_data_is_told_with_the_temperature():

@@ -38,8 +38,15 @@ from epicyclic.units import celsius_text, known_text
 
 AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
-QUICK = 0.15
-"""A step of the temperatures over the one before, up to which plain repetition is as quick. [1]"""
+NEARLY = 1e-3
+"""Change of a temperature from which on torques agree with the losses in each pass. [K]"""
+NEAR = 0.01  # Change of expected temperatures, over that of the last pass, with which they serve.
+QUICK = 0.5
+"""Change of expected temperatures over the one before up to which they are repeated; also how much
+warmer a temperature may make itself. [1]"""
+STEEPEST, MOST_MORE = 0.3, 2.0
+"""Rise of the logarithm of an expected loss with its temperature [1/K], and factor by which it goes
+with its torque, at most."""
 MOST_PASSES = 40
 SCATTERING_FROM, SCATTER = 15, 0.02
 """Passes after which a larger change is agreement [K]: that of the losses of a flow through pockets
@@ -99,78 +106,99 @@ def _losses(solution: Solution) -> list[Loss]:
     return [*own, *solution.given.values()]
 
 
+_Pass = tuple[Mapping[str, float], Solution, Answer]  # Temperatures [K], losses there, and so on.
+
+
 def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settled:
     """Temperatures and losses that agree. Theory (W27).
 
-    Plain repetition of losses and temperatures as long as that is quick, as where nothing but the
-    gears gets warm; else Broyden's method on the temperatures. Raises `ConvergenceError` if there
-    is no equilibrium, or only one that no gearbox survives.
+    From the third on, each pass is at the temperatures that the two before let expect. Raises
+    `ConvergenceError` if there is no equilibrium, or only one that no gearbox survives.
     """
-    nodes = tuple(model.start)
     unheated = start_of(machine, operation)
-    found: list[tuple[Solution, Answer]] = []
-    steps: list[float] = []
-    at = np.array([model.start[node] for node in nodes])
-    agrees = True  # Whether the torques of the last solution do with its losses.
-
-    def change(values: FloatArray, whole: bool = False) -> FloatArray:
-        nonlocal at, agrees
-        at = np.clip(values, COLDEST, HOTTEST)
-        temperatures = dict(zip(nodes, map(float, at), strict=True))
-        with np.errstate(invalid="warn"):
-            given = machine, operation, model.fluids(temperatures), unheated
-            if found and not whole:
-                solution, agrees = next_solution(*given, found[-1][0])
-            else:
-                solution, agrees = solve_machine(*given, found[-1][0] if found else None), True
-            answer = model.answer(temperatures, solution)
-        found.append((solution, answer))
-        step: FloatArray = np.array([answer.temperatures[node] for node in nodes]) - values
-        steps.append(float(np.abs(step).max()))
-        return step
-
-    def left(_: FloatArray) -> float:
-        return steps[-1] / (AGREEMENT if len(steps) <= SCATTERING_FROM else SCATTER)
-
-    for _ in range(2):
-        at = at + change(at)
-    while AGREEMENT < steps[-1] <= QUICK * steps[-2]:
-        at = at + change(at)
-    if not steps[-1] <= AGREEMENT:
-        _by_secants(change, at, left, found)
-    for _ in range(MOST_PASSES):
-        if agrees and left(at) <= 1:
-            break
-        at = at + change(at, whole=True)
-    solution, answer = found[-1]
-    reached = answer.temperatures.values()
-    if left(at) > 1 or min(reached) < COLDEST or max(reached) > HOTTEST:
-        raise _no_equilibrium(found)
-    return Settled(solution, answer, len(found), steps[-1])
+    found: list[_Pass] = []
+    at, change = _values(model.start), math.inf
+    while len(found) < MOST_PASSES:
+        held = _held(model, at)
+        given = machine, operation, model.fluids(held), unheated, found[-1][1] if found else None
+        lags = change > NEARLY
+        solution, agrees = next_solution(*given) if lags else (solve_machine(*given), True)
+        found.append((held, solution, answer := model.answer(held, solution)))
+        reached = _values(answer.temperatures)
+        change = float(np.abs(reached - at).max())
+        if agrees and change <= (AGREEMENT if len(found) <= SCATTERING_FROM else SCATTER):
+            if reached.min() < COLDEST or reached.max() > HOTTEST:
+                break
+            return Settled(solution, answer, len(found), change)
+        at = _expected(model, *found[-2:]) if len(found) > 1 else reached
+    raise _no_equilibrium(found)
 
 
-def _by_secants(
-    change: Callable[[FloatArray], FloatArray],
-    start: FloatArray,
-    left: Callable[[FloatArray], float],
-    found: list[tuple[Solution, Answer]],
-) -> None:
-    """Broyden's method from temperatures on."""
-    from scipy.optimize import NoConvergence, broyden1  # takes a sixth of a second
+def _values(temperatures: Mapping[str, float]) -> FloatArray:
+    return np.array([*temperatures.values()])
 
+
+def _held(model: ThermalModel, values: FloatArray) -> dict[str, float]:
+    return dict(zip(model.start, np.clip(values, COLDEST, HOTTEST).tolist(), strict=True))
+
+
+def _expected(model: ThermalModel, before: _Pass, last: _Pass) -> FloatArray:
+    """Temperatures that agree with the losses which two passes let expect. [K]"""
+    at, reached = _values(last[0]), _values(last[2].temperatures)
+    if not last[2].links:  # not all follow from losses: the secant of each
+        step, rise = at - _values(before[0]), reached - _values(before[2].temperatures)
+        slopes = np.divide(rise, step, out=np.zeros_like(at), where=step != 0)
+        return np.asarray(at + (reached - at) / (1 - np.minimum(slopes, QUICK)))
+
+    def ahead(values: FloatArray) -> FloatArray:
+        held = _held(model, values)
+        return _values(model.answer(held, _expected_losses(before, last, held)).temperatures)
+
+    found, change, near = reached, math.inf, max(AGREEMENT, NEAR * np.abs(reached - at).max())
     try:
-        with np.errstate(invalid="ignore"):  # its first check divides infinity by infinity
-            broyden1(
-                change, start, alpha=1.0, f_tol=1.0, tol_norm=left, maxiter=MOST_PASSES,
-                line_search=None,
-            )  # fmt: skip
-    except NoConvergence:
-        raise _no_equilibrium(found) from None
+        while change > near:
+            old, found, former = found, ahead(found), change
+            change = np.abs(found - old).max()
+            if change > max(QUICK * former, near):
+                from scipy.optimize import root  # takes a sixth of a second
+
+                done = root(lambda values: ahead(values) - values, at)
+                return np.asarray(done.x if done.success else reached)
+    except ConvergenceError:  # what does not hold for expected losses may hold for others
+        return reached
+    return found
 
 
-def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
+def _expected_losses(before: _Pass, last: _Pass, temperatures: Mapping[str, float]) -> Solution:
+    """The last solution with its losses as two passes let expect them at other temperatures.
+
+    The logarithm of each goes on with the mean temperature of what it heats. Those that are shares
+    of the power of a mesh go with its torque, too, which lags one pass behind.
+    """
+    (then, older, _), (now, solution, _) = before, last
+    torques, seen = solution.meshes, solution.state.torques
+    results = {}
+    for key, result in solution.results.items():
+        losses = {**result.losses}
+        for name, loss in losses.items():
+            own, old, new = (
+                sum(share * nodes.get(node, 0.0) for node, share in loss.heat)
+                for nodes in (now, then, temperatures)
+            )
+            slope, was = 0.0, older.results[key].losses[name].watts
+            if loss.watts and was and own != old:
+                slope = math.log(loss.watts / was) / (own - old)
+            watts = loss.watts * math.exp(max(-STEEPEST, min(slope, STEEPEST)) * (new - own))
+            if loss.mesh and torques[loss.mesh] * seen[loss.mesh] > 0:
+                watts *= min(torques[loss.mesh] / seen[loss.mesh], MOST_MORE)
+            losses[name] = loss._replace(watts=watts)
+        results[key] = replace(result, losses=losses)
+    return replace(solution, results=results)
+
+
+def _no_equilibrium(found: Sequence[_Pass]) -> ConvergenceError:
     """What to say of temperatures beyond all bounds, or that do not settle within them."""
-    for _, answer in found:  # the first to leave the bounds tells on which side they are left
+    for _, _, answer in found:  # the first to leave the bounds tells on which side they are left
         coldest, hottest = (end(answer.temperatures.values()) for end in (min, max))
         if coldest < COLDEST:
             node = min(answer.temperatures, key=answer.temperatures.__getitem__)
@@ -182,7 +210,7 @@ def _no_equilibrium(found: list[tuple[Solution, Answer]]) -> ConvergenceError:
             )
         if hottest > HOTTEST:
             break
-    before, temperatures = (answer.temperatures for _, answer in found[-2:])
+    before, temperatures = found[-2:][0][2].temperatures, found[-1][2].temperatures
     node = max(temperatures, key=temperatures.__getitem__)
     reached = f"{node.replace('_', ' ')} {celsius_text(temperatures[node], 4)}"
     if OIL in temperatures and node != OIL:
@@ -461,13 +489,8 @@ class NetworkModel:
         flows = network.flows(found)
         whole = max(sum(map(abs, heat.values())), *map(abs, flows.values()))
         left = max(map(abs, network.residuals(found, heat).values()))
-        return Answer(
-            temperatures=found,
-            links=network.links,
-            flows=flows,
-            given=network.given,
-            residual=left / whole if whole else 0.0,
-        )
+        residual = left / whole if whole else 0.0
+        return Answer(found, network.links, flows, network.given, residual)
 
     def _with_flow(
         self, around: float, solution: Solution, heat: dict[str, float], flow: float | None = None
@@ -537,9 +560,7 @@ class NetworkModel:
         links = (*fixed, *map(self._changed, outside))
         given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
         met = {node for link in links for node in (link.hot, link.cold, link.target)}
-        network = Network(
-            self.nodes, {node: value for node, value in given.items() if node in met}, links
-        )
+        network = Network(self.nodes, {node: given[node] for node in given if node in met}, links)
         self._check_names(network)
         left = network.cut_off()
         if any(node == OIL or heat.get(node) for node in left):
@@ -576,13 +597,8 @@ class NetworkModel:
         shares = self._jet_shares(heat)
 
         def wetting(wet: Wet) -> Wetting:
-            return Wetting(
-                around=oil if wet.bath else mixture,
-                bath=wet.bath,
-                jet=wet.effectiveness * carried,
-                jet_shares=shares,
-                press_fit=own.press_fit,
-            )
+            around, jet = oil if wet.bath else mixture, wet.effectiveness * carried
+            return Wetting(around, wet.bath, jet, shares, own.press_fit)
 
         paths = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
         return tuple(map(self._changed, paths))

@@ -285,11 +285,6 @@ class Start:
     efficiencies: Mapping[str, float]  # Given ones, 1 where teeth do not roll. [1]
     standing: frozenset[str]  # Meshes of given efficiency whose teeth do not roll.
 
-    @property
-    def speeds(self) -> Mapping[str, float]:
-        """Speeds of all bodies. [rad/s]"""
-        return self.statics.speeds
-
 
 def start_of(machine: Machine, operation: Operation) -> Start:
     """Speeds, torques without losses, and the directions of the rolling powers."""
@@ -328,18 +323,10 @@ def solve_machine(
     """
     if start is None:
         start = start_of(machine, operation)
-    speeds, lossless, directions = start.speeds, start.lossless, start.directions
-    efficiencies = start.efficiencies
-    branch = _Branch(
-        machine,
-        operation,
-        start,
-        fluids,
-        {},
-        earlier,
-        directions.drives,
-        evaluations=Evaluations() if evaluations is None else evaluations,
-    )
+    directions = start.directions
+    branch = _Branch(machine, operation, start, fluids, {}, earlier, directions.drives)
+    if evaluations is not None:
+        branch = replace(branch, evaluations=evaluations)
     drives = _led(branch)
     tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
@@ -351,36 +338,9 @@ def solve_machine(
     if floating:
         branch = replace(branch, drives=last.drives, braking=floating, passes=0)
         last = _converged(branch)
-    if last.efficiencies != efficiencies and not directions.jammed:
-        directions = find_directions(start.statics, lossless, last.efficiencies)
-    powers = last.balance.powers
-    given = {
-        row.key: Loss(
-            LOAD_DEPENDENT,
-            (1 - row.efficiency) * abs(powers[row.key]),
-            "efficiency given by the case",
-            mesh=row.key,
-        )
-        for row in machine.rows
-        if row.efficiency < 1
-    }
-    return Solution(
-        speeds=speeds,
-        torques=last.balance.torques,
-        couplings=last.balance.couplings,
-        meshes=last.balance.meshes,
-        drives=last.drives,
-        rolling=powers,
-        results=branch.results,
-        given=given,
-        ratio=start.ratio,
-        self_locking=directions.locking,
-        jammed=directions.jammed,
-        unique=last.balance.unique,
-        floating=floating,
-        standing=start.standing,
-        state=branch.state,
-    )
+    if last.efficiencies != start.efficiencies and not directions.jammed:
+        directions = find_directions(start.statics, start.lossless, last.efficiencies)
+    return branch.solution(last.balance, directions)
 
 
 def solve_machines(
@@ -427,27 +387,25 @@ def next_solution(
     operation: Operation,
     fluids: Fluids | None,
     start: Start,
-    earlier: Solution,  # At other temperatures of the oil.
+    earlier: Solution | None,  # At other temperatures of the oil; None: loads without losses.
 ) -> tuple[Solution, bool]:
     """The losses of other oil at the loads of a solution, and the loads that follow from them.
 
     Also whether these agree. Else they lag one pass behind, which is enough as long as temperatures
-    still change. Raises `ConvergenceError` if losses or torques grow beyond all bounds.
+    still change. Whole solutions where losses decide the directions of powers. Raises
+    `ConvergenceError` if losses or torques grow beyond all bounds.
     """
-    braking = earlier.floating
-    branch = _Branch(machine, operation, start, fluids, {}, earlier, earlier.drives, braking)
+    drives, powers, braking = start.directions.drives, start.lossless.powers, frozenset[str]()
+    led = drives_first(powers, {key: not first for key, first in drives.items()})
+    if earlier is not None:
+        drives, powers, braking = earlier.drives, earlier.rolling, earlier.floating
+        led = drives_first(powers, drives)
+    if any(led[key] != first for key, first in drives.items() if key not in braking):
+        return solve_machine(machine, operation, fluids, start, earlier), True
+    branch = _Branch(machine, operation, start, fluids, {}, earlier, drives, braking)
     found = branch.follow(branch.begin())
     balance = found.balance if isinstance(found, _Pass) else found
-    lagging = replace(
-        earlier,
-        torques=balance.torques,
-        couplings=balance.couplings,
-        meshes=balance.meshes,
-        rolling=balance.powers,
-        results=branch.results,
-        state=branch.state,
-    )
-    return lagging, isinstance(found, _Pass)
+    return branch.solution(balance, start.directions), isinstance(found, _Pass)
 
 
 @dataclass
@@ -540,7 +498,8 @@ class _Branch:
     known: Mapping[str, _Known]  # What the elements have answered so far, by their keys.
     earlier: Solution | None  # Whose loads and results it begins with.
     drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
-    braking: Collection[str] = ()  # Meshes whose losses are friction, whichever gear drives.
+    # Meshes whose losses are friction, whichever gear drives.
+    braking: frozenset[str] = frozenset()
     passes: int = 0  # So far.
     evaluations: Evaluations = field(default_factory=lambda: Evaluations())
     state: State = field(init=False, repr=False)  # That the elements saw in the last of them.
@@ -558,6 +517,22 @@ class _Branch:
         """The last results of the elements, by their keys."""
         return {key: known.result for key, known in self.known.items()}
 
+    def solution(self, found: Balance, directions: Directions) -> Solution:
+        """The losses of the last pass, and torques."""
+        start, how = self.start, "efficiency given by the case"
+        lost = {row.key: 1 - row.efficiency for row in self.machine.rows if row.efficiency < 1}
+        given = {
+            key: Loss(LOAD_DEPENDENT, share * abs(found.powers[key]), how, mesh=key)
+            for key, share in lost.items()
+        }
+        return Solution(
+            speeds=start.statics.speeds, torques=found.torques, couplings=found.couplings,
+            meshes=found.meshes, drives=self.drives, rolling=found.powers, results=self.results,
+            given=given, ratio=start.ratio, self_locking=directions.locking,
+            jammed=directions.jammed, unique=found.unique, floating=self.braking,
+            standing=start.standing, state=self.state,
+        )  # fmt: skip
+
     def begin(self) -> Balance:
         """Torques with the losses that are known so far."""
         if self.known:
@@ -566,7 +541,7 @@ class _Branch:
 
     def under(self, found: Balance, meshes: Mapping[str, float]) -> Balance:
         """`found` with other loads of the meshes."""
-        speeds = self.start.speeds
+        speeds = self.start.statics.speeds
         powers = {
             row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier])
             for row in self.machine.rows
@@ -580,7 +555,7 @@ class _Branch:
         """
         self.passes += 1
         self.state = state = State(
-            self.start.speeds,
+            self.start.statics.speeds,
             found.meshes,
             forces_of(self.machine.layouts, found.meshes),
             cast(Fluids, self.fluids),
@@ -632,6 +607,8 @@ def _led(branch: _Branch) -> Mapping[str, bool]:
     drives, powers = branch.drives, branch.start.lossless.powers
     one, other = (drives_first(powers, dict.fromkeys(powers, first)) for first in (True, False))
     undecided = {key for key in powers if one[key] != other[key]}
+    if branch.earlier is not None:
+        return {**drives, **{key: branch.earlier.drives[key] for key in undecided}}
     if not undecided:
         return drives
     found = branch.follow(branch.begin())
