@@ -404,9 +404,8 @@ class _Branch:
     known: Mapping[str, _Known]  # What the elements have answered so far, by their keys.
     earlier: Solution | None  # Whose loads and results it begins with.
     drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
-    braking: frozenset[str] = (
-        frozenset()
-    )  # Meshes whose losses are friction, whichever gear drives.
+    # Meshes whose losses are friction, whichever gear drives.
+    braking: frozenset[str] = frozenset()
     passes: int = 0  # So far.
     state: State = field(init=False, repr=False)  # That the elements saw in the last of them.
 
