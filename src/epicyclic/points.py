@@ -12,7 +12,7 @@ from __future__ import annotations
 import cmath
 import dataclasses
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import cache, partial, reduce
 from itertools import repeat
 from types import MethodType, MethodWrapperType
@@ -131,7 +131,7 @@ def first_of(number: Any) -> float:
 def total(values: FloatArray) -> float:
     """Sum over all places, point by point."""
     if isinstance(values, Points):
-        sums: Any = values.reshape(len(values), -1).sum(axis=1, keepdims=True)
+        sums: float = values.reshape(len(values), -1).sum(axis=1, keepdims=True)
         return sums
     return float(values.sum())
 
@@ -151,7 +151,8 @@ def side_by_side(values: Iterable[Any]) -> FloatArray:
 def apart(table: FloatArray) -> list[Any]:
     """The numbers that `side_by_side` put together."""
     if table.ndim == 1:
-        return table.tolist()
+        numbers: list[Any] = table.tolist()
+        return numbers
     return [table[:, place : place + 1].view(Points) for place in range(table.shape[1])]
 
 
@@ -221,8 +222,9 @@ _PLAIN = {str, float, int, bool, type(None), np.ndarray}
 
 
 @cache
-def _names(cls: Any) -> tuple[str, ...]:
-    return tuple(it.name for it in dataclasses.fields(cls) if it.init)
+def _names(cls: Hashable) -> tuple[str, ...]:
+    fields: Any = cls
+    return tuple(it.name for it in dataclasses.fields(fields) if it.init)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from functools import partial
 from pathlib import Path
 
@@ -85,11 +86,13 @@ def test_points_together_are_as_each_alone(
     assert len(asked) < 2 * len(cases)
     for one, other in zip(alone, together, strict=True):
         assert not isinstance(other, Exception)
-        assert other.losses == pytest.approx(one.losses, rel=1e-7, abs=1e-15)  # `LOSS_AGREEMENT`
+        # `LOSS_AGREEMENT` is that of all losses together
+        assert other.losses == pytest.approx(one.losses, rel=1e-9, abs=1e-7 * one.total)
         assert other.total == pytest.approx(one.total, rel=1e-7)
         # figures are those of loads that differ by less than `NEAR`
         assert other.values() == pytest.approx(one.values(), rel=1e-4, abs=1e-9, nan_ok=True)
-        assert other.warnings == one.warnings
+        words, own = (re.sub(r"[\d.]+", "", " | ".join(it.warnings)) for it in (one, other))
+        assert own == words
         assert other.to_dict().keys() == one.to_dict().keys()
 
 

@@ -27,7 +27,8 @@ def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
     except np.linalg.LinAlgError:
         return None
     found = _times(inverse, right)
-    return found + _times(inverse, right - _times(matrix, found))
+    refined: FloatArray = found + _times(inverse, right - _times(matrix, found))
+    return refined
 
 
 def _times(matrix: Any, vector: FloatArray) -> Any:
@@ -346,9 +347,9 @@ def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     points = known.shape[:-1]
     matrix, known = matrix.reshape(matrix.shape[-2:]), known.ravel()
     least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR_BALANCE)
-    found = np.asarray(least, float)
+    found: Any = np.asarray(least, float)
     found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR_BALANCE)[0]
-    return found.reshape((*points, -1)), int(rank) == matrix.shape[1]
+    return found.reshape((*points, -1)), int(rank) == matrix.shape[-1]
 
 
 def drives_first(powers: Mapping[str, float], before: Mapping[str, bool]) -> dict[str, bool]:

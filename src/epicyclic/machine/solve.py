@@ -96,7 +96,10 @@ class Answer:
             step = steps[loss.follows]
             if some(step.size > NEAR):
                 return None
-            off += step.error(loss.watts, older) * loss.watts
+            error = step.error(loss.watts, older)
+            if error is math.inf:
+                return None
+            off += error * loss.watts
             line = loss.watts + step.part * (loss.watts - older)
             # no prediction makes a loss negative
             losses[name] = loss._replace(watts=larger(smaller(0.0, loss.watts), line))
