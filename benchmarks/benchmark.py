@@ -238,7 +238,7 @@ def clear_caches() -> None:
 
     for function in (
         machine_flow._begin,
-        machine_flow._solve_in_threads,
+        machine_flow._solve_all,
         pocket_tables.kept_figures,
         fluid.pocket_flow,
         network._free_flow,

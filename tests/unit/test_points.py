@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from epicyclic.errors import ConvergenceError
-from epicyclic.machine import gear_set, solve
-from epicyclic.points import (
+from epicyclic.arrays import (
     Apart,
     Each,
     Points,
@@ -25,13 +23,12 @@ from epicyclic.points import (
     log,
     norm,
     of_points,
-    point_by_point,
-    pointwise,
     side_by_side,
-    smaller,
     taken,
     total,
 )
+from epicyclic.errors import ConvergenceError
+from epicyclic.machine import gear_set, solve
 from epicyclic.study.solve import solve_together
 from epicyclic.study.sweeps.run import make_plan
 from epicyclic.study.sweeps.runner import Runner
@@ -153,7 +150,6 @@ def test_functions_of_numbers_go_point_by_point() -> None:
     assert log(2.5) == math.log(2.5)
     assert log(column)[:, 0] == pytest.approx([math.log(0.3), math.log(4.0)])
     assert larger(column, 1.0)[:, 0].tolist() == [1.0, 4.0]
-    assert smaller(1.0, column)[:, 0].tolist() == [0.3, 1.0]
     assert largest([column, -2.0])[:, 0].tolist() == [2.0, 4.0]
     assert largest([]) == 0.0
     for order in (8, -8):
@@ -161,8 +157,6 @@ def test_functions_of_numbers_go_point_by_point() -> None:
         assert norm([column, 1.5], order)[:, 0] == pytest.approx(ones)
     assert total(of_points([[1.0, 2.0], [3.0, 5.0]]))[:, 0].tolist() == [3.0, 8.0]
     assert total(np.array([1.0, 2.5])) == 3.5
-    doubled = point_by_point(lambda number, places: number * places, column, np.array([1.0, 2.0]))
-    assert doubled.tolist() == [[0.3, 0.6], [4.0, 8.0]]
 
 
 def test_numbers_lie_side_by_side_and_come_apart() -> None:
@@ -173,9 +167,10 @@ def test_numbers_lie_side_by_side_and_come_apart() -> None:
     assert apart(side_by_side([1.5, 2.0])) == [1.5, 2.0]
 
 
-@pointwise
 @dataclasses.dataclass(frozen=True)
 class _Thing:
+    pointwise = True
+
     name: str
     number: float
     numbers: dict[str, float]

@@ -13,7 +13,7 @@ from typing import Any
 from epicyclic.build.elements import axial_preload, build_element, catalogue_bearing
 from epicyclic.build.gear_sets import gear_set
 from epicyclic.build.models import SetCase, fluids_of, oil_share, set_cases, with_lubrication
-from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
+from epicyclic.case.case import Case, PlanetaryCase, TrainCase
 from epicyclic.case.rules import needs_force
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.tables.operation import (
@@ -63,7 +63,7 @@ from epicyclic.machine.heat import (
 from epicyclic.machine.machine import GearSeat, Machine, Operation, ShaftLayout, Support
 from epicyclic.machine.planets import PinFigures, PlanetLoad, PlanetPin
 from epicyclic.machine.shaft_parts import ShaftBearing
-from epicyclic.machine.solve import lossless_state, solve_machine
+from epicyclic.machine.solve import Solution, lossless_state, solve_machine
 from epicyclic.machine.train_shape import mesh_rows
 from epicyclic.oil.oil import Oil, mixture_state, oil_state
 from epicyclic.result.result import Layout, in_words
@@ -322,17 +322,14 @@ class Built:
         """Whether it can be solved for several operating points at once."""
         return self.thermal is None and self.known_fluids is not None
 
-    def solve(self) -> Settled:
-        """Torques, losses and temperatures that agree."""
+    def solve(self, solution: Solution | None = None) -> Settled:
+        """Torques, losses and temperatures that agree; `solution` if it was found before."""
         if self.thermal is None:
-            solution = solve_machine(self.machine, self.operation, self.known_fluids)
+            if solution is None:
+                solution = solve_machine(self.machine, self.operation, self.known_fluids)
             settled = Settled(solution, Answer({}), 1)
         else:
             settled = settle(self.machine, self.operation, self.thermal)
-        return self.sound(settled)
-
-    def sound(self, settled: Settled) -> Settled:
-        """What was found, if all losses are numbers; raises `ConvergenceError` else."""
         losses = settled.solution.losses
         bad = [name for name, loss in losses.items() if not math.isfinite(loss.watts)]
         if bad:
@@ -474,8 +471,24 @@ def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator
 # A train of gear sets as a machine.
 
 
-def _train_parts(case: TrainCase, flow_tables: FlowTables) -> _Consists:
+MOST_DESIGNS = 8  # Of which the parts and fluids are kept for the next points of a sweep.
+_Consists = tuple[Machine, Mapping[str, SetCase], Layout]
+
+
+@dataclass(frozen=True)
+class _Design:
+    """A case in place of all that need the same parts, or the same fluids."""
+
+    case: Case = field(compare=False)
+    flow_tables: FlowTables = field(compare=False)
+    key: tuple[Hashable, ...]  # Its design, and what else it depends on.
+
+
+@lru_cache(maxsize=MOST_DESIGNS)
+def _train_parts(design: _Design) -> _Consists:
     """What a train consists of in the state of the case."""
+    case, flow_tables = design.case, design.flow_tables
+    assert isinstance(case, TrainCase)
     cases = set_cases(case)
     elements = [*_sets(case, cases, flow_tables), *_parts(case, case.shape.names)]
     sets = {element.key: element for element in elements if isinstance(element, GearSet)}
@@ -578,17 +591,6 @@ def pin_figures(own: GearSet) -> list[tuple[str, type[Any]]]:
 
 
 NO_TABLES: FlowTables = MappingProxyType({})
-MOST_DESIGNS = 8  # Of which the parts and fluids are kept for the next points of a sweep.
-_Consists = tuple[Machine, Mapping[str, SetCase], Layout]
-
-
-@dataclass(frozen=True)
-class _Design:
-    """A case in place of all that need the same parts, or the same fluids."""
-
-    case: Case = field(compare=False)
-    flow_tables: FlowTables = field(compare=False)
-    key: tuple[Hashable, ...]  # Its design, and what else it depends on.
 
 
 def build(
@@ -600,7 +602,8 @@ def build(
     tables, operation = flow_tables or NO_TABLES, operation_of(case)
     ends = getattr(case.operation, "state", None), operation.input, operation.output
     key = (case.design, case.found, id(tables), *ends)
-    machine, cases, layout = _consists(_Design(case, tables, key))
+    parts = _train_parts if isinstance(case, TrainCase) else _single_parts
+    machine, cases, layout = parts(_Design(case, tables, key))
     model = thermal_model(case, cases, machine)
     known = None
     if case.computed:
@@ -618,20 +621,15 @@ def build(
 
 
 @lru_cache(maxsize=MOST_DESIGNS)
-def _consists(design: _Design) -> _Consists:
-    case, tables = design.case, design.flow_tables
-    if isinstance(case, TrainCase):
-        return _train_parts(case, tables)
-    return _single_parts(case, tables)
-
-
-@lru_cache(maxsize=MOST_DESIGNS)
 def _fluids(design: _Design) -> Fluids:
     return fluids_of(design.case)
 
 
-def _single_parts(case: PlanetaryCase | GearPairCase, tables: FlowTables) -> _Consists:
+@lru_cache(maxsize=MOST_DESIGNS)
+def _single_parts(design: _Design) -> _Consists:
     """What a set or pair by itself consists of."""
+    case, tables = design.case, design.flow_tables
+    assert not isinstance(case, TrainCase)
     operation = operation_of(case)
     ends = operation.input, operation.output
     cases = set_cases(case)

@@ -21,7 +21,6 @@ from epicyclic.case.tables.models import (
 )
 from epicyclic.case.tables.operation import (
     LEVEL_REMEDY,
-    GearPairOperation,
     Lubricant,
     LubricationTable,
     PlanetaryOperation,
@@ -103,12 +102,11 @@ def cross_check(
     return problems
 
 
-def _check_operation(operation: PlanetaryOperation | GearPairOperation) -> Iterator[Problem]:
-    if isinstance(operation, PlanetaryOperation):
-        allowed = f'must be a different member from operation.input, "{operation.input}".'
-        for key in ("fixed", "second_input"):
-            if getattr(operation, key) == operation.input:
-                yield Problem(f"operation.{key}", "", allowed, "Name one of the other two.")
+def _one_twice(operation: PlanetaryOperation) -> Iterator[Problem]:
+    allowed = f'must be a different member from operation.input, "{operation.input}".'
+    for key in ("fixed", "second_input"):
+        if getattr(operation, key) == operation.input:
+            yield Problem(f"operation.{key}", "", allowed, "Name one of the other two.")
 
 
 def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> Iterator[Problem]:
@@ -384,19 +382,18 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
     return builtin_model(lubricant.oil)
 
 
-def _check_void(models: GearPairModels, surroundings: Surroundings) -> Iterator[Problem]:
+def _full_void(models: GearPairModels, surroundings: Surroundings) -> Iterator[Problem]:
     """A void has less pressure than the surroundings."""
-    if models.pocket_void_pressure >= surroundings.pressure:
-        shown = BAR.text(models.pocket_void_pressure)
-        allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
-        usual = "0.01 bar" if surroundings.pressure > BAR.parse("0.01 bar") else "0 bar"
-        yield Problem("models.pocket_void_pressure", shown, allowed, f"Take {usual}.")
+    shown = BAR.text(models.pocket_void_pressure)
+    allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
+    usual = "0.01 bar" if surroundings.pressure > BAR.parse("0.01 bar") else "0 bar"
+    yield Problem("models.pocket_void_pressure", shown, allowed, f"Take {usual}.")
 
 
-def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Problem]:
+def _too_fine(models: GearPairModels, numerics: Numerics) -> list[Problem]:
     """Influence coefficients of all positions must fit into memory."""
-    positions, segments = numerics.mesh_positions, numerics.contact_segments
-    if models.load_distribution != "compliance" or positions * segments**2 <= MOST_COEFFICIENTS:
+    positions = numerics.mesh_positions
+    if models.load_distribution != "compliance":
         return []
     allowed = f"with {positions} mesh positions the influence coefficients of "
     allowed += 'models.load_distribution = "compliance" would not fit into memory.'
@@ -406,14 +403,33 @@ def _check_resolution(models: GearPairModels, numerics: Numerics) -> list[Proble
 
 
 _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = (
-    (_check_operation, ("operation",)),
+    (
+        lambda it: (
+            _one_twice(it)
+            if isinstance(it, PlanetaryOperation) and it.input in (it.fixed, it.second_input)
+            else ()
+        ),
+        ("operation",),
+    ),
     (check_rollers, ("planet_bearing",)),
     (lambda it: _too_open(it) if it.open_width > it.width else (), ("carrier",)),
     (check_cage, ("planet_bearing", "models")),
     (_both_bearings, ("planet_bearing", "planet_pin")),
     (_check_friction_table, ("friction_table",)),
-    (_check_resolution, ("models", "numerics")),
-    (_check_void, ("models", "surroundings")),
+    (
+        lambda models, it: (
+            _too_fine(models, it)
+            if it.mesh_positions * it.contact_segments**2 > MOST_COEFFICIENTS
+            else ()
+        ),
+        ("models", "numerics"),
+    ),
+    (
+        lambda models, it: (
+            _full_void(models, it) if models.pocket_void_pressure >= it.pressure else ()
+        ),
+        ("models", "surroundings"),
+    ),
     (check_thermal, ("thermal",)),
     (lambda it, run: check_outlet(it, run.oil_inlet_temperature), ("thermal", "operation")),
     (check_lubrication, ("lubrication",)),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, FloatArray, IntArray
+from epicyclic.arrays import BoolArray, Each, FloatArray, IntArray, Points, of_points, taken
 from epicyclic.contact.elastic_teeth import (
     UNMODIFIED,
     GearBody,
@@ -22,7 +22,6 @@ from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
 from epicyclic.gears.mesh import Mesh
 from epicyclic.oil.oil import OilState
-from epicyclic.points import Each, Points, of_points, pointwise, taken
 
 if TYPE_CHECKING:
     from epicyclic.losses.friction import FrictionModel
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
 # section of the helicoid, rho_n = rho_t/cos(beta_b).
 
 
-@pointwise
 @dataclass(frozen=True, eq=False)
 class MeshContact(LineContacts):
     """A mesh under load and in motion, point by point.
@@ -60,6 +58,8 @@ class MeshContact(LineContacts):
     around : OilState or None
         Oil around the gears, where its temperature is not that of the flanks.
     """
+
+    pointwise = True
 
     flanks: Flanks[float]
     oil: OilState

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
+from epicyclic.arrays import larger, pow, sqrt
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.windage import rim_coefficient
 from epicyclic.oil.oil import MixtureState
-from epicyclic.points import larger, pointwise, pow, smaller, sqrt
 from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
 
 # Load-independent losses of bearings and of bodies turning in the mixture of oil and air.
@@ -73,7 +73,6 @@ def speed_parameter(speed: float, pitch_diameter: float) -> float:
     return abs(speed) / RPM * pitch_diameter * 1e3
 
 
-@pointwise
 class DiscDrag(NamedTuple):
     """Drag of a disc, in two parts."""
 
@@ -259,7 +258,7 @@ def changenet_velex(
     if not (omega**2) or not part.immersed:
         return 0.0
     parameter = acceleration_parameter(part, omega)
-    slow = smaller(larger((FAST - parameter) / (FAST - SLOW), 0.0), 1.0)
+    slow = 1 - larger(1 - larger((FAST - parameter) / (FAST - SLOW), 0.0), 0.0)
     if oil.smooth:
         slow = slow**2 * (3 - 2 * slow)
     coefficient = slow * _slow_coefficient(part, omega, oil)

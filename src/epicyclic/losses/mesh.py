@@ -9,14 +9,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, total
 from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction import FrictionModel
 from epicyclic.losses.ranges import Flags, SomeFlags
 from epicyclic.losses.rolling import RollingModel
-from epicyclic.points import pointwise, total
 
 # Flash temperature along the contact lines of a mesh, and which gear the heat goes to.
 
@@ -59,10 +58,11 @@ def flash_temperatures(
 CLOSED_LIMIT = 1.0  # Tip contact ratio up to which Ohlendorf's closed form holds. [1]
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class MeshLoss:
     """Loss of one mesh."""
+
+    pointwise = True
 
     sliding: float  # [W]
     rolling: float  # [W]

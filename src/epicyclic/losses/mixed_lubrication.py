@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, log
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.contact.temperatures import flash_temperature
 from epicyclic.gears.flanks import (
@@ -35,7 +35,6 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.kernels.mixed_lubrication import film_stress
 from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState
-from epicyclic.points import log
 
 MEAN_FLASH = 2 / 3
 """Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.arrays import BoolArray, FloatArray, Points, of_points, taken, total
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure, line_load_at_pressure
@@ -35,7 +35,6 @@ from epicyclic.losses.ranges import (
 )
 from epicyclic.losses.rolling import FittedRolling, RaceContacts, weight_of_fit
 from epicyclic.oil.oil import OilState
-from epicyclic.points import Points, count_of, of_points, point_by_point, pointwise, taken, total
 from epicyclic.units import (
     CELSIUS,
     GIGAPASCAL,
@@ -173,7 +172,6 @@ class RollerBearing:
         return self.pitch_diameter * abs(speed) * (1 - ratio**2) / 4
 
 
-@pointwise
 @dataclass(frozen=True, slots=True, eq=False)
 class RollerLoads:
     """Load distribution of a bearing.
@@ -190,6 +188,8 @@ class RollerLoads:
         Newton steps.
     """
 
+    pointwise = True
+
     azimuth: FloatArray
     intensity: FloatArray
     displacement: FloatArray
@@ -203,10 +203,11 @@ class RollerLoads:
         return flat > 0
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class BearingLoss:
     """Rolling loss of one bearing and its flags."""
+
+    pointwise = True
 
     loss: float
     flags: SomeFlags = ()
@@ -214,11 +215,8 @@ class BearingLoss:
 
 
 def each_roller_loads(find: Callable[..., RollerLoads], *loads: Any) -> RollerLoads:
-    """`find` of the loads; of several points those of each, put together."""
-    count = count_of(loads)
-    if count is None:
-        return find(*loads)
-    ones = [find(*own) for own in taken(loads, range(count))]
+    """`find` of the loads of each of several points, put together."""
+    ones = [find(*own) for own in taken(loads, range(len(loads[-1])))]
     return RollerLoads(
         ones[0].azimuth,
         of_points([one.intensity for one in ones]),
@@ -367,7 +365,12 @@ def mixed_ehl_rolling_loss(
     outside Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
-    carried = carried_by(loads)
+    several = isinstance(loads.intensity, Points)  # of which all slices are looked at
+    carried: FloatArray = (
+        loads.intensity.reshape(len(loads.intensity), -1)
+        if several
+        else loads.intensity[loads.intensity > 0]
+    )
     if carried.size == 0 or speed == 0:
         return BearingLoss(0.0)
     modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
@@ -380,28 +383,17 @@ def mixed_ehl_rolling_loss(
     held_pressure = held_in_range(hertz_pressure(carried, radius * alike, modulus), _PRESSURE)
     held_radius, held_speed = held_in_range(radius, _RADIUS), held_in_range(rolling, _SPEED)
     roughness = math.hypot(bearing.race_roughness, bearing.roller_roughness)
-    density = point_by_point(
-        needle_rolling_loss_at,
-        held_pressure,
-        held_speed,
-        viscosity,
-        alpha,
-        held_radius,
-        held_in_range(roughness, _COMPOSITE),
-        modulus,
-    )
+    rough = held_in_range(roughness, _COMPOSITE)
+    given = held_pressure, held_speed, viscosity, alpha, held_radius, rough, modulus
+    if several:
+        each = taken(given, range(len(carried)))
+        density: FloatArray = of_points([needle_rolling_loss_at(*own) for own in each])
+    else:
+        density = needle_rolling_loss_at(*given)
     held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
     beyond = beyond_data(carried, held_load, rolling, held_speed)
     local = bearing.slice_width * density * beyond
     return BearingLoss(total(local), Flags(partial(_flags, bearing, loads, speed, oil, local)))
-
-
-def carried_by(loads: RollerLoads) -> FloatArray:
-    """Load per length of the slices that carry any, shape (n,); of several points of all. [N/m]"""
-    if isinstance(loads.intensity, Points):
-        return loads.intensity.reshape(len(loads.intensity), -1)
-    carried: FloatArray = loads.intensity[loads.loaded]
-    return carried
 
 
 def _flags(

@@ -17,7 +17,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.arrays import Alone, BoolArray, FloatArray, Points, larger, sqrt
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.files import sealed, unsealed
 from epicyclic.gears.cutting import Tool
@@ -32,7 +32,6 @@ from epicyclic.losses.pocket_flow import (
 from epicyclic.losses.pocket_geometry import PocketGeometry, pocket_geometry
 from epicyclic.netcdf_file import read_attribute
 from epicyclic.oil.oil import MixtureState
-from epicyclic.points import Alone, Points, larger, pointwise, sqrt
 from epicyclic.units import BAR, METRE_PER_SECOND, NUMBER, WATT, Quantity
 
 # Flows through the pockets of a mesh that differ in one number only.
@@ -46,10 +45,11 @@ LEAST_NUMBER = 1e-3
 and at next to no speed pressures drown in rounding. [1/m]"""
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class FlowFigures:
     """What a result reports of the flow through the pockets of a mesh."""
+
+    pointwise = True
 
     power: float  # [W]
     difference: float  # Difference of the power from the energy balance, relative. [1]

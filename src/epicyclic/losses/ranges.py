@@ -11,7 +11,6 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 import numpy as np
 
 from epicyclic.arrays import FloatArray
-from epicyclic.points import pointwise
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
@@ -182,12 +181,13 @@ class ValidityFlag:
     could_be: float = 0.0
 
 
-@pointwise
 class Sought(Generic[Item]):
     """What is looked for when somebody reads it.
 
     Most answers of an element are steps on the way to the last one, of which alone anybody does.
     """
+
+    pointwise = True
 
     __slots__ = ("_looks",)
 
@@ -204,22 +204,18 @@ class Sought(Generic[Item]):
             yield from look()
 
 
-@pointwise
 class Flags(Sought[ValidityFlag]):
+    pointwise = True
     __slots__ = ()
 
     def __add__(self, other: Flags | tuple[ValidityFlag, ...]) -> Flags:
-        return Flags(*self._looks, *_looks_of(other))
+        return Flags(*self._looks, other.__iter__)
 
     def __radd__(self, other: tuple[ValidityFlag, ...]) -> Flags:
-        return Flags(*_looks_of(other), *self._looks)
+        return Flags(other.__iter__, *self._looks)
 
 
 SomeFlags = Flags | tuple[ValidityFlag, ...]
-
-
-def _looks_of(flags: SomeFlags) -> Sequence[Callable[[], Iterable[ValidityFlag]]]:
-    return flags._looks if isinstance(flags, Flags) else (flags.__iter__,) if flags else ()
 
 
 def held_in_range(value: Real, item: Range) -> Real:

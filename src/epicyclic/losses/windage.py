@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from epicyclic.arrays import exp, larger, log, norm, pow, sqrt
 from epicyclic.losses.ranges import Range
 from epicyclic.oil.oil import MixtureState
-from epicyclic.points import exp, larger, log, norm, pointwise, pow, smaller, sqrt
 from epicyclic.units import NUMBER
 
 DragModel = Literal[
@@ -115,7 +115,7 @@ def rim_coefficient(
     laminar, transition = 4 / reynolds, RIM_TRANSITION
     # w + ln w = z by Newton's method from below: the import of Lambert's function takes long
     z = log(reynolds / SLOPE) - OFFSET / SLOPE
-    w = exp(smaller(z, 1.0) - 1)
+    w = exp(z - larger(z, 1.0))
     for _ in range(8):
         w = w * (1 + z - log(w)) / (1 + w)
     turbulent = (SLOPE * w) ** -2
@@ -208,7 +208,6 @@ class Turning:
     across: float = 0.0
 
 
-@pointwise
 class Parts(NamedTuple):
     """Drag of a body, by what causes it."""
 

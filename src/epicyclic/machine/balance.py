@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import Apart, FloatArray, apart, hypot, largest, side_by_side
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.machine import Machine, Operation, Terms
-from epicyclic.points import Apart, apart, first_of, hypot, largest, side_by_side
 
 # Systems of as many linear equations as unknowns.
 
@@ -26,14 +25,11 @@ def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
         inverse = np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
         return None
-    found = _times(inverse, right)
-    refined: FloatArray = found + _times(inverse, right - _times(matrix, found))
+    found = (inverse @ right[..., None])[..., 0]
+    refined: FloatArray = (
+        found + (inverse @ (right - (matrix @ found[..., None])[..., 0])[..., None])[..., 0]
+    )
     return refined
-
-
-def _times(matrix: Any, vector: FloatArray) -> Any:
-    """Product of each matrix with its vector, the last axes."""
-    return (matrix * vector[..., None, :]).sum(axis=-1)
 
 
 # Speeds of all bodies from the constraints of meshes and clutches.
@@ -98,14 +94,15 @@ def speeds_of(machine: Machine, given: Mapping[str, float]) -> dict[str, float]:
         assert found is not None, "the speeds are determined, as the checks of the case ensure"
     else:
         inverse = np.linalg.pinv(matrix, rcond=SINGULAR)
-        least = _times(inverse, known)
-        found = least + _times(inverse, known - _times(matrix, least))
+        least = (inverse @ known[..., None])[..., 0]
+        left = known - (matrix @ least[..., None])[..., 0]
+        found = least + (inverse @ left[..., None])[..., 0]
     speeds = dict(zip(bodies, apart(found), strict=True)) | dict(given)
     # bodies that turn together do so exactly, and still ones stand still
     limit = TOGETHER * largest(speeds.values())
     joined = {HOUSING: 0.0}
     last = 0.0
-    ordered = sorted(speeds.items(), key=lambda item: first_of(abs(item[1])))
+    ordered = sorted(speeds.items(), key=lambda item: np.abs(item[1]).flat[0])
     for (_, slower), (_, faster) in pairwise(ordered):
         assert abs(slower) <= abs(faster) + limit  # or points part that have other orders
     for body, speed in ordered:
@@ -277,7 +274,7 @@ class Statics:
         values = apart(found)
         size = largest((*apart(known), *values))
         values = [value * (abs(value) > ROUNDING * size) + 0.0 for value in values]  # no -0.0
-        left = _times(matrix, side_by_side(values)) + known
+        left = (matrix @ side_by_side(values)[..., None])[..., 0] + known
         lambdas = [value / length for value, length in zip(values, scale, strict=False)]
         outside = self._given | dict(zip(self._unknown, values[len(scale) :], strict=True))
         meshes = {row.key: -value * row.teeth[0] for row, value in zip(rows, lambdas, strict=False)}
@@ -349,7 +346,7 @@ def _least(matrix: FloatArray, known: FloatArray) -> tuple[FloatArray, bool]:
     least, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=SINGULAR_BALANCE)
     found: Any = np.asarray(least, float)
     found += np.linalg.lstsq(matrix, known - matrix @ found, rcond=SINGULAR_BALANCE)[0]
-    return found.reshape((*points, -1)), int(rank) == matrix.shape[-1]
+    return found.reshape((*points, -1)), int(rank) == len(matrix.T)
 
 
 def drives_first(powers: Mapping[str, float], before: Mapping[str, bool]) -> dict[str, bool]:

@@ -24,7 +24,7 @@ from epicyclic.losses.drag import (
     jet_loss,
     viscous_flags,
 )
-from epicyclic.losses.ranges import Flags, ModelUse, ValidityFlag, check_ranges
+from epicyclic.losses.ranges import Flags, ModelUse, check_ranges
 from epicyclic.losses.windage import (
     DISCS,
     DRAG_METHODS,
@@ -32,12 +32,10 @@ from epicyclic.losses.windage import (
     LAMINAR_RIMS,
     MIST_SHARE,
     DragModel,
-    Parts,
     Turning,
     drag,
 )
 from epicyclic.machine.element import LOAD_INDEPENDENT, Loss, State
-from epicyclic.oil.oil import MixtureState
 
 BESIDE: Mapping[str, tuple[DragModel, bool]] = {
     "theodorsen-regier": ("theodorsen-regier", False),
@@ -139,7 +137,15 @@ def disc_loss(
                 viscosity = state.fluids.oil.dynamic_viscosity
                 parts = drag(body, speed, mixture, mist, viscosity, disc.model)
                 watts = disc.count * sum(parts)
-                flags += Flags(partial(_drag_flags, disc, speed, mixture, parts))
+                limit, part = DISCS, parts.faces
+                if disc.model == "anderson-loewenthal" and body.teeth is not None:
+                    limit, part = JETS_IN_AIR, sum(parts)
+                if part:
+                    use = ModelUse("drag", disc.model, disc.where)
+                    reynolds = abs(speed) * body.radius**2 / mixture.kinematic_viscosity
+                    found = {"reynolds_number": reynolds, "oil_share": disc.oil_fraction}
+                    concerned = part / sum(parts), disc.count * part
+                    flags += Flags(partial(check_ranges, use, (limit,), found, 1.0, *concerned))
             title = DRAG_METHODS[disc.model].title
             methods[title] = DRAG_METHODS[disc.model].source
         if disc.jets is not None:
@@ -153,24 +159,6 @@ def disc_loss(
     shares = tuple((title, own / total) for title, own in several.items())
     method, source = "; ".join(methods), "; ".join(methods.values())
     return Loss(LOAD_INDEPENDENT, total, method, source, brakes=brakes, shares=shares), flags
-
-
-def _drag_flags(
-    disc: Disc, speed: float, mixture: MixtureState, parts: Parts
-) -> tuple[ValidityFlag, ...]:
-    limit, part = DISCS, parts.faces
-    if disc.model == "anderson-loewenthal" and disc.turning.teeth is not None:
-        limit, part = JETS_IN_AIR, sum(parts)
-    if not part:
-        return ()
-    reynolds = abs(speed) * disc.turning.radius**2 / mixture.kinematic_viscosity
-    return check_ranges(
-        ModelUse("drag", disc.model, disc.where),
-        (limit,),
-        {"reynolds_number": reynolds, "oil_share": disc.oil_fraction},
-        part=part / sum(parts),
-        watts=disc.count * part,
-    )
 
 
 def _jet_loss(jets: Jets, speed: float, state: State, struck: int) -> float:

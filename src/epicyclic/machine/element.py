@@ -18,7 +18,6 @@ from epicyclic.oil.oil import (
     mixture_state,
     oil_state,
 )
-from epicyclic.points import pointwise
 from epicyclic.units import (
     CELSIUS,
     KILOGRAM_PER_CUBIC_METRE,
@@ -38,10 +37,11 @@ _VISCOSITY = Range(
 )
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class Fluids:
     """The oil, its mixture with air, and flags on both."""
+
+    pointwise = True
 
     oil: OilState
     mixture: MixtureState
@@ -127,12 +127,13 @@ class Figure:
     unit: str
 
 
-@pointwise
 class Figures(Mapping[str, "DataclassInstance"]):
     """Figures by what they describe, found when somebody reads them.
 
     Most answers of an element are steps on the way to the last one, of which alone anybody does.
     """
+
+    pointwise = True
 
     __slots__ = ("_finds", "_found")
 
@@ -201,10 +202,11 @@ def joined_key(element: str, name: str) -> str:
     return f"{element}.{name}" if element else name
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class State:
     """What an element sees of the machine."""
+
+    pointwise = True
 
     # Speeds of every body, positive in one common sense; that of `HOUSING` is 0. [rad/s]
     speeds: Mapping[str, float]
@@ -222,7 +224,6 @@ class State:
     earlier: Mapping[str, ElementResult] = field(default_factory=dict[str, Any])
 
 
-@pointwise
 class Loss(NamedTuple):
     """Power that an element loses, or why it loses none."""
 
@@ -263,10 +264,11 @@ def note_watts(note: str) -> float:
     return getattr(note, "watts", math.inf)
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class ElementResult:
     """What an element answers to a state."""
+
+    pointwise = True
 
     # By the last part of their keys, ``"sun_mesh_sliding"``, ``"friction"``.
     losses: Mapping[str, Loss]

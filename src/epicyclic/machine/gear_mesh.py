@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import Alone, FloatArray, Points
 from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.contact.temperatures import Solid
@@ -55,7 +55,6 @@ from epicyclic.machine.pocket_flow import (
     pocketing_method,
 )
 from epicyclic.oil.oil import OilState
-from epicyclic.points import Alone, Points, pointwise
 from epicyclic.units import (
     CELSIUS,
     DEGREE,
@@ -106,10 +105,11 @@ class GearMesh:
     nodes: tuple[str, str]  # The thermal nodes of both gears.
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class MeshDuty:
     """A mesh and what it has to do, relative to the carrier, for one planet."""
+
+    pointwise = True
 
     gears: GearMesh
     torque1: float  # That gear 1 brings into the mesh. [N m]
@@ -182,10 +182,11 @@ class MeshFigures:
     flash_temperature_max: float = figure("largest flash temperature", KELVIN)
 
 
-@pointwise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeshResult(ElementResult):
     """Losses, figures and flags of one mesh, and what the next pass goes on from."""
+
+    pointwise = True
 
     elastic: LoadedMesh | None  # The teeth under load, if they are elastic.
     friction: FrictionModel  # With what it has solved.

@@ -42,7 +42,6 @@ from epicyclic.machine.planets import (
     tilt_planet,
 )
 from epicyclic.machine.pocket_flow import MeshFlow, mesh_flows
-from epicyclic.points import pointwise
 from epicyclic.units import NEWTON, format_number
 
 WORTH_A_NOTE = 0.1
@@ -172,7 +171,6 @@ class Planet:
         ]
 
 
-@pointwise
 class Drags(NamedTuple):
     """Losses that depend on the speeds only, and their flags."""
 
@@ -183,13 +181,14 @@ class Drags(NamedTuple):
 Flows = Mapping[str, MeshFlow]  # Flow through the pockets of each mesh, by its key.
 
 
-@pointwise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearSetResult(ElementResult):
     """Losses, figures, flags of a set; meshes and bearings are those of its most loaded planet.
 
     From `drags` on: what the next evaluation goes on from.
     """
+
+    pointwise = True
 
     # Share of the load that each planet carries; empty without planets. [1]
     shares: tuple[float, ...] = ()
@@ -210,10 +209,11 @@ class GearSetResult(ElementResult):
         }
 
 
-@pointwise
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Branch(ElementResult):
     """Losses of all planets with one and the same share, and the figures of one."""
+
+    pointwise = True
 
     meshes: Mapping[str, MeshResult]
     rollers: Mapping[tuple[str, float], Carried]
@@ -243,7 +243,14 @@ class GearSet:
         drags = self._drags(state) if last is None else last.drags
         torques = self._torques(state, drags)
         shares = self.shares(state, torques)
-        driving, duties = self._pocket_duties(state, torques)
+        duties = self.duties(state, torques, 1 / self.count)  # under the mean load, for pockets
+        if self.reference is None:
+            # the directions of the whole machine count: those of next to no load are found last
+            duties = tuple(
+                replace(duty, drives1=state.drives[f"{self.key}.{duty.gears.key}"])
+                for duty in duties
+            )
+        driving = tuple(duty.drives1 for duty in duties)
         if last is None:
             flows, meshes, rollers = {}, {}, {}
             earlier = state.earlier.get(self.key)
@@ -393,22 +400,6 @@ class GearSet:
             whole = torque + added
             torques[key] = whole * (abs(whole) > ROUNDING * abs(added)) + 0.0
         return torques
-
-    def _pocket_duties(
-        self, state: State, torques: Mapping[str, float]
-    ) -> tuple[tuple[bool, ...], tuple[MeshDuty, ...]]:
-        """Which gears drive, and the meshes under the mean load of the planets, for their pockets.
-
-        With no reference the directions of the whole machine count: those of next to no load are
-        found last.
-        """
-        duties = self.duties(state, torques, 1 / self.count)
-        if self.reference is None:
-            duties = tuple(
-                replace(duty, drives1=state.drives[f"{self.key}.{duty.gears.key}"])
-                for duty in duties
-            )
-        return tuple(duty.drives1 for duty in duties), duties
 
     def _drags(self, state: State) -> Drags:
         """Losses that do not depend on planets, as the user wants them, where they act."""

@@ -13,7 +13,6 @@ from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.machine.element import Element
-from epicyclic.points import pointwise
 from epicyclic.units import NEWTON, torque_text
 
 # Statics of a shaft: forces of its gear meshes, and what its bearings answer.
@@ -312,10 +311,11 @@ class Coupling:
         return ((self.first, 1.0), (self.second, -1.0))
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class Operation:
     """How a machine is driven."""
+
+    pointwise = True
 
     input: str  # The body of given torque, and the one whose torque balances.
     output: str  # The body of given torque, and the one whose torque balances.

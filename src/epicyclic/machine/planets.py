@@ -7,10 +7,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
+from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import Alone, Each, FloatArray, Points, joined, larger, phase, taken, total
 from epicyclic.contact.planet_sharing import (
     Branches,
     branch_directions,
@@ -76,7 +77,6 @@ from epicyclic.machine.element import (
 )
 from epicyclic.machine.gear_mesh import MeshDuty, elastic_loads
 from epicyclic.oil.oil import OilState
-from epicyclic.points import Alone, Each, Points, joined, larger, phase, pointwise, taken, total
 from epicyclic.units import (
     CELSIUS,
     DEGREE,
@@ -206,10 +206,11 @@ FLATTER = 0.5  # Slope of the energy at the end of a step over that at its start
 SLOPE = 1e-4  # Step of differences, over the size of the tilt. [1]
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class PlanetLoad:
     """Load of one planet on its bearing, x along the radial force."""
+
+    pointwise = True
 
     force: float  # Radial. [N]
     moment_x: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
@@ -549,10 +550,11 @@ Carried = RollerLoads | JournalState | None
 """What the bearing of a planet carried in the last pass."""
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class BearingResult(ElementResult):
     """Losses of the planet bearings, and the figures of one of them."""
+
+    pointwise = True
 
     loads: Carried = None  # On its rollers or film: what the next pass goes on from.
 
@@ -606,12 +608,11 @@ def solve_bearing(
     bearing, where = own.bearing, key.replace("_", " ")
     if own.aligns_itself:
         load = PlanetLoad(load.force, 0.0, 0.0, load.outward)
-    moments = load.moment_x, load.moment_y
+    find: Callable[..., RollerLoads] = partial(roller_loads, bearing)
+    asked: tuple[Any, ...] = (load.force, 0.0, load.moment_x, load.moment_y)
     if isinstance(last, RollerLoads):
-        next_to = partial(roller_loads_next_to, bearing)
-        loads = each_roller_loads(next_to, last, load.force, *moments)
-    else:
-        loads = each_roller_loads(partial(roller_loads, bearing), load.force, 0.0, *moments)
+        find, asked = partial(roller_loads_next_to, bearing), (last, load.force, *asked[2:])
+    loads = each_roller_loads(find, *asked) if isinstance(speed, Points) else find(*asked)
     loss = _by_load(own, loads, load.force, speed, oil)
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter

@@ -10,6 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from epicyclic.arrays import Alone, Points, larger
 from epicyclic.gears.mesh import with_faces
 from epicyclic.losses.pocket_flow import (
     NETWORK_MODELS,
@@ -30,7 +31,6 @@ from epicyclic.losses.pocket_tables import (
 from epicyclic.losses.ranges import Range
 from epicyclic.machine.element import Fluids, Note
 from epicyclic.oil.oil import MixtureState
-from epicyclic.points import Alone, Points, pointwise, smaller
 from epicyclic.units import BAR, DEGREE, METRE_PER_SECOND, MILLIMETRE, WATT, format_number, percent
 
 if TYPE_CHECKING:
@@ -74,10 +74,11 @@ class PocketSettings:
     any_order: bool = False
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class MeshFlow:
     """Flow through the pockets of a mesh."""
+
+    pointwise = True
 
     # None without motion, and where the case leaves the loss out.
     figures: FlowFigures | None = None
@@ -98,7 +99,7 @@ def oil_in_mesh(duty: MeshDuty) -> float:
     passing = abs(duty.speed1) / (2 * math.pi) * (one + mesh.gear1.teeth / mesh.gear2.teeth * two)
     if not settings.fed or not passing:
         return settings.oil_fraction
-    return smaller(1.0, settings.oil_fraction + settings.fed / passing)
+    return -larger(-1.0, -settings.oil_fraction - settings.fed / passing)
 
 
 def flow_family(duty: MeshDuty) -> FlowFamily:
@@ -195,7 +196,11 @@ def mesh_flows(
         if figures is None:
             direct[key] = request
         flows[key] = MeshFlow(figures)
-    solved = dict(zip(direct, _solve_all(tuple(direct.values())), strict=True))
+    requests = tuple(direct.values())
+    # threads would cost more where all flows scale
+    scaled = all(it[0].scales(*it[1:]) for it in requests)
+    found = map(_solve, requests) if scaled else _solve_all(requests)
+    solved = dict(zip(direct, found, strict=True))
     for key, flow in solved.items():
         if flow.figures is not None:
             known = known.with_flow(*direct[key], flow.figures)
@@ -231,17 +236,9 @@ def _begin(families: tuple[FlowFamily, ...]) -> None:
                 pool.submit(kept_figures, family, LEAST_NUMBER)
 
 
+@lru_cache(maxsize=256)
 def _solve_all(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
     """All flows at once: their kernels release the interpreter."""
-    if all(it[0].scales(*it[1:]) for it in requests):  # threads would cost more
-        return tuple(map(_solve, requests))
-    return _solve_in_threads(requests)
-
-
-@lru_cache(maxsize=256)
-def _solve_in_threads(requests: tuple[FlowRequest, ...]) -> tuple[MeshFlow, ...]:
-    if isinstance(requests[0][1], Points):
-        raise Alone
     with ThreadPoolExecutor(len(requests)) as pool:
         return tuple(pool.map(_solve, requests))
 

@@ -5,12 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.arrays import (
+    Alone,
+    Apart,
+    BoolArray,
+    FloatArray,
+    Points,
+    every,
+    isfinite,
+    joined,
+    larger,
+    largest,
+    taken,
+)
 from epicyclic.errors import ConvergenceError, EpicyclicError
 from epicyclic.machine.balance import (
     Balance,
@@ -31,20 +43,6 @@ from epicyclic.machine.element import (
     joined_key,
 )
 from epicyclic.machine.machine import Machine, Operation, forces_of
-from epicyclic.points import (
-    Alone,
-    Apart,
-    Points,
-    every,
-    isfinite,
-    joined,
-    larger,
-    largest,
-    pointwise,
-    smaller,
-    some,
-    taken,
-)
 
 # What elements have answered so far, and what they would answer to loads next to those.
 #
@@ -94,7 +92,7 @@ class Answer:
             if loss.follows not in steps:
                 steps[loss.follows] = self._step(loads, loss)
             step = steps[loss.follows]
-            if some(step.size > NEAR):
+            if not every(step.size <= NEAR):
                 return None
             error = step.error(loss.watts, older)
             if error is math.inf:
@@ -102,7 +100,7 @@ class Answer:
             off += error * loss.watts
             line = loss.watts + step.part * (loss.watts - older)
             # no prediction makes a loss negative
-            losses[name] = loss._replace(watts=larger(smaller(0.0, loss.watts), line))
+            losses[name] = loss._replace(watts=larger(0.0, line))
         if not every(CAUTION * off <= allowed * sum(loss.watts for loss in losses.values())):
             return None
         return replace(self.result, losses=losses)
@@ -159,7 +157,7 @@ class _Step:
             return math.inf
         change = abs(watts - older) / watts
         power = change / self.before
-        if some(power > STEEPEST):
+        if not every(power <= STEEPEST):
             return change + STEEPEST * self.size
         bend = power * abs(power - 1) / 2 + BENT
         return bend * self.size * (self.before + self.size) + STEEPEST * self.aside
@@ -168,8 +166,6 @@ class _Step:
 def _apart(old: list[float], new: list[float]) -> float:
     """Largest change of a load, relative to the largest load. [1]"""
     size = largest(new)
-    if not some(size):
-        return 0.0
     return largest(two - one for one, two in zip(old, new, strict=True)) / larger(size, TINY)
 
 
@@ -195,10 +191,11 @@ MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class Solution:
     """A machine in balance."""
+
+    pointwise = True
 
     speeds: Mapping[str, float]  # Speeds of every body, and torques from outside. [rad/s], [N m]
     torques: Mapping[str, float]  # Speeds of every body, and torques from outside. [rad/s], [N m]
@@ -327,9 +324,10 @@ def solve_machine(
     if start is None:
         start = start_of(machine, operation)
     directions = start.directions
-    branch = _Branch(machine, operation, start, fluids, {}, earlier, directions.drives)
-    if evaluations is not None:
-        branch = replace(branch, evaluations=evaluations)
+    drives = directions.drives
+    branch = _Branch(
+        machine, operation, start, fluids, {}, earlier, drives, evaluations=evaluations
+    )
     drives = _led(branch)
     tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
@@ -459,15 +457,16 @@ def _answered(
     state: State,
     known: _Known | None,
     allowed: float,  # Relative error of predicted losses.
-    evaluations: Evaluations,
+    evaluations: Evaluations | None = None,
 ) -> _Known:
     """The answer of an element to a state: the last one, one predicted from it, or a new one."""
+    evaluate = element.evaluate if evaluations is None else partial(evaluations.of, element)
     if known is None:
-        loads, result = element.loads(state), evaluations.of(element, state)
+        loads, result = element.loads(state), evaluate(state)
         return _Known(Answer(loads, result), result, loads, state.drives)
     loads = element.loads(state, known.result)
     if known.drives != state.drives:
-        result = evaluations.of(element, state, known.result)
+        result = evaluate(state, known.result)
         return _Known(Answer(loads, result), result, loads, state.drives)
     if _agrees(known.loads, loads):
         return known
@@ -475,7 +474,7 @@ def _answered(
     predicted = known.answer.predicted(loads, larger(allowed, PREDICTED * passed))
     if predicted is not None:
         return _Known(known.answer, predicted, loads, state.drives)
-    result = evaluations.of(element, state, known.result)
+    result = evaluate(state, known.result)
     last = known.answer
     before = replace(last, before=None) if last.alike(loads, result) else None
     return _Known(Answer(loads, result, before), result, loads, state.drives)
@@ -504,7 +503,7 @@ class _Branch:
     # Meshes whose losses are friction, whichever gear drives.
     braking: frozenset[str] = frozenset()
     passes: int = 0  # So far.
-    evaluations: Evaluations = field(default_factory=lambda: Evaluations())
+    evaluations: Evaluations | None = None  # Of several points.
     state: State = field(init=False, repr=False)  # That the elements saw in the last of them.
 
     @cached_property
@@ -569,7 +568,7 @@ class _Branch:
         # an error of the losses changes the loads about as much as the losses do of which it is
         # that share: it may change them by less than they have to agree
         moved = _apart([self.unlost.meshes[key] for key in found.meshes], [*found.meshes.values()])
-        allowed = smaller(AGREEMENT / larger(moved, TINY), LOSS_AGREEMENT)
+        allowed = AGREEMENT / larger(moved, AGREEMENT / LOSS_AGREEMENT)
         with np.errstate(over="ignore"):  # a loss may be too large for a number
             self.known = {
                 element.key: _answered(
@@ -712,7 +711,7 @@ def effects_of(
             power = 0.0 if loss.mesh in braking else abs(powers.get(loss.mesh, 0.0))
             if loss.mesh and loss.watts < MOST_OF_A_MESH * power:
                 efficiencies[loss.mesh] -= loss.watts / power
-            elif some(loss.watts):
+            elif not every(loss.watts == 0):
                 frictions += [
                     Friction((one, two), share * loss.watts) for one, two, share in loss.brakes
                 ]

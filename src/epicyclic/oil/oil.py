@@ -14,8 +14,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from epicyclic.arrays import FloatArray
-from epicyclic.points import pointwise, pow
+from epicyclic.arrays import FloatArray, pow
 from epicyclic.units import (
     CELSIUS,
     SQUARE_MM_PER_SECOND,
@@ -289,10 +288,11 @@ DEFAULT_CONDUCTIVITY = 0.14
 SLOPE_STEP = 0.5  # Temperature step of the slope of the viscosity. [K]
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class OilState:
     """Oil at one temperature and ambient pressure."""
+
+    pointwise = True
 
     temperature: float  # [K]
     kinematic_viscosity: float  # [m^2/s]
@@ -314,10 +314,11 @@ class OilState:
         return load
 
 
-@pointwise
 @dataclass(frozen=True, slots=True)
 class MixtureState:
     """Mixture of oil and air around the gears."""
+
+    pointwise = True
 
     oil_fraction: float  # xi, by volume at ambient pressure. [1]
     density: float  # [kg/m^3]

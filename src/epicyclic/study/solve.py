@@ -14,7 +14,6 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figures, table_around
 from epicyclic.machine.element import OIL
 from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
-from epicyclic.machine.heat import Answer, Settled
 from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
 from epicyclic.machine.solve import Solution, solve_machines
 from epicyclic.result.physical import judged
@@ -97,8 +96,7 @@ def solve_together(cases: Sequence[Case], flow_tables: FlowTables) -> list[Resul
             if solution is None:
                 found[number] = solve(cases[number], flow_tables=flow_tables)
             else:
-                settled = one.sound(Settled(solution, Answer({}), 1))
-                found[number] = judged(assemble(cases[number], one, settled))
+                found[number] = judged(assemble(cases[number], one, one.solve(solution)))
         except Exception as error:
             found[number] = error
     return [found[number] for number in range(len(cases))]

@@ -25,6 +25,7 @@ from epicyclic.case.keys import field_at
 from epicyclic.errors import InputError, Problem, Status, one_problem, printable, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
+from epicyclic.machine.solve import FEWEST
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import Result, number_fields, origin
 from epicyclic.schema.fields import is_array, quantity_of
@@ -186,8 +187,9 @@ class CasePlan(Plan):
 
     @property
     def block(self) -> int:
-        """See `Plan`: large enough for `solve_together`, if there are enough points."""
-        return max(1, min(TOGETHER, self.size // FEWEST_BLOCKS)) if self.together else 1
+        """See `Plan`: of as many points as are worth it, if there are enough."""
+        size = min(TOGETHER, self.size // FEWEST_BLOCKS)
+        return size if self.together and size >= FEWEST else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
         """Rows of points; those that share all but their operation are solved together."""
