@@ -401,7 +401,7 @@ def test_what_is_no_table_is_refused(data, table, words):
 
 def test_temperatures_are_asked_for_once(data):
     cycle = {"speed [rpm]": [100], "torque [N*m]": [1], "duration [s]": [1]}
-    with pytest.raises(ep.InputError, match="the map covers 40 to 90 degC"):
+    with pytest.raises(ep.InputError, match="the map covers 40 to 90 °C"):
         ep.duty_cycle(data, cycle)
     with pytest.raises(ep.InputError, match="column of the cycle"):
         ep.duty_cycle(data, cycle | {"temperature [degC]": [50]}, ["40 degC"])

@@ -62,8 +62,8 @@ def test_what_is_stated_takes_the_place_of_what_is_typical():
     [
         ({"iso_vg": 99, "kind": "pao"}, "lubricant.oil", "no viscosity grade of ISO 3448"),
         ({"iso_vg": "46", "kind": "pao"}, "lubricant.oil", "no viscosity grade of ISO 3448"),
-        ({"iso_vg": 220, "kind": "pag"}, "lubricant.oil", "at 100 degC"),
-        ({"viscosity_100": "9 mm^2/s", "kind": "pag"}, "lubricant.oil", "at 40 degC"),
+        ({"iso_vg": 220, "kind": "pag"}, "lubricant.oil", "at 100 °C"),
+        ({"viscosity_100": "9 mm^2/s", "kind": "pag"}, "lubricant.oil", "at 40 °C"),
         ({"iso_vg": 46, "viscosity_40": "40 mm^2/s", "kind": "pao"}, "lubricant.oil", "the same"),
         ({"iso_vg": 46, "viscosity_100": "9 mm^2/s"}, "lubricant.oil.kind", "is missing"),
         (
