@@ -255,7 +255,7 @@ def solve_mesh(
     """
     friction = duty.gears.models.friction if last is None else last.friction
     rolling = duty.gears.models.rolling
-    if isinstance(duty.speed1, Points) and not (
+    if isinstance(duty.torque1, Points) and not (
         friction.several and rolling.several and not duty.gears.models.by_loss_factor
     ):
         raise Alone

@@ -612,7 +612,7 @@ def solve_bearing(
     asked: tuple[Any, ...] = (load.force, 0.0, load.moment_x, load.moment_y)
     if isinstance(last, RollerLoads):
         find, asked = partial(roller_loads_next_to, bearing), (last, load.force, *asked[2:])
-    loads = each_roller_loads(find, *asked) if isinstance(speed, Points) else find(*asked)
+    loads = each_roller_loads(find, *asked) if isinstance(load.force, Points) else find(*asked)
     loss = _by_load(own, loads, load.force, speed, oil)
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
@@ -630,7 +630,7 @@ def solve_bearing(
     if not own.viscous_added:
         watts = larger(0.0, watts - loss.rolling * viscous_loss)
     if own.model == FULL_COMPLEMENT:
-        if isinstance(speed, Points):
+        if isinstance(load.force, Points):
             raise Alone
         volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
         pull = own.roller_density * volume * pin_radius * carrier**2
@@ -730,8 +730,8 @@ def _by_load(
     alone: bool = False,  # As of `fitted_rolling_loss`.
 ) -> BearingLoss:
     """Loss that grows with the load, after the model of the bearing."""
-    if isinstance(speed, Points) and isinstance(own.model, FittedRolling):
-        asked = taken((loads, force, speed, oil), range(len(speed)))
+    if isinstance(force, Points) and isinstance(own.model, FittedRolling):
+        asked = taken((loads, force, speed, oil), range(len(force)))
         ones = [_by_load(own, *point, alone=alone) for point in asked]
         flags = Flags(partial(iter, Each(one.flags for one in ones)))
         losses, shares = (joined([getattr(it, key) for it in ones]) for key in ("loss", "rolling"))
