@@ -118,7 +118,7 @@ def inlet_film_factor(thermal_load: Real, pressure: Real, slip: Real) -> Real:
     Examples
     --------
     >>> round(inlet_film_factor(2.0, 0.005, 0.5), 4)
-    0.5398
+    0.5215
     """
     load = np.log(np.maximum(thermal_load, _LEAST))
     numerator = np.maximum(1 - 13.2 * pressure * np.exp(0.42 * load), LEAST_FILM_SHARE)
