@@ -158,3 +158,10 @@ def test_examples_of_the_gallery_use_every_public_function():
                 used |= {node.attr} if node.value.id == "ep" else set()
     functions = {name for name in ep.__all__ if inspect.isfunction(getattr(ep, name))}
     assert functions - used == set()
+
+
+@pytest.mark.slow
+def test_examples_of_docstrings_run():
+    options = ("-q", "-n", "0", "-p", "no:cacheprovider", "--doctest-modules")
+    done = run(sys.executable, "-m", "pytest", *options, "src/epicyclic")
+    assert done.returncode == 0, done.stdout[-3000:]

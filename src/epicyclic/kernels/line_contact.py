@@ -117,7 +117,7 @@ def inlet_film_factor(thermal_load: Real, pressure: Real, slip: Real) -> Real:
 
     Examples
     --------
-    >>> round(inlet_film_factor(2.0, 0.005, 0.5), 4)
+    >>> round(float(inlet_film_factor(2.0, 0.005, 0.5)), 4)
     0.5215
     """
     load = np.log(np.maximum(thermal_load, _LEAST))

@@ -39,7 +39,7 @@ def reliability(
     Examples
     --------
     >>> reliability("rolling", "goksem-hargreaves").split(";")[0]
-    'within some 15 % of solved smooth contacts without heating'
+    'within about 15 % of solved smooth contacts without heating'
     """
     if not name.startswith("fitted"):
         return RELIABILITY[role][name]

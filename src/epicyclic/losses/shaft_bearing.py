@@ -384,7 +384,7 @@ class AxialSpring:
         Examples
         --------
         >>> round(1e6 * AxialSpring(14, 12e-3, 0.0, 0.7).approach(1000.0), 1)
-        7.2
+        6.9
         """
         sine = math.sin(self.contact_angle)
         Q = force / (self.elements * sine)

@@ -63,7 +63,7 @@ def film_drag(
     >>> import math
     >>> torque, _ = film_drag(0.03, 850.0, (50 * math.pi, 0.0), 0.060, 0.075, 0.2e-3)
     >>> round(torque, 4)
-    0.6913
+    0.6914
     """
     one, two = speeds
     shear = math.pi * viscosity * abs(one - two) / (2 * gap * slope)

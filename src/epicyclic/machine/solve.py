@@ -100,7 +100,7 @@ class Answer:
             off += error * loss.watts
             line = loss.watts + step.part * (loss.watts - older)
             # no prediction makes a loss negative
-            losses[name] = loss._replace(watts=larger(0.0, line))
+            losses[name] = loss._replace(watts=larger(loss.watts * (loss.watts < 0), line))
         if not every(CAUTION * off <= allowed * sum(loss.watts for loss in losses.values())):
             return None
         return replace(self.result, losses=losses)

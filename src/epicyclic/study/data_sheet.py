@@ -59,7 +59,7 @@ def data_sheets(case: Case) -> dict[str, DataSheet]:
     >>> [one.gear.name for one in sheet.gears]
     ['sun', 'planet', 'ring']
     >>> round(sheet.meshes[0].mesh.transverse_contact_ratio, 2)
-    1.38
+    1.36
     """
     return {name: _sheet(gearing) for name, gearing in case.gearings.items() if gearing.computed}
 
