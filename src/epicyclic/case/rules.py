@@ -77,6 +77,13 @@ def cross_check(
     models = sections.get("models")
     if isinstance(models, GearPairModels):
         problems += _check_models(models, sections, {*given, *sections}, folder)
+    operation = sections.get("operation")
+    if isinstance(operation, PlanetaryOperation):
+        allowed = f'must be a different member from operation.input, "{operation.input}".'
+        for key in ("fixed", "second_input"):
+            if getattr(operation, key) == operation.input:
+                remedy = "Name one of the other two."
+                problems.append(Problem(f"operation.{key}", "", allowed, remedy))
     solver = sections.get("contact_solver")
     if isinstance(solver, ContactSolver):
         problems += law_problems("contact_solver", solver)
@@ -100,13 +107,6 @@ def cross_check(
         if all(name in sections for name in needed):
             problems += check(*(sections[name] for name in needed))
     return problems
-
-
-def _one_twice(operation: PlanetaryOperation) -> Iterator[Problem]:
-    allowed = f'must be a different member from operation.input, "{operation.input}".'
-    for key in ("fixed", "second_input"):
-        if getattr(operation, key) == operation.input:
-            yield Problem(f"operation.{key}", "", allowed, "Name one of the other two.")
 
 
 def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> Iterator[Problem]:
@@ -314,6 +314,20 @@ def _check_models(
             read_stored(folder / models.pocketing_table)
         except InputError as error:
             yield from error.problems
+    around, numerics = sections.get("surroundings"), sections.get("numerics")
+    if isinstance(around, Surroundings) and models.pocket_void_pressure >= around.pressure:
+        shown = BAR.text(models.pocket_void_pressure)  # a void has less
+        allowed = f"must be less than surroundings.pressure, {BAR.text(around.pressure)}."
+        usual = "0.01 bar" if around.pressure > BAR.parse("0.01 bar") else "0 bar"
+        yield Problem("models.pocket_void_pressure", shown, allowed, f"Take {usual}.")
+    if isinstance(numerics, Numerics) and models.load_distribution == "compliance":
+        positions, segments = numerics.mesh_positions, numerics.contact_segments
+        if positions * segments**2 > MOST_COEFFICIENTS:
+            allowed = f"with {positions} mesh positions the influence coefficients of "
+            allowed += 'models.load_distribution = "compliance" would not fit into memory.'
+            fitting = max(2, math.isqrt(MOST_COEFFICIENTS // positions))
+            remedy = f"Use {fitting} or fewer; 30 are enough for 0.1 %."
+            yield Problem("numerics.contact_segments", "", allowed, remedy)
     if isinstance(models, PlanetaryModels) and models.planet_tilt == "coupled":
         key, remedy = "models.planet_tilt", 'Or write planet_tilt = "left-out".'
         if "planet_bearing" not in given:
@@ -382,54 +396,12 @@ def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) ->
     return builtin_model(lubricant.oil)
 
 
-def _full_void(models: GearPairModels, surroundings: Surroundings) -> Iterator[Problem]:
-    """A void has less pressure than the surroundings."""
-    shown = BAR.text(models.pocket_void_pressure)
-    allowed = f"must be less than surroundings.pressure, {BAR.text(surroundings.pressure)}."
-    usual = "0.01 bar" if surroundings.pressure > BAR.parse("0.01 bar") else "0 bar"
-    yield Problem("models.pocket_void_pressure", shown, allowed, f"Take {usual}.")
-
-
-def _too_fine(models: GearPairModels, numerics: Numerics) -> list[Problem]:
-    """Influence coefficients of all positions must fit into memory."""
-    positions = numerics.mesh_positions
-    if models.load_distribution != "compliance":
-        return []
-    allowed = f"with {positions} mesh positions the influence coefficients of "
-    allowed += 'models.load_distribution = "compliance" would not fit into memory.'
-    fitting = max(2, math.isqrt(MOST_COEFFICIENTS // positions))
-    remedy = f"Use {fitting} or fewer; 30 are enough for 0.1 %."
-    return [Problem("numerics.contact_segments", "", allowed, remedy)]
-
-
 _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = (
-    (
-        lambda it: (
-            _one_twice(it)
-            if isinstance(it, PlanetaryOperation) and it.input in (it.fixed, it.second_input)
-            else ()
-        ),
-        ("operation",),
-    ),
     (check_rollers, ("planet_bearing",)),
     (lambda it: _too_open(it) if it.open_width > it.width else (), ("carrier",)),
     (check_cage, ("planet_bearing", "models")),
     (_both_bearings, ("planet_bearing", "planet_pin")),
     (_check_friction_table, ("friction_table",)),
-    (
-        lambda models, it: (
-            _too_fine(models, it)
-            if it.mesh_positions * it.contact_segments**2 > MOST_COEFFICIENTS
-            else ()
-        ),
-        ("models", "numerics"),
-    ),
-    (
-        lambda models, it: (
-            _full_void(models, it) if models.pocket_void_pressure >= it.pressure else ()
-        ),
-        ("models", "surroundings"),
-    ),
     (check_thermal, ("thermal",)),
     (lambda it, run: check_outlet(it, run.oil_inlet_temperature), ("thermal", "operation")),
     (check_lubrication, ("lubrication",)),
