@@ -244,9 +244,9 @@ class _Taking:
         if cls not in (partial, _Later) and not marked:
             return None
         mark = id(value), id(self.kept)
-        if mark not in self.found:
-            self.found[mark] = self._objects(cls, value)
-        found: list[Any] | None = self.found[mark]
+        if mark not in self.found:  # with what it is of, so that no other gets its mark
+            self.found[mark] = value, self.kept, self._objects(cls, value)
+        found: list[Any] | None = self.found[mark][-1]
         return found
 
     def _made(self, make: Callable[[Any], Any], parts: Iterable[Any]) -> list[Any] | None:
@@ -306,7 +306,6 @@ class _Taking:
         self.kept = ()
         if isinstance(self.rows[0], int) and not loaded.all():
             self.kept = list(loaded[self.rows])
-            self.found[id(self.kept), -1] = self.kept  # no other gets its mark
 
 
 def _with_fields(cls: Any, fields: Mapping[str, Any]) -> Any:
