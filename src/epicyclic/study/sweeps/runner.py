@@ -415,14 +415,15 @@ class Runner:
             # absolute, because workers may have been started in another folder
             journal = Journal(Path(self.journal).absolute(), fingerprint(plan))
             kept = journal.read()
-            yield [(index, kept[index]) for index in left if index in kept]
-            journal.begin(heading(plan, self.shard, self.output))
-            left = [
-                index
-                for block in _blocks(plan, left)
-                if not kept.keys() >= {*block}
+            blocks = _blocks(plan, left)
+            left = [index for block in blocks if not kept.keys() >= {*block} for index in block]
+            yield [
+                (index, kept[index])
+                for block in blocks
+                if kept.keys() >= {*block}
                 for index in block
             ]
+            journal.begin(heading(plan, self.shard, self.output))
         if not left:
             return
         plan = plan.prepared(left, self.jobs)
