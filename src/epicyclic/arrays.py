@@ -288,7 +288,7 @@ class _Taking:
         elif hasattr(value, "loaded") and hasattr(value, "__dict__"):  # with what follows from it
             found = self._made(
                 lambda row: _with_fields(cls, dict(zip(vars(value), row, strict=True))),
-                vars(value).values(),
+                map(self._of_each, vars(value).values()),
             )
         else:
             names = _names(cls)
@@ -301,6 +301,12 @@ class _Taking:
             )
         self.kept = before
         return found
+
+    def _of_each(self, values: Any) -> Any:
+        """What all points share of a contact of which each keeps other places."""
+        if self.kept and type(values) is np.ndarray and values.shape == self.kept[0].shape:
+            return np.broadcast_to(values, (max(self.rows) + 1, *values.shape)).view(Points)
+        return values
 
     def _keep(self, loaded: BoolArray) -> None:
         self.kept = ()
