@@ -147,7 +147,7 @@ _OPERATING_TABLES = (
 )
 
 
-TOGETHER = 64  # Points solved together, at most: their arrays still fit near the processor.
+TOGETHER = 32  # Points solved together, at most: more take memory and no less time.
 FEWEST_BLOCKS = 4  # That a study is cut into, so that several processes can share it.
 
 
