@@ -102,7 +102,8 @@ def larger(one: float, two: float) -> float:
 
 def largest(values: Iterable[float]) -> float:
     """Largest magnitude, point by point; 0 of none."""
-    return reduce(larger, map(abs, values), 0.0)
+    sizes = [*map(abs, values)]
+    return reduce(larger, sizes) if Points in map(type, sizes) else max(sizes, default=0.0)
 
 
 def _norm(values: Sequence[float], order: float) -> Any:
@@ -122,9 +123,9 @@ total = _Either(
 def side_by_side(values: Iterable[Any]) -> FloatArray:
     """Numbers as an array, along its last axis; of `Points` the points are the first one."""
     values = list(values)
-    count = next((len(value) for value in values if isinstance(value, Points)), None)
-    if count is None:
+    if Points not in map(type, values):
         return np.array(values, dtype=float)
+    count = next(len(value) for value in values if isinstance(value, Points))
     table = np.empty((count, len(values)))
     for place, value in enumerate(values):
         table[:, place : place + 1] = value

@@ -65,18 +65,16 @@ def film_stress(
     log_rate = np.log(np.where(sheared, rate, 1.0) * (oil[4] * oil[5] / limit))
     base, stress = oil[0] + warm, START * limit * pressure
     low, high = np.zeros_like(stress), np.full_like(stress, math.inf)
-    moved, found = high, np.zeros_like(sheared)
+    moved = high
     for _ in range(STEPS):  # Newton, bisection where that leaves what is known or runs in circles
         hot, slope = eyring_stress(base + heating * stress, pressure, log_rate, limit, oil)
         step = (hot - stress) / (1.0 - heating * slope)
-        step = np.where(found, 0.0, step)  # no film depends on those beside it
         last, stress, size = stress, stress + step, np.abs(step)
-        found = found | (size <= SMALL_STEP * stress)
-        if found.all():
+        if (size <= SMALL_STEP * stress).all():
             break
         above = hot > last
         low, high = np.where(above, last, low), np.where(above, high, last)
-        left = ~found & ((stress < low) | (stress > high) | (size > moved / 2.0))
+        left = (stress < low) | (stress > high) | (size > moved / 2.0)
         if left.any():
             stress = np.where(left, np.minimum((low + high) / 2.0, 2.0 * last), stress)
         moved = np.abs(stress - last)

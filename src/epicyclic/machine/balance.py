@@ -251,7 +251,7 @@ class Statics:
             column, length = self._column(
                 row.terms(1.0, lost) if drives[row.key] else row.terms(lost, 1.0)
             )
-            columns.append(side_by_side(column))
+            columns.append(column)
             scale.append(length)
         scale += self._fixed[1]
         known_of = {body: self._given[body] for body in self._place}  # with those of friction (T6)
@@ -268,8 +268,8 @@ class Statics:
         fixed = self._fixed[0]
         matrix = np.empty((*known.shape[:-1], *fixed.shape))
         matrix[...] = fixed
-        for number, filled in enumerate(columns):
-            matrix[..., number] = filled
+        for number, column in enumerate(columns):
+            matrix[..., number] = side_by_side(column) if matrix.ndim > 2 else column
         found, unique = _least(matrix, -known)
         values = apart(found)
         size = largest((*apart(known), *values))

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, Sought, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import BearingLoad
@@ -276,6 +276,11 @@ class ElementResult:
     figures: Mapping[str, DataclassInstance] = field(default_factory=dict[str, Any])
     flags: SomeFlags = ()  # Models used outside their ranges.
     notes: tuple[str, ...] | Sought[str] = ()  # What else the user must know.
+
+    @property
+    def unread(self) -> Self:
+        """What the next pass goes on from, without what only a reader asks for."""
+        return replace(self, figures={}, flags=(), notes=())
 
 
 class Element(Protocol):

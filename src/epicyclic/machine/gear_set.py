@@ -198,6 +198,12 @@ class GearSetResult(ElementResult):
     rollers: Mapping[tuple[str, float], Carried]  # By planet and share of the load.
     known_flows: KnownFlows  # Through pockets, also those at other temperatures.
 
+    @property
+    def unread(self) -> GearSetResult:
+        """See `ElementResult`; its meshes, too."""
+        meshes = {key: mesh.unread for key, mesh in self.meshes.items()}
+        return replace(self, figures={}, flags=(), notes=(), meshes=meshes)
+
     def of_last_pass(self) -> dict[str, Any]:
         """What nothing goes on from: these fields, empty."""
         return {

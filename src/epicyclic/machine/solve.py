@@ -415,6 +415,7 @@ class Evaluations:
 
     before: Sequence[tuple[State, ElementResult]] = ()  # Of the block of which this is a part.
     done: list[tuple[State, ElementResult]] = field(default_factory=list)
+    last: dict[str, int] = field(default_factory=dict)  # Of each element, number in `done`.
 
     def of(
         self, element: Element, state: State, last: ElementResult | None = None
@@ -426,6 +427,10 @@ class Evaluations:
         else:
             self.before = ()
             result = element.evaluate(state, last)
+        if element.key in self.last:  # the contacts of a pass take memory, and only a reader asks
+            asked, old = self.done[self.last[element.key]]
+            self.done[self.last[element.key]] = asked, old.unread
+        self.last[element.key] = len(self.done)
         self.done.append((state, result))
         return result
 
@@ -476,7 +481,8 @@ def _answered(
         return _Known(known.answer, predicted, loads, state.drives)
     result = evaluate(state, known.result)
     last = known.answer
-    before = replace(last, before=None) if last.alike(loads, result) else None
+    kept = ElementResult(last.result.losses)  # of what contacts were like, nobody asks
+    before = Answer(last.loads, kept) if last.alike(loads, result) else None
     return _Known(Answer(loads, result, before), result, loads, state.drives)
 
 
