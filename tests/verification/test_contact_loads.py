@@ -32,6 +32,9 @@ def solve(
         np.full_like(length, local_a),
         local_b,
         length if start is None else start,
+        np.nan,
+        np.nan,
+        np.zeros_like(length),
         1e-9,
         1000,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -20,7 +21,7 @@ from epicyclic.gears.cutting import Tool, default_tool, tooth_outline
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import Mesh
-from epicyclic.kernels.contact_load import solve_all_positions
+from epicyclic.kernels.contact_load import solve_points
 from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width
 
 # Linear algebra on one thread.
@@ -567,22 +568,27 @@ def load_mesh_elastically(
     `ConvergenceError` if no loads are found that satisfy all conditions of the contact.
     """
     compliance = mesh_compliance(mesh, body1, body2, positions, segments)
-    separation = _separation(mesh, deviations, compliance.lines)
-    return _loaded(mesh, compliance, force, separation, compliance.lines.length)
+    shape, unknown = (1, *compliance.lines.length.shape), np.full((1, positions), np.nan)
+    start = np.ones(shape), unknown, unknown, np.zeros(shape)
+    return _loaded(mesh, compliance, [force], deviations, [force], start)[0]
 
 
-def load_mesh_next_to(
-    last: LoadedMesh, force: float, deviations: FlankDeviations = UNMODIFIED
-) -> LoadedMesh:
-    """The mesh of `last` under nearly the same load, which saves most of the work.
+def load_meshes_next_to(
+    last: Sequence[LoadedMesh], forces: Sequence[float], deviations: FlankDeviations = UNMODIFIED
+) -> list[LoadedMesh]:
+    """A mesh under several loads, each near that of its `last`, or only the first near the one.
 
-    Parameters as for `load_mesh_elastically`, which has the same solution but for its tolerance.
+    That saves most of the work. Parameters as for `load_mesh_elastically`, which has the same
+    solutions but for its tolerance.
     """
-    separation = _separation(last.mesh, deviations, last.compliance.lines)
-    more = (force - last.force) / math.cos(last.mesh.gear1.rack.base_helix_angle)
-    start = last.line_load * last.compliance.lines.length + more * last.rise
-    start.flags.writeable = False  # as lengths are: the kernel is compiled once for both
-    return _loaded(last.mesh, last.compliance, force, separation, start)
+    start = (
+        np.array([one.line_load for one in last]),
+        np.array([one.normal_approach for one in last]),
+        np.array([one.normal_stiffness for one in last]),
+        np.array([one.rise for one in last]),
+    )
+    before = [one.force for one in last]
+    return _loaded(last[0].mesh, last[0].compliance, forces, deviations, before, start)
 
 
 @lru_cache(maxsize=64)
@@ -594,29 +600,35 @@ def _separation(mesh: Mesh, deviations: FlankDeviations, lines: ContactLines) ->
 
 
 def _loaded(
-    mesh: Mesh, compliance: MeshCompliance, force: float, separation: FloatArray, start: FloatArray
-) -> LoadedMesh:
-    """The mesh under the transverse `force`, from the normal forces `start` of the segments."""
-    lines = compliance.lines
-    normal = force / math.cos(mesh.gear1.rack.base_helix_angle)
-    forces, approach, stiffness, iterations, rise = solve_all_positions(
+    mesh: Mesh,
+    compliance: MeshCompliance,
+    forces: Sequence[float],
+    deviations: FlankDeviations,
+    last: Sequence[float],  # Transverse forces of the solutions to start from. [N]
+    start: tuple[FloatArray, FloatArray, FloatArray, FloatArray],  # As of `solve_points`.
+) -> list[LoadedMesh]:
+    """The mesh under transverse `forces`."""
+    lines, slope = compliance.lines, math.cos(mesh.gear1.rack.base_helix_angle)
+    normal = np.array(forces) / slope
+    *found, iterations = solve_points(
         normal,
         compliance.influence,
         compliance.coupling,
-        separation,
+        _separation(mesh, deviations, lines),
         lines.length,
         compliance.local_a,
         compliance.local_b,
-        start,
+        np.array(last) / slope,
+        *start,
         TOLERANCE,
         STEPS_PER_SEGMENT * lines.length[0].size,
     )
     if iterations.min() < 0:
+        lost = normal[iterations.min(axis=1) < 0][0]
         raise ConvergenceError(
-            f"the load distribution of the {mesh.name} was not found at {normal:.4g} N; use "
+            f"the load distribution of the {mesh.name} was not found at {lost:.4g} N; use "
             'models.load_distribution = "uniform".'
         )
-    line_load = np.divide(forces, lines.length, out=np.zeros_like(forces), where=lines.length > 0)
-    for array in (line_load, approach, stiffness, rise):
+    for array in found:
         array.flags.writeable = False
-    return LoadedMesh(mesh, compliance, force, line_load, approach, stiffness, rise)
+    return [LoadedMesh(mesh, compliance, *one) for one in zip(forces, *found, strict=True)]

@@ -41,17 +41,19 @@ def local_law(q: float, a: float, b: float, floor: float) -> tuple[float, float]
     A parabola through zero below `floor` and a straight line beyond the load of `LEAST_SLOPE`, both
     with the slope of the law where they meet it.
     """
-    top = np.exp(2.0 * (a / b - LEAST_SLOPE) - 1.0)
+    log_top = 2.0 * (a / b - LEAST_SLOPE) - 1.0
+    log_q = np.log(q) if q > 0.0 else -np.inf
+    if q >= floor and log_q <= log_top:
+        return q * (a - 0.5 * b * log_q), a - 0.5 * b * log_q - 0.5 * b
+    top = np.exp(log_top)
     low = min(floor, top)
     if q < low:
         start = a - 0.5 * b * np.log(low) + 0.5 * b
         if q < 0.0:
             return q * start, start
         return q * (start - 0.5 * b * q / low), start - b * q / low
-    if q > top:
-        slope = LEAST_SLOPE * b
-        return top * (a - 0.5 * b * np.log(top)) + slope * (q - top), slope
-    return q * (a - 0.5 * b * np.log(q)), a - 0.5 * b * np.log(q) - 0.5 * b
+    slope = LEAST_SLOPE * b
+    return top * (a - 0.5 * b * log_top) + slope * (q - top), slope
 
 
 # Sums and products are written as loops: those of numpy take several times as long to compile.
@@ -420,6 +422,10 @@ def solve_contact_loads(
     # Forces to begin with, whatever their sum, none for those that pull: what is next to the
     # solution saves most of the steps, the lengths do for a start from nothing. [N]
     start: FloatArray,
+    # Returns for these forces, which they are the solution for or nearly so; NaN if unknown.
+    approach: float,
+    stiffness: float,
+    rise: FloatArray,
     # Largest gap or penetration at loaded segments over the approach, and largest error of the
     # balance over the force. [1]
     tolerance: float,
@@ -441,8 +447,6 @@ def solve_contact_loads(
     rise : ndarray, shape (lines, segments)
         Rise of each force with the total one, before the last step. [1]
     """
-    approach = stiffness = np.nan
-    rise = np.zeros(length.shape)
     nearest = np.inf
     for line in range(length.shape[0]):
         for k in range(length.shape[1]):
@@ -455,6 +459,7 @@ def solve_contact_loads(
             gap[line, k] = separation[line, k] - nearest
             whole += length[line, k]
     floor = LINEAR_SHARE * force / whole
+    approach -= nearest
     forces, loaded = shared(force, start)
     for iteration in range(QUICK_STEPS):
         closed, slope = deflections(
@@ -478,35 +483,65 @@ def solve_contact_loads(
 
 
 @kernel
-def solve_all_positions(
-    force: float,
+def solve_points(
+    forces: FloatArray,  # Shape (points,). [N]
     compliance: FloatArray,
     coupling: FloatArray,
     separation: FloatArray,
     length: FloatArray,
     local_a: FloatArray,
     local_b: float,
-    start: FloatArray,
+    # Solutions to start from along their tangents: one for each force, or the first ones; the
+    # others start from the one before.
+    last_forces: FloatArray,
+    last_loads: FloatArray,
+    last_approach: FloatArray,
+    last_stiffness: FloatArray,
+    last_rise: FloatArray,
     tolerance: float,
     max_iterations: int,
-) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64], FloatArray]:
-    """`solve_contact_loads` for arrays with mesh positions as their first axis."""
-    positions = length.shape[0]
-    forces, rise = np.zeros(length.shape), np.zeros(length.shape)
-    approach = np.empty(positions)
-    stiffness = np.empty(positions)
-    iterations = np.empty(positions, dtype=np.int64)
-    for m in range(positions):
-        forces[m], approach[m], stiffness[m], iterations[m], rise[m] = solve_contact_loads(
-            force,
-            compliance[m],
-            coupling[m],
-            separation[m],
-            length[m],
-            local_a[m],
-            local_b,
-            start[m],
-            tolerance,
-            max_iterations,
-        )
-    return forces, approach, stiffness, iterations, rise
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
+    """`solve_contact_loads` for points (first axis) at mesh positions (second axis).
+
+    Line loads [N/m] in place of forces; the iterations are last.
+    """
+    points, (positions, lines, segments) = forces.size, length.shape
+    loads = np.zeros((points, positions, lines, segments))
+    rise = np.zeros(loads.shape)
+    approach = np.empty((points, positions))
+    stiffness = np.empty((points, positions))
+    iterations = np.empty((points, positions), dtype=np.int64)
+    start = np.empty((lines, segments))
+    for i in range(points):
+        given = i < last_forces.size
+        more = forces[i] - (last_forces[i] if given else forces[i - 1])
+        for m in range(positions):
+            near = last_loads[i, m] if given else loads[i - 1, m]
+            slope = last_rise[i, m] if given else rise[i - 1, m]
+            stiff = last_stiffness[i, m] if given else stiffness[i - 1, m]
+            closer = last_approach[i, m] if given else approach[i - 1, m]
+            for line in range(lines):
+                for k in range(segments):
+                    start[line, k] = near[line, k] * length[m, line, k] + more * slope[line, k]
+            found, approach[i, m], stiffness[i, m], iterations[i, m], rise[i, m] = (
+                solve_contact_loads(
+                    forces[i],
+                    compliance[m],
+                    coupling[m],
+                    separation[m],
+                    length[m],
+                    local_a[m],
+                    local_b,
+                    start,
+                    closer + more / stiff,
+                    stiff,
+                    slope,
+                    tolerance,
+                    max_iterations,
+                )
+            )
+            for line in range(lines):
+                for k in range(segments):
+                    if length[m, line, k] > 0.0:
+                        loads[i, m, line, k] = found[line, k] / length[m, line, k]
+    return loads, approach, stiffness, rise, iterations

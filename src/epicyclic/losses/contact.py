@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, Each, FloatArray, IntArray, Points, of_points, taken
+from epicyclic.arrays import BoolArray, Each, FloatArray, IntArray, Points, of_points
 from epicyclic.contact.elastic_teeth import (
     UNMODIFIED,
     GearBody,
     LoadedMesh,
     load_mesh_elastically,
-    load_mesh_next_to,
+    load_meshes_next_to,
 )
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
@@ -257,23 +257,29 @@ def _in_proportion(name: str, load: MeshLoad, positions: int, segments: int) -> 
 def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
     if isinstance(load.force, Points):
         return _elastic_each(load, positions, segments)
-    rest = (load.force, load.deviations)
     if load.last is None:
-        loaded = load_mesh_elastically(load.mesh, *load.bodies, positions, segments, *rest)
+        loaded = _from_nothing(load, load.force, positions, segments)
     else:
-        loaded = load_mesh_next_to(load.last, *rest)
+        (loaded,) = load_meshes_next_to([load.last], [load.force], load.deviations)
     return LineLoads(loaded.compliance.lines, loaded.line_load, loaded)
 
 
-def _elastic_each(load: Any, positions: int, segments: int) -> LineLoads:
-    """The loads of several points, each by itself."""
-    single = [
-        _elastic(replace(load, force=force, last=last), positions, segments)
-        for force, last in taken((load.force, load.last), range(len(load.force)))
-    ]
-    line_load = of_points([one.line_load for one in single])
-    elastic: Any = Each(one.elastic for one in single)
-    return LineLoads(single[0].lines, line_load, elastic)
+def _elastic_each(load: MeshLoad, positions: int, segments: int) -> LineLoads:
+    """The loads of several points; without known ones, each from those of the point before."""
+    forces: list[float] = load.force[:, 0].tolist()
+    last: Any = load.last
+    if last is None:
+        last = (_from_nothing(load, forces[0], positions, segments),)
+    loaded = load_meshes_next_to(last, forces, load.deviations)
+    elastic: Any = Each(loaded)
+    line_load = of_points([one.line_load for one in loaded])
+    return LineLoads(loaded[0].compliance.lines, line_load, elastic)
+
+
+def _from_nothing(load: MeshLoad, force: float, positions: int, segments: int) -> LoadedMesh:
+    return load_mesh_elastically(
+        load.mesh, *load.bodies, positions, segments, force, load.deviations
+    )
 
 
 LOAD_DISTRIBUTIONS: dict[str, LoadDistribution] = {
