@@ -7,13 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, Points
 
 LARGE = 20.0  # From here on arsinh(exp(x)) is x + ln 2 to the last digit. [1]
 OFFSET = 0.7  # Of ASTM D341. [mm^2/s]
 LEAST_VISCOSITY = 0.01  # That no heat goes below: thinner than any oil. [mm^2/s]
 START = 0.5  # Stress over its limit at unheated pressure with which Newton's method starts. [1]
 STEPS = 100
+AT_ONCE = 4000  # Films whose stress is found together: arrays of more do not fit into fast memory.
 SMALL_STEP = 1e-5  # Over the stress: what Newton's method leaves then is its square. [1]
 
 
@@ -61,6 +62,15 @@ def film_stress(
     limit, oil
         As for `eyring_stress`.
     """
+    rows = max(1, AT_ONCE * len(pressure) // max(1, pressure.size))
+    if isinstance(pressure, Points) and len(pressure) > rows:
+        each = [pressure, rate, warm, heating, limit, *oil]
+        found = []
+        for at in range(0, len(pressure), rows):
+            part = slice(at, at + rows)
+            own = [np.asarray(it)[part] if isinstance(it, Points) else it for it in each]
+            found.append(film_stress(*own[:5], own[5:]))
+        return np.concatenate(found).view(Points)
     sheared = rate > 0.0
     log_rate = np.log(np.where(sheared, rate, 1.0) * (oil[4] * oil[5] / limit))
     base, stress = oil[0] + warm, START * limit * pressure
