@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -68,8 +69,8 @@ def film_stress(
         found = []
         for at in range(0, len(pressure), rows):
             part = slice(at, at + rows)
-            own = [np.asarray(it)[part] if isinstance(it, Points) else it for it in each]
-            found.append(film_stress(*own[:5], own[5:]))
+            own: list[Any] = [np.asarray(it)[part] if isinstance(it, Points) else it for it in each]
+            found.append(film_stress(own[0], own[1], own[2], own[3], own[4], own[5:]))
         return np.concatenate(found).view(Points)
     sheared = rate > 0.0
     log_rate = np.log(np.where(sheared, rate, 1.0) * (oil[4] * oil[5] / limit))

@@ -264,7 +264,7 @@ def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
     return LineLoads(loaded.compliance.lines, loaded.line_load, loaded)
 
 
-def _elastic_each(load: MeshLoad, positions: int, segments: int) -> LineLoads:
+def _elastic_each(load: Any, positions: int, segments: int) -> LineLoads:
     """The loads of several points; without known ones, each from those of the point before."""
     forces: list[float] = load.force[:, 0].tolist()
     last: Any = load.last

@@ -349,38 +349,43 @@ def solve_machines(
 ) -> list[Solution | Exception]:
     """`solve_machine` for several operating points, or what it raises for each of them."""
     found: dict[int, Solution | Exception] = {}
-
-    def alone(rows: Sequence[int], evaluations: Sequence[Evaluations]) -> None:
-        for row, own in zip(rows, evaluations, strict=True):
+    left: list[tuple[Sequence[int], Evaluations]] = [(range(len(operations)), Evaluations())]
+    while left:
+        rows, evaluations = left.pop()
+        if len(rows) < FEWEST or not all(element.several for element in machine.elements):
+            known = evaluations.single(len(rows))
+        else:
             try:
-                found[row] = solve_machine(machine, operations[row], fluids[row], evaluations=own)
+                one = joined([operations[row] for row in rows])
+                oils = joined([replace(fluids[row], flags=()) for row in rows])
+                solution = solve_machine(machine, one, oils, evaluations=evaluations)
+            except Apart as parting:
+                left += _parts(rows, parting.rows, evaluations)
+                continue
+            except EpicyclicError:
+                left += _parts(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
+                continue
+            except Exception:  # `Alone`, or whatever single points tell of themselves
+                known = [Evaluations() for _ in rows]
+            else:
+                each = taken(solution, range(len(rows)), final=True)
+                for row, own in zip(rows, each, strict=True):
+                    found[row] = replace(own, state=replace(own.state, fluids=fluids[row]))
+                continue
+        for row, its in zip(rows, known, strict=True):
+            try:
+                found[row] = solve_machine(machine, operations[row], fluids[row], evaluations=its)
             except Exception as error:
                 found[row] = error
-
-    def together(rows: Sequence[int], evaluations: Evaluations) -> None:
-        if len(rows) < FEWEST or not all(element.several for element in machine.elements):
-            return alone(rows, evaluations.single(len(rows)))
-        try:
-            one = joined([operations[row] for row in rows])
-            oils = joined([replace(fluids[row], flags=()) for row in rows])
-            solution = solve_machine(machine, one, oils, evaluations=evaluations)
-        except Apart as parting:
-            part(rows, parting.rows, evaluations)
-        except EpicyclicError:
-            part(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
-        except Exception:  # `Alone`, or whatever single points tell of themselves
-            alone(rows, [Evaluations() for _ in rows])
-        else:
-            for row, own in zip(rows, taken(solution, range(len(rows)), final=True), strict=True):
-                found[row] = replace(own, state=replace(own.state, fluids=fluids[row]))
-
-    def part(rows: Sequence[int], side: BoolArray, evaluations: Evaluations) -> None:
-        for places in (np.flatnonzero(side), np.flatnonzero(~side)):
-            together([rows[place] for place in places.tolist()], evaluations.part(places))
-
-    if operations:
-        together(range(len(operations)), Evaluations())
     return [found[row] for row in range(len(operations))]
+
+
+def _parts(
+    rows: Sequence[int], side: BoolArray, evaluations: Evaluations
+) -> Iterator[tuple[Sequence[int], Evaluations]]:
+    """The points of either side of a block, and what is known of them."""
+    for places in (np.flatnonzero(~side), np.flatnonzero(side)):
+        yield [rows[place] for place in places.tolist()], evaluations.part(places)
 
 
 def next_solution(

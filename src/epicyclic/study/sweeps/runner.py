@@ -6,6 +6,7 @@ import errno
 import hashlib
 import json
 import os
+import pickle
 import re
 import sys
 import threading
@@ -15,7 +16,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from importlib import metadata
 from itertools import groupby
 from pathlib import Path
@@ -515,7 +516,8 @@ def _run_in_workers(
 
     batches = _batches(plan, indices, effective_n_jobs(jobs))
     workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
-    calls = (delayed(_solve_in_worker)(os.getpid(), plan, batch, journal) for batch in batches)
+    sent, parent = pickle.dumps(plan), os.getpid()
+    calls = (delayed(_solve_in_worker)(parent, sent, batch, journal) for batch in batches)
     with _leftovers_removed_quietly():
         yield from workers(calls)
 
@@ -534,10 +536,16 @@ def _leftovers_removed_quietly() -> Iterator[None]:
 
 
 def _solve_in_worker(
-    parent: int, plan: Plan, indices: Sequence[int], journal: Journal | None
+    parent: int, sent: bytes, indices: Sequence[int], journal: Journal | None
 ) -> Batch:
     _belong_to(parent)
-    return _solve_batch(plan, indices, journal)
+    return _solve_batch(_received(sent), indices, journal)
+
+
+@lru_cache(maxsize=1)  # what is built for a plan is kept for its next points
+def _received(sent: bytes) -> Plan:
+    plan: Plan = pickle.loads(sent)
+    return plan
 
 
 @cache
