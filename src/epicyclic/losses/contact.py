@@ -254,32 +254,20 @@ def _in_proportion(name: str, load: MeshLoad, positions: int, segments: int) -> 
     return LineLoads(lines, force * shape)
 
 
-def _elastic(load: MeshLoad, positions: int, segments: int) -> LineLoads:
-    if isinstance(load.force, Points):
-        return _elastic_each(load, positions, segments)
-    if load.last is None:
-        loaded = _from_nothing(load, load.force, positions, segments)
-    else:
-        (loaded,) = load_meshes_next_to([load.last], [load.force], load.deviations)
-    return LineLoads(loaded.compliance.lines, loaded.line_load, loaded)
-
-
-def _elastic_each(load: Any, positions: int, segments: int) -> LineLoads:
-    """The loads of several points; without known ones, each from those of the point before."""
-    forces: list[float] = load.force[:, 0].tolist()
-    last: Any = load.last
-    if last is None:
-        last = (_from_nothing(load, forces[0], positions, segments),)
-    loaded = load_meshes_next_to(last, forces, load.deviations)
-    elastic: Any = Each(loaded)
-    line_load = of_points([one.line_load for one in loaded])
-    return LineLoads(loaded[0].compliance.lines, line_load, elastic)
-
-
-def _from_nothing(load: MeshLoad, force: float, positions: int, segments: int) -> LoadedMesh:
-    return load_mesh_elastically(
-        load.mesh, *load.bodies, positions, segments, force, load.deviations
-    )
+def _elastic(load: Any, positions: int, segments: int) -> LineLoads:
+    """The loads of a point or of several; without known ones, each from those of the one before."""
+    several, loaded = isinstance(load.force, Points), load.last
+    forces = load.force[:, 0].tolist() if several else [load.force]
+    if loaded is None:
+        start = load.mesh, *load.bodies, positions, segments, forces[0], load.deviations
+        loaded = load_mesh_elastically(*start)
+    if several or load.last is not None:
+        last = loaded if isinstance(loaded, Each) else [loaded]
+        found = load_meshes_next_to(last, forces, load.deviations)
+        loaded = Each(found) if several else found[0]
+    first = loaded[0] if several else loaded
+    line_load = of_points([one.line_load for one in loaded]) if several else loaded.line_load
+    return LineLoads(first.compliance.lines, line_load, loaded)
 
 
 LOAD_DISTRIBUTIONS: dict[str, LoadDistribution] = {
