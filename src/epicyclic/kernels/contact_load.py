@@ -29,6 +29,8 @@ LEAST_SLOPE = 0.5
 """Slope of delta_c over B below which it is continued as a straight line: the formula would let
 the teeth part again under a growing load. It is reached where b_h is about 0.6 d. [1]"""
 QUICK_STEPS = 30  # Newton steps before the careful method takes over; usual are five.
+UNREFINED = 0.1
+"""Share of the tolerance that the start has to keep: what a step leaves is mostly far below it."""
 ENOUGH_DESCENT = 0.1
 """A step is short enough when the slope of the energy has fallen to this part of its start. [1]"""
 MOST_HALVINGS = 30
@@ -467,7 +469,8 @@ def solve_contact_loads(
         )
         if iteration == 0 and not product(closed, length) < np.inf:
             return np.zeros(length.shape), approach, stiffness, -1, rise
-        if is_solution(force, forces, approach, closed, length, tolerance):
+        enough = tolerance if iteration else UNREFINED * tolerance
+        if is_solution(force, forces, approach, closed, length, enough):
             return forces, approach + nearest, stiffness, iteration, rise
         load_touching(loaded, closed, length, approach, tolerance)
         step, approach, stiffness, rise = newton_step(
