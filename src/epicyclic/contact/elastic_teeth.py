@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, lru_cache
 from importlib import import_module
 from typing import Any
@@ -497,13 +497,11 @@ class LoadedMesh:
     normal_approach : ndarray, shape (positions,)
         Approach of the gears along the common normal of the flanks, from where flanks without
         deviations touch unloaded. [m]
-    stiffness : ndarray, shape (positions,)
-        As `normal_stiffness`, or that of a load so near that this one is on its tangent. [N/m]
+    normal_stiffness : ndarray, shape (positions,)
+        Slope of the normal force over the normal approach, at this load or at one so near that
+        this one is on its tangent: a few millionths off then. [N/m]
     rise : ndarray, shape (positions, lines, segments)
-        Rise of the force on each segment with the normal force of the mesh, likewise. [1]
-    deviations : FlankDeviations
-    fresh : bool
-        Whether `stiffness` is that of this load everywhere.
+        Rise of the force on each segment with the normal force of the mesh. [1]
     """
 
     mesh: Mesh
@@ -511,10 +509,8 @@ class LoadedMesh:
     force: float
     line_load: FloatArray
     normal_approach: FloatArray
-    stiffness: FloatArray
+    normal_stiffness: FloatArray
     rise: FloatArray
-    deviations: FlankDeviations
-    fresh: bool
 
     @property
     def pattern(self) -> BoolArray:
@@ -540,15 +536,6 @@ class LoadedMesh:
     def transmission_error_range(self) -> float:
         """From its least to its largest value over the mesh period (peak to peak). [m]"""
         return float(np.ptp(self.transmission_error))
-
-    @property
-    def normal_stiffness(self) -> FloatArray:
-        """Slope of the normal force over the normal approach, shape (positions,). [N/m]"""
-        if self.fresh:
-            return self.stiffness
-        unknown = np.full_like(self.normal_approach, np.nan)  # so that one more step is taken
-        start = replace(self, normal_approach=unknown)
-        return load_meshes_next_to([start], [self.force], self.deviations)[0].stiffness
 
     @property
     def secant_stiffness(self) -> FloatArray:
@@ -598,7 +585,7 @@ def load_meshes_next_to(
     start = (
         np.array([one.line_load for one in last]),
         np.array([one.normal_approach for one in last]),
-        np.array([one.stiffness for one in last]),
+        np.array([one.normal_stiffness for one in last]),
         np.array([one.rise for one in last]),
     )
     before = [one.force for one in last]
@@ -645,8 +632,4 @@ def _loaded(
         )
     for array in found:
         array.flags.writeable = False
-    fresh: list[bool] = np.all(iterations > 0, axis=1).tolist()
-    return [
-        LoadedMesh(mesh, compliance, force, load, approach, stiffness, rise, deviations, new)
-        for force, load, approach, stiffness, rise, new in zip(forces, *found, fresh, strict=True)
-    ]
+    return [LoadedMesh(mesh, compliance, *one) for one in zip(forces, *found, strict=True)]
