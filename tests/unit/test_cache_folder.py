@@ -103,7 +103,12 @@ def outcome(folder, *, cache=None, before="", **environment):
     settings = os.environ | {"XDG_CACHE_HOME": str(cache or folder / "cache")} | environment
     settings.pop("NUMBA_CACHE_DIR", None) if "NUMBA_CACHE_DIR" not in environment else None
     done = subprocess.run(
-        [sys.executable, str(program)], env=settings, capture_output=True, text=True, check=False
+        [sys.executable, str(program)],
+        env=settings,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
     )
     assert done.returncode == 0, done.stderr
     number, *notes = done.stdout.splitlines()
@@ -254,6 +259,32 @@ def test_of_programs_that_start_together_one_compiles_a_kernel(tmp_path):
     assert sum(told) == 3, told
 
 
+WRONG = """
+import numpy, pytest
+from numba.core.errors import TypingError
+from epicyclic.kernels.compiling import kernel
+
+@kernel
+def halved(x):
+    return x / 2.0
+
+@kernel
+def both(x, y):
+    return halved(x) + halved(y)
+
+with pytest.raises(TypingError):
+    both("of words", (2.0, 5.0))
+print(both(3.0, 4.0))
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere kernels are compiled in place")
+def test_a_kernel_that_cannot_be_compiled_is_not_waited_for(tmp_path):
+    program = tmp_path / "program.py"
+    program.write_text("print()\n" + WRONG)
+    assert printed(program) == ["3.5"]
+
+
 COMING = """\
 from threading import enumerate, main_thread
 from epicyclic.kernels import ahead
@@ -287,7 +318,12 @@ def printed(program):
     """What a program prints with a cache folder beside it, but for its first line."""
     settings = settings_beside(program)
     done = subprocess.run(
-        [sys.executable, str(program)], env=settings, capture_output=True, text=True, check=False
+        [sys.executable, str(program)],
+        env=settings,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()[1:]

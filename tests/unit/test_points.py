@@ -94,6 +94,18 @@ def test_points_together_are_as_each_alone(
         assert other.to_dict().keys() == one.to_dict().keys()
 
 
+@pytest.mark.parametrize("method", ["closed-form", "direct"])
+def test_planets_that_share_by_their_load_are_solved_alone(method: str) -> None:
+    """Their teeth are loaded before the block has a load for each point."""
+    errors = {"load_sharing.position_errors": ["10 um", "0 um", "-5 um"]}
+    cases = [
+        case.updated(errors) for case in _cases("talbot-2012", **{"load_sharing.method": method})
+    ]
+    for case, other in zip(cases[:9], solve_together(cases[:9], {}), strict=True):
+        assert not isinstance(other, Exception)
+        assert other.values() == pytest.approx(ep.solve(case).values(), rel=1e-12, nan_ok=True)
+
+
 def test_a_point_does_not_depend_on_shards_or_interruptions(tmp_path: Path) -> None:
     torques = [f"{torque} N*m" for torque in np.linspace(-90, 960, 12)]
     speeds = [f"{speed} rpm" for speed in (800, 1900, 2600, 3700)]

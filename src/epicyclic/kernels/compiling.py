@@ -207,7 +207,7 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]  # numba has no
             return load(sig, target_context) is not None
 
         found = load(sig, target_context)
-        if found is None and _is_copy:
+        if found is None and _is_copy and self._locked is None:  # it is, after a failure
             self._lock()
             found = load(sig, target_context)
             if found is not None:

@@ -205,6 +205,8 @@ def distribute_load(duty: MeshDuty, last: LoadedMesh | None = None) -> LineLoads
 
 def elastic_loads(duty: MeshDuty) -> LoadedMesh:
     """The mesh under the torque of its duty with elastic teeth, whatever distributes the load."""
+    if isinstance(duty.force, Points):
+        raise Alone
     return load_mesh_elastically(
         duty.gears.mesh,
         *duty.gears.solids,
