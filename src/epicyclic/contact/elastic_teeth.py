@@ -582,12 +582,9 @@ def load_meshes_next_to(
     That saves most of the work. Parameters as for `load_mesh_elastically`, which has the same
     solutions but for its tolerance.
     """
-    start = (
-        np.array([one.line_load for one in last]),
-        np.array([one.normal_approach for one in last]),
-        np.array([one.normal_stiffness for one in last]),
-        np.array([one.rise for one in last]),
-    )
+    parts = "line_load", "normal_approach", "normal_stiffness", "rise"
+    loads, *rest = (np.array([getattr(one, part) for one in last]) for part in parts)
+    start = loads, rest[0], rest[1], rest[2]
     before = [one.force for one in last]
     return _loaded(last[0].mesh, last[0].compliance, forces, deviations, before, start)
 

@@ -504,10 +504,7 @@ def solve_points(
     tolerance: float,
     max_iterations: int,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
-    """`solve_contact_loads` for points (first axis) at mesh positions (second axis).
-
-    Line loads [N/m] in place of forces; the iterations are last.
-    """
+    """`solve_contact_loads` for points (axis 0) and positions (1); line loads, not forces. [N/m]"""
     points, (positions, lines, segments) = forces.size, length.shape
     loads = np.zeros((points, positions, lines, segments))
     rise = np.zeros(loads.shape)

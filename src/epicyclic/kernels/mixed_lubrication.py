@@ -65,7 +65,7 @@ def film_stress(
     """
     rows = max(1, AT_ONCE * len(pressure) // max(1, pressure.size))
     if isinstance(pressure, Points) and len(pressure) > rows:
-        each = [pressure, rate, warm, heating, limit, *oil]
+        each: list[Any] = [pressure, rate, warm, heating, limit, *oil]
         found = []
         for at in range(0, len(pressure), rows):
             part = slice(at, at + rows)

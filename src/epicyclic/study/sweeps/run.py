@@ -297,8 +297,7 @@ class SweepPlan(CasePlan):
     def order(self) -> list[int]:
         """Indices of all cases, those that share geometry next to each other.
 
-        Those that are solved together go by torque: near no torque, losses and torques take many
-        passes to agree, and a block takes as many as the slowest of its points.
+        A block goes by torque: it takes as many passes as its points nearest to no torque.
         """
         outer = {
             number
@@ -310,8 +309,8 @@ class SweepPlan(CasePlan):
             number not in outer and all(_is_operating(part.key) for part in axis.keys)
             for number, axis in enumerate(self.axes)
         ]
-        slowest = [self.together and axis.key == _TORQUE for axis in self.axes]
-        by_cost = sorted(range(len(self.axes)), key=lambda i: (inner[i], not slowest[i]))
+        other = [not self.together or axis.key != _TORQUE for axis in self.axes]
+        by_cost = sorted(range(len(self.axes)), key=lambda i: (inner[i], other[i]))
         numbers = np.arange(self.size).reshape(self.shape)
         return [int(index) for index in numbers.transpose(by_cost).ravel()]
 
