@@ -102,16 +102,7 @@ def outcome(folder, *, cache=None, before="", **environment):
     program.write_text(before + KERNEL)
     settings = os.environ | {"XDG_CACHE_HOME": str(cache or folder / "cache")} | environment
     settings.pop("NUMBA_CACHE_DIR", None) if "NUMBA_CACHE_DIR" not in environment else None
-    done = subprocess.run(
-        [sys.executable, str(program)],
-        env=settings,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=120,
-    )
-    assert done.returncode == 0, done.stderr
-    number, *notes = done.stdout.splitlines()
+    number, *notes = _output(program, settings).splitlines()
     assert number == "3.5"
     return notes
 
@@ -316,7 +307,10 @@ def settings_beside(program):
 
 def printed(program):
     """What a program prints with a cache folder beside it, but for its first line."""
-    settings = settings_beside(program)
+    return _output(program, settings_beside(program)).splitlines()[1:]
+
+
+def _output(program, settings):
     done = subprocess.run(
         [sys.executable, str(program)],
         env=settings,
@@ -326,4 +320,4 @@ def printed(program):
         timeout=120,
     )
     assert done.returncode == 0, done.stderr
-    return done.stdout.splitlines()[1:]
+    return done.stdout

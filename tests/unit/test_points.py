@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import gc
 import math
 import re
 from functools import partial
@@ -104,6 +105,29 @@ def test_planets_that_share_by_their_load_are_solved_alone(method: str) -> None:
     for case, other in zip(cases[:9], solve_together(cases[:9], {}), strict=True):
         assert not isinstance(other, Exception)
         assert other.values() == pytest.approx(ep.solve(case).values(), rel=1e-12, nan_ok=True)
+
+
+def test_a_block_leaves_nothing_that_waits_for_the_collector() -> None:
+    """Its arrays are large: workers grew by 300 MB."""
+    cases = _cases("talbot-2012")
+    solve_together(cases, {})  # what it keeps for the next one is made
+    gc.collect()
+    gc.disable()
+    try:
+        solve_together(cases, {})
+        assert gc.collect() < len(cases)
+    finally:
+        gc.enable()
+
+
+def test_blocks_of_a_sweep_go_by_torque() -> None:
+    vary = {
+        "operation.speed": [f"{900 + 310 * number} rpm" for number in range(9)],
+        "operation.torque": [f"{35 - 20 * number} N*m" for number in range(4)],
+    }
+    plan = make_plan(ep.load_case("talbot-2012"), vary)
+    torques = [plan.changes(index)["operation.torque"] for index in plan.order()]
+    assert torques == [torque for torque in vary["operation.torque"] for _ in range(9)]
 
 
 def test_a_point_does_not_depend_on_shards_or_interruptions(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from epicyclic.contact.elastic_teeth import (
     Rim,
     _stiffness,
     load_mesh_elastically,
+    load_meshes_next_to,
     mesh_compliance,
     tooth_plate,
 )
@@ -291,6 +292,22 @@ def test_pair_forces_sum_to_the_normal_force(talbot_meshes):
     loaded = load_mesh_elastically(talbot_meshes[1], STEEL, STEEL, 20, 20, 5000.0)
     normal = 5000.0 / math.cos(talbot_meshes[1].gear1.rack.base_helix_angle)
     np.testing.assert_allclose(loaded.pair_force.sum(axis=1), normal, rtol=1e-8)
+
+
+def test_loads_next_to_known_ones_are_those_from_nothing(talbot_meshes):
+    """One from the other, and the same again from the tangents of other loads."""
+    design = talbot_meshes[0], STEEL, STEEL, 12, 9
+    first = load_mesh_elastically(*design, 5000.0)
+    forces = [5000.03, 5600.0, 910.0, 911.0]
+    chain = load_meshes_next_to([first], forces)
+    near = load_meshes_next_to(chain, [force * 1.00002 for force in forces])
+    for found in (*chain, *near):
+        wanted = load_mesh_elastically(*design, found.force)
+        most = wanted.line_load.max()
+        np.testing.assert_allclose(found.line_load, wanted.line_load, atol=1e-8 * most, rtol=0)
+        # `TOLERANCE` of the iteration, and the tangent that the stiffness may be of
+        np.testing.assert_allclose(found.normal_approach, wanted.normal_approach, rtol=1e-9)
+        np.testing.assert_allclose(found.normal_stiffness, wanted.normal_stiffness, rtol=5e-6)
 
 
 # --- the rim of a ring gear -----------------------------------------------------------------------

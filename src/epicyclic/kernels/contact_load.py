@@ -30,7 +30,7 @@ LEAST_SLOPE = 0.5
 the teeth part again under a growing load. It is reached where b_h is about 0.6 d. [1]"""
 QUICK_STEPS = 30  # Newton steps before the careful method takes over; usual are five.
 UNREFINED = 0.1
-"""Share of the tolerance that the start has to keep: what a step leaves is mostly far below it."""
+"""Of the tolerance, what a start has to keep: what a step leaves is mostly far below it. [1]"""
 ENOUGH_DESCENT = 0.1
 """A step is short enough when the slope of the energy has fallen to this part of its start. [1]"""
 MOST_HALVINGS = 30
