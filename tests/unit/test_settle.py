@@ -34,11 +34,21 @@ class Model:
 
 @pytest.fixture
 def settled(monkeypatch):
+    """Temperatures of the model; the solution is them, unless `whole` makes it of them."""
     monkeypatch.setattr(settling, "start_of", lambda *_: None)
-    monkeypatch.setattr(settling, "solve_machine", lambda _machine, _operation, at, *_: at)
-    monkeypatch.setattr(settling, "next_solution", lambda _machine, _operation, at, *_: (at, True))
-    machine = SimpleNamespace()
-    return lambda scatter: settle(machine, machine, Model(scatter))
+    monkeypatch.setattr(settling, "solve_machine", lambda *_: None)
+
+    def settled(scatter, *, agree=True, whole=lambda at: at):
+        def solve(_machine, wanted):
+            return [(whole(it.fluids), True) if it.whole else (it.fluids, agree) for it in wanted]
+
+        monkeypatch.setattr(settling, "solve_machines", solve)
+        (found,) = settle(SimpleNamespace(), [SimpleNamespace()], [Model(scatter)])
+        if isinstance(found, Exception):
+            raise found
+        return found
+
+    return settled
 
 
 def test_temperatures_settle_in_a_few_evaluations(settled):
@@ -48,30 +58,20 @@ def test_temperatures_settle_in_a_few_evaluations(settled):
     assert found.change <= AGREEMENT
 
 
-def test_torques_agree_with_the_losses_in_the_end(settled, monkeypatch):
-    monkeypatch.setattr(settling, "next_solution", lambda _machine, _operation, at, *_: (at, False))
+def test_torques_agree_with_the_losses_in_the_end(settled):
     whole = []
-    monkeypatch.setattr(
-        settling, "solve_machine", lambda _machine, _operation, at, *_: whole.append(at) or at
-    )
-    found = settled(0.0)
+    found = settled(0.0, agree=False, whole=lambda at: whole.append(at) or at)
     assert found.solution is whole[-1]
     assert len(whole) == 1
     assert found.answer.temperatures == pytest.approx({"oil": 350, "housing": 340}, abs=AGREEMENT)
 
 
-def test_torques_that_never_let_temperatures_settle_are_told(settled, monkeypatch):
+def test_torques_that_never_let_temperatures_settle_are_told(settled):
     off = itertools.count(0.4, 0.4)  # what the whole solution adds, in each pass more
-    monkeypatch.setattr(settling, "next_solution", lambda _machine, _operation, at, *_: (at, False))
-    monkeypatch.setattr(
-        settling,
-        "solve_machine",
-        lambda _machine, _operation, at, *_: at | {"oil": at["oil"] + next(off)},
-    )
     with pytest.raises(
         ep.ConvergenceError, match=r"do not settle: .* change by \d\.\d+ K, near oil"
     ):
-        settled(0.0)
+        settled(0.0, agree=False, whole=lambda at: at | {"oil": at["oil"] + next(off)})
 
 
 def test_losses_that_scatter_settle_to_their_scatter_and_tell(settled):

@@ -63,7 +63,7 @@ from epicyclic.machine.heat import (
 from epicyclic.machine.machine import GearSeat, Machine, Operation, ShaftLayout, Support
 from epicyclic.machine.planets import PinFigures, PlanetLoad, PlanetPin
 from epicyclic.machine.shaft_parts import ShaftBearing
-from epicyclic.machine.solve import Solution, lossless_state, solve_machine
+from epicyclic.machine.solve import Wanted, lossless_state, solve_machines
 from epicyclic.machine.train_shape import mesh_rows
 from epicyclic.oil.oil import Oil, mixture_state, oil_state
 from epicyclic.result.result import Layout, in_words
@@ -317,28 +317,12 @@ class Built:
         assert self.known_fluids is not None, "a machine of given efficiencies has no oil"
         return self.known_fluids
 
-    @property
-    def together(self) -> bool:
-        """Whether it can be solved for several operating points at once."""
-        return self.thermal is None and self.known_fluids is not None
-
-    def solve(self, solution: Solution | None = None) -> Settled:
-        """Torques, losses and temperatures that agree; `solution` if it was found before."""
-        if self.thermal is None:
-            if solution is None:
-                solution = solve_machine(self.machine, self.operation, self.known_fluids)
-            settled = Settled(solution, Answer({}), 1)
-        else:
-            settled = settle(self.machine, self.operation, self.thermal)
-        losses = settled.solution.losses
-        bad = [name for name, loss in losses.items() if not math.isfinite(loss.watts)]
-        if bad:
-            raise ConvergenceError(
-                f"{', '.join(bad)} did not give a finite number, because the case is far outside "
-                "the range of the models. Choose others (models.friction, models.rolling, "
-                "models.bearing)."
-            )
-        return settled
+    def solve(self) -> Settled:
+        """Torques, losses and temperatures that agree."""
+        (found,) = solve_all([self])
+        if isinstance(found, Exception):
+            raise found
+        return found
 
     def state(self) -> State:
         """Speeds, and torques as without losses."""
@@ -373,6 +357,34 @@ class Built:
             for name, own in self.sets.items()
             for key, load in own.mean_loads(state).items()
         }
+
+
+def solve_all(points: Sequence[Built]) -> list[Settled | Exception]:
+    """Torques, losses and temperatures that agree at several points of one machine.
+
+    Of each what is wrong where nothing agrees.
+    """
+    machine, operations = points[0].machine, [point.operation for point in points]
+    models = [point.thermal for point in points if point.thermal is not None]
+    if models:
+        return list(map(_finite, settle(machine, operations, models)))
+    wanted = [Wanted(point.operation, point.known_fluids) for point in points]
+    return [
+        it if isinstance(it, Exception) else _finite(Settled(it[0], Answer({}), 1))
+        for it in solve_machines(machine, wanted)
+    ]
+
+
+def _finite(found: Settled | Exception) -> Settled | Exception:
+    if isinstance(found, Exception):
+        return found
+    bad = [name for name, loss in found.solution.losses.items() if not math.isfinite(loss.watts)]
+    if not bad:
+        return found
+    return ConvergenceError(
+        f"{', '.join(bad)} did not give a finite number, because the case is far outside the range "
+        "of the models. Choose others (models.friction, models.rolling, models.bearing)."
+    )
 
 
 # Gears and bearings along the shafts of a train, for the forces on its bearings.

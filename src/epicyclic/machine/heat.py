@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
@@ -33,7 +33,7 @@ from epicyclic.machine.heat_paths import (
 )
 from epicyclic.machine.machine import Machine, Operation
 from epicyclic.machine.shaft_parts import ShaftBearing
-from epicyclic.machine.solve import Solution, next_solution, solve_machine, start_of
+from epicyclic.machine.solve import Solution, Wanted, solve_machine, solve_machines, start_of
 from epicyclic.units import celsius_text, known_text
 
 AGREEMENT = 3e-5
@@ -109,8 +109,38 @@ def _losses(solution: Solution) -> list[Loss]:
 _Pass = tuple[Mapping[str, float], Solution, Answer]  # Temperatures [K], losses there, and so on.
 
 
-def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settled:
-    """Temperatures and losses that agree. Theory (W27).
+def settle(
+    machine: Machine, operations: Sequence[Operation], models: Sequence[ThermalModel]
+) -> list[Settled | Exception]:
+    """Temperatures and losses that agree at each operating point, or what is wrong with it.
+
+    Each pass is one for all points that still need it. See `_passes` for what is raised.
+    """
+    passes = [_passes(machine, *point) for point in zip(operations, models, strict=True)]
+    found: dict[int, Settled | Exception] = {}
+    answers: dict[int, Any] = dict.fromkeys(range(len(passes)))
+    while answers:
+        wanted: dict[int, Wanted] = {}
+        for number, answer in answers.items():
+            try:
+                wanted[number] = passes[number].send(answer)
+            except StopIteration as done:
+                found[number] = done.value
+            except Exception as error:
+                found[number] = error
+        answers = {}
+        for whole in (False, True):
+            own = {number: it for number, it in wanted.items() if it.whole == whole}
+            answers |= zip(own, solve_machines(machine, list(own.values())), strict=True)
+        found |= {number: it for number, it in answers.items() if isinstance(it, Exception)}
+        answers = {number: it for number, it in answers.items() if number not in found}
+    return [found[number] for number in range(len(passes))]
+
+
+def _passes(
+    machine: Machine, operation: Operation, model: ThermalModel
+) -> Generator[Wanted, tuple[Solution, bool], Settled]:
+    """The passes of one point: asks for solutions until its temperatures agree. Theory (W27).
 
     From the third on, each pass is at the temperatures that the two before let expect. Raises
     `ConvergenceError` if there is no equilibrium, or only one that no gearbox survives.
@@ -119,10 +149,10 @@ def settle(machine: Machine, operation: Operation, model: ThermalModel) -> Settl
     found: list[_Pass] = []
     at, change = _values(model.start), math.inf
     while len(found) < MOST_PASSES:
-        held = _held(model, at)
-        given = machine, operation, model.fluids(held), unheated, found[-1][1] if found else None
-        lags = change > NEARLY
-        solution, agrees = next_solution(*given) if lags else (solve_machine(*given), True)
+        held, earlier = _held(model, at), found[-1][1] if found else None
+        solution, agrees = yield Wanted(
+            operation, model.fluids(held), unheated, earlier, change <= NEARLY
+        )
         found.append((held, solution, answer := model.answer(held, solution)))
         reached = _values(answer.temperatures)
         change = float(np.abs(reached - at).max())

@@ -344,21 +344,54 @@ def solve_machine(
     return branch.solution(last.balance, directions)
 
 
+class Wanted(NamedTuple):
+    """A solution that somebody asks for."""
+
+    operation: Operation
+    fluids: Fluids | None  # None if every loss is given.
+    start: Start | None = None  # As from `start_of`.
+    earlier: Solution | None = None  # At nearly the same temperatures, to begin with.
+    whole: bool = True  # False for one pass only, as of `next_solution`.
+
+    def found(self, machine: Machine, evaluations: Evaluations | None) -> tuple[Solution, bool]:
+        """The solution, and whether its losses and loads agree."""
+        operation, fluids, start, earlier, whole = self
+        if whole:
+            return solve_machine(machine, operation, fluids, start, earlier, evaluations), True
+        return next_solution(
+            machine, operation, fluids, start or start_of(machine, operation), earlier
+        )
+
+
+def _together(wanted: Sequence[Wanted]) -> Wanted:
+    """Several solutions as one; raises `Apart` if they begin in different ways."""
+    operation = joined([it.operation for it in wanted])
+    fluids = joined([replace(cast(Fluids, it.fluids), flags=()) for it in wanted])
+    earlier = [it.earlier for it in wanted if it.earlier is not None]
+    if not earlier:
+        return Wanted(operation, fluids)
+    names = "meshes", "rolling", "drives", "floating"
+    begun = {name: joined([getattr(it, name) for it in earlier]) for name in names}
+    first = replace(earlier[0], results={}, **begun)
+    return Wanted(operation, fluids, None, first, wanted[0].whole)
+
+
 def solve_machines(
-    machine: Machine, operations: Sequence[Operation], fluids: Sequence[Fluids]
-) -> list[Solution | Exception]:
-    """`solve_machine` for several operating points, or what it raises for each of them."""
-    found: dict[int, Solution | Exception] = {}
-    left: list[tuple[Sequence[int], Evaluations]] = [(range(len(operations)), Evaluations())]
+    machine: Machine,
+    wanted: Sequence[Wanted],  # All whole, or none; all with `earlier`, or none.
+) -> list[tuple[Solution, bool] | Exception]:
+    """What is wanted, as of `Wanted.found`, or what that raises for each of them."""
+    found: dict[int, tuple[Solution, bool] | Exception] = {}
+    left: list[tuple[Sequence[int], Evaluations]] = [(range(len(wanted)), Evaluations())]
     while left:
         rows, evaluations = left.pop()
-        if len(rows) < FEWEST or not all(element.several for element in machine.elements):
+        several = all(element.several for element in machine.elements)
+        if len(rows) < FEWEST or wanted[0].fluids is None or not several:
             known = evaluations.single(len(rows))
         else:
             try:
-                one = joined([operations[row] for row in rows])
-                oils = joined([replace(fluids[row], flags=()) for row in rows])
-                solution = solve_machine(machine, one, oils, evaluations=evaluations)
+                one = _together([wanted[row] for row in rows])
+                solution, agree = one.found(machine, evaluations)
             except Apart as parting:
                 left += _parts(rows, parting.rows, evaluations)
                 continue
@@ -370,14 +403,15 @@ def solve_machines(
             else:
                 each = taken(solution, range(len(rows)), final=True)
                 for row, own in zip(rows, each, strict=True):
-                    found[row] = replace(own, state=replace(own.state, fluids=fluids[row]))
+                    state = replace(own.state, fluids=wanted[row].fluids)
+                    found[row] = replace(own, state=state), agree
                 continue
         for row, its in zip(rows, known, strict=True):
             try:
-                found[row] = solve_machine(machine, operations[row], fluids[row], evaluations=its)
+                found[row] = wanted[row].found(machine, its)
             except Exception as error:
                 found[row] = error
-    return [found[row] for row in range(len(operations))]
+    return [found[row] for row in range(len(wanted))]
 
 
 def _parts(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from epicyclic.build.machine import Built, build
+from epicyclic.build.machine import Built, build, solve_all
 from epicyclic.build.result import assemble
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.contact.elastic_teeth import LoadedMesh
@@ -15,7 +15,6 @@ from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figure
 from epicyclic.machine.element import OIL
 from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
 from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
-from epicyclic.machine.solve import Solution, solve_machines
 from epicyclic.result.physical import judged
 from epicyclic.result.result import Result
 from epicyclic.study.load import CaseSource, as_case
@@ -76,29 +75,24 @@ def solve_together(cases: Sequence[Case], flow_tables: FlowTables) -> list[Resul
     machines: dict[int, list[int]] = {}
     for number, case in enumerate(cases):
         try:
+            if case.models.load_dependent == "as-tested":
+                found[number] = solve(case, flow_tables=flow_tables)
+                continue
             one = built[number] = build(case, flow_tables)
         except Exception as error:
             found[number] = error
             continue
-        if one.together and case.models.load_dependent != "as-tested":
-            machines.setdefault(id(one.machine), []).append(number)
-    solutions: dict[int, Solution | Exception] = {}
+        machines.setdefault(id(one.machine), []).append(number)
     for group in machines.values():
-        points = [(built[number].operation, built[number].fluids) for number in group]
-        machine = built[group[0]].machine
-        solutions |= zip(group, solve_machines(machine, *zip(*points, strict=True)), strict=True)
-    for number, one in built.items():
-        solution = solutions.get(number)
-        if isinstance(solution, Exception):
-            found[number] = solution
-            continue
-        try:
-            if solution is None:
-                found[number] = solve(cases[number], flow_tables=flow_tables)
-            else:
-                found[number] = judged(assemble(cases[number], one, one.solve(solution)))
-        except Exception as error:
-            found[number] = error
+        for number, settled in zip(group, solve_all([built[it] for it in group]), strict=True):
+            try:
+                found[number] = (
+                    settled
+                    if isinstance(settled, Exception)
+                    else judged(assemble(cases[number], built[number], settled))
+                )
+            except Exception as error:
+                found[number] = error
     return [found[number] for number in range(len(cases))]
 
 

@@ -148,7 +148,7 @@ _OPERATING_TABLES = (
 
 
 TOGETHER = 32  # Points solved together, at most: more take memory and no less time.
-FEWEST_BLOCKS = 4  # That a study is cut into, so that several processes can share it.
+FEWEST_BLOCKS = 3  # That a study is cut into, so that several processes can share it.
 
 
 @dataclass(frozen=True, slots=True)
