@@ -94,6 +94,13 @@ def every(truth: Any) -> bool:
     return bool(np.asarray(truth).all()) if isinstance(truth, Points) else bool(truth)
 
 
+def either(truth: Any, one: float, two: float) -> Any:
+    """One number where something holds, else the other, point by point."""
+    if isinstance(truth, Points):
+        return np.where(truth, one, two).view(Points)
+    return one if truth else two
+
+
 def larger(one: float, two: float) -> float:
     """The larger of two numbers, point by point."""
     several = isinstance(one, Points) or isinstance(two, Points)

@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 import epicyclic as ep
+from epicyclic.machine.solve import LOSS_AGREEMENT
 from epicyclic.units import RPM
 
 SPEED = ["0 rpm", "500 rpm", "4000 rpm"]
@@ -47,10 +48,13 @@ def test_a_point_of_the_map_is_a_solution(case, data, torque):
         )
     )
     point = data.sel(speed=4000, torque=torque, temperature=40)
-    assert float(point["total"]) == result.total
-    assert {name: float(point[name]) for name in result.losses} == result.losses
+    # points of a block end a pass later, or in other passes
+    total, within = float(point["total"]), LOSS_AGREEMENT * result.total
+    assert total == pytest.approx(result.total, abs=within)
+    losses = {name: float(point[name]) for name in result.losses}
+    assert losses == pytest.approx(result.losses, abs=within)
     member = result.flow.members["sun"]
-    assert float(point["torque_loss"]) == pytest.approx(result.total / member.speed, rel=1e-12)
+    assert float(point["torque_loss"]) == pytest.approx(total / member.speed, rel=1e-12)
     efficiency = math.nan if result.efficiency is None else result.efficiency
     assert float(point["efficiency"]) == pytest.approx(efficiency, nan_ok=True)
 

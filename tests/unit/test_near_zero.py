@@ -62,7 +62,7 @@ def test_interpolation_is_off_by_less_than_two_per_cent_at_any_torque(case, rpm)
 @pytest.mark.parametrize(
     ("options", "count"),
     [
-        (["--torque", "0:300:4 N*m"], 14),
+        (["--torque", "0:300:4 N*m"], 12),
         (["--torque", "0:300:4 N*m", "--even-torques"], 4),
         (["--torque", "0,100,300 N*m"], 3),
         (["--torque", "100:300:3 N*m"], 3),

@@ -16,6 +16,7 @@ from epicyclic.arrays import (
     BoolArray,
     FloatArray,
     Points,
+    either,
     every,
     isfinite,
     joined,
@@ -80,37 +81,45 @@ class Answer:
         """What the element would answer; None if that may be off by more than `allowed`.
 
         Losses only: figures and flags are those of the last answer, to loads no farther off than
-        `NEAR`.
+        `NEAR`. Raises `Apart` if that holds for a part of the points that is worth it.
         """
-        if not self.alike(loads, self.result):
-            return None
         losses, off = {}, 0.0
         before = self.before or self
+        holds = self._same_signs(loads)
         steps: dict[tuple[str, ...], _Step] = {}
-        for name, loss in self.result.losses.items():
-            older = before.result.losses[name].watts
-            if loss.follows not in steps:
-                steps[loss.follows] = self._step(loads, loss)
-            step = steps[loss.follows]
-            if not every(step.size <= NEAR):
-                return None
-            error = step.error(loss.watts, older)
-            if error is math.inf:
-                return None
-            off += error * loss.watts
-            line = loss.watts + step.part * (loss.watts - older)
-            # no prediction makes a loss negative
-            losses[name] = loss._replace(watts=larger(loss.watts * (loss.watts < 0), line))
-        if not every(CAUTION * off <= allowed * sum(loss.watts for loss in losses.values())):
-            return None
-        return replace(self.result, losses=losses)
+        with np.errstate(over="ignore", invalid="ignore"):  # of errors without bound
+            for name, loss in self.result.losses.items():
+                older = before.result.losses[name].watts
+                if loss.follows not in steps:
+                    steps[loss.follows] = self._step(loads, loss)
+                step = steps[loss.follows]
+                holds = holds & (step.size <= NEAR)
+                off += step.error(loss.watts, older) * loss.watts
+                line = loss.watts + step.part * (loss.watts - older)
+                # no prediction makes a loss negative
+                losses[name] = loss._replace(watts=larger(loss.watts * (loss.watts < 0), line))
+        holds = holds & (CAUTION * off <= allowed * sum(loss.watts for loss in losses.values()))
+        if every(holds):
+            return replace(self.result, losses=losses)
+        if isinstance(holds, Points):
+            rows = np.asarray(holds)[:, 0]
+            if min(rows.sum(), (~rows).sum()) >= FEWEST:
+                raise Apart(rows)
+        return None
 
     def alike(self, loads: Mapping[str, float], result: ElementResult) -> bool:
         """True if loads have the same signs, and losses act at the same places."""
+        return every(self._same_signs(loads)) and self._same_places(result)
+
+    def _same_signs(self, loads: Mapping[str, float]) -> Any:
+        """Whether they have the signs of the last ones, of each point."""
+        same: Any = True
+        for key, load in loads.items():
+            same = ((load * self.loads[key] > 0) | (load == self.loads[key])) & same
+        return same
+
+    def _same_places(self, result: ElementResult) -> bool:
         return all(
-            every((load * self.loads[key] > 0) | (load == self.loads[key]))
-            for key, load in loads.items()
-        ) and all(
             (loss.mesh, loss.brakes)
             == (self.result.losses[name].mesh, self.result.losses[name].brakes)
             for name, loss in result.losses.items()
@@ -124,13 +133,13 @@ class Answer:
         size = largest(new)
         ways = [one - two for one, two in zip(last, old, strict=True)]
         length = sum(way**2 for way in ways)
-        if not every(length > (ROUNDING * size) ** 2):
-            return _Step(0.0, 0.0, _apart(last, new), 0.0)
+        moved = length > (ROUNDING * size) ** 2
         ahead = sum((one - two) * way for one, two, way in zip(new, last, ways, strict=True))
-        part = ahead / length
+        part = ahead * moved / larger(length, TINY)
         on_line = [two + part * way for two, way in zip(last, ways, strict=True)]
         aside = _apart(on_line, new)
-        return _Step(part, _apart(old, last), _apart(last, new), aside * (aside > ROUNDING))
+        beside = aside * (aside > ROUNDING) * moved
+        return _Step(part, _apart(old, last) * moved, _apart(last, new), beside)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,18 +158,14 @@ class _Step:
         changes a little itself. What changed more than any power would, because it scatters or
         follows something else too, may change by as much again.
         """
-        if not every(self.before):
-            return STEEPEST * self.size
-        if every(watts == older):
-            return 0.0
-        if not every(watts):
-            return math.inf
-        change = abs(watts - older) / watts
-        power = change / self.before
-        if not every(power <= STEEPEST):
-            return change + STEEPEST * self.size
+        change = abs(watts - older) / larger(abs(watts), TINY)
+        power = change / larger(self.before, TINY)
         bend = power * abs(power - 1) / 2 + BENT
-        return bend * self.size * (self.before + self.size) + STEEPEST * self.aside
+        smooth = bend * self.size * (self.before + self.size) + STEEPEST * self.aside
+        error = either(power <= STEEPEST, smooth, change + STEEPEST * self.size)
+        error = either((watts == 0) & (watts != older), math.inf, error * (watts != older))
+        found: float = either(self.before == 0, STEEPEST * self.size, error)
+        return found
 
 
 def _apart(old: list[float], new: list[float]) -> float:
@@ -186,7 +191,7 @@ MOST_TORQUE = 1e15
 """Torque at a mesh, far above what a case can state, from which losses and torques only drive each
 other up. [N m]"""
 MOST_BRANCHES = 8  # Directions of the rolling powers that are tried with the losses of elements.
-FEWEST = 8  # Points from which on they are solved together: fewer take longer than one by one.
+FEWEST = 4  # Points from which on they are solved together: fewer take longer than one by one.
 MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 
@@ -650,17 +655,16 @@ class _Branch:
 
 
 def _led(branch: _Branch) -> Mapping[str, bool]:
-    """Directions of the branch; of meshes that pass no power without losses those of one pass."""
+    """Directions of the branch as the losses of one pass turn them."""
     drives, powers = branch.drives, branch.start.lossless.powers
+    if branch.earlier is None:
+        found = branch.follow(branch.begin())
+        return drives_first((found.balance if isinstance(found, _Pass) else found).powers, drives)
     one, other = (drives_first(powers, dict.fromkeys(powers, first)) for first in (True, False))
-    undecided = {key for key in powers if one[key] != other[key]}
-    if branch.earlier is not None:
-        return {**drives, **{key: branch.earlier.drives[key] for key in undecided}}
-    if not undecided:
-        return drives
-    found = branch.follow(branch.begin())
-    led = drives_first((found.balance if isinstance(found, _Pass) else found).powers, drives)
-    return {key: led[key] if key in undecided else first for key, first in drives.items()}
+    return {
+        key: first if one[key] == other[key] else branch.earlier.drives[key]
+        for key, first in drives.items()
+    }
 
 
 def _converged(branch: _Branch) -> _Pass:

@@ -25,7 +25,6 @@ from epicyclic.case.keys import field_at
 from epicyclic.errors import InputError, Problem, Status, one_problem, printable, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
-from epicyclic.machine.solve import FEWEST
 from epicyclic.netcdf_file import texts_not_copied
 from epicyclic.result.result import Result, number_fields, origin
 from epicyclic.schema.fields import is_array, quantity_of
@@ -148,6 +147,7 @@ _OPERATING_TABLES = (
 
 
 TOGETHER = 32  # Points solved together, at most: more take memory and no less time.
+FEWEST_TOGETHER = 8  # With fewer there is little to gain, and each point ends for itself.
 FEWEST_BLOCKS = 3  # That a study is cut into, so that several processes can share it.
 
 
@@ -189,7 +189,7 @@ class CasePlan(Plan):
     def block(self) -> int:
         """See `Plan`: of as many points as are worth it, if there are enough."""
         size = min(TOGETHER, self.size // FEWEST_BLOCKS)
-        return size if self.together and size >= FEWEST else 1
+        return size if self.together and size >= FEWEST_TOGETHER else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
         """Rows of points; those that share all but their operation are solved together."""
@@ -297,7 +297,7 @@ class SweepPlan(CasePlan):
     def order(self) -> list[int]:
         """Indices of all cases, those that share geometry next to each other.
 
-        A block goes by torque: it takes as many passes as its points nearest to no torque.
+        A block goes by torque, then speed: it takes as many passes as its points of least power.
         """
         outer = {
             number
@@ -309,8 +309,9 @@ class SweepPlan(CasePlan):
             number not in outer and all(_is_operating(part.key) for part in axis.keys)
             for number, axis in enumerate(self.axes)
         ]
-        other = [not self.together or axis.key != _TORQUE for axis in self.axes]
-        by_cost = sorted(range(len(self.axes)), key=lambda i: (inner[i], other[i]))
+        powers = [_TORQUE, AXES["speed"]] if self.together else []
+        rank = [[*powers, axis.key].index(axis.key) for axis in self.axes]
+        by_cost = sorted(range(len(self.axes)), key=lambda i: (inner[i], rank[i]))
         numbers = np.arange(self.size).reshape(self.shape)
         return [int(index) for index in numbers.transpose(by_cost).ravel()]
 
