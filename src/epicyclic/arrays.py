@@ -16,7 +16,7 @@ from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import cache, partial, reduce
 from itertools import repeat
 from types import MethodType, MethodWrapperType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.intp]
+Called = TypeVar("Called", bound=Callable[..., Any])
 
 
 class Apart(Exception):  # noqa: N818 - no error: the points of a block part
@@ -94,7 +95,7 @@ def every(truth: Any) -> bool:
     return bool(np.asarray(truth).all()) if isinstance(truth, Points) else bool(truth)
 
 
-def either(truth: Any, one: float, two: float) -> Any:
+def either(truth: Any, one: Any, two: Any) -> Any:
     """One number where something holds, else the other, point by point."""
     if isinstance(truth, Points):
         return np.where(truth, one, two).view(Points)
@@ -125,6 +126,12 @@ total = _Either(
     lambda values: values.reshape(len(values), -1).sum(axis=1, keepdims=True),
 )
 """Sum over all places."""
+
+
+def over_places(reduce: Callable[..., Any], values: FloatArray) -> float:
+    """``numpy.min``, ``max`` or ``sum`` of all places, point by point."""
+    found = reduce(values, axis=-1, keepdims=True)
+    return found.view(Points) if values.ndim > 1 else float(found[0])
 
 
 def side_by_side(values: Iterable[Any]) -> FloatArray:
@@ -216,6 +223,33 @@ class _Later:
         return taken(self.call, [self.rows], final=True)[0]()
 
 
+def for_several(function: Called) -> Called:
+    """Mark what answers for all points of a block at once."""
+    function.several = True  # type: ignore[attr-defined]
+    return function
+
+
+@for_several
+def itself(value: Any) -> Any:
+    """The value: of a block, what each point has of it is taken when somebody asks."""
+    return value
+
+
+@dataclasses.dataclass
+class _Once:
+    """A call for all points of a block, made when somebody asks for one of them."""
+
+    call: Any  # A `partial` of what is `for_several`.
+    rows: Sequence[int]
+    found: Sequence[Any] | None = None
+
+    def of(self, place: int) -> Any:
+        """What belongs to the point at a place in `rows`."""
+        if self.found is None:
+            self.found = taken(self.call(), self.rows, final=True)
+        return self.found[place]
+
+
 @dataclasses.dataclass
 class _Taking:
     """What of objects belongs to each of some points; None of one that is the same for all."""
@@ -283,6 +317,9 @@ class _Taking:
     def _objects(self, cls: Any, value: Any) -> list[Any] | None:
         if cls is _Later:
             return _Taking(value.rows[self.rows].tolist(), final=True).of(value.call)
+        if cls is partial and getattr(value.func, "several", False) and self.final:
+            once = _Once(value, self.rows)
+            return [partial(once.of, place) for place in range(len(self.rows))]
         before = self.kept
         for it in (value, *(value.args if cls is partial else ())):
             if isinstance(loaded := getattr(it, "loaded", None), Points):

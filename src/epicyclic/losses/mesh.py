@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray, total
+from epicyclic.arrays import FloatArray, either, larger, over_places, total
 from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
@@ -55,6 +56,7 @@ def flash_temperatures(
 #
 # Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
 
+LEAST = 1e-300  # In place of a divisor of 0.
 CLOSED_LIMIT = 1.0  # Tip contact ratio up to which Ohlendorf's closed form holds. [1]
 
 
@@ -97,11 +99,11 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
 
 def mean_friction(contact: MeshContact, coefficient: FloatArray) -> float:
     """Mean over the sliding power of the load, from its shares: powers may be too small. [1]"""
-    share = contact.weight
+    share: Any = contact.weight
     for part in (contact.line_load, np.abs(contact.sliding_speed)):
-        largest = float(part.max())
-        share = share * (part / largest if largest else 1.0)
-    return float(coefficient @ share / share.sum())
+        largest = over_places(np.max, part)
+        share = share * either(largest > 0, part / larger(largest, LEAST), 1.0)
+    return total(coefficient * share) / total(share)
 
 
 def loss_factor_loss(contact: MeshContact, friction: FrictionModel) -> MeshLoss:

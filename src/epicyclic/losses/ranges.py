@@ -10,7 +10,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import Each, FloatArray, Points, for_several
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
@@ -98,6 +98,7 @@ class RangeFlags:
 
     __slots__ = ()
 
+    @for_several
     def flags(
         self: LossModel, role: str, contact: Any, loss: FloatArray
     ) -> tuple[ValidityFlag, ...]:
@@ -364,13 +365,29 @@ def check_ranges(
 
 
 def check_contacts(
-    use: ModelUse, ranges: Iterable[Range], contacts: object, weight: FloatArray, part: float = 1.0
+    use: ModelUse, ranges: Iterable[Range], contacts: Any, weight: FloatArray, part: float = 1.0
 ) -> tuple[ValidityFlag, ...]:
-    """`check_ranges` of line contacts; local quantities count with the loss where they occur."""
-    return tuple(
-        _flag(use, item, values, weight if np.shape(values) == weight.shape else 1.0, part)
-        for item, values in _not_within(tuple(ranges), contacts)
-    )
+    """`check_ranges` of line contacts; local quantities count with the loss where they occur.
+
+    Of the contacts of several points an `Each` of what belongs to each of them.
+    """
+    left = _not_within(tuple(ranges), contacts)
+    if not isinstance(weight, Points):
+        return tuple(
+            _flag(use, item, values, weight if np.shape(values) == weight.shape else 1.0, part)
+            for item, values in left
+        )
+    loaded, weights, found = np.asarray(contacts.loaded), np.asarray(weight), []
+    for row, places in enumerate(loaded):
+        flags = []
+        for item, values in left:
+            local = np.shape(values)[-1:] == loaded.shape[-1:]
+            whole = np.broadcast_to(values, loaded.shape if local else (len(loaded), 1))
+            own = whole[row, places] if local else float(whole[row, 0])
+            if not _holds(item, own):
+                flags.append(_flag(use, item, own, weights[row, places] if local else 1.0, part))
+        found.append(tuple(flags))
+    return Each(found)
 
 
 @lru_cache(maxsize=2)  # friction and rolling of a mesh ask about the same contacts

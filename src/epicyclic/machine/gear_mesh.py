@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import Alone, FloatArray, Points
+from epicyclic.arrays import (
+    Alone,
+    Each,
+    FloatArray,
+    Points,
+    either,
+    for_several,
+    itself,
+    joined,
+    larger,
+    largest,
+    over_places,
+    total,
+)
 from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.contact.temperatures import Solid
@@ -25,6 +39,7 @@ from epicyclic.losses.contact import (
 )
 from epicyclic.losses.friction import CONTAINS_ROLLING, FrictionModel
 from epicyclic.losses.mesh import (
+    LEAST,
     MeshLoss,
     flash_temperatures,
     heat_share1,
@@ -71,6 +86,7 @@ from epicyclic.units import (
 
 PEAK_SHARE = 0.01
 """Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""
+NOWHERE = 1e300  # Film ratio of what does not touch. [1]
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
 
@@ -151,7 +167,9 @@ class MeshFigures:
     a mean coefficient of friction: numbers above 1 cannot be.
     """
 
-    contact: MeshContact | None
+    pointwise = True
+
+    seen: Callable[[], MeshContact | None]  # The contact.
     flattening: float
     resistance: float
     pressure_angle: float = figure("operating pressure angle, transverse", DEGREE)
@@ -180,6 +198,11 @@ class MeshFigures:
     contact_temperature: float = figure("oil temperature at the contact inlet", CELSIUS)
     flash_temperature_mean: float = figure("mean flash temperature, weighted by load", KELVIN)
     flash_temperature_max: float = figure("largest flash temperature", KELVIN)
+
+    @property
+    def contact(self) -> MeshContact | None:
+        """Conditions along the contact lines; None without load or motion."""
+        return self.seen()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -347,67 +370,87 @@ def _pocketing(settings: PocketSettings, flow: MeshFlow, count: int) -> Loss:
     )
 
 
-def _largest(values: FloatArray, weight: FloatArray) -> int:
+def _largest(values: FloatArray, weight: FloatArray) -> Any:
     """Where the value is that `PEAK_SHARE` of the contact exceeds. Theory (D5)."""
     order = np.argsort(values)
-    below = np.cumsum(weight[order])
-    return int(order[np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])])
+    below = np.cumsum(np.take_along_axis(weight, order, -1), axis=-1)
+    place = (below < (1 - PEAK_SHARE) * below[..., -1:]).sum(axis=-1, keepdims=True)
+    return np.take_along_axis(order, place, -1)
 
 
+def _at(values: FloatArray, place: Any) -> float:
+    """The value at a place, of each point."""
+    return over_places(np.sum, np.take_along_axis(values, place, -1))
+
+
+@for_several
 def _mesh_figures(
     duty: MeshDuty,
     contact: MeshContact | None,
     loss: MeshLoss,
-    elastic: LoadedMesh | None,
+    elastic: LoadedMesh | Each | None,
     flow: FlowFigures | None,
 ) -> MeshFigures:
     mesh = duty.gears.mesh
     speed1 = abs(duty.speed1)
-    sliding = max(
-        abs(speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1))
+    sliding = largest(
+        speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1)
         for rho1 in (mesh.path_start, mesh.path_end)
     )
-    line_load, pressure, flattening, resistance = math.nan, math.nan, 0.0, 0.0
-    flash_mean = flash_max = math.nan
+    found: dict[str, Any] = {"flattening": 0.0, "resistance": 0.0}
     if contact is not None:
         flash = flash_temperatures(contact, loss.friction, duty.gears.materials)
         load = contact.line_load * contact.weight
-        flash_mean, flash_max = float((flash * load).sum() / load.sum()), float(flash.max())
         speed = contact.rolling_speed + np.abs(contact.sliding_speed)
-        resisted = float((contact.line_load * speed) @ contact.weight)
-        resistance = (loss.sliding + loss.rolling) / resisted if resisted else 0.0
-        line_load = float(contact.line_load[_largest(contact.line_load, contact.weight)])
+        resisted = total(load * speed)
+        film, loaded = contact.film_ratio, contact.loaded
         place = _largest(contact.hertz_pressure, contact.weight)  # flattest there, too
-        pressure = float(contact.hertz_pressure[place])
-        flattening = float(contact.hertz_half_width[place] / contact.radius[place])
+        flattened = contact.hertz_half_width / contact.radius
+        found = {
+            "contact_temperature": contact.oil.temperature,
+            "contact_share": total(contact.weight) / mesh.mean_contact_length,
+            "flash_temperature_mean": total(flash * load) / total(load),
+            "flash_temperature_max": over_places(np.max, flash),
+            "film_ratio_min": over_places(np.min, film + NOWHERE * ~loaded),
+            "film_ratio_max": over_places(np.max, film * loaded),
+            "friction_mean": mean_friction(contact, loss.friction),
+            "line_load_max": _at(contact.line_load, _largest(contact.line_load, contact.weight)),
+            "hertz_pressure_max": _at(contact.hertz_pressure, place),
+            "flattening": _at(flattened, place),
+            "resistance": either(
+                resisted > 0, (loss.sliding + loss.rolling) / larger(resisted, LEAST), 0.0
+            ),
+        }
+    if elastic is not None:
+        found |= _yielding(elastic)
+    if flow is not None:
+        found |= {
+            "pocket_pressure_max": flow.pressure_max,
+            "pocket_pressure_min": flow.pressure_min,
+            "pocket_speed_max": flow.speed_max,
+            "pocket_power_difference": flow.difference,
+            "pocket_interpolation_error": flow.error,
+        }
+    unknown: dict[str, Any] = dict.fromkeys((it.name for it in fields(MeshFigures)), math.nan)
     return MeshFigures(
-        pressure_angle=mesh.operating_pressure_angle,
-        transverse_contact_ratio=mesh.transverse_contact_ratio,
-        overlap_ratio=mesh.overlap_ratio,
-        backlash=mesh.backlash,
-        misalignment=duty.gears.deviations.misalignment,
-        pitch_line_speed=speed1 * mesh.operating_radius1,
-        sliding_speed_max=sliding,
-        line_load_max=line_load,
-        hertz_pressure_max=pressure,
-        flattening=flattening,
-        resistance=resistance,
-        contact_share=(
-            math.nan if contact is None else float(contact.weight.sum()) / mesh.mean_contact_length
-        ),
-        film_ratio_min=math.nan if contact is None else float(contact.film_ratio.min()),
-        film_ratio_max=math.nan if contact is None else float(contact.film_ratio.max()),
-        friction_mean=math.nan if contact is None else mean_friction(contact, loss.friction),
-        loss_factor=ohlendorf_loss_factor(mesh),
-        transmission_error_range=math.nan if elastic is None else elastic.transmission_error_range,
-        mesh_stiffness=math.nan if elastic is None else elastic.mean(elastic.tangent_stiffness),
-        pocket_pressure_max=math.nan if flow is None else flow.pressure_max,
-        pocket_pressure_min=math.nan if flow is None else flow.pressure_min,
-        pocket_speed_max=math.nan if flow is None else flow.speed_max,
-        pocket_power_difference=math.nan if flow is None else flow.difference,
-        pocket_interpolation_error=math.nan if flow is None else flow.error,
-        contact_temperature=math.nan if contact is None else contact.oil.temperature,
-        flash_temperature_mean=flash_mean,
-        flash_temperature_max=flash_max,
-        contact=contact,
-    )
+        **unknown | found | {
+            "seen": partial(itself, contact),
+            "pressure_angle": mesh.operating_pressure_angle,
+            "transverse_contact_ratio": mesh.transverse_contact_ratio,
+            "overlap_ratio": mesh.overlap_ratio,
+            "backlash": mesh.backlash,
+            "misalignment": duty.gears.deviations.misalignment,
+            "pitch_line_speed": speed1 * mesh.operating_radius1,
+            "sliding_speed_max": sliding,
+            "loss_factor": ohlendorf_loss_factor(mesh),
+        }
+    )  # fmt: skip
+
+
+def _yielding(elastic: LoadedMesh | Each) -> Any:
+    if isinstance(elastic, Each):
+        return joined([_yielding(one) for one in elastic])
+    return {
+        "transmission_error_range": elastic.transmission_error_range,
+        "mesh_stiffness": elastic.mean(elastic.tangent_stiffness),
+    }
