@@ -94,9 +94,9 @@ FIGURE: list[Edit] = [
     ),
     (
         "machine/gear_mesh.py",
-        "overlap_ratio=mesh.overlap_ratio,",
-        "overlap_ratio=mesh.overlap_ratio,\n"
-        "        total_contact_ratio=mesh.overlap_ratio + mesh.transverse_contact_ratio,",
+        '"overlap_ratio": mesh.overlap_ratio,',
+        '"overlap_ratio": mesh.overlap_ratio,\n'
+        '            "total_contact_ratio": mesh.overlap_ratio + mesh.transverse_contact_ratio,',
     ),
 ]
 
