@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, layout_of, operation_of
 from epicyclic.case.case import Case, TrainCase
-from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import OIL
 from epicyclic.machine.heat import NetworkModel
@@ -230,13 +230,9 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
         changes[oil.key] = oil.text(line["temperature"].item())
     if STATE in first:
         changes[STATE_KEY] = line[STATE].item()
-    torque_key = OPERATING["torque"]
-    direct = np.array(
-        [
-            _total(case, changes | {torque_key.key: torque_key.text(float(middle))})
-            for middle in middles
-        ]
-    )
+    torque = OPERATING["torque"]
+    points = tuple(changes | {torque.key: torque.text(middle)} for middle in middles.tolist())
+    direct = Runner(jobs=1).run(PointList(case, points)).numbers("total")
     with np.errstate(divide="ignore", invalid="ignore"):  # of no loss there is no part
         error = np.abs(np.interp(middles, torques, line["total"].values) / direct - 1)
     if not np.isfinite(error).any():
@@ -275,13 +271,6 @@ def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
     closer = [inner + part * (outer - inner) for part in CLOSER_TO_ZERO]
     found: FloatArray = np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
     return found
-
-
-def _total(case: Case, changes: dict[str, Any]) -> float:
-    try:
-        return solve(case.updated(changes)).total
-    except (ConvergenceError, InputError):  # as in the map
-        return float("nan")
 
 
 def _takes_minutes(case: Case) -> bool:
