@@ -16,7 +16,7 @@ from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import cache, partial, reduce
 from itertools import repeat
 from types import MethodType, MethodWrapperType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,6 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.intp]
-Called = TypeVar("Called", bound=Callable[..., Any])
 
 
 class Apart(Exception):  # noqa: N818 - no error: the points of a block part
@@ -126,12 +125,10 @@ total = _Either(
     lambda values: values.reshape(len(values), -1).sum(axis=1, keepdims=True),
 )
 """Sum over all places."""
-
-
-def over_places(reduce: Callable[..., Any], values: FloatArray) -> float:
-    """``numpy.min``, ``max`` or ``sum`` of all places, point by point."""
-    found = reduce(values, axis=-1, keepdims=True)
-    return found.view(Points) if values.ndim > 1 else float(found[0])
+most = _Either(
+    lambda values: float(values.max()), lambda values: values.max(axis=-1, keepdims=True)
+)
+"""Largest of all places."""
 
 
 def side_by_side(values: Iterable[Any]) -> FloatArray:
@@ -223,15 +220,12 @@ class _Later:
         return taken(self.call, [self.rows], final=True)[0]()
 
 
-def for_several(function: Called) -> Called:
-    """Mark what answers for all points of a block at once."""
-    function.several = True  # type: ignore[attr-defined]
-    return function
+class AtOnce(partial[Any]):
+    """A call that answers for all points of a block."""
 
 
-@for_several
 def itself(value: Any) -> Any:
-    """The value: of a block, what each point has of it is taken when somebody asks."""
+    """The value."""
     return value
 
 
@@ -239,7 +233,7 @@ def itself(value: Any) -> Any:
 class _Once:
     """A call for all points of a block, made when somebody asks for one of them."""
 
-    call: Any  # A `partial` of what is `for_several`.
+    call: AtOnce
     rows: Sequence[int]
     found: Sequence[Any] | None = None
 
@@ -278,12 +272,12 @@ class _Taking:
         if cls is MethodType or cls is MethodWrapperType:
             owners = self.of(value.__self__)
             return None if owners is None else [getattr(it, value.__name__) for it in owners]
-        if cls in (partial, _Later) and not self.final:
-            call, rows = (value, None) if cls is partial else (value.call, value.rows)
+        if cls in (partial, AtOnce, _Later) and not self.final:
+            call, rows = (value.call, value.rows) if cls is _Later else (value, None)
             own = self.rows if rows is None else [rows[row] for row in self.rows]
             return [_Later(call, row if np.ndim(row) else int(row)) for row in own]
         marked = getattr(cls, "pointwise", False) or hasattr(cls, "_fields")
-        if cls not in (partial, _Later) and not marked:
+        if cls not in (partial, AtOnce, _Later) and not marked:
             return None
         mark = id(value), id(self.kept)
         if mark not in self.found:  # with what it is of, so that no other gets its mark
@@ -317,7 +311,7 @@ class _Taking:
     def _objects(self, cls: Any, value: Any) -> list[Any] | None:
         if cls is _Later:
             return _Taking(value.rows[self.rows].tolist(), final=True).of(value.call)
-        if cls is partial and getattr(value.func, "several", False) and self.final:
+        if cls is AtOnce:
             once = _Once(value, self.rows)
             return [partial(once.of, place) for place in range(len(self.rows))]
         before = self.kept

@@ -367,24 +367,23 @@ def solve_all(points: Sequence[Built]) -> list[Settled | Exception]:
     machine, operations = points[0].machine, [point.operation for point in points]
     models = [point.thermal for point in points if point.thermal is not None]
     if models:
-        return list(map(_finite, settle(machine, operations, models)))
-    wanted = [Wanted(point.operation, point.known_fluids) for point in points]
-    return [
-        it if isinstance(it, Exception) else _finite(Settled(it[0], Answer({}), 1))
-        for it in solve_machines(machine, wanted)
-    ]
-
-
-def _finite(found: Settled | Exception) -> Settled | Exception:
-    if isinstance(found, Exception):
-        return found
-    bad = [name for name, loss in found.solution.losses.items() if not math.isfinite(loss.watts)]
-    if not bad:
-        return found
-    return ConvergenceError(
-        f"{', '.join(bad)} did not give a finite number, because the case is far outside the range "
-        "of the models. Choose others (models.friction, models.rolling, models.bearing)."
-    )
+        found = settle(machine, operations, models)
+    else:
+        wanted = [Wanted(point.operation, point.known_fluids) for point in points]
+        found = [
+            it if isinstance(it, Exception) else Settled(it[0], Answer({}), 1)
+            for it in solve_machines(machine, wanted)
+        ]
+    for number, it in enumerate(found):
+        losses = {} if isinstance(it, Exception) else it.solution.losses
+        bad = [name for name, loss in losses.items() if not math.isfinite(loss.watts)]
+        if bad:
+            found[number] = ConvergenceError(
+                f"{', '.join(bad)} did not give a finite number, because the case is far outside "
+                "the range of the models. Choose others (models.friction, models.rolling, "
+                "models.bearing)."
+            )
+    return found
 
 
 # Gears and bearings along the shafts of a train, for the forces on its bearings.

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray, either, larger, over_places, total
+from epicyclic.arrays import AtOnce, FloatArray, either, larger, most, total
 from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
@@ -91,8 +91,8 @@ def local_loss(contact: MeshContact, friction: FrictionModel, rolling: RollingMo
         friction=coefficient,
         heat=local_sliding,
         flags=Flags(
-            partial(friction.flags, "friction", own, local_sliding),
-            partial(rolling.flags, "rolling", contact, local_rolling),
+            AtOnce(friction.flags, "friction", own, local_sliding),
+            AtOnce(rolling.flags, "rolling", contact, local_rolling),
         ),
     )
 
@@ -101,7 +101,7 @@ def mean_friction(contact: MeshContact, coefficient: FloatArray) -> float:
     """Mean over the sliding power of the load, from its shares: powers may be too small. [1]"""
     share: Any = contact.weight
     for part in (contact.line_load, np.abs(contact.sliding_speed)):
-        largest = over_places(np.max, part)
+        largest = most(part)
         share = share * either(largest > 0, part / larger(largest, LEAST), 1.0)
     return total(coefficient * share) / total(share)
 

@@ -10,7 +10,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
-from epicyclic.arrays import Each, FloatArray, Points, for_several
+from epicyclic.arrays import Each, FloatArray, Points
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
@@ -98,7 +98,6 @@ class RangeFlags:
 
     __slots__ = ()
 
-    @for_several
     def flags(
         self: LossModel, role: str, contact: Any, loss: FloatArray
     ) -> tuple[ValidityFlag, ...]:

@@ -12,16 +12,16 @@ import numpy as np
 
 from epicyclic.arrays import (
     Alone,
+    AtOnce,
     Each,
     FloatArray,
     Points,
     either,
-    for_several,
     itself,
     joined,
     larger,
     largest,
-    over_places,
+    most,
     total,
 )
 from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
@@ -315,6 +315,11 @@ def solve_mesh(
             left_out=f"contained in the friction {friction.name}, which was fitted to the whole "
             "load-dependent loss of gear tests",
         )
+    pocketing = Loss(LOAD_INDEPENDENT, left_out=flow.left_out)
+    if not flow.left_out:
+        watts = 0.0 if flow.figures is None else count * flow.figures.power
+        model = pocketing_method(duty.gears.models.pockets.model, flow.figures)
+        pocketing = Loss(LOAD_INDEPENDENT, watts, model, POCKETING_SOURCE)
     losses = {
         f"{duty.gears.key}_sliding": Loss(
             LOAD_DEPENDENT,
@@ -324,10 +329,10 @@ def solve_mesh(
             heat=((node1, share1), (node2, 1 - share1)),
         ),
         f"{duty.gears.key}_rolling": rolling_loss,
-        f"{duty.gears.key}_pocketing": _pocketing(duty.gears.models.pockets, flow, count),
+        f"{duty.gears.key}_pocketing": pocketing,
     }
     elastic = None if loads is None else loads.elastic
-    figures = partial(_mesh_figures, duty, contact, loss, elastic, flow.figures)
+    figures = AtOnce(_mesh_figures, duty, contact, loss, elastic, flow.figures)
     return MeshResult(
         losses=losses,
         figures=Figures({duty.gears.key: figures}),
@@ -360,30 +365,15 @@ def _mesh_notes(
     return notes + friction.remarks
 
 
-def _pocketing(settings: PocketSettings, flow: MeshFlow, count: int) -> Loss:
-    """Pocketing loss of `count` meshes."""
-    if flow.left_out:
-        return Loss(LOAD_INDEPENDENT, left_out=flow.left_out)
-    watts = 0.0 if flow.figures is None else count * flow.figures.power
-    return Loss(
-        LOAD_INDEPENDENT, watts, pocketing_method(settings.model, flow.figures), POCKETING_SOURCE
-    )
-
-
-def _largest(values: FloatArray, weight: FloatArray) -> Any:
-    """Where the value is that `PEAK_SHARE` of the contact exceeds. Theory (D5)."""
+def _exceeded(values: FloatArray, weight: FloatArray, *others: FloatArray) -> list[float]:
+    """What `PEAK_SHARE` of the contact exceeds, and the others there. Theory (D5)."""
     order = np.argsort(values)
     below = np.cumsum(np.take_along_axis(weight, order, -1), axis=-1)
     place = (below < (1 - PEAK_SHARE) * below[..., -1:]).sum(axis=-1, keepdims=True)
-    return np.take_along_axis(order, place, -1)
+    place = np.take_along_axis(order, place, -1)
+    return [total(np.take_along_axis(it, place, -1)) for it in (values, *others)]
 
 
-def _at(values: FloatArray, place: Any) -> float:
-    """The value at a place, of each point."""
-    return over_places(np.sum, np.take_along_axis(values, place, -1))
-
-
-@for_several
 def _mesh_figures(
     duty: MeshDuty,
     contact: MeshContact | None,
@@ -399,30 +389,38 @@ def _mesh_figures(
     )
     found: dict[str, Any] = {"flattening": 0.0, "resistance": 0.0}
     if contact is not None:
-        flash = flash_temperatures(contact, loss.friction, duty.gears.materials)
-        load = contact.line_load * contact.weight
+        line_load, weight, loaded = contact.line_load, contact.weight, contact.line_load > 0
+        flash = flash_temperatures(contact, loss.friction, duty.gears.materials) * loaded
+        load, film = line_load * weight, contact.film_ratio * loaded
         speed = contact.rolling_speed + np.abs(contact.sliding_speed)
         resisted = total(load * speed)
-        film, loaded = contact.film_ratio, contact.loaded
-        place = _largest(contact.hertz_pressure, contact.weight)  # flattest there, too
         flattened = contact.hertz_half_width / contact.radius
+        # flattest where it is pressed most, too
+        pressed, flattening = _exceeded(contact.hertz_pressure, weight, flattened)
         found = {
             "contact_temperature": contact.oil.temperature,
-            "contact_share": total(contact.weight) / mesh.mean_contact_length,
+            "contact_share": total(weight) / mesh.mean_contact_length,
             "flash_temperature_mean": total(flash * load) / total(load),
-            "flash_temperature_max": over_places(np.max, flash),
-            "film_ratio_min": over_places(np.min, film + NOWHERE * ~loaded),
-            "film_ratio_max": over_places(np.max, film * loaded),
+            "flash_temperature_max": most(flash),
+            "film_ratio_min": -most(-film - NOWHERE * ~loaded),
+            "film_ratio_max": most(film),
             "friction_mean": mean_friction(contact, loss.friction),
-            "line_load_max": _at(contact.line_load, _largest(contact.line_load, contact.weight)),
-            "hertz_pressure_max": _at(contact.hertz_pressure, place),
-            "flattening": _at(flattened, place),
+            "line_load_max": _exceeded(line_load, weight)[0],
+            "hertz_pressure_max": pressed,
+            "flattening": flattening,
             "resistance": either(
                 resisted > 0, (loss.sliding + loss.rolling) / larger(resisted, LEAST), 0.0
             ),
         }
     if elastic is not None:
-        found |= _yielding(elastic)
+        of_each = [
+            {
+                "transmission_error_range": one.transmission_error_range,
+                "mesh_stiffness": one.mean(one.tangent_stiffness),
+            }
+            for one in (elastic if isinstance(elastic, Each) else [elastic])
+        ]
+        found |= joined(of_each) if isinstance(elastic, Each) else of_each[0]
     if flow is not None:
         found |= {
             "pocket_pressure_max": flow.pressure_max,
@@ -434,7 +432,7 @@ def _mesh_figures(
     unknown: dict[str, Any] = dict.fromkeys((it.name for it in fields(MeshFigures)), math.nan)
     return MeshFigures(
         **unknown | found | {
-            "seen": partial(itself, contact),
+            "seen": AtOnce(itself, contact),
             "pressure_angle": mesh.operating_pressure_angle,
             "transverse_contact_ratio": mesh.transverse_contact_ratio,
             "overlap_ratio": mesh.overlap_ratio,
@@ -445,12 +443,3 @@ def _mesh_figures(
             "loss_factor": ohlendorf_loss_factor(mesh),
         }
     )  # fmt: skip
-
-
-def _yielding(elastic: LoadedMesh | Each) -> Any:
-    if isinstance(elastic, Each):
-        return joined([_yielding(one) for one in elastic])
-    return {
-        "transmission_error_range": elastic.transmission_error_range,
-        "mesh_stiffness": elastic.mean(elastic.tangent_stiffness),
-    }

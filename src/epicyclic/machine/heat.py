@@ -162,7 +162,7 @@ def _passes(
             return Settled(solution, answer, len(found), change)
         at = _expected(model, *found[-2:]) if len(found) > 1 else reached
     start = model.fluids(dict(model.start))  # where losses and torques may not even agree
-    solve_machine(machine, operation, start, unheated)
+    solve_machine(machine, Wanted(operation, start, unheated))
     raise _no_equilibrium(found)
 
 

@@ -85,7 +85,7 @@ class Answer:
         """
         losses, off = {}, 0.0
         before = self.before or self
-        holds = self._same_signs(loads)
+        holds = self.alike(loads, self.result)
         steps: dict[tuple[str, ...], _Step] = {}
         with np.errstate(over="ignore", invalid="ignore"):  # of errors without bound
             for name, loss in self.result.losses.items():
@@ -107,23 +107,16 @@ class Answer:
                 raise Apart(rows)
         return None
 
-    def alike(self, loads: Mapping[str, float], result: ElementResult) -> bool:
-        """True if loads have the same signs, and losses act at the same places."""
-        return every(self._same_signs(loads)) and self._same_places(result)
-
-    def _same_signs(self, loads: Mapping[str, float]) -> Any:
-        """Whether they have the signs of the last ones, of each point."""
-        same: Any = True
-        for key, load in loads.items():
-            same = ((load * self.loads[key] > 0) | (load == self.loads[key])) & same
-        return same
-
-    def _same_places(self, result: ElementResult) -> bool:
-        return all(
+    def alike(self, loads: Mapping[str, float], result: ElementResult) -> Any:
+        """Whether loads have the same signs, and losses act at the same places."""
+        same: Any = all(
             (loss.mesh, loss.brakes)
             == (self.result.losses[name].mesh, self.result.losses[name].brakes)
             for name, loss in result.losses.items()
         )
+        for key, load in loads.items():
+            same = ((load * self.loads[key] > 0) | (load == self.loads[key])) & same
+        return same
 
     def _step(self, loads: Mapping[str, float], loss: Loss) -> _Step:
         """From the last loads that a loss follows to these, along the line from those before."""
@@ -268,15 +261,10 @@ class Solution:
 def lossless_state(machine: Machine, operation: Operation, fluids: Fluids | None) -> State:
     """Speeds, and torques as without losses: what elements see first."""
     speeds = speeds_of(machine, operation.speeds)
-    found = _lossless(Statics(machine, operation, speeds))
+    found = start_of(machine, operation).lossless
     forces = forces_of(machine.layouts, found.meshes)
     drives = drives_first(found.powers, dict.fromkeys(found.powers, True))
     return State(speeds, found.meshes, forces, cast(Fluids, fluids), lossless=True, drives=drives)
-
-
-def _lossless(statics: Statics) -> Balance:
-    ones = {row.key: 1.0 for row in statics.machine.rows}
-    return statics.balance(dict.fromkeys(ones, True), ones)
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,7 +283,8 @@ def start_of(machine: Machine, operation: Operation) -> Start:
     """Speeds, torques without losses, and the directions of the rolling powers."""
     speeds = speeds_of(machine, operation.speeds)
     statics = Statics(machine, operation, speeds)
-    lossless = _lossless(statics)
+    ones = {row.key: 1.0 for row in machine.rows}
+    lossless = statics.balance(dict.fromkeys(ones, True), ones)
     efficiencies: dict[str, float] = {}
     standing: set[str] = set()
     moves = any(operation.speeds.values())
@@ -314,26 +303,46 @@ def start_of(machine: Machine, operation: Operation) -> Start:
     return Start(statics, lossless, directions, ratio, efficiencies, frozenset(standing))
 
 
+class Wanted(NamedTuple):
+    """A solution that somebody asks for."""
+
+    operation: Operation
+    fluids: Fluids | None  # None if every loss is given.
+    start: Start | None = None  # As from `start_of`, for solutions that differ in the oil only.
+    earlier: Solution | None = None  # At nearly the same temperatures, to begin with.
+    # False for the losses of the oil at the loads of `earlier`, or at those without losses, and the
+    # loads that follow: they lag one pass behind, which is enough as long as temperatures change.
+    whole: bool = True
+
+
 def solve_machine(
     machine: Machine,
-    operation: Operation,
-    fluids: Fluids | None,  # None if every loss is given.
-    start: Start | None = None,  # As from `start_of`, for solutions that differ in the oil only.
-    earlier: Solution | None = None,  # At nearly the same temperatures, to begin with.
+    wanted: Wanted,
     evaluations: Evaluations | None = None,  # Filled; those of a block of which this is a part.
-) -> Solution:
-    """Torques and losses that agree. Theory (T5), (T6).
+) -> tuple[Solution, bool]:
+    """Torques and losses, and whether they agree. Theory (T5), (T6).
 
-    Raises `ConvergenceError` if losses and torques do not agree.
+    Whole solutions also where losses decide the directions of powers. Raises `ConvergenceError` if
+    losses and torques do not agree, or grow beyond all bounds.
     """
+    operation, fluids, start, earlier, whole = wanted
     if start is None:
         start = start_of(machine, operation)
-    directions = start.directions
+    if not whole and (lagging := _one_pass(machine, wanted, start)):
+        return lagging
+    directions, powers = start.directions, start.lossless.powers
     drives = directions.drives
     branch = _Branch(
         machine, operation, start, fluids, {}, earlier, drives, evaluations=evaluations
     )
-    drives = _led(branch)
+    if earlier is None:  # as the losses of one pass turn them
+        found = branch.follow(branch.begin())
+        balance = found.balance if isinstance(found, _Pass) else found
+        drives = drives_first(balance.powers, drives)
+    else:
+        one, other = (drives_first(powers, dict.fromkeys(powers, way)) for way in (True, False))
+        undecided = {key for key in powers if one[key] != other[key]}
+        drives = {**drives, **{key: earlier.drives[key] for key in undecided}}
     tried: list[Mapping[str, bool]] = []
     while drives not in tried and len(tried) < MOST_BRANCHES:
         tried.append(drives)
@@ -346,26 +355,23 @@ def solve_machine(
         last = _converged(branch)
     if last.efficiencies != start.efficiencies and not directions.jammed:
         directions = find_directions(start.statics, start.lossless, last.efficiencies)
-    return branch.solution(last.balance, directions)
+    return branch.solution(last.balance, directions), True
 
 
-class Wanted(NamedTuple):
-    """A solution that somebody asks for."""
-
-    operation: Operation
-    fluids: Fluids | None  # None if every loss is given.
-    start: Start | None = None  # As from `start_of`.
-    earlier: Solution | None = None  # At nearly the same temperatures, to begin with.
-    whole: bool = True  # False for one pass only, as of `next_solution`.
-
-    def found(self, machine: Machine, evaluations: Evaluations | None) -> tuple[Solution, bool]:
-        """The solution, and whether its losses and loads agree."""
-        operation, fluids, start, earlier, whole = self
-        if whole:
-            return solve_machine(machine, operation, fluids, start, earlier, evaluations), True
-        return next_solution(
-            machine, operation, fluids, start or start_of(machine, operation), earlier
-        )
+def _one_pass(machine: Machine, wanted: Wanted, start: Start) -> tuple[Solution, bool] | None:
+    """What is wanted that is not whole; None where losses decide the directions of powers."""
+    operation, fluids, _, earlier, _ = wanted
+    drives, powers, braking = start.directions.drives, start.lossless.powers, frozenset[str]()
+    led = drives_first(powers, {key: not first for key, first in drives.items()})
+    if earlier is not None:
+        drives, powers, braking = earlier.drives, earlier.rolling, earlier.floating
+        led = drives_first(powers, drives)
+    if any(led[key] != first for key, first in drives.items() if key not in braking):
+        return None
+    branch = _Branch(machine, operation, start, fluids, {}, earlier, drives, braking)
+    found = branch.follow(branch.begin())
+    balance = found.balance if isinstance(found, _Pass) else found
+    return branch.solution(balance, start.directions), isinstance(found, _Pass)
 
 
 def _together(wanted: Sequence[Wanted]) -> Wanted:
@@ -385,26 +391,28 @@ def solve_machines(
     machine: Machine,
     wanted: Sequence[Wanted],  # All whole, or none; all with `earlier`, or none.
 ) -> list[tuple[Solution, bool] | Exception]:
-    """What is wanted, as of `Wanted.found`, or what that raises for each of them."""
+    """As `solve_machine` has each of them, or what that raises."""
     found: dict[int, tuple[Solution, bool] | Exception] = {}
     left: list[tuple[Sequence[int], Evaluations]] = [(range(len(wanted)), Evaluations())]
     while left:
         rows, evaluations = left.pop()
         several = all(element.several for element in machine.elements)
+        known: Sequence[Evaluations | None] = [None] * len(rows)
         if len(rows) < FEWEST or wanted[0].fluids is None or not several:
-            known = evaluations.single(len(rows))
+            if evaluations.before:
+                known = evaluations.single(len(rows))
         else:
             try:
                 one = _together([wanted[row] for row in rows])
-                solution, agree = one.found(machine, evaluations)
+                solution, agree = solve_machine(machine, one, evaluations)
             except Apart as parting:
                 left += _parts(rows, parting.rows, evaluations)
                 continue
             except EpicyclicError:
                 left += _parts(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
                 continue
-            except Exception:  # `Alone`, or whatever single points tell of themselves
-                known = [Evaluations() for _ in rows]
+            except Exception:
+                known = [None] * len(rows)  # `Alone`, or what single points tell of themselves
             else:
                 each = taken(solution, range(len(rows)), final=True)
                 for row, own in zip(rows, each, strict=True):
@@ -413,7 +421,7 @@ def solve_machines(
                 continue
         for row, its in zip(rows, known, strict=True):
             try:
-                found[row] = wanted[row].found(machine, its)
+                found[row] = solve_machine(machine, wanted[row], its)
             except Exception as error:
                 found[row] = error
     return [found[row] for row in range(len(wanted))]
@@ -425,32 +433,6 @@ def _parts(
     """The points of either side of a block, and what is known of them."""
     for places in (np.flatnonzero(~side), np.flatnonzero(side)):
         yield [rows[place] for place in places.tolist()], evaluations.part(places)
-
-
-def next_solution(
-    machine: Machine,
-    operation: Operation,
-    fluids: Fluids | None,
-    start: Start,
-    earlier: Solution | None,  # At other temperatures of the oil; None: loads without losses.
-) -> tuple[Solution, bool]:
-    """The losses of other oil at the loads of a solution, and the loads that follow from them.
-
-    Also whether these agree. Else they lag one pass behind, which is enough as long as temperatures
-    still change. Whole solutions where losses decide the directions of powers. Raises
-    `ConvergenceError` if losses or torques grow beyond all bounds.
-    """
-    drives, powers, braking = start.directions.drives, start.lossless.powers, frozenset[str]()
-    led = drives_first(powers, {key: not first for key, first in drives.items()})
-    if earlier is not None:
-        drives, powers, braking = earlier.drives, earlier.rolling, earlier.floating
-        led = drives_first(powers, drives)
-    if any(led[key] != first for key, first in drives.items() if key not in braking):
-        return solve_machine(machine, operation, fluids, start, earlier), True
-    branch = _Branch(machine, operation, start, fluids, {}, earlier, drives, braking)
-    found = branch.follow(branch.begin())
-    balance = found.balance if isinstance(found, _Pass) else found
-    return branch.solution(balance, start.directions), isinstance(found, _Pass)
 
 
 @dataclass
@@ -526,7 +508,7 @@ def _answered(
     result = evaluate(state, known.result)
     last = known.answer
     kept = ElementResult(last.result.losses)  # of what contacts were like, nobody asks
-    before = Answer(last.loads, kept) if last.alike(loads, result) else None
+    before = Answer(last.loads, kept) if every(last.alike(loads, result)) else None
     return _Known(Answer(loads, result, before), result, loads, state.drives)
 
 
@@ -652,19 +634,6 @@ class _Branch:
             self.start.efficiencies, found.powers, self.results.values(), self.braking
         )
         return self.start.statics.balance(self.drives, efficiencies, frictions), efficiencies
-
-
-def _led(branch: _Branch) -> Mapping[str, bool]:
-    """Directions of the branch as the losses of one pass turn them."""
-    drives, powers = branch.drives, branch.start.lossless.powers
-    if branch.earlier is None:
-        found = branch.follow(branch.begin())
-        return drives_first((found.balance if isinstance(found, _Pass) else found).powers, drives)
-    one, other = (drives_first(powers, dict.fromkeys(powers, first)) for first in (True, False))
-    return {
-        key: first if one[key] == other[key] else branch.earlier.drives[key]
-        for key, first in drives.items()
-    }
 
 
 def _converged(branch: _Branch) -> _Pass:

@@ -22,7 +22,7 @@ from epicyclic.machine.heat import AMBIENT, HOTTEST, NetworkModel
 from epicyclic.machine.heat_flow import Course, Curves, Link, Source, Transient
 from epicyclic.machine.heat_paths import INLET
 from epicyclic.machine.machine import Machine
-from epicyclic.machine.solve import Solution, solve_machine
+from epicyclic.machine.solve import Solution, Wanted, solve_machine
 from epicyclic.messages import refused, written
 from epicyclic.result.result import origin
 from epicyclic.schema.fields import quantity_of
@@ -97,9 +97,8 @@ def heat_samples(
             assert isinstance(model, NetworkModel)
             even = dict.fromkeys(model.nodes, knot)
             fluids = model.fluids(even)
-            solution = solve_machine(
-                built.machine, built.operation, fluids, earlier=last.get(number)
-            )
+            wanted = Wanted(built.operation, fluids, earlier=last.get(number))
+            solution, _ = solve_machine(built.machine, wanted)
             last[number] = solution
             networks = [model.network(value, solution) for value in _between([knot])]
             links = tuple({link.key: link for link in one.links} for one in networks)
