@@ -642,6 +642,7 @@ COMMANDS = {
 def compare(other: Path, whole: bool) -> None:
     """Both versions in turns: seconds of each, and their ratio."""
     programs = (str(other), sys.executable)
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # with which every command compiles all modules
     where = "import epicyclic; print(epicyclic.__file__)"
 
     def row(what: str, goal: str, measure: Measure, unit: str, repeats: int) -> None:
