@@ -95,6 +95,34 @@ def test_points_together_are_as_each_alone(
         assert other.to_dict().keys() == one.to_dict().keys()
 
 
+def test_points_that_agree_rest_while_others_are_evaluated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Loads next to none take more passes than large ones."""
+    case = ep.load_case("talbot-2012")
+    cases = [
+        case.updated(
+            {"operation.torque": f"{torque} N*m", "operation.speed": f"{900 + 210 * number} rpm"}
+        )
+        for number in range(8)
+        for torque in (870 + 13 * number, 2.5 + 0.3 * number)
+    ]
+    asked = []
+    evaluate = gear_set.GearSet.evaluate
+
+    def counted(self: gear_set.GearSet, state: solve.State, *last: object) -> object:
+        asked.append(np.size(state.torques[".sun_mesh"]))
+        return evaluate(self, state, *last)
+
+    monkeypatch.setattr(gear_set.GearSet, "evaluate", counted)
+    for case in cases:
+        ep.solve(case)
+    alone = sum(asked)
+    asked.clear()
+    solve_together(cases, {})
+    assert max(asked) == len(cases)
+    assert sum(asked) <= 1.1 * alone
+    assert asked[-1] == len(cases) / 2
+
+
 @pytest.mark.parametrize("kind", ["flank", "network"])
 def test_temperatures_of_points_together_are_those_of_each_alone(kind: str) -> None:
     """Up to what a temperature may still change: 3e-5 K, and losses by some 1 % for each kelvin."""

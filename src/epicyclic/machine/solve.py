@@ -412,7 +412,7 @@ def solve_machines(
                 left += _parts(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
                 continue
             except Exception:
-                known = [None] * len(rows)  # `Alone`, or what single points tell of themselves
+                pass  # `Alone`, or what single points tell of themselves
             else:
                 each = taken(solution, range(len(rows)), final=True)
                 for row, own in zip(rows, each, strict=True):
