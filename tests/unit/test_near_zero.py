@@ -36,9 +36,14 @@ def test_torques_crowd_on_each_side_that_reaches_zero():
     assert resolving_zero([0.0]) == [0.0]
 
 
-@pytest.mark.parametrize("rpm", [2300.0, pytest.param(190.0, marks=pytest.mark.slow)])
-def test_interpolation_is_off_by_less_than_two_per_cent_at_any_torque(case, rpm):
-    """Even torques alone are off by more than twice as much."""
+@pytest.mark.parametrize(
+    ("rpm", "most"), [(2300.0, 0.02), pytest.param(190.0, 0.07, marks=pytest.mark.slow)]
+)
+def test_interpolation_is_off_by_little_at_any_torque(case, rpm, most):
+    """Even torques alone are off by more than twice as much.
+
+    At a slow speed the kink between two torques weighs more: the drag is small there.
+    """
     asked = {"speed": [f"{rpm} rpm"], "torque": [f"{t} N*m" for t in np.linspace(-900, 900, 13)]}
     even = ep.loss_map(case, **asked, jobs=1)
     dense = ep.loss_map(case, **asked, resolve_zero=True, jobs=1)
@@ -52,10 +57,10 @@ def test_interpolation_is_off_by_less_than_two_per_cent_at_any_torque(case, rpm)
         total = data["total"].isel(temperature=0).sel(speed=rpm)
         return np.abs(np.interp(torques, data["torque"], total) / direct - 1).max()
 
-    assert off(dense) < 0.02
+    assert off(dense) < most
     assert off(even) > 2 * off(dense)
     told = dense.attrs["torque_interpolation_error"]
-    assert 0 < told < 0.02 < even.attrs["torque_interpolation_error"]
+    assert 0 < told < most < even.attrs["torque_interpolation_error"]
     assert f"{100 * told:.2g} %" in dense.attrs["torque_interpolation"]
 
 

@@ -512,11 +512,12 @@ def _workers_pay(done: int, seconds: float, left: int) -> bool:
 def _run_in_workers(
     plan: Plan, indices: list[int], jobs: int, journal: Journal | None
 ) -> Iterator[Batch]:
+    from cloudpickle import dumps  # models of friction hold functions
     from joblib import Parallel, delayed, effective_n_jobs
 
     batches = _batches(plan, indices, effective_n_jobs(jobs))
     workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
-    sent, parent = pickle.dumps(plan), os.getpid()
+    sent, parent = dumps(plan), os.getpid()
     calls = (delayed(_solve_in_worker)(parent, sent, batch, journal) for batch in batches)
     with _leftovers_removed_quietly():
         yield from workers(calls)
