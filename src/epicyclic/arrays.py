@@ -26,6 +26,9 @@ BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.intp]
 
 
+TINY = 1e-300  # In place of a divisor of 0.
+
+
 class Apart(Exception):  # noqa: N818 - no error: the points of a block part
     """A decision that is not the same for all points of a block."""
 
@@ -129,6 +132,10 @@ most = _Either(
     lambda values: float(values.max()), lambda values: values.max(axis=-1, keepdims=True)
 )
 """Largest of all places."""
+least = _Either(
+    lambda values: float(values.min()), lambda values: values.min(axis=-1, keepdims=True)
+)
+"""Smallest of all places."""
 
 
 def side_by_side(values: Iterable[Any]) -> FloatArray:

@@ -124,11 +124,24 @@ def test_points_that_agree_rest_while_others_are_evaluated(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("kind", ["flank", "network"])
-def test_temperatures_of_points_together_are_those_of_each_alone(kind: str) -> None:
+def test_temperatures_of_points_together_are_those_of_each_alone(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Up to what a temperature may still change: 3e-5 K, and losses by some 1 % for each kelvin."""
     changes = {"models.temperatures": kind, "thermal.oil_flow": "3.5 l/min"}
     cases = _cases("talbot-2012", **changes)
-    for case, other in zip(cases, solve_together(cases, {}), strict=True):
+    asked = []
+    evaluate = gear_set.GearSet.evaluate
+
+    def counted(self: gear_set.GearSet, state: solve.State, *last: object) -> object:
+        asked.append(np.size(state.torques[".sun_mesh"]))
+        return evaluate(self, state, *last)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(gear_set.GearSet, "evaluate", counted)
+        together = solve_together(cases, {})
+    assert len(asked) < 0.3 * sum(asked), "most points were solved one by one"
+    for case, other in zip(cases, together, strict=True):
         assert not isinstance(other, Exception)
         one = ep.solve(case)
         assert one.heat is not None
@@ -163,14 +176,19 @@ def test_a_block_leaves_nothing_that_waits_for_the_collector() -> None:
         gc.enable()
 
 
-def test_blocks_of_a_sweep_go_by_torque() -> None:
+def test_blocks_of_a_sweep_go_by_torque_then_speed() -> None:
     vary = {
+        "operation.oil_inlet_temperature": ["45 degC", "95 degC"],
         "operation.speed": [f"{900 + 310 * number} rpm" for number in range(9)],
         "operation.torque": [f"{35 - 20 * number} N*m" for number in range(4)],
     }
     plan = make_plan(ep.load_case("talbot-2012"), vary)
-    torques = [plan.changes(index)["operation.torque"] for index in plan.order()]
-    assert torques == [torque for torque in vary["operation.torque"] for _ in range(9)]
+    torques, speeds = (
+        [plan.changes(index)[f"operation.{key}"] for index in plan.order()]
+        for key in ("torque", "speed")
+    )
+    assert torques == [torque for torque in vary["operation.torque"] for _ in range(18)]
+    assert speeds == 4 * [speed for speed in vary["operation.speed"] for _ in range(2)]
 
 
 def test_a_point_does_not_depend_on_shards_or_interruptions(tmp_path: Path) -> None:

@@ -583,8 +583,10 @@ def load_meshes_next_to(
     solutions but for its tolerance.
     """
     parts = "line_load", "normal_approach", "normal_stiffness", "rise"
-    loads, *rest = (np.array([getattr(one, part) for one in last]) for part in parts)
-    start = loads, rest[0], rest[1], rest[2]
+    loads, approach, stiffness, rise = (
+        np.array([getattr(one, part) for one in last]) for part in parts
+    )
+    start = loads, approach, stiffness, rise
     before = [one.force for one in last]
     return _loaded(last[0].mesh, last[0].compliance, forces, deviations, before, start)
 

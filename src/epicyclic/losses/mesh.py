@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import AtOnce, FloatArray, either, larger, most, total
+from epicyclic.arrays import TINY, AtOnce, FloatArray, either, larger, most, total
 from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
@@ -56,7 +56,6 @@ def flash_temperatures(
 #
 # Quick method: mean friction times the loss factor of Ohlendorf, no rolling loss.
 
-LEAST = 1e-300  # In place of a divisor of 0.
 CLOSED_LIMIT = 1.0  # Tip contact ratio up to which Ohlendorf's closed form holds. [1]
 
 
@@ -102,7 +101,7 @@ def mean_friction(contact: MeshContact, coefficient: FloatArray) -> float:
     share: Any = contact.weight
     for part in (contact.line_load, np.abs(contact.sliding_speed)):
         largest = most(part)
-        share = share * either(largest > 0, part / larger(largest, LEAST), 1.0)
+        share = share * either(largest > 0, part / larger(largest, TINY), 1.0)
     return total(coefficient * share) / total(share)
 
 

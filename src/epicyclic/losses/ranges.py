@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
@@ -370,7 +370,7 @@ def check_contacts(
 
     Of the contacts of several points an `Each` of what belongs to each of them.
     """
-    left = _not_within(tuple(ranges), contacts)
+    left = _not_within(ranges, contacts)
     if not isinstance(weight, Points):
         return tuple(
             _flag(use, item, values, weight if np.shape(values) == weight.shape else 1.0, part)
@@ -389,9 +389,8 @@ def check_contacts(
     return Each(found)
 
 
-@lru_cache(maxsize=2)  # friction and rolling of a mesh ask about the same contacts
 def _not_within(
-    ranges: tuple[Range, ...], contacts: object
+    ranges: Iterable[Range], contacts: object
 ) -> tuple[tuple[Range, FloatArray | float], ...]:
     """The ranges that not all contacts keep, with the quantities."""
     left = []

@@ -239,18 +239,18 @@ class Statics:
 
     def balance(
         self,
-        drives: Mapping[str, bool],  # For each mesh, True if its first gear drives it.
-        efficiencies: Mapping[str, float],  # Of each mesh with its carrier at rest. [1]
+        drives: Mapping[str, bool] | None = None,  # For each mesh, True if its first gear drives.
+        # Of each mesh with its carrier at rest; None, and no directions, without losses. [1]
+        efficiencies: Mapping[str, float] | None = None,
         frictions: Iterable[Friction] = (),
     ) -> Balance:
         """Torques and mesh loads from the balance of every body. Theory (T3), (T5), (T6)."""
         rows, couplings, speeds = self.machine.rows, self.machine.couplings, self.speeds
         columns, scale = [], []
         for row in rows:  # the term of the driven gear is reduced
-            lost = efficiencies[row.key]
-            column, length = self._column(
-                row.terms(1.0, lost) if drives[row.key] else row.terms(lost, 1.0)
-            )
+            lost = 1.0 if efficiencies is None else efficiencies[row.key]
+            first = drives is None or drives[row.key]
+            column, length = self._column(row.terms(1.0, lost) if first else row.terms(lost, 1.0))
             columns.append(column)
             scale.append(length)
         scale += self._fixed[1]

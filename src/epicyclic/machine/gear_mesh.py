@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from epicyclic.arrays import (
+    TINY,
     Alone,
     AtOnce,
     Each,
@@ -21,6 +22,7 @@ from epicyclic.arrays import (
     joined,
     larger,
     largest,
+    least,
     most,
     total,
 )
@@ -39,7 +41,6 @@ from epicyclic.losses.contact import (
 )
 from epicyclic.losses.friction import CONTAINS_ROLLING, FrictionModel
 from epicyclic.losses.mesh import (
-    LEAST,
     MeshLoss,
     flash_temperatures,
     heat_share1,
@@ -402,14 +403,14 @@ def _mesh_figures(
             "contact_share": total(weight) / mesh.mean_contact_length,
             "flash_temperature_mean": total(flash * load) / total(load),
             "flash_temperature_max": most(flash),
-            "film_ratio_min": -most(-film - NOWHERE * ~loaded),
+            "film_ratio_min": least(film + NOWHERE * ~loaded),
             "film_ratio_max": most(film),
             "friction_mean": mean_friction(contact, loss.friction),
             "line_load_max": _exceeded(line_load, weight)[0],
             "hertz_pressure_max": pressed,
             "flattening": flattening,
             "resistance": either(
-                resisted > 0, (loss.sliding + loss.rolling) / larger(resisted, LEAST), 0.0
+                resisted > 0, (loss.sliding + loss.rolling) / larger(resisted, TINY), 0.0
             ),
         }
     if elastic is not None:

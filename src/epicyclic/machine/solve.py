@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from epicyclic.arrays import (
+    TINY,
     Alone,
     Apart,
     BoolArray,
@@ -60,7 +61,6 @@ turns from one regime into another it is more: 1.1e-7 was the most by which loss
 cases differed that were stated at either end; with 4.0 it is 4e-11, at up to half as many
 evaluations more. [1]"""
 NEAR = 3e-5  # Change of a load over which the figures of an answer serve. [1]
-TINY = 1e-300  # In place of a divisor of 0.
 ROUNDING = 1e-14  # Change, relative to the largest load, that is rounding. [1]
 
 
@@ -261,7 +261,7 @@ class Solution:
 def lossless_state(machine: Machine, operation: Operation, fluids: Fluids | None) -> State:
     """Speeds, and torques as without losses: what elements see first."""
     speeds = speeds_of(machine, operation.speeds)
-    found = start_of(machine, operation).lossless
+    found = Statics(machine, operation, speeds).balance()
     forces = forces_of(machine.layouts, found.meshes)
     drives = drives_first(found.powers, dict.fromkeys(found.powers, True))
     return State(speeds, found.meshes, forces, cast(Fluids, fluids), lossless=True, drives=drives)
@@ -283,8 +283,7 @@ def start_of(machine: Machine, operation: Operation) -> Start:
     """Speeds, torques without losses, and the directions of the rolling powers."""
     speeds = speeds_of(machine, operation.speeds)
     statics = Statics(machine, operation, speeds)
-    ones = {row.key: 1.0 for row in machine.rows}
-    lossless = statics.balance(dict.fromkeys(ones, True), ones)
+    lossless = statics.balance()
     efficiencies: dict[str, float] = {}
     standing: set[str] = set()
     moves = any(operation.speeds.values())
@@ -394,9 +393,9 @@ def solve_machines(
     """As `solve_machine` has each of them, or what that raises."""
     found: dict[int, tuple[Solution, bool] | Exception] = {}
     left: list[tuple[Sequence[int], Evaluations]] = [(range(len(wanted)), Evaluations())]
+    several = all(it.several for it in machine.elements)
     while left:
         rows, evaluations = left.pop()
-        several = all(element.several for element in machine.elements)
         known: Sequence[Evaluations | None] = [None] * len(rows)
         if len(rows) < FEWEST or wanted[0].fluids is None or not several:
             if evaluations.before:
