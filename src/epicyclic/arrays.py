@@ -37,7 +37,10 @@ class Apart(Exception):  # noqa: N818 - no error: the points of a block part
 
 
 class Alone(Exception):  # noqa: N818 - no error
-    """Something that is only known how to do for one point at a time."""
+    """Something that is only known how to do for one point at a time.
+
+    With the number of points where that is done then; without it nothing more is done for a block.
+    """
 
 
 class Points(np.ndarray[Any, Any]):
@@ -167,29 +170,71 @@ class Each(tuple[Any, ...]):
     __slots__ = ()
 
 
-def joined(values: Sequence[Any]) -> Any:
+def joined(
+    values: Sequence[Any],
+    # What stands for what differs in more than numbers; None: `Apart` is raised.
+    unlike: Callable[[Sequence[Any]], Any] | None = None,
+) -> Any:
     """Objects of several points as one object, whose numbers are `Points`.
 
-    Numbers that do not differ are `Points`, too: what shares a block must not matter. Raises
-    `Apart` if the objects differ in more than numbers.
+    Numbers that do not differ are `Points`, too: what shares a block must not matter. With `unlike`
+    they stay what they are.
     """
     first: Any = values[0]
     cls: Any = type(first)
+    own = partial(joined, unlike=unlike)
+    if unlike is not None:
+        if cls is np.ndarray:
+            return of_points(values)
+        looked_for = hasattr(first, "parts")  # what comparing it would look for
+        if not looked_for and all(value is first or value == first for value in values):
+            return first
+        if any(_kind(value) != _kind(first) for value in values):
+            return unlike(values)
     if cls is float:
         return of_points(values).reshape(-1, 1)
-    if isinstance(first, Mapping):
-        _alike([tuple(value) for value in values])
-        return {key: joined([value[key] for value in values]) for key in first}
-    if isinstance(first, tuple):
-        _alike(list(map(len, values)))
-        parts = [joined(column) for column in zip(*values, strict=True)]
-        return cls(parts) if cls is tuple else cls(*parts)
     if getattr(cls, "pointwise", False):
-        return cls(
-            **{name: joined([getattr(value, name) for value in values]) for name in _names(cls)}
-        )
+        if hasattr(first, "parts"):
+            return cls(*own([value.parts for value in values]))
+        return cls(**{name: own([getattr(value, name) for value in values]) for name in _names(cls)})
+    if isinstance(first, Mapping):
+        _alike(list(map(_kind, values)))
+        return {key: own([value[key] for value in values]) for key in first}
+    if isinstance(first, tuple):
+        _alike(list(map(_kind, values)))
+        columns = list(map(own, zip(*values, strict=True)))
+        return cls(columns) if cls is tuple else cls(*columns)
+    if unlike is not None:
+        return unlike(values)
     _alike(values)
     return first
+
+
+def part_of_each(values: Sequence[Any]) -> Each:
+    """Parts of machines that are solved `one_by_one`; `Apart` is raised if they are others."""
+    if not getattr(type(values[0]), "one_by_one", False):
+        _alike(values)
+    return Each(values)
+
+
+def _kind(value: Any) -> Any:
+    """What objects have in common that can be joined."""
+    of = tuple(value) if isinstance(value, Mapping) else isinstance(value, tuple) and len(value)
+    return type(value), of
+
+
+def one_by_one(function: Callable[..., Any], *args: Any) -> Any:
+    """A call; of points that have parts of their own, or are `Alone` there, one for each, joined."""
+    parts = [part for arg in args for part in ((arg, *arg) if isinstance(arg, tuple) else (arg,))]
+    count = next((len(part) for part in parts if isinstance(part, Each)), 0)
+    try:
+        if not count:
+            return function(*args)
+    except Alone as alone:
+        if not alone.args:
+            raise
+        (count,) = alone.args
+    return joined([function(*own) for own in taken(args, range(count))], Each)
 
 
 def _alike(values: Sequence[Any]) -> None:

@@ -75,7 +75,7 @@ def lossless_torques(z_s, z_r, member, torque):
 
 
 def flow_of_machine(machine, operation, members):
-    solution, _ = solve_machine(machine, Wanted(operation, None))
+    solution, _ = solve_machine(Wanted(machine, operation, None))
     return PowerFlow(
         {name: MemberState(solution.speeds[name], solution.torques[name]) for name in members},
         solution.input_power,
@@ -214,7 +214,7 @@ def test_losses_that_throw_a_small_load_to_and_fro_settle():
     rows = (MeshRow("mesh", "pinion", "gear", HOUSING, (20, 47)),)
     machine = Machine(("pinion", "gear"), rows, (SteepDrag(),))
     found = solve_machine(
-        machine, Wanted(Operation("pinion", "gear", 1.0, {"pinion": 100.0}), None)
+        Wanted(machine, Operation("pinion", "gear", 1.0, {"pinion": 100.0}), None)
     )[0]
     load = found.meshes["mesh"]
     # a load less by dx raises the drag by more than dx: passes with whole steps only grow

@@ -39,11 +39,11 @@ def settled(monkeypatch):
     monkeypatch.setattr(settling, "solve_machine", lambda *_: None)
 
     def settled(scatter, *, agree=True, whole=lambda at: at):
-        def solve(_machine, wanted):
+        def solve(wanted):
             return [(whole(it.fluids), True) if it.whole else (it.fluids, agree) for it in wanted]
 
         monkeypatch.setattr(settling, "solve_machines", solve)
-        (found,) = settle(SimpleNamespace(), [SimpleNamespace()], [Model(scatter)])
+        (found,) = settle([(SimpleNamespace(), SimpleNamespace(), Model(scatter))])
         if isinstance(found, Exception):
             raise found
         return found

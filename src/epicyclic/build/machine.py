@@ -360,19 +360,18 @@ class Built:
 
 
 def solve_all(points: Sequence[Built]) -> list[Settled | Exception]:
-    """Torques, losses and temperatures that agree at several points of one machine.
+    """Torques, losses and temperatures that agree at several points of one kind of machine.
 
     Of each what is wrong where nothing agrees.
     """
-    machine, operations = points[0].machine, [point.operation for point in points]
-    models = [point.thermal for point in points if point.thermal is not None]
-    if models:
-        found = settle(machine, operations, models)
+    heated = [(it.machine, it.operation, it.thermal) for it in points if it.thermal is not None]
+    if heated:
+        found = settle(heated)
     else:
-        wanted = [Wanted(point.operation, point.known_fluids) for point in points]
+        wanted = [Wanted(it.machine, it.operation, it.known_fluids) for it in points]
         found = [
             it if isinstance(it, Exception) else Settled(it[0], Answer({}), 1)
-            for it in solve_machines(machine, wanted)
+            for it in solve_machines(wanted)
         ]
     for number, it in enumerate(found):
         losses = {} if isinstance(it, Exception) else it.solution.losses

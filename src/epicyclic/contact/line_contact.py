@@ -41,6 +41,8 @@ CONDITIONS = (
 class Flanks(Generic[Real]):
     """The two surfaces in contact: flanks of teeth, or race and roller."""
 
+    pointwise = True
+
     equivalent_modulus: float  # E_eq. [Pa]
     roughness1: Real  # rms. [m]
     roughness2: Real  # rms. [m]

@@ -244,6 +244,8 @@ class NothingToSolve:
 class FrictionSettings:
     """Numbers that some models take from the case."""
 
+    pointwise = True
+
     constant: float = 0.0  # Coefficient of the model constant. [1]
     # Coefficients of dry and of separated contact in the film-share models. [1]
     boundary: float | None = None  # None: that of each model.
@@ -257,6 +259,8 @@ class FrictionSettings:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrictionFormula(NothingToSolve, Formula):
     """A formula for the coefficient of friction."""
+
+    pointwise = True
 
     function: Callable[[MeshContact, FrictionSettings], FloatArray]
     takes_oil_temperature: bool = False  # As of `FrictionModel`.

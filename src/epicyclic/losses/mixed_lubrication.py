@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray, log
+from epicyclic.arrays import FloatArray, log, sqrt
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.contact.temperatures import flash_temperature
 from epicyclic.gears.flanks import (
@@ -46,6 +46,8 @@ LEAST_LOAD = 1e-40  # Of flanks that carry nothing [N/m]; pressures likewise [Pa
 @dataclass(frozen=True, slots=True)
 class Surfaces:
     """What of the roughness acts."""
+
+    pointwise = True
 
     running_in: float = RUNNING_IN
     cutoff: float | None = None  # Of the measured profiles; None: `usual_cutoff`. [m]
@@ -85,7 +87,7 @@ def usual_cutoff(
     >>> round(1e3 * usual_cutoff(0.56e-6), 2)
     0.8
     """
-    return PROFILE_CUTOFF * math.sqrt(RA_OVER_RQ * roughness / MIDDLE_OF_CLASS)
+    return PROFILE_CUTOFF * sqrt(RA_OVER_RQ * roughness / MIDDLE_OF_CLASS)
 
 
 def central_film(contact: LineContacts) -> FloatArray:

@@ -125,7 +125,7 @@ class FlowFamily:
             if np.isfinite(scaled).all():
                 return from_scaled(scaled, speed, mixture.density)
         if isinstance(speed, Points):
-            raise Alone
+            raise Alone(len(speed))
         return flow_figures(self.flow(speed, mixture, pressure))
 
     def scaled(self, number: float) -> FloatArray:
@@ -384,9 +384,11 @@ RESTLESS = 5e-3
 periods scatters by 1 to 2 %, the scaled power changes by less than that. [1]"""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class KnownFlows:
     """Solved flows of some families."""
+
+    one_by_one = True
 
     # By family and ln(number): scaled figures, and the figures themselves.
     flows: Mapping[tuple[FlowFamily, float], tuple[FloatArray, FlowFigures]] = field(

@@ -78,6 +78,8 @@ class Jets:
 class Disc:
     """A body that turns in the mixture, or dips into a sump."""
 
+    one_by_one = True
+
     where: str  # For the flags: ``"sun"``.
     body: str
     turning: Turning
@@ -97,6 +99,8 @@ class Disc:
 @dataclass(frozen=True, slots=True)
 class ThrustBearing:
     """Thrust bearings that carry no load worth counting."""
+
+    one_by_one = True
 
     between: tuple[str, str]  # The two bodies whose speeds differ.
     mean_diameter: float  # [m]

@@ -24,6 +24,7 @@ from epicyclic.arrays import (
     largest,
     least,
     most,
+    one_by_one,
     total,
 )
 from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
@@ -95,6 +96,8 @@ OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 class MeshModels:
     """How the losses of a mesh are computed."""
 
+    pointwise = True
+
     friction: FrictionModel
     rolling: RollingModel
     # True for mean friction times Ohlendorf's loss factor, without rolling loss.
@@ -108,6 +111,8 @@ class MeshModels:
 @dataclass(frozen=True, slots=True)
 class GearMesh:
     """Two gears in mesh, each on a body, seen from a carrier."""
+
+    pointwise = True
 
     key: str  # ``"sun_mesh"``: first word of its losses.
     mesh: Mesh
@@ -319,7 +324,7 @@ def solve_mesh(
     pocketing = Loss(LOAD_INDEPENDENT, left_out=flow.left_out)
     if not flow.left_out:
         watts = 0.0 if flow.figures is None else count * flow.figures.power
-        model = pocketing_method(duty.gears.models.pockets.model, flow.figures)
+        model = one_by_one(pocketing_method, duty.gears.models.pockets.model, flow.figures)
         pocketing = Loss(LOAD_INDEPENDENT, watts, model, POCKETING_SOURCE)
     losses = {
         f"{duty.gears.key}_sliding": Loss(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar, NamedTuple
 
+from epicyclic.arrays import Alone, Each, one_by_one
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
 from epicyclic.losses.pocket_tables import KnownFlows
@@ -55,6 +56,8 @@ ROUNDING = 1e-12  # Torques as small as this, relatively, are the rounding of a 
 class LossChoice:
     """What becomes of one loss."""
 
+    pointwise = True
+
     include: bool = True
     factor: float = 1.0  # [1]
 
@@ -88,6 +91,8 @@ class PlanetMesh:
 class Planet:
     """The planets of one kind: a body that turns on a pin of the carrier."""
 
+    pointwise = True
+
     key: str  # First word of the losses of its bearing: ``"planet_bearing"``.
     body: str
     pin_radius: float  # From the axis of the set to that of the planet. [m]
@@ -110,7 +115,7 @@ class Planet:
         contacts = self._contacts(duties)
         centrifugal = self.centrifugal(carrier_speed)
         idle = all(contact.duty.torque1 == 0 for contact in contacts)
-        if not self.tilts or not isinstance(self.bearing, PlanetBearing) or idle:
+        if not self.tilts or self.bearing is None or isinstance(self.bearing, PlanetPin) or idle:
             load = planet_load(contacts, centrifugal)
         else:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
@@ -229,6 +234,8 @@ class _Branch(ElementResult):
 class GearSet:
     """Meshes seen from one carrier, with planets, their bearings, discs and thrust bearings."""
 
+    pointwise = True
+
     key: str  # First part of its losses; empty for a single set.
     carrier: str  # Body from which the meshes are seen; `HOUSING` for a pair.
     meshes: tuple[GearMesh, ...]
@@ -267,7 +274,7 @@ class GearSet:
         if driving not in flows:
             none = {duty.gears.key: MeshFlow() for duty in duties}
             ahead[:] = [partial(self._branch, state, torques, shares[0], 1, none, {}, {})]
-            flows[driving], known = mesh_flows(duties, state.fluids, known)
+            flows[driving], known = one_by_one(mesh_flows, duties, state.fluids, known)
             ahead.clear()
         branches = []
         for share in sorted(set(shares), reverse=True):
@@ -385,6 +392,8 @@ class GearSet:
             return (1.0,)
         bearing = self.planets[0].bearing
         alike = self.sharing.whatever_the_load
+        if isinstance(bearing, Each) and not alike:
+            raise Alone
         duties = () if alike else self.duties(state, torques, 1 / self.count)
         rollers = bearing.bearing if isinstance(bearing, PlanetBearing) else None
         return planet_shares(self.sharing, duties, rollers)
@@ -416,13 +425,13 @@ class GearSet:
         struck = sum(
             disc.jets is not None and bool(state.speeds[disc.body] != 0)
             for discs in self.discs.values()
-            for disc in discs
+            for disc in (it[0] if isinstance(it, Each) else it for it in discs)
         )
         for name, discs in self.discs.items():
-            losses[name], found = disc_loss(discs, state, struck)
+            losses[name], found = one_by_one(disc_loss, discs, state, struck)
             flags += found
         if self.thrust is not None:
-            losses["thrust_bearing_viscous"], found = thrust_loss(self.thrust, state)
+            losses["thrust_bearing_viscous"], found = one_by_one(thrust_loss, self.thrust, state)
             flags += found
         placed = {}
         for name, loss in losses.items():
@@ -466,17 +475,9 @@ class GearSet:
                 driven = -speed if duties[planet.meshes[0].mesh].torque1 > 0 else speed
                 bearing = solve_pin(planet.key, planet.bearing, load, planets, oil, driven, last)
             else:
-                bearing = solve_bearing(
-                    planet.key,
-                    planet.bearing,
-                    load,
-                    planets,
-                    oil,
-                    speed,
-                    last,
-                    planet.pin_radius,
-                    carrier,
-                    loaded=any(duty.torque1 for duty in tilted),
+                at = speed, last, planet.pin_radius, carrier, any(duty.torque1 for duty in tilted)
+                bearing = one_by_one(
+                    solve_bearing, planet.key, planet.bearing, load, planets, oil, *at
                 )
             notes.append(bearing.notes.__iter__)
             rollers[planet.key, share] = bearing.loads

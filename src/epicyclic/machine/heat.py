@@ -110,13 +110,13 @@ _Pass = tuple[Mapping[str, float], Solution, Answer]  # Temperatures [K], losses
 
 
 def settle(
-    machine: Machine, operations: Sequence[Operation], models: Sequence[ThermalModel]
+    points: Sequence[tuple[Machine, Operation, ThermalModel]],
 ) -> list[Settled | Exception]:
     """Temperatures and losses that agree at each operating point, or what is wrong with it.
 
     Each pass is one for all points that still need it. See `_passes` for what is raised.
     """
-    passes = [_passes(machine, *point) for point in zip(operations, models, strict=True)]
+    passes = [_passes(*point) for point in points]
     found: dict[int, Settled | Exception] = {}
     answers: dict[int, Any] = dict.fromkeys(range(len(passes)))
     while answers:
@@ -131,7 +131,7 @@ def settle(
         answers = {}
         for whole in (False, True):
             own = {number: it for number, it in wanted.items() if it.whole == whole}
-            answers |= zip(own, solve_machines(machine, list(own.values())), strict=True)
+            answers |= zip(own, solve_machines(list(own.values())), strict=True)
         found |= {number: it for number, it in answers.items() if isinstance(it, Exception)}
         answers = {number: it for number, it in answers.items() if number not in found}
     return [found[number] for number in range(len(passes))]
@@ -151,7 +151,7 @@ def _passes(
     while len(found) < MOST_PASSES:
         held, earlier = _held(model, at), found[-1][1] if found else None
         solution, agrees = yield Wanted(
-            operation, model.fluids(held), unheated, earlier, change <= NEARLY
+            machine, operation, model.fluids(held), unheated, earlier, change <= NEARLY
         )
         found.append((held, solution, answer := model.answer(held, solution)))
         reached = _values(answer.temperatures)
@@ -162,7 +162,7 @@ def _passes(
             return Settled(solution, answer, len(found), change)
         at = _expected(model, *found[-2:]) if len(found) > 1 else reached
     start = model.fluids(dict(model.start))  # where losses and torques may not even agree
-    solve_machine(machine, Wanted(operation, start, unheated))
+    solve_machine(Wanted(machine, operation, start, unheated))
     raise _no_equilibrium(found)
 
 

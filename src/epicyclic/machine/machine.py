@@ -337,6 +337,8 @@ class Operation:
 class Machine:
     """Bodies, what couples their speeds, and what loses power."""
 
+    pointwise = True
+
     bodies: tuple[str, ...]  # All that can turn, without `HOUSING`.
     rows: tuple[MeshRow, ...]
     elements: tuple[Element, ...]

@@ -492,6 +492,8 @@ PALMGREN_SOURCE = "A. Palmgren, Ball and Roller Bearing Engineering (1959); Talb
 class PlanetBearing:
     """A planet bearing and the models of its losses."""
 
+    one_by_one = True
+
     bearing: RollerBearing
     # ``"mixed-ehl"``, ``"palmgren"``, or a loss fitted to simulated contacts.
     model: str | FittedRolling

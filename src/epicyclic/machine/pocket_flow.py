@@ -59,6 +59,8 @@ FlowRequest = tuple[FlowFamily, float, MixtureState, float]
 class PocketSettings:
     """How the flow through the pockets of a mesh is found."""
 
+    pointwise = True
+
     include: bool  # False if the loss is left out, so that nobody asks for the flow.
     oil_fraction: float  # Oil share by volume at ambient pressure. [1]
     model: PocketModel
@@ -189,7 +191,7 @@ def mesh_flows(
         figures = None
         if not request[0].scales(*request[1:]):
             if isinstance(request[1], Points):
-                raise Alone
+                raise Alone(len(request[1]))
             if request[0] in tables[key]:
                 figures = tables[key][request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
@@ -223,7 +225,7 @@ def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigur
     if settings.file is None:
         return None
     if isinstance(request[1], Points):
-        raise Alone
+        raise Alone(len(request[1]))
     return stored_table(settings.file, request[0]).figures(*request[1:])
 
 
@@ -256,6 +258,8 @@ def pocketing_method(model: str, figures: FlowFigures | None) -> str:
     method = POCKETING_MODELS[model]
     if figures is None or not figures.nodes:
         return method
+    if isinstance(figures.error, Points):
+        raise Alone(len(figures.error))
     error = percent(figures.error, 2)
     if figures.file:
         return f"{method}, table {figures.file}, interpolated within {error}"

@@ -23,6 +23,7 @@ from epicyclic.arrays import (
     joined,
     larger,
     largest,
+    part_of_each,
     taken,
 )
 from epicyclic.errors import ConvergenceError, EpicyclicError
@@ -305,6 +306,7 @@ def start_of(machine: Machine, operation: Operation) -> Start:
 class Wanted(NamedTuple):
     """A solution that somebody asks for."""
 
+    machine: Machine
     operation: Operation
     fluids: Fluids | None  # None if every loss is given.
     start: Start | None = None  # As from `start_of`, for solutions that differ in the oil only.
@@ -315,7 +317,6 @@ class Wanted(NamedTuple):
 
 
 def solve_machine(
-    machine: Machine,
     wanted: Wanted,
     evaluations: Evaluations | None = None,  # Filled; those of a block of which this is a part.
 ) -> tuple[Solution, bool]:
@@ -324,10 +325,10 @@ def solve_machine(
     Whole solutions also where losses decide the directions of powers. Raises `ConvergenceError` if
     losses and torques do not agree, or grow beyond all bounds.
     """
-    operation, fluids, start, earlier, whole = wanted
+    machine, operation, fluids, start, earlier, whole = wanted
     if start is None:
         start = start_of(machine, operation)
-    if not whole and (lagging := _one_pass(machine, wanted, start)):
+    if not whole and (lagging := _one_pass(wanted, start)):
         return lagging
     directions, powers = start.directions, start.lossless.powers
     drives = directions.drives
@@ -357,9 +358,9 @@ def solve_machine(
     return branch.solution(last.balance, directions), True
 
 
-def _one_pass(machine: Machine, wanted: Wanted, start: Start) -> tuple[Solution, bool] | None:
+def _one_pass(wanted: Wanted, start: Start) -> tuple[Solution, bool] | None:
     """What is wanted that is not whole; None where losses decide the directions of powers."""
-    operation, fluids, _, earlier, _ = wanted
+    machine, operation, fluids, _, earlier, _ = wanted
     drives, powers, braking = start.directions.drives, start.lossless.powers, frozenset[str]()
     led = drives_first(powers, {key: not first for key, first in drives.items()})
     if earlier is not None:
@@ -375,35 +376,34 @@ def _one_pass(machine: Machine, wanted: Wanted, start: Start) -> tuple[Solution,
 
 def _together(wanted: Sequence[Wanted]) -> Wanted:
     """Several solutions as one; raises `Apart` if they begin in different ways."""
+    machine = joined([it.machine for it in wanted], part_of_each)
     operation = joined([it.operation for it in wanted])
     fluids = joined([replace(cast(Fluids, it.fluids), flags=()) for it in wanted])
     earlier = [it.earlier for it in wanted if it.earlier is not None]
     if not earlier:
-        return Wanted(operation, fluids)
+        return Wanted(machine, operation, fluids)
     names = "meshes", "rolling", "drives", "floating"
     begun = {name: joined([getattr(it, name) for it in earlier]) for name in names}
     first = replace(earlier[0], results={}, **begun)
-    return Wanted(operation, fluids, None, first, wanted[0].whole)
+    return Wanted(machine, operation, fluids, None, first, wanted[0].whole)
 
 
 def solve_machines(
-    machine: Machine,
     wanted: Sequence[Wanted],  # All whole, or none; all with `earlier`, or none.
 ) -> list[tuple[Solution, bool] | Exception]:
     """As `solve_machine` has each of them, or what that raises."""
     found: dict[int, tuple[Solution, bool] | Exception] = {}
     left: list[tuple[Sequence[int], Evaluations]] = [(range(len(wanted)), Evaluations())]
-    several = all(it.several for it in machine.elements)
     while left:
         rows, evaluations = left.pop()
         known: Sequence[Evaluations | None] = [None] * len(rows)
-        if len(rows) < FEWEST or wanted[0].fluids is None or not several:
+        if len(rows) < FEWEST or not _several(wanted[rows[0]]):
             if evaluations.before:
                 known = evaluations.single(len(rows))
         else:
             try:
                 one = _together([wanted[row] for row in rows])
-                solution, agree = solve_machine(machine, one, evaluations)
+                solution, agree = solve_machine(one, evaluations)
             except Apart as parting:
                 left += _parts(rows, parting.rows, evaluations)
                 continue
@@ -420,10 +420,16 @@ def solve_machines(
                 continue
         for row, its in zip(rows, known, strict=True):
             try:
-                found[row] = solve_machine(machine, wanted[row], its)
+                found[row] = solve_machine(wanted[row], its)
             except Exception as error:
                 found[row] = error
     return [found[row] for row in range(len(wanted))]
+
+
+def _several(wanted: Wanted) -> bool:
+    """Whether a solution may share a block."""
+    known = wanted.fluids is not None
+    return known and all(element.several for element in wanted.machine.elements)
 
 
 def _parts(

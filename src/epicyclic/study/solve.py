@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 from epicyclic.build.machine import Built, build, solve_all
 from epicyclic.build.result import assemble
@@ -14,6 +15,7 @@ from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, scaled_figures, table_around
 from epicyclic.machine.element import OIL
 from epicyclic.machine.gear_mesh import elastic_loads, load_mesh
+from epicyclic.machine.heat import Settled
 from epicyclic.machine.pocket_flow import flow_numbers, flow_requests
 from epicyclic.result.physical import judged
 from epicyclic.result.result import Result
@@ -57,49 +59,70 @@ def solve(
     flow_tables: FlowTables | None = None,
 ) -> Result:
     """The losses of a case; errors as for `epicyclic.solve`."""
-    built = build(case, flow_tables)
-    result = assemble(case, built, built.solve())
-    if case.models.load_dependent == "as-tested":
-        unloaded = solve(without_torque(case), flow_tables=flow_tables)
-        result = replace(result, unloaded=unloaded.total)
-    return judged(result)
+    (found,) = solve_together([case], flow_tables)
+    if isinstance(found, Exception):
+        raise found
+    return found
 
 
-def solve_together(cases: Sequence[Case], flow_tables: FlowTables) -> list[Result | Exception]:
-    """The losses of cases that differ in their operation, or what is wrong with each of them.
+def solve_together(
+    cases: Sequence[Case], flow_tables: FlowTables | None
+) -> list[Result | Exception]:
+    """The losses of cases, or what is wrong with each of them.
 
     As `solve` has them but for rounding, whichever cases are solved together.
     """
-    built: dict[int, Built] = {}
-    found: dict[int, Result | Exception] = {}
-    machines: dict[int, list[int]] = {}
+    found = _each_of(assemble, cases, flow_tables)
+    tested = [
+        number
+        for number, case in enumerate(cases)
+        if case.models.load_dependent == "as-tested" and not isinstance(found[number], Exception)
+    ]
+    if tested:
+        unloaded = solve_together([without_torque(cases[it]) for it in tested], flow_tables)
+        for number, other in zip(tested, unloaded, strict=True):
+            failed = isinstance(other, Exception)
+            found[number] = other if failed else replace(found[number], unloaded=other.total)
+    return [it if isinstance(it, Exception) else judged(it) for it in found]
+
+
+def losses_and_powers(
+    cases: Sequence[Case], flow_tables: FlowTables
+) -> list[tuple[dict[str, float], float] | Exception]:
+    """Losses and input power alone of cases whose losses are not formed as tested. [W]"""
+    return _each_of(_losses_and_power, cases, flow_tables)
+
+
+def _each_of(
+    found_of: Callable[[Case, Built, Settled], Any],
+    cases: Sequence[Case],
+    flow_tables: FlowTables | None,
+) -> list[Any]:
+    """What follows from the solution of each case, or what is wrong with it."""
+    found: dict[int, Any] = {}
+    built: dict[bool, dict[int, Built]] = {True: {}, False: {}}
     for number, case in enumerate(cases):
         try:
-            if case.models.load_dependent == "as-tested":
-                found[number] = solve(case, flow_tables=flow_tables)
-                continue
-            one = built[number] = build(case, flow_tables)
+            one = build(case, flow_tables)
         except Exception as error:
             found[number] = error
-            continue
-        machines.setdefault(id(one.machine), []).append(number)
-    for group in machines.values():
-        for number, settled in zip(group, solve_all([built[it] for it in group]), strict=True):
+        else:
+            built[one.thermal is None][number] = one
+    for own in built.values():
+        for number, settled in zip(own, solve_all(list(own.values())), strict=True):
             try:
-                found[number] = (
-                    settled
-                    if isinstance(settled, Exception)
-                    else judged(assemble(cases[number], built[number], settled))
-                )
+                if isinstance(settled, Exception):
+                    raise settled
+                found[number] = found_of(cases[number], own[number], settled)
             except Exception as error:
                 found[number] = error
     return [found[number] for number in range(len(cases))]
 
 
-def losses_and_power(case: Case, flow_tables: FlowTables) -> tuple[dict[str, float], float]:
-    """Losses and input power alone of a case whose losses are not formed as tested. [W]"""
-    built = build(case, flow_tables)
-    solution = built.solve().solution
+def _losses_and_power(
+    case: Case, built: Built, settled: Settled
+) -> tuple[dict[str, float], float]:
+    solution = settled.solution
     losses = {name: solution.losses[name].watts for name in built.layout.losses}
     return losses, solution.input_power
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from itertools import chain
@@ -23,7 +24,7 @@ from epicyclic.result.result import LossTerm, Result
 from epicyclic.schema.read import plain
 from epicyclic.study.bands.inputs import model_form_of, uncertain_values
 from epicyclic.study.bands.samples import Samples, groups_of, make_samples
-from epicyclic.study.solve import flows_around, losses_and_power, without_torque
+from epicyclic.study.solve import flows_around, losses_and_powers, without_torque
 from epicyclic.study.sweeps.run import AS_TESTED, CasePlan
 from epicyclic.study.sweeps.runner import Row, Rows, Runner
 
@@ -134,14 +135,30 @@ def shaft_power(case: Case) -> float:
     return case.operation.torque * case.operation.speed
 
 
-def loss_numbers(case: Case, outputs: Outputs, flow_tables: FlowTables) -> dict[str, float]:
-    """`Outputs.numbers` of a case, its input power, and that of the stated shaft. [W]"""
-    plain = case.updated({"models.load_dependent": "computed"}) if outputs.tested else case
-    losses, power = losses_and_power(plain, flow_tables)
-    found = {**losses, INPUT_POWER: power, SHAFT_POWER: shaft_power(case)}
+def loss_numbers(
+    cases: Sequence[Case], outputs: Outputs, flow_tables: FlowTables
+) -> list[dict[str, float] | Exception]:
+    """`Outputs.numbers` of cases, their input powers, and those of the stated shaft. [W]
+
+    Or what is wrong with a case.
+    """
     if outputs.tested:
-        unloaded, _ = losses_and_power(without_torque(plain), flow_tables)
-        found |= {f"{UNLOADED}{name}": watts for name, watts in unloaded.items()}
+        computed = {"models.load_dependent": "computed"}
+        cases = [case.updated(computed) for case in cases]
+    found: list[dict[str, float] | Exception] = [
+        it
+        if isinstance(it, Exception)
+        else {**it[0], INPUT_POWER: it[1], SHAFT_POWER: shaft_power(case)}
+        for case, it in zip(cases, losses_and_powers(cases, flow_tables), strict=True)
+    ]
+    if not outputs.tested:
+        return found
+    unloaded = losses_and_powers([without_torque(case) for case in cases], flow_tables)
+    for number, (loaded, other) in enumerate(zip(found, unloaded, strict=True)):
+        if isinstance(other, Exception):
+            found[number] = other
+        elif not isinstance(loaded, Exception):
+            loaded |= {f"{UNLOADED}{name}": watts for name, watts in other[0].items()}
     return found
 
 
@@ -209,13 +226,13 @@ def look_nearby(case: Case, result: Result) -> Nearby:
     flows = flows_around(plain, SAME_FLOW)
     losses = np.array([result.losses[name] for name in outputs.losses])
     if outputs.tested:
-        losses = _losses(plain, {}, outputs, flows)
-    stepped = [
-        losses if _without_effect(plain, changes) else _losses(plain, changes, outputs, flows)
-        for changes in steps(values)
-    ]
+        (losses,) = _losses(plain, [{}], outputs, flows)
+    changes = steps(values)
+    moved = [number for number, it in enumerate(changes) if not _without_effect(plain, it)]
+    stepped = np.tile(losses, (len(changes), 1))
+    stepped[moved] = _losses(plain, [changes[number] for number in moved], outputs, flows)
     powers = (result.input_power, shaft_power(case))
-    return nearby_of(values, outputs, losses, powers, np.array(stepped))
+    return nearby_of(values, outputs, losses, powers, stepped)
 
 
 def steps(values: Sequence[UncertainValue]) -> list[dict[str, Any]]:
@@ -251,13 +268,21 @@ def _without_effect(case: Case, changes: Mapping[str, Any]) -> bool:
 
 
 def _losses(
-    case: Case, changes: Mapping[str, Any], outputs: Outputs, flows: FlowTables
+    case: Case, changes: Sequence[Mapping[str, Any]], outputs: Outputs, flows: FlowTables
 ) -> FloatArray:
-    try:
-        found = loss_numbers(case.updated(changes) if changes else case, outputs, flows)
-    except EpicyclicError:
-        return np.full(len(outputs.numbers), np.nan)
-    return np.array([found[name] for name in outputs.numbers])
+    """Losses of a case with each of some changes; NaN where there is no result."""
+    cases: dict[int, Case] = {}
+    for number, change in enumerate(changes):
+        with suppress(EpicyclicError):
+            cases[number] = case.updated(change)
+    losses = np.full((len(changes), len(outputs.numbers)), np.nan)
+    found = loss_numbers(list(cases.values()), outputs, flows)
+    for number, its in zip(cases, found, strict=True):
+        if not isinstance(its, Exception):
+            losses[number] = [its[name] for name in outputs.numbers]
+        elif not isinstance(its, EpicyclicError):
+            raise its
+    return losses
 
 
 def at_deviations(value: UncertainValue, deviations: Any) -> Any:
@@ -327,11 +352,18 @@ class SamplePlan(CasePlan):
             "drawn": digest.hexdigest(),
         }
 
-    def _solve(self, index: int) -> Row:
+    @property
+    def together(self) -> bool:
+        """See `CasePlan`."""
+        return True
+
+    def _answers(self, cases: Sequence[Case]) -> Sequence[Any]:
         """What the results follow from; nothing else is read."""
-        case = self.case.updated(self.changes(index))
-        numbers = loss_numbers(case, self.outputs, self.flow_tables)
-        return Row(str(Status.CONVERGED), numbers=numbers)
+        return loss_numbers(cases, self.outputs, self.flow_tables)
+
+    @staticmethod
+    def _row_of(answer: Any) -> Row:
+        return Row(str(Status.CONVERGED), numbers=answer)
 
 
 def check_samples(samples: int, seed: int = 0) -> None:

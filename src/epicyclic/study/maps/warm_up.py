@@ -97,8 +97,9 @@ def heat_samples(
             assert isinstance(model, NetworkModel)
             even = dict.fromkeys(model.nodes, knot)
             fluids = model.fluids(even)
-            wanted = Wanted(built.operation, fluids, earlier=last.get(number))
-            solution, _ = solve_machine(built.machine, wanted)
+            earlier = last.get(number)
+            wanted = Wanted(built.machine, built.operation, fluids, earlier=earlier)
+            solution, _ = solve_machine(wanted)
             last[number] = solution
             networks = [model.network(value, solution) for value in _between([knot])]
             links = tuple({link.key: link for link in one.links} for one in networks)

@@ -26,12 +26,12 @@ from epicyclic.errors import InputError, Problem, Status, one_problem, printable
 from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables
 from epicyclic.netcdf_file import texts_not_copied
-from epicyclic.result.result import Result, number_fields, origin
+from epicyclic.result.result import number_fields, origin
 from epicyclic.schema.fields import is_array, quantity_of
 from epicyclic.schema.read import parse_value, plain, split_key, with_unit_of_key
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.operating import AXES, STATE_KEY, key_of
-from epicyclic.study.solve import pocket_flow_numbers, solve, solve_together
+from epicyclic.study.solve import pocket_flow_numbers, solve_together
 from epicyclic.study.sweeps.axes import (
     MOST_POINTS,
     ROW,
@@ -207,25 +207,32 @@ class CasePlan(Plan):
             return Row("")
 
         rows = {index: self._row(partial(failing, index)) for index in indices}
-        found = solve_together(list(cases.values()), self.flow_tables)
-        for index, result in zip(cases, found, strict=True):
-            rows[index] = self._row(partial(_row_of, result))
+        found = self._answers(list(cases.values()))
+        for index, answer in zip(cases, found, strict=True):
+            rows[index] = self._row(partial(self._answered, answer))
         return list(rows.values())
 
     def _solve(self, index: int) -> Row:
         """One case as a flat record."""
-        case = self.case.updated(self.changes(index))
-        return _row_of(solve(case, flow_tables=self.flow_tables))
+        (answer,) = self._answers([self.case.updated(self.changes(index))])
+        return self._answered(answer)
 
+    def _answered(self, answer: Any) -> Row:
+        if isinstance(answer, Exception):
+            raise answer
+        return self._row_of(answer)
 
-def _row_of(result: Result | Exception) -> Row:
-    if isinstance(result, Exception):
-        raise result
-    if result.status is not Status.CONVERGED:
-        return Row(str(result.status), message=result.notes[0])
-    return Row(
-        status=str(result.status), warnings=" | ".join(result.warnings), numbers=result.values()
-    )
+    def _answers(self, cases: Sequence[Case]) -> Sequence[Any]:
+        """What is found of cases, or what is wrong with each of them."""
+        return solve_together(cases, self.flow_tables)
+
+    @staticmethod
+    def _row_of(answer: Any) -> Row:
+        """The flat record of what is found."""
+        if answer.status is not Status.CONVERGED:
+            return Row(str(answer.status), message=answer.notes[0])
+        warnings = " | ".join(answer.warnings)
+        return Row(str(answer.status), warnings=warnings, numbers=answer.values())
 
 
 def _files(case: Case) -> Iterator[str]:
