@@ -196,7 +196,9 @@ def joined(
     if getattr(cls, "pointwise", False):
         if hasattr(first, "parts"):
             return cls(*own([value.parts for value in values]))
-        return cls(**{name: own([getattr(value, name) for value in values]) for name in _names(cls)})
+        return cls(
+            **{name: own([getattr(value, name) for value in values]) for name in _names(cls)}
+        )
     if isinstance(first, Mapping):
         _alike(list(map(_kind, values)))
         return {key: own([value[key] for value in values]) for key in first}
@@ -224,7 +226,7 @@ def _kind(value: Any) -> Any:
 
 
 def one_by_one(function: Callable[..., Any], *args: Any) -> Any:
-    """A call; of points that have parts of their own, or are `Alone` there, one for each, joined."""
+    """A call; for each point where they have parts of their own, or are `Alone`, and joined."""
     parts = [part for arg in args for part in ((arg, *arg) if isinstance(arg, tuple) else (arg,))]
     count = next((len(part) for part in parts if isinstance(part, Each)), 0)
     try:

@@ -422,14 +422,17 @@ def test_shards_of_a_comparison_are_that_of_one_run(call, tmp_path, monkeypatch,
 def test_a_comparison_with_points_that_fail_is_the_same_in_shards(call, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("measured.csv").write_text(MEASURED)
-    solve = plans.solve
+    solve_together = plans.solve_together
 
-    def fails_at_high_speed(case, **options):
-        if case.operation.speed > 600:  # rad/s
-            raise ep.ConvergenceError("the test says no")
-        return solve(case, **options)
+    def fails_at_high_speed(cases, *tables):
+        return [
+            ep.ConvergenceError("the test says no")
+            if case.operation.speed > 600
+            else result  # rad/s
+            for case, result in zip(cases, solve_together(cases, *tables), strict=True)
+        ]
 
-    monkeypatch.setattr(plans, "solve", fails_at_high_speed)
+    monkeypatch.setattr(plans, "solve_together", fails_at_high_speed)
     command = ("compare", "talbot-2012-pair", "measured.csv", *NO_POCKETS)
     code, whole, errors = call(*command, "--jobs", "1", "--json", "one.json")
     assert code == 0, errors

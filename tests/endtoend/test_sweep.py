@@ -156,24 +156,27 @@ def test_a_pair_has_its_own_variables():
 
 
 def test_any_error_of_one_point_is_a_row(case, monkeypatch):
-    def solve(changed, **_):
-        if changed.planet.count == 4:
-            raise RuntimeError("broken")
-        return ep.solve(changed)
+    def solve_together(cases, _):
+        return [
+            RuntimeError("broken") if changed.planet.count == 4 else ep.solve(changed)
+            for changed in cases
+        ]
 
-    monkeypatch.setattr("epicyclic.study.sweeps.run.solve", solve)
+    monkeypatch.setattr("epicyclic.study.sweeps.run.solve_together", solve_together)
     result = ep.sweep(case, {"planet.count": [3, 4, 5]}, jobs=1)
     assert list(result["status"].values) == ["converged", "failed", "converged"]
     assert result["message"].values[1] == "RuntimeError: broken"
 
 
 def test_an_interruption_in_compiled_code_ends_the_sweep(case, monkeypatch):
-    def solve(changed, **_):
+    def solve_machine(*_):
         raise SystemError("returned a result with an exception set") from KeyboardInterrupt()
 
-    monkeypatch.setattr("epicyclic.study.sweeps.run.solve", solve)
+    monkeypatch.setattr("epicyclic.machine.solve.solve_machine", solve_machine)
     with pytest.raises(KeyboardInterrupt):
         ep.sweep(case, {"planet.count": [3, 4]}, jobs=1)
+    with pytest.raises(KeyboardInterrupt):  # that of a block
+        ep.sweep(case, {"operation.torque": [f"{it} N*m" for it in range(400, 424)]}, jobs=1)
 
 
 def test_a_sweep_goes_on_where_it_stopped(case, dataset, tmp_path):

@@ -631,6 +631,7 @@ def stated_tool(gear: Gear, rounding: float | None) -> Tool | None:
     return ShaperTool(shaper.teeth, rounding)
 
 
+@lru_cache(maxsize=64)
 def cutting_tool(gear: Gear, rounding: float | None) -> Tool:
     """The tool that leaves the root fillet: as stated, or the default one if it cuts the tooth.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar, NamedTuple
 
-from epicyclic.arrays import Alone, Each, one_by_one
+from epicyclic.arrays import Alone, Each, Points, one_by_one
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
 from epicyclic.losses.pocket_tables import KnownFlows
@@ -117,6 +117,8 @@ class Planet:
         idle = all(contact.duty.torque1 == 0 for contact in contacts)
         if not self.tilts or self.bearing is None or isinstance(self.bearing, PlanetPin) or idle:
             load = planet_load(contacts, centrifugal)
+        elif isinstance(contacts[0].duty.torque1, Points):
+            raise Alone
         else:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
         return [contact.duty for contact in contacts], load
@@ -469,7 +471,8 @@ class GearSet:
             if planet.bearing is None:
                 force = load.force / share if share else 0.0
                 reason, diameter = planet.no_bearing, planet.diameter
-                bearing = missing_bearing(planet.key, reason, force, diameter, speed)
+                own = reason, force, diameter, speed
+                bearing = one_by_one(missing_bearing, planet.key, *own)
             elif isinstance(planet.bearing, PlanetPin):
                 # in the axes of the load, in which the first mesh turns the planet from t to r
                 driven = -speed if duties[planet.meshes[0].mesh].torque1 > 0 else speed

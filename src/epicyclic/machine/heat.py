@@ -109,9 +109,7 @@ def _losses(solution: Solution) -> list[Loss]:
 _Pass = tuple[Mapping[str, float], Solution, Answer]  # Temperatures [K], losses there, and so on.
 
 
-def settle(
-    points: Sequence[tuple[Machine, Operation, ThermalModel]],
-) -> list[Settled | Exception]:
+def settle(points: Sequence[tuple[Machine, Operation, ThermalModel]]) -> list[Settled | Exception]:
     """Temperatures and losses that agree at each operating point, or what is wrong with it.
 
     Each pass is one for all points that still need it. See `_passes` for what is raised.

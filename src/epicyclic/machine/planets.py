@@ -579,6 +579,8 @@ def missing_bearing(
     """The losses of a bearing that is not there, with a note on what rollers may lose (B16)."""
     low, high = ROLLER_FRICTION
     power = force * MISSING_PITCH * diameter * abs(speed)
+    if isinstance(power, Points):
+        raise Alone(len(power))
     most = high * power
     text = (
         f"{key.replace('_', ' ')}: {MAY_LOSE} {format_number(low * power, 2)} to "

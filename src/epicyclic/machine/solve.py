@@ -26,7 +26,7 @@ from epicyclic.arrays import (
     part_of_each,
     taken,
 )
-from epicyclic.errors import ConvergenceError, EpicyclicError
+from epicyclic.errors import ConvergenceError, EpicyclicError, is_interrupt
 from epicyclic.machine.balance import (
     Balance,
     Directions,
@@ -410,8 +410,9 @@ def solve_machines(
             except EpicyclicError:
                 left += _parts(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
                 continue
-            except Exception:
-                pass  # `Alone`, or what single points tell of themselves
+            except Exception as error:  # `Alone`, or what single points tell of themselves
+                if is_interrupt(error):
+                    raise KeyboardInterrupt from error
             else:
                 each = taken(solution, range(len(rows)), final=True)
                 for row, own in zip(rows, each, strict=True):

@@ -110,18 +110,16 @@ def _each_of(
             built[one.thermal is None][number] = one
     for own in built.values():
         for number, settled in zip(own, solve_all(list(own.values())), strict=True):
-            try:
-                if isinstance(settled, Exception):
-                    raise settled
-                found[number] = found_of(cases[number], own[number], settled)
-            except Exception as error:
-                found[number] = error
+            found[number] = settled
+            if not isinstance(settled, Exception):
+                try:
+                    found[number] = found_of(cases[number], own[number], settled)
+                except Exception as error:
+                    found[number] = error
     return [found[number] for number in range(len(cases))]
 
 
-def _losses_and_power(
-    case: Case, built: Built, settled: Settled
-) -> tuple[dict[str, float], float]:
+def _losses_and_power(case: Case, built: Built, settled: Settled) -> tuple[dict[str, float], float]:
     solution = settled.solution
     losses = {name: solution.losses[name].watts for name in built.layout.losses}
     return losses, solution.input_power

@@ -182,7 +182,7 @@ class CasePlan(Plan):
 
     @property
     def together(self) -> bool:
-        """Whether points are solved together: some share all but their operation."""
+        """Whether points are solved together: some share their geometry."""
         return False
 
     @property
@@ -192,7 +192,7 @@ class CasePlan(Plan):
         return size if self.together and size >= FEWEST_TOGETHER else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
-        """Rows of points; those that share all but their operation are solved together."""
+        """Rows of points; those next to each other are solved together."""
         if not self.together:
             return Plan.solve_all(self, indices)
         place = {index: at for at, index in enumerate(self.order())}
@@ -202,8 +202,19 @@ class CasePlan(Plan):
     def _solve_block(self, indices: Sequence[int]) -> list[Row]:
         cases: dict[int, Case] = {}
 
+        last: tuple[Case, Mapping[str, Any]] = self.case, {}
+
         def failing(index: int) -> Row:
-            cases[index] = self.case.updated(self.changes(index))
+            nonlocal last
+            (case, before), changes = last, self.changes(index)
+            if before.keys() != changes.keys():
+                case, before = self.case, {}
+            # from the case before: what only depends on the rest is not checked again
+            moved = {
+                key: it for key, it in changes.items() if key not in before or it != before[key]
+            }
+            cases[index] = case.updated(moved)
+            last = cases[index], changes
             return Row("")
 
         rows = {index: self._row(partial(failing, index)) for index in indices}
@@ -289,8 +300,12 @@ class SweepPlan(CasePlan):
     @property
     def together(self) -> bool:
         """See `CasePlan`."""
-        count = math.prod(len(axis.values) for axis in self.axes if all(map(_operates, axis.keys)))
-        return count > 1 and all(key.startswith(_OPERATION) for key in self.links)
+        alike = [
+            len(axis.values)
+            for axis in self.axes
+            if all(_is_operating(part.key) for part in axis.keys)
+        ]
+        return math.prod(alike) > 1 and all(map(_is_operating, self.links))
 
     def axes_behind(self, key: str) -> list[int]:
         """Numbers of the axes that the linked `key` follows."""
@@ -328,13 +343,6 @@ class SweepPlan(CasePlan):
         return content | ({"links": dict(self.links)} if self.links else {})
 
 
-_OPERATION = "operation."
-
-
-def _operates(part: Any) -> bool:
-    return str(part.key).startswith(_OPERATION)
-
-
 def _is_operating(key: str) -> bool:
     return key.split(".")[0] in _OPERATING_TABLES
 
@@ -354,7 +362,7 @@ class PointList(CasePlan):
     @property
     def together(self) -> bool:
         """See `CasePlan`."""
-        return all(key.startswith(_OPERATION) for point in self.points for key in point)
+        return all(_is_operating(key) for point in self.points for key in point)
 
     def changes(self, index: int) -> dict[str, Any]:
         """The keys that point number `index` changes."""
