@@ -70,7 +70,55 @@ def _cases(name: str, **changes: str) -> list[ep.PlanetaryCase]:
 def test_points_together_are_as_each_alone(
     name: str, changes: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    cases = _cases(name, **changes)
+    _check_together(_cases(name, **changes), monkeypatch)
+
+
+PARTS = {
+    "talbot-2012": {
+        "sun.roughness": (0.31, "um"),
+        "planet.roughness": (0.22, "um"),
+        "models.hurst_exponent": (0.42, ""),
+        "models.running_in_factor": (0.53, ""),
+        "planet_bearing.diametral_clearance": (9.0, "um"),
+        "planet_bearing.crown_drop": (2.1, "um"),
+        "carrier.width": (21.0, "mm"),
+        "surroundings.oil_air_ratio": (0.011, ""),
+        "losses.ring_mesh_sliding.factor": (0.83, ""),
+    },
+    "talbot-2012-pair": {
+        "gear.roughness": (0.27, "um"),
+        "surroundings.pressure": (0.94, "bar"),
+        "lubricant.pressure_viscosity_factor": (0.88, ""),
+    },
+}
+"""What cases have of their own, beside their operation: the least of each number."""
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_cases_with_other_parts_are_solved_together(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cases = [
+        case.updated(
+            {
+                key: (1 + 0.013 * number) * least
+                if not unit
+                else f"{(1 + 0.013 * number) * least} {unit}"
+                for key, (least, unit) in PARTS[name].items()
+            }
+        )
+        for number, case in enumerate(_cases(name))
+    ]
+    _check_together(cases, monkeypatch)
+
+
+def test_cases_with_other_teeth_are_solved_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    cases = _cases("talbot-2012")
+    wider = [case.updated({"planet.face_width": "23 mm"}) for case in cases[::2]]
+    _check_together([*cases[1::2], *wider], monkeypatch)
+
+
+def _check_together(cases: list[ep.PlanetaryCase], monkeypatch: pytest.MonkeyPatch) -> None:
     alone = [ep.solve(case) for case in cases]
     asked = []
     evaluate = gear_set.GearSet.evaluate

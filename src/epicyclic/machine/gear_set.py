@@ -286,14 +286,16 @@ class GearSet:
             meshes |= branch.meshes
             rollers |= branch.rollers
             branches.append(branch)
-        found = {
-            **drags.losses,
-            **{
-                name: _with_choice(loss, self.choices[name])
-                for name, loss in _summed(branches).items()
-            },
-        }
         first = branches[0]
+        losses = first.losses
+        if len(branches) > 1:
+            alike = {name: [branch.losses[name] for branch in branches] for name in losses}
+            losses = {
+                name: own[0]._replace(watts=sum(loss.watts for loss in own), heat=_mean_heat(own))
+                for name, own in alike.items()
+            }
+        chosen = {name: _with_choice(loss, self.choices[name]) for name, loss in losses.items()}
+        found = {**drags.losses, **chosen}
         return GearSetResult(
             losses={name: found[name] for name in self.choices},
             figures=first.figures,
@@ -499,9 +501,16 @@ class GearSet:
         losses: dict[str, Loss] = {}
         flags = Flags()
         for planet, bearing in zip(self.planets, bearings, strict=True):
-            losses |= {
-                name: self._in_bearing(loss, planet) for name, loss in bearing.losses.items()
-            }
+            between = planet.body, self.carrier
+            if self.reference is not None:
+                between = self.reference.between
+            for name, loss in bearing.losses.items():
+                placed = loss._replace(brakes=((*between, 1.0),))
+                if loss.group != LOAD_INDEPENDENT:  # that of the rollers heats planet and pin
+                    placed = placed._replace(heat=tuple((node, 0.5) for node in planet.nodes))
+                    if planet.bearing is not None and self._parts_apart:
+                        placed = placed._replace(follows=(planet.key,))
+                losses[name] = placed
             flags += bearing.flags
         for duty, mesh in zip(duties.values(), meshes, strict=True):
             losses |= self._of_mesh(duty, mesh.losses)
@@ -536,16 +545,6 @@ class GearSet:
             for name, loss in losses.items()
         }
 
-    def _in_bearing(self, loss: Loss, planet: Planet) -> Loss:
-        """A loss of a planet bearing where it acts; that of the rollers heats planet and pin."""
-        between = (planet.body, self.carrier) if self.reference is None else self.reference.between
-        placed = loss._replace(brakes=((*between, 1.0),))
-        if loss.group == LOAD_INDEPENDENT:
-            return placed
-        if planet.bearing is not None and self._parts_apart:
-            placed = placed._replace(follows=(planet.key,))
-        return placed._replace(heat=tuple((node, 0.5) for node in planet.nodes))
-
 
 def _with_choice(loss: Loss, choice: LossChoice) -> Loss:
     """A loss with the user's choice. Theory (P4)."""
@@ -555,19 +554,6 @@ def _with_choice(loss: Loss, choice: LossChoice) -> Loss:
     if choice.factor == 1:
         return loss
     return loss._replace(watts=choice.factor * loss.watts, factor=choice.factor)
-
-
-def _summed(branches: Sequence[_Branch]) -> Mapping[str, Loss]:
-    """The losses of all planets together."""
-    if len(branches) == 1:
-        return branches[0].losses
-    return {
-        name: loss._replace(
-            watts=sum(branch.losses[name].watts for branch in branches),
-            heat=_mean_heat([branch.losses[name] for branch in branches]),
-        )
-        for name, loss in branches[0].losses.items()
-    }
 
 
 def _mean_heat(losses: Sequence[Loss]) -> tuple[tuple[str, float], ...]:

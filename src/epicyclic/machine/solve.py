@@ -393,11 +393,15 @@ def solve_machines(
 ) -> list[tuple[Solution, bool] | Exception]:
     """As `solve_machine` has each of them, or what that raises."""
     found: dict[int, tuple[Solution, bool] | Exception] = {}
-    left: list[tuple[Sequence[int], Evaluations]] = [(range(len(wanted)), Evaluations())]
+    left: list[tuple[Sequence[int], Evaluations]] = []
+    if wanted:
+        left.append((range(len(wanted)), Evaluations()))
     while left:
         rows, evaluations = left.pop()
         known: Sequence[Evaluations | None] = [None] * len(rows)
-        if len(rows) < FEWEST or not _several(wanted[rows[0]]):
+        machine, _, fluids, *_ = wanted[rows[0]]
+        several = fluids is not None and all(it.several for it in machine.elements)
+        if len(rows) < FEWEST or not several:
             if evaluations.before:
                 known = evaluations.single(len(rows))
         else:
@@ -425,12 +429,6 @@ def solve_machines(
             except Exception as error:
                 found[row] = error
     return [found[row] for row in range(len(wanted))]
-
-
-def _several(wanted: Wanted) -> bool:
-    """Whether a solution may share a block."""
-    known = wanted.fluids is not None
-    return known and all(element.several for element in wanted.machine.elements)
 
 
 def _parts(

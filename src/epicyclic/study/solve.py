@@ -73,16 +73,16 @@ def solve_together(
     As `solve` has them but for rounding, whichever cases are solved together.
     """
     found = _each_of(assemble, cases, flow_tables)
-    tested = [
-        number
+    tested = {
+        number: without_torque(case)
         for number, case in enumerate(cases)
         if case.models.load_dependent == "as-tested" and not isinstance(found[number], Exception)
-    ]
-    if tested:
-        unloaded = solve_together([without_torque(cases[it]) for it in tested], flow_tables)
-        for number, other in zip(tested, unloaded, strict=True):
-            failed = isinstance(other, Exception)
-            found[number] = other if failed else replace(found[number], unloaded=other.total)
+    }
+    unloaded = solve_together(list(tested.values()), flow_tables) if tested else []
+    for number, other in zip(tested, unloaded, strict=True):
+        found[number] = (
+            other if isinstance(other, Exception) else replace(found[number], unloaded=other.total)
+        )
     return [it if isinstance(it, Exception) else judged(it) for it in found]
 
 
