@@ -19,7 +19,7 @@ from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
 from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import LOAD_DEPENDENT
-from epicyclic.machine.solve import NO_POWER
+from epicyclic.machine.solve import LOSS_AGREEMENT, NO_POWER
 from epicyclic.result.result import LossTerm, Result
 from epicyclic.schema.read import plain
 from epicyclic.study.bands.inputs import model_form_of, uncertain_values
@@ -178,6 +178,9 @@ SAME_FLOW = 0.005
 """Difference of the number of a flow through pockets below which its scaled figures stay, relative:
 that of 10 K. [1]"""
 
+STILL = 10 * LOSS_AGREEMENT
+"""Change of a loss for a standard deviation of an input, over all losses, that is none. [1]"""
+
 
 @dataclass(frozen=True, slots=True)
 class Nearby:
@@ -200,8 +203,9 @@ class Nearby:
     def active(self) -> tuple[bool, ...]:
         """Which values change any loss."""
         moved = np.abs(self.ends - self.losses).max(axis=(1, 2), initial=0.0)
+        still = STILL * self.losses.sum()
         return tuple(
-            value.is_model_form or change != 0.0
+            value.is_model_form or not change <= still  # not a number where there is no result
             for value, change in zip(self.values, moved, strict=True)
         )
 
