@@ -125,7 +125,7 @@ class FlowFamily:
             if np.isfinite(scaled).all():
                 return from_scaled(scaled, speed, mixture.density)
         if isinstance(speed, Points):
-            raise Alone(len(speed))
+            raise Alone
         return flow_figures(self.flow(speed, mixture, pressure))
 
     def scaled(self, number: float) -> FloatArray:

@@ -190,8 +190,8 @@ def mesh_flows(
     for key, request in wanted.items():
         figures = None
         if not request[0].scales(*request[1:]):
-            if isinstance(request[1], Points):
-                raise Alone(len(request[1]))
+            if isinstance(request[1], Points):  # one solved at a time goes on from those known
+                raise Alone(*[len(request[1])] * (request[0] in tables[key]))
             if request[0] in tables[key]:
                 figures = tables[key][request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
@@ -225,7 +225,7 @@ def _stored_figures(settings: PocketSettings, request: FlowRequest) -> FlowFigur
     if settings.file is None:
         return None
     if isinstance(request[1], Points):
-        raise Alone(len(request[1]))
+        raise Alone
     return stored_table(settings.file, request[0]).figures(*request[1:])
 
 
