@@ -107,6 +107,12 @@ class MeshModels:
     segments: int  # Resolution: mesh positions, segments of a contact line.
     pockets: PocketSettings
 
+    @property
+    def several(self) -> bool:
+        """Whether they take several operating points at once."""
+        models = self.friction, self.rolling
+        return not self.by_loss_factor and all(getattr(it, "several", False) for it in models)
+
 
 @dataclass(frozen=True, slots=True)
 class GearMesh:
@@ -286,10 +292,6 @@ def solve_mesh(
     """
     friction = duty.gears.models.friction if last is None else last.friction
     rolling = duty.gears.models.rolling
-    if isinstance(duty.torque1, Points) and not (
-        friction.several and rolling.several and not duty.gears.models.by_loss_factor
-    ):
-        raise Alone
     loads = None
     if duty.torque1 != 0 and duty.speed1 != 0:
         loads = distribute_load(duty, None if last is None else last.elastic)

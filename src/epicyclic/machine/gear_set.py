@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
-from epicyclic.arrays import Alone, Each, Points, one_by_one
+from epicyclic.arrays import Each, one_by_one
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
 from epicyclic.losses.pocket_tables import KnownFlows
@@ -115,10 +115,8 @@ class Planet:
         contacts = self._contacts(duties)
         centrifugal = self.centrifugal(carrier_speed)
         idle = all(contact.duty.torque1 == 0 for contact in contacts)
-        if not self.tilts or self.bearing is None or isinstance(self.bearing, PlanetPin) or idle:
+        if not self.tilts or not isinstance(self.bearing, PlanetBearing) or idle:
             load = planet_load(contacts, centrifugal)
-        elif isinstance(contacts[0].duty.torque1, Points):
-            raise Alone
         else:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
         return [contact.duty for contact in contacts], load
@@ -250,7 +248,6 @@ class GearSet:
     choices: Mapping[str, LossChoice]
     # None: each mesh carries what the losses leave, and its losses act on its own bodies.
     reference: Reference | None = None
-    several: ClassVar = True  # Whether it is solved for several operating points at once.
 
     def evaluate(self, state: State, last: ElementResult | None = None) -> GearSetResult:
         """Losses, figures and flags in a state; `last`, under nearly these loads, saves work."""
@@ -308,6 +305,12 @@ class GearSet:
             rollers=rollers,
             known_flows=known,
         )
+
+    @property
+    def several(self) -> bool:
+        """Whether it is solved for several operating points at once."""
+        pins = any(isinstance(planet.bearing, PlanetPin) for planet in self.planets)
+        return self._parts_apart and not pins and all(own.models.several for own in self.meshes)
 
     @property
     def terms(self) -> tuple[str, ...]:
@@ -396,8 +399,6 @@ class GearSet:
             return (1.0,)
         bearing = self.planets[0].bearing
         alike = self.sharing.whatever_the_load
-        if isinstance(bearing, Each) and not alike:
-            raise Alone
         duties = () if alike else self.duties(state, torques, 1 / self.count)
         rollers = bearing.bearing if isinstance(bearing, PlanetBearing) else None
         return planet_shares(self.sharing, duties, rollers)

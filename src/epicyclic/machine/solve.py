@@ -400,8 +400,7 @@ def solve_machines(
         rows, evaluations = left.pop()
         known: Sequence[Evaluations | None] = [None] * len(rows)
         machine, _, fluids, *_ = wanted[rows[0]]
-        several = fluids is not None and all(it.several for it in machine.elements)
-        if len(rows) < FEWEST or not several:
+        if len(rows) < FEWEST or fluids is None or not all(it.several for it in machine.elements):
             if evaluations.before:
                 known = evaluations.single(len(rows))
         else:
