@@ -17,7 +17,6 @@ import xarray as xr
 
 import epicyclic as ep
 from epicyclic.cli.main import main
-from epicyclic.study.sweeps import run as plans
 from epicyclic.study.sweeps import runner
 from epicyclic.study.sweeps.run import make_plan
 from epicyclic.study.sweeps.runner import Rows, Runner, share_of
@@ -419,20 +418,10 @@ def test_shards_of_a_comparison_are_that_of_one_run(call, tmp_path, monkeypatch,
     assert Path("again.json").read_bytes() == Path("one.json").read_bytes()
 
 
+@pytest.mark.usefixtures("fails_at_high_speed")
 def test_a_comparison_with_points_that_fail_is_the_same_in_shards(call, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("measured.csv").write_text(MEASURED)
-    solve_together = plans.solve_together
-
-    def fails_at_high_speed(cases, *tables):
-        return [
-            ep.ConvergenceError("the test says no")
-            if case.operation.speed > 600
-            else result  # rad/s
-            for case, result in zip(cases, solve_together(cases, *tables), strict=True)
-        ]
-
-    monkeypatch.setattr(plans, "solve_together", fails_at_high_speed)
     command = ("compare", "talbot-2012-pair", "measured.csv", *NO_POCKETS)
     code, whole, errors = call(*command, "--jobs", "1", "--json", "one.json")
     assert code == 0, errors

@@ -316,20 +316,8 @@ def test_a_fit_that_does_not_converge_says_so(case, tests, monkeypatch):
         ep.compare_measured(case, tests, fit=KEYS)
 
 
-def test_points_that_fail_are_named_and_left_out(case, tests, monkeypatch):
-    from epicyclic.study.sweeps import run as plan
-
-    solve_together = plan.solve_together
-
-    def fails_at_high_speed(cases, *tables):
-        return [
-            ep.ConvergenceError("the test says no")
-            if case.operation.speed > 600
-            else result  # rad/s
-            for case, result in zip(cases, solve_together(cases, *tables), strict=True)
-        ]
-
-    monkeypatch.setattr(plan, "solve_together", fails_at_high_speed)
+@pytest.mark.usefixtures("fails_at_high_speed")
+def test_points_that_fail_are_named_and_left_out(case, tests):
     comparison = ep.compare_measured(case, tests, fit=KEYS, jobs=1)
     assert comparison.errors[0].count == 8
     assert comparison.fit.points == 8

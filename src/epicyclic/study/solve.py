@@ -74,11 +74,11 @@ def solve_together(
     """
     found = _each_of(assemble, cases, flow_tables)
     tested = {
-        number: without_torque(case)
+        number: case
         for number, case in enumerate(cases)
         if case.models.load_dependent == "as-tested" and not isinstance(found[number], Exception)
     }
-    unloaded = solve_together(list(tested.values()), flow_tables) if tested else []
+    unloaded = _each_of(assemble, list(tested.values()), flow_tables, without_torque)
     for number, other in zip(tested, unloaded, strict=True):
         found[number] = (
             other if isinstance(other, Exception) else replace(found[number], unloaded=other.total)
@@ -87,33 +87,38 @@ def solve_together(
 
 
 def losses_and_powers(
-    cases: Sequence[Case], flow_tables: FlowTables
+    cases: Sequence[Case],
+    flow_tables: FlowTables,
+    changed: Callable[[Case], Case] | None = None,  # To what no longer forms its losses as tested.
 ) -> list[tuple[dict[str, float], float] | Exception]:
     """Losses and input power alone of cases whose losses are not formed as tested. [W]"""
-    return _each_of(_losses_and_power, cases, flow_tables)
+    return _each_of(_losses_and_power, cases, flow_tables, changed)
 
 
 def _each_of(
     found_of: Callable[[Case, Built, Settled], Any],
     cases: Sequence[Case],
     flow_tables: FlowTables | None,
+    changed: Callable[[Case], Case] | None = None,
 ) -> list[Any]:
-    """What follows from the solution of each case, or what is wrong with it."""
+    """What follows from the solution of each case, `changed`, or what is wrong with it."""
     found: dict[int, Any] = {}
-    built: dict[bool, dict[int, Built]] = {True: {}, False: {}}
+    built: dict[bool, dict[int, tuple[Case, Built]]] = {True: {}, False: {}}
     for number, case in enumerate(cases):
         try:
-            one = build(case, flow_tables)
+            own = case if changed is None else changed(case)
+            one = build(own, flow_tables)
         except Exception as error:
             found[number] = error
         else:
-            built[one.thermal is None][number] = one
-    for own in built.values():
-        for number, settled in zip(own, solve_all(list(own.values())), strict=True):
+            built[one.thermal is None][number] = own, one
+    for those in built.values():
+        every = solve_all([one for _, one in those.values()])
+        for (number, of), settled in zip(those.items(), every, strict=True):
             found[number] = settled
             if not isinstance(settled, Exception):
                 try:
-                    found[number] = found_of(cases[number], own[number], settled)
+                    found[number] = found_of(*of, settled)
                 except Exception as error:
                     found[number] = error
     return [found[number] for number in range(len(cases))]

@@ -142,18 +142,16 @@ def loss_numbers(
 
     Or what is wrong with a case.
     """
-    if outputs.tested:
-        computed = {"models.load_dependent": "computed"}
-        cases = [case.updated(computed) for case in cases]
+    changed = _computed if outputs.tested else None
     found: list[dict[str, float] | Exception] = [
         it
         if isinstance(it, Exception)
         else {**it[0], INPUT_POWER: it[1], SHAFT_POWER: shaft_power(case)}
-        for case, it in zip(cases, losses_and_powers(cases, flow_tables), strict=True)
+        for case, it in zip(cases, losses_and_powers(cases, flow_tables, changed), strict=True)
     ]
     if not outputs.tested:
         return found
-    unloaded = losses_and_powers([without_torque(case) for case in cases], flow_tables)
+    unloaded = losses_and_powers(cases, flow_tables, without_torque)
     for number, (loaded, other) in enumerate(zip(found, unloaded, strict=True)):
         if isinstance(other, Exception):
             found[number] = other
@@ -173,6 +171,11 @@ def factors_of(values: Sequence[UncertainValue], points: FloatArray) -> dict[str
 
 HALF_WIDTH = math.sqrt(3.0)
 """Half the width of a uniform distribution over its standard deviation. [1]"""
+
+
+def _computed(case: Case) -> Case:
+    return case.updated({"models.load_dependent": "computed"})
+
 
 SAME_FLOW = 0.005
 """Difference of the number of a flow through pockets below which its scaled figures stay, relative:
