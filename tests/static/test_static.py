@@ -54,7 +54,7 @@ def test_solving_and_the_command_of_every_day_load_no_optimiser_table_or_plot_li
     code = (
         "import sys, epicyclic as ep; ep.solve(ep.load_case('talbot-2012'))\n"
         "heavy = {'scipy.optimize', 'matplotlib', 'pandas', 'xarray'}\n"
-        "print(sorted((heavy | {'rich', 'joblib'}) & sys.modules.keys()))\n"
+        "print(sorted((heavy | {'rich', 'loky'}) & sys.modules.keys()))\n"
         "sys.argv = ['epicyclic', 'run', 'talbot-2012']\n"
         "import epicyclic.__main__ as command, contextlib, io\n"
         "with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(SystemExit):\n"

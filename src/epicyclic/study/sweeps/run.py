@@ -319,7 +319,8 @@ class SweepPlan(CasePlan):
     def order(self) -> list[int]:
         """Indices of all cases, those that share geometry next to each other.
 
-        A block goes by torque, then speed: it takes as many passes as its points of least power.
+        A block is of one state and model, then goes by torque, then speed: it takes as many passes
+        as its points of least power.
         """
         outer = {
             number
@@ -327,13 +328,14 @@ class SweepPlan(CasePlan):
             if not _is_operating(key)
             for number in self.axes_behind(key)
         }
-        inner = [
-            number not in outer and all(_is_operating(part.key) for part in axis.keys)
+        depth = [  # names are no numbers of one block
+            (number not in outer and all(_is_operating(part.key) for part in axis.keys))
+            * (2 if axis.unit else 1)
             for number, axis in enumerate(self.axes)
         ]
         powers = [_TORQUE, AXES["speed"]] if self.together else []
         rank = [[*powers, axis.key].index(axis.key) for axis in self.axes]
-        by_cost = sorted(range(len(self.axes)), key=lambda i: (inner[i], rank[i]))
+        by_cost = sorted(range(len(self.axes)), key=lambda i: (depth[i], rank[i]))
         numbers = np.arange(self.size).reshape(self.shape)
         return [int(index) for index in numbers.transpose(by_cost).ravel()]
 
@@ -806,7 +808,7 @@ def sweep(
         Keys to expressions of others, ``{"ring.teeth": "sun.teeth + 2 * planet.teeth"}``. In that
         of a key, the key itself is its value in the case, as is ``case(KEY)`` of any.
     jobs : int, optional
-        Worker processes. Default: one for each core if the work is worth it, else none.
+        Processes that compute. Default: one for each core if the work is worth it, else this one.
     dask : str, optional
         Address of the scheduler of a Dask cluster that takes their place.
     shard : (int, int), optional

@@ -8,18 +8,23 @@ import json
 import os
 import pickle
 import re
+import signal
 import sys
 import threading
 import time
 import zlib
 from abc import ABC, abstractmethod
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from concurrent.futures import Future
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache, partial
 from importlib import metadata
 from itertools import groupby
+from multiprocessing import resource_tracker
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any, BinaryIO, ClassVar, Protocol, Self
 
 import numpy as np
@@ -283,11 +288,15 @@ Progress = Callable[..., None]
 Batch = list[tuple[int, Row]]
 
 BATCHES_PER_WORKER = 4  # Fewer would leave workers idle at the end.
-WORKER_START_SECONDS = 4.0
-"""Work left, in seconds on one core, below which starting worker processes does not pay."""
+WORKER_START_SECONDS = 2.0
+"""Work left, in seconds on one core, below which starting worker processes does not pay: they start
+in one or two, while this process goes on."""
 PARENT_SECONDS = 0.5  # Between two looks of a worker at whether its parent is alive.
+_LIBRARIES = "OMP", "OPENBLAS", "MKL", "BLIS", "NUMBA", "NUMEXPR"
+_ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in _LIBRARIES}  # Of a worker.
+WORKER_IDLE_SECONDS = 300  # After which a worker ends; until then the next study finds it.
 _ABOUT_LOCKS = "ignore:resource_tracker:UserWarning"
-TRIAL_POINTS, TRIAL_SECONDS = 16, 2.0
+TRIAL_POINTS, TRIAL_SECONDS = 8, 2.0
 """Points computed, or time spent on them, before the work left is estimated."""
 
 
@@ -370,7 +379,7 @@ def fingerprint(plan: Plan) -> str:
 class Runner:
     """How the points of a plan are computed: all with the same rows."""
 
-    # Worker processes. Default: one for each core if the work is worth it, else none.
+    # Processes that compute, this among them. Default: one for each core if that pays, else one.
     jobs: int | None = None
     dask: str | None = None  # Address of the scheduler of a Dask cluster that takes their place.
     # Which share of the points, and of how many: (2, 8). Default: all.
@@ -487,16 +496,16 @@ def _run_here(
     plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None
 ) -> Iterator[Batch]:
     """Finished points, in any order: here as long as that pays, then in worker processes."""
-    start, done, first = time.perf_counter(), 0, 0
+    start, done = time.perf_counter(), 0
     blocks = _blocks(plan, indices)
     while blocks:
-        if done and not first:  # the first block also pays for compilation
-            start, first = time.perf_counter(), done
-        workers_pay = jobs is None and _workers_pay(
-            done - first, time.perf_counter() - start, len(indices) - done
-        )
-        if workers_pay or jobs not in (None, 1):
-            yield from _run_in_workers(plan, indices[done:], jobs or -1, journal)
+        spent = time.perf_counter() - start
+        if jobs is None and _workers_pay(done, spent, len(indices) - done):
+            from loky import cpu_count
+
+            jobs = cpu_count()
+        if jobs is not None and jobs > 1:
+            yield from _run_in_workers(plan, indices[done:], jobs, journal)
             return
         yield _solve_batch(plan, blocks[0], journal)
         done += len(blocks.pop(0))
@@ -504,35 +513,65 @@ def _run_here(
 
 def _workers_pay(done: int, seconds: float, left: int) -> bool:
     """Whether to start workers for the points `left`, `done` having taken `seconds`."""
-    if done < 1 or (done < TRIAL_POINTS and seconds < TRIAL_SECONDS):
-        return False
-    return left * seconds / done > WORKER_START_SECONDS
+    tried = done >= TRIAL_POINTS or seconds >= TRIAL_SECONDS
+    return tried and left * seconds / done > WORKER_START_SECONDS
 
 
 def _run_in_workers(
     plan: Plan, indices: list[int], jobs: int, journal: Journal | None
 ) -> Iterator[Batch]:
+    """Finished points, in any order: of this process while others start, then of all `jobs`."""
     from cloudpickle import dumps  # models of friction hold functions
-    from joblib import Parallel, delayed, effective_n_jobs
+    from loky import get_reusable_executor
 
-    batches = _batches(plan, indices, effective_n_jobs(jobs))
-    workers = Parallel(n_jobs=jobs, return_as="generator_unordered", inner_max_num_threads=1)
-    sent, parent = dumps(plan), os.getpid()
-    calls = (delayed(_solve_in_worker)(parent, sent, batch, journal) for batch in batches)
-    with _leftovers_removed_quietly():
-        yield from workers(calls)
+    batches = deque(_batches(plan, indices, jobs))
+    left, finished = len(batches), SimpleQueue[Future[Batch]]()
+    with _apart_from_here():
+        workers = get_reusable_executor(jobs - 1, timeout=WORKER_IDLE_SECONDS, env=_ONE_THREAD)
+        call = partial(workers.submit, _solve_in_worker, os.getpid(), dumps(plan))
+        started = [call((), None) for _ in range(jobs - 1)]
+
+    def go_on(last: Future[Batch]) -> None:
+        if last.exception() is not None:
+            finished.put(last)
+            return
+        with suppress(IndexError):  # none is left
+            future = call(batches.popleft(), journal)
+            future.add_done_callback(finished.put)
+            future.add_done_callback(go_on)
+
+    try:
+        for future in started:
+            future.add_done_callback(go_on)
+        while left:
+            own = None
+            with suppress(IndexError):
+                own = batches.popleft() if finished.empty() else None
+            found = finished.get().result() if own is None else _solve_batch(plan, own, journal)
+            left -= 1
+            yield found
+    finally:
+        batches.clear()
+        if left:
+            workers.shutdown(kill_workers=True)
 
 
 @contextmanager
-def _leftovers_removed_quietly() -> Iterator[None]:
-    """Workers whose parent was killed leave locks; joblib removes them, and need not tell users.
+def _apart_from_here() -> Iterator[None]:
+    """Worker processes that start in it leave interruptions to this one.
 
-    The process that does so takes over the options for warnings.
+    Those whose parent was killed leave locks; loky removes them, and need not tell users. The
+    process that does so takes over the options for warnings.
     """
     sys.warnoptions.append(_ABOUT_LOCKS)
+    if hasattr(signal, "pthread_sigmask"):  # not on Windows
+        resource_tracker.ensure_running()  # when it starts, signals are let through again
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
+        if hasattr(signal, "pthread_sigmask"):
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         sys.warnoptions.remove(_ABOUT_LOCKS)
 
 
@@ -551,12 +590,10 @@ def _received(sent: bytes) -> Plan:
 
 @cache
 def _belong_to(parent: int) -> None:
-    """Make this process, if it is a child of `parent`, one of the program.
+    """Make this process, a child of `parent`, one of the program.
 
     It ends soon after its parent, even in compiled code.
     """
-    if os.getppid() != parent:
-        return  # a thread, or a worker of another backend of joblib
     look_seldom()
 
     def watch() -> None:
