@@ -77,7 +77,7 @@ def test_a_calibration_is_called_so_everywhere(call, measured, tmp_path):
         "-o", str(case), "--plot", str(picture), "--json", str(data),
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert "CALIBRATED: held-out points" in done.stdout
+    assert "CALIBRATED: held-out " in done.stdout
     assert "CALIBRATED values" in done.stdout
     assert "CALIBRATED: surroundings.oil_air_ratio =" in picture.read_text(encoding="utf-8")
 

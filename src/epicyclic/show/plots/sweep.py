@@ -179,7 +179,9 @@ def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
     dims, results = varied(data), shown_results(data)
     part = thinned(_at_first(data, dims)[results])
     points = part.stack(point=dims).dropna("point", subset=["total"])
-    arrays = [points[dim] for dim in dims] + [in_percent(points[name]) for name in results]
+    shares = [in_percent(points[name]) for name in results]
+    # without torque there is no efficiency
+    arrays = [points[dim] for dim in dims] + [it for it in shares if np.isfinite(it).any()]
     columns = [_column(array) for array in arrays]
     places = np.arange(len(arrays), dtype=float)
     heights = np.column_stack([heights for heights, _ in columns])

@@ -12,6 +12,7 @@ import signal
 import sys
 import threading
 import time
+import warnings
 import zlib
 from abc import ABC, abstractmethod
 from collections import deque
@@ -524,6 +525,8 @@ def _run_in_workers(
     from cloudpickle import dumps  # models of friction hold functions
     from loky import get_reusable_executor
 
+    # loky tells when it replaces workers that have grown large, which is of no use to users
+    warnings.filterwarnings("ignore", "A worker (stopped|was restarted) while", UserWarning)
     batches = deque(_batches(plan, indices, jobs))
     left, finished = len(batches), SimpleQueue[Future[Batch]]()
     with _apart_from_here():
