@@ -9,11 +9,12 @@ import re
 from abc import abstractmethod
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import groupby
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -616,8 +617,11 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
     """All variables, units and attributes."""
-    with texts_not_copied():
-        dataset.to_netcdf(path, engine="netcdf4")
+    from xarray.backends import NetCDF4DataStore
+
+    # where dask is, `Dataset.to_netcdf` imports all of its clusters to choose a lock
+    with texts_not_copied(), closing(NetCDF4DataStore.open(path, "w", lock=Lock())) as store:
+        dataset.dump_to_store(store)
 
 
 def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, str]]:
