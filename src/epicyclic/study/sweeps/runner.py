@@ -497,11 +497,13 @@ def _run_here(
     plan: Plan, indices: list[int], jobs: int | None, journal: Journal | None
 ) -> Iterator[Batch]:
     """Finished points, in any order: here as long as that pays, then in worker processes."""
-    start, done = time.perf_counter(), 0
+    start, done, untimed = time.perf_counter(), 0, 0
     blocks = _blocks(plan, indices)
     while blocks:
         spent = time.perf_counter() - start
-        if jobs is None and _workers_pay(done, spent, len(indices) - done):
+        if done and not untimed and spent < TRIAL_SECONDS:  # most of it to load kernels
+            start, spent, untimed = time.perf_counter(), 0.0, done
+        if jobs is None and _workers_pay(done - untimed, spent, len(indices) - done):
             from loky import cpu_count
 
             jobs = cpu_count()
