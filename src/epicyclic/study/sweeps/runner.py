@@ -23,7 +23,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache, partial
 from importlib import metadata
 from itertools import groupby
-from multiprocessing import resource_tracker
+from multiprocessing import current_process, resource_tracker
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, BinaryIO, ClassVar, Protocol, Self
@@ -295,7 +295,7 @@ in one or two, while this process goes on."""
 PARENT_SECONDS = 0.5  # Between two looks of a worker at whether its parent is alive.
 _LIBRARIES = "OMP", "OPENBLAS", "MKL", "BLIS", "NUMBA", "NUMEXPR"
 _ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in _LIBRARIES}  # Of a worker.
-WORKER_IDLE_SECONDS = 300  # After which a worker ends; until then the next study finds it.
+WORKER_IDLE_SECONDS = 30  # After which a worker ends; until then the next study finds it.
 _ABOUT_LOCKS = "ignore:resource_tracker:UserWarning"
 TRIAL_POINTS, TRIAL_SECONDS = 8, 2.0
 """Points computed, or time spent on them, before the work left is estimated."""
@@ -507,7 +507,7 @@ def _run_here(
             from loky import cpu_count
 
             jobs = cpu_count()
-        if jobs is not None and jobs > 1:
+        if jobs is not None and jobs > 1 and not current_process().daemon:  # which has no children
             yield from _run_in_workers(plan, indices[done:], jobs, journal)
             return
         yield _solve_batch(plan, blocks[0], journal)
@@ -527,8 +527,9 @@ def _run_in_workers(
     from cloudpickle import dumps  # models of friction hold functions
     from loky import get_reusable_executor
 
-    # loky tells when it replaces workers that have grown large, which is of no use to users
-    warnings.filterwarnings("ignore", "A worker (stopped|was restarted) while", UserWarning)
+    # that loky replaces workers which have grown large, or adapts their number, is no news
+    told = "A worker (stopped|was restarted) while|Trying to resize"
+    warnings.filterwarnings("ignore", told, UserWarning)
     batches = deque(_batches(plan, indices, jobs))
     left, finished = len(batches), SimpleQueue[Future[Batch]]()
     with _apart_from_here():
