@@ -177,6 +177,19 @@ def test_geometry_is_outermost_also_where_it_follows(case):
     assert speeds == ["1 rpm"] * 4 + ["2 rpm"] * 4
 
 
+def test_points_of_one_state_follow_each_other():
+    vary = {
+        "operation.speed": ["30 rpm", "20 rpm"],
+        "operation.state": ["8", "1", "R"],
+        "operation.torque": ["5 N*m", "7 N*m"],
+    }
+    plan = make_plan(ep.load_case("train-8hp70"), vary)
+    points = [tuple(plan.changes(index)[key] for key in sorted(vary)) for index in plan.order()]
+    states = [state for _, state, _ in points]
+    assert states == ["8"] * 4 + ["1"] * 4 + ["R"] * 4
+    assert [torque for *_, torque in points[:4]] == ["5 N*m", "5 N*m", "7 N*m", "7 N*m"]
+
+
 def test_table_of_points(case, tmp_path):
     file = tmp_path / "points.csv"
     file.write_text(
