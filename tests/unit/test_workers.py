@@ -8,12 +8,12 @@ import time
 from pathlib import Path
 
 import pytest
-from loky.process_executor import TerminatedWorkerError
+from loky.process_executor import ProcessPoolExecutor, TerminatedWorkerError
 
 from epicyclic.study.sweeps.runner import Plan, Row, Runner
 
 
-def meeting(folder, *, deadly=False):
+def meeting(folder, *, deadly=False, pause=0.01):
     """A plan whose points wait until two processes have begun one; the worker may end there."""
     first = os.getpid()
 
@@ -32,6 +32,7 @@ def meeting(folder, *, deadly=False):
             deadline = time.monotonic() + 60
             while len(list(Path(folder).iterdir())) < 2 and time.monotonic() < deadline:
                 time.sleep(0.01)
+            time.sleep(pause)
             if deadly and os.getpid() != first:
                 os._exit(1)
             return Row("converged", numbers={"process": float(os.getpid()), "index": float(index)})
@@ -50,6 +51,20 @@ def test_the_first_process_takes_part(tmp_path):
 def test_a_worker_that_ends_is_told(tmp_path):
     with pytest.raises(TerminatedWorkerError):
         Runner(jobs=2).run(meeting(tmp_path, deadly=True))
+
+
+def test_a_worker_that_cannot_go_on_is_told(tmp_path, monkeypatch):
+    submit = ProcessPoolExecutor.submit
+
+    def once(self, function, *args):
+        if args[-2:-1] != ((),):  # all but the first call, which brings no points
+            raise OSError("cannot allocate memory")
+        return submit(self, function, *args)
+
+    monkeypatch.setattr(ProcessPoolExecutor, "submit", once)
+    (tmp_path / "another").touch()
+    with pytest.raises(OSError, match="cannot allocate memory"):
+        Runner(jobs=2).run(meeting(tmp_path, pause=0.2))
 
 
 def test_a_process_without_children_goes_on_alone(tmp_path, monkeypatch):

@@ -272,7 +272,7 @@ def _end() -> NoReturn:
     last.start()
     with suppress(Exception):
         for worker in _workers():
-            worker.terminate()
+            worker.terminate()  # those of loky have no `kill`
         tell_once()
         atexit._run_exitfuncs()
     os._exit(EXIT_INTERRUPTED)

@@ -293,7 +293,7 @@ WORKER_START_SECONDS = 2.0
 """Work left, in seconds on one core, below which starting worker processes does not pay: they start
 in one or two, while this process goes on."""
 PARENT_SECONDS = 0.5  # Between two looks of a worker at whether its parent is alive.
-_LIBRARIES = "OMP", "OPENBLAS", "MKL", "BLIS", "NUMBA", "NUMEXPR"
+_LIBRARIES = "OMP", "OPENBLAS", "MKL", "BLIS", "VECLIB_MAXIMUM", "NUMBA"
 _ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in _LIBRARIES}  # Of a worker.
 WORKER_IDLE_SECONDS = 30  # After which a worker ends; until then the next study finds it.
 _ABOUT_LOCKS = "ignore:resource_tracker:UserWarning"
@@ -541,10 +541,15 @@ def _run_in_workers(
         if last.exception() is not None:
             finished.put(last)
             return
-        with suppress(IndexError):  # none is left
+        try:
             future = call(batches.popleft(), journal)
-            future.add_done_callback(finished.put)
-            future.add_done_callback(go_on)
+        except IndexError:  # none is left
+            return
+        except Exception as error:  # no process can start: told here, or all would wait for it
+            future = Future[Batch]()
+            future.set_exception(error)
+        future.add_done_callback(finished.put)
+        future.add_done_callback(go_on)
 
     try:
         for future in started:
