@@ -24,6 +24,7 @@ import pytest
 import epicyclic as ep
 from epicyclic.library import uncertainty_table
 from epicyclic.losses.ranges import OUT_OF_RANGE
+from epicyclic.machine.solve import LOSS_AGREEMENT
 from epicyclic.study.operating import key_of
 from frozen.make_frozen import RESULTS, band_of
 from frozen.texts import improved, words
@@ -41,9 +42,16 @@ ROUNDING = {
 }
 """Numbers that may be nothing but rounding, and how large that may be."""
 
+LOSSES = ("_sliding", "_rolling", "_mechanical", "total", "load_dependent", "load_independent")
+"""Ends of the names of losses that follow loads, and of sums, in maps and sweeps."""
+
 BALANCED = 1e-12
 """Rounding of what balances between the members, over the largest of them: speeds, torques, powers.
 Where a member should have none of it, the balance leaves this."""
+
+AGREED = 2 * LOSS_AGREEMENT
+"""Difference of losses, over all of them, that agree with the torques that they lead to, then and
+now: where the passes stop depends on where they begin."""
 
 CHANGED = tomllib.loads(
     Path(__file__).with_name("intended_changes.toml").read_text(encoding="utf-8")
@@ -178,23 +186,49 @@ def differences(
 
     A place reads "planetary-004/result/losses/sun_drag".
     """
-    yield from _differences(frozen, found, name, balance_floors(frozen) | ROUNDING)
+    floors = [agreement_floors(frozen), balance_floors(frozen), ROUNDING]
+    yield from _differences(frozen, found, name, floors)
+
+
+def agreement_floors(frozen: dict[str, Any]) -> dict[str, float]:
+    """What losses may differ by, by pattern."""
+    if "result" in frozen:
+        most = AGREED * frozen["result"]["total"]
+        own = [f"*/numbers/{name}" for name in frozen["result"]["losses"]]
+        sums = ["*/total", "*/load_dependent", "*/load_independent", "*/kinds/*", "*/stages/*"]
+        floors = dict.fromkeys([*own, *sums, "*/losses/*"], most)
+        share = most / (frozen["result"]["input_power"] or math.inf)
+        return floors | {"*/efficiency": share} | member_floors(frozen, share)
+    if "total" in frozen and "dims" in frozen["total"]:
+        largest = {
+            name: float(np.nanmax(values(frozen["total" if name.endswith(LOSSES) else name])))
+            for name in frozen
+            if name.endswith((*LOSSES, "torque_loss"))
+        }
+        return {f"*/{name}/values/*": AGREED * most for name, most in largest.items()}
+    return {}
 
 
 def balance_floors(frozen: dict[str, Any]) -> dict[str, float]:
     """Rounding of what balances between the members, by pattern."""
+    floors = member_floors(frozen, BALANCED)
+    for name, array in frozen.items():
+        if name.endswith("_torque"):  # of a map or a sweep
+            floors[f"*/{name}/values/*"] = BALANCED * float(np.nanmax(np.abs(values(array))))
+    return floors
+
+
+def member_floors(frozen: dict[str, Any], share: float) -> dict[str, float]:
+    """That share of the largest speed, torque and power of all members, by pattern."""
     members = frozen.get("result", {}).get("members", {})
     floors = {}
     for kind in ("speed", "torque", "power"):
         largest = max((abs(member[kind]["value"]) for member in members.values()), default=0.0)
         for name in members:
-            floors[f"*/members/{name}/{kind}/value"] = BALANCED * largest
-            floors[f"*/numbers/{name}_{kind}"] = BALANCED * largest
+            floors[f"*/members/{name}/{kind}/value"] = share * largest
+            floors[f"*/numbers/{name}_{kind}"] = share * largest
         if kind == "torque":  # which of it the sets of a train leave to each other
-            floors["*/stage_torques/*"] = BALANCED * largest
-    for name, array in frozen.items():
-        if name.endswith("_torque"):  # of a map or a sweep
-            floors[f"*/{name}/values/*"] = BALANCED * float(np.nanmax(np.abs(values(array))))
+            floors["*/stage_torques/*"] = share * largest
     return floors
 
 
@@ -204,7 +238,7 @@ def values(array: dict[str, Any]) -> np.ndarray:
 
 
 def _differences(
-    frozen: Any, found: Any, place: str, floors: dict[str, float]
+    frozen: Any, found: Any, place: str, floors: list[dict[str, float]]
 ) -> Iterator[tuple[str, str]]:
     if isinstance(frozen, dict) and isinstance(found, dict):
         for key, item in frozen.items():
@@ -219,7 +253,7 @@ def _differences(
         yield place, f"{found!r} was {frozen!r}"
 
 
-def same(frozen: Any, found: Any, place: str, floors: dict[str, float]) -> bool:
+def same(frozen: Any, found: Any, place: str, floors: list[dict[str, float]]) -> bool:
     """Two values without parts; NaN was frozen as None, and texts may have been improved."""
     if isinstance(frozen, str):
         return bool(improved(frozen) == words(found))
@@ -229,7 +263,8 @@ def same(frozen: Any, found: Any, place: str, floors: dict[str, float]) -> bool:
         return bool(frozen == found)
     if frozen == found:
         return True
-    floor = max((size for key, size in floors.items() if fnmatch(place, key)), default=0.0)
+    fits = (size for own in floors for key, size in own.items() if fnmatch(place, key))
+    floor = max(fits, default=0.0)
     name = place.split("/")[0]
     near = WITHIN.get(name, TOLERANCE)
     more = FIGURES | MORE.get(name, {})

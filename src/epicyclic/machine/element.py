@@ -192,6 +192,9 @@ class FluidFigures:
     )
 
 
+BENT = 0.25
+"""Change of the power with which a loss rises, over the relative change of its load. Where friction
+turns from one regime into another it is more. [1]"""
 LOAD_DEPENDENT = "load-dependent"
 LOAD_INDEPENDENT = "load-independent"
 OIL = "oil"  # The thermal node of the oil around the gears.
@@ -215,13 +218,15 @@ class State:
     torques: Mapping[str, float]
     forces: Mapping[str, BearingLoad]  # On each bearing of a shaft, by the key of its element.
     fluids: Fluids  # Oil and mixture with air. A machine without elements may do without.
-    lossless: bool = False  # True if no loss has been taken from the torques yet.
+    lossless: bool = False  # True if no loss is known yet that was taken from the torques.
     # For each mesh, True if its first gear drives it; where losses turn a small load round, not
     # before they are found.
     drives: Mapping[str, bool] = field(default_factory=dict[str, bool])
     # Results at another temperature, by the key of the element. What it solved then and what hardly
     # depends on the temperature need not be solved again: flows through pockets.
     earlier: Mapping[str, ElementResult] = field(default_factory=dict[str, Any])
+    # Loads of the element; what follows one of them need not be found again, the last serves.
+    serve: frozenset[str] = frozenset()
 
 
 class Loss(NamedTuple):
@@ -243,6 +248,7 @@ class Loss(NamedTuple):
     follows: tuple[str, ...] = ()
     # Share of each of its methods in the watts; empty if it has one. [1]
     shares: tuple[tuple[str, float], ...] = ()
+    bent: float = BENT  # At most, of what it follows. [1]
 
 
 class Note(str):

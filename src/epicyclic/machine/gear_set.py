@@ -27,7 +27,7 @@ from epicyclic.machine.element import (
 from epicyclic.machine.gear_mesh import GearMesh, MeshDuty, MeshFigures, MeshResult, solve_mesh
 from epicyclic.machine.planets import (
     BearingFigures,
-    Carried,
+    BearingResult,
     LoadSharing,
     PinFigures,
     PlanetBearing,
@@ -121,9 +121,15 @@ class Planet:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
         return [contact.duty for contact in contacts], load
 
-    def force(self, duties: Mapping[str, MeshDuty], carrier_speed: float) -> float:
-        """The load on its bearing if it does not tilt. [N]"""
-        return abs(radial_force(self._contacts(duties), self.centrifugal(carrier_speed)))
+    @property
+    def loads(self) -> tuple[str, str]:
+        """Keys of the load on its bearing, along the circle of the pins and outward."""
+        return self.key, f"{self.key}_outward"
+
+    def forces(self, duties: Mapping[str, MeshDuty], carrier_speed: float) -> tuple[float, float]:
+        """The load on its bearing, whose keys are `loads`, if it does not tilt. [N]"""
+        force = radial_force(self._contacts(duties), self.centrifugal(carrier_speed))
+        return force.real, force.imag
 
     def centrifugal(self, carrier_speed: float) -> float:
         """Its centrifugal force. [N]"""
@@ -199,15 +205,17 @@ class GearSetResult(ElementResult):
     shares: tuple[float, ...] = ()
     drags: Drags
     flows: Mapping[tuple[bool, ...], Flows]  # By which gears drive.
-    meshes: Mapping[str, MeshResult]
-    rollers: Mapping[tuple[str, float], Carried]  # By planet and share of the load.
+    # By their key and the number of the share of the load, the largest first.
+    meshes: Mapping[tuple[str, int], MeshResult]
+    bearings: Mapping[tuple[str, int], BearingResult]
     known_flows: KnownFlows  # Through pockets, also those at other temperatures.
 
     @property
     def unread(self) -> GearSetResult:
         """See `ElementResult`; its meshes, too."""
         meshes = {key: mesh.unread for key, mesh in self.meshes.items()}
-        return replace(self, figures={}, flags=(), notes=(), meshes=meshes)
+        bearings = {key: bearing.unread for key, bearing in self.bearings.items()}
+        return replace(self, figures={}, flags=(), notes=(), meshes=meshes, bearings=bearings)
 
     def of_last_pass(self) -> dict[str, Any]:
         """What nothing goes on from: these fields, empty."""
@@ -215,7 +223,7 @@ class GearSetResult(ElementResult):
             "drags": Drags({}, ()),
             "flows": {},
             "meshes": {},
-            "rollers": {},
+            "bearings": {},
             "known_flows": KnownFlows(),
         }
 
@@ -226,8 +234,8 @@ class _Branch(ElementResult):
 
     pointwise = True
 
-    meshes: Mapping[str, MeshResult]
-    rollers: Mapping[tuple[str, float], Carried]
+    meshes: Mapping[tuple[str, int], MeshResult]
+    bearings: Mapping[tuple[str, int], BearingResult]
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,24 +272,25 @@ class GearSet:
             )
         driving = tuple(duty.drives1 for duty in duties)
         if last is None:
-            flows, meshes, rollers = {}, {}, {}
+            flows, meshes, bearings = {}, {}, {}
             earlier = state.earlier.get(self.key)
             known = earlier.known_flows if isinstance(earlier, GearSetResult) else KnownFlows()
         else:
-            flows, meshes, rollers = dict(last.flows), dict(last.meshes), dict(last.rollers)
+            flows, meshes, bearings = dict(last.flows), dict(last.meshes), dict(last.bearings)
             known = last.known_flows
         if driving not in flows:
             none = {duty.gears.key: MeshFlow() for duty in duties}
-            ahead[:] = [partial(self._branch, state, torques, shares[0], 1, none, {}, {})]
+            ahead[:] = [partial(self._branch, state, torques, (0, shares[0]), 1, none, {}, {})]
             flows[driving], known = one_by_one(mesh_flows, duties, state.fluids, known)
             ahead.clear()
         branches = []
-        for share in sorted(set(shares), reverse=True):
+        for place, share in enumerate(sorted(set(shares), reverse=True)):
             branch = self._branch(
-                state, torques, share, shares.count(share), flows[driving], meshes, rollers
-            )
+                state, torques, (place, share), shares.count(share), flows[driving], meshes,
+                bearings,
+            )  # fmt: skip
             meshes |= branch.meshes
-            rollers |= branch.rollers
+            bearings |= branch.bearings
             branches.append(branch)
         first = branches[0]
         losses = first.losses
@@ -302,7 +311,7 @@ class GearSet:
             drags=drags,
             flows=flows,
             meshes=meshes,
-            rollers=rollers,
+            bearings=bearings,
             known_flows=known,
         )
 
@@ -342,9 +351,10 @@ class GearSet:
         duties = {duty.gears.key: duty for duty in self.duties(state, torques, 1 / self.count)}
         speed = state.speeds[self.carrier]
         bearings = {
-            planet.key: self.count * planet.pin_radius * planet.force(duties, speed)
+            key: self.count * planet.pin_radius * force
             for planet in self.planets
             if planet.bearing is not None
+            for key, force in zip(planet.loads, planet.forces(duties, speed), strict=True)
         }
         return torques | bearings
 
@@ -452,15 +462,15 @@ class GearSet:
         self,
         state: State,
         torques: Mapping[str, float],
-        share: float,
+        load_share: tuple[int, float],  # Its number, the largest first.
         planets: int,
         flows: Flows,
-        last_meshes: Mapping[str, MeshResult],
-        last_rollers: Mapping[tuple[str, float], Carried],
+        last_meshes: Mapping[tuple[str, int], MeshResult],
+        last_bearings: Mapping[tuple[str, int], BearingResult],
     ) -> _Branch:
+        place, share = load_share
         duties = {duty.gears.key: duty for duty in self.duties(state, torques, share)}
-        bearings = []
-        rollers: dict[tuple[str, float], Carried] = {}
+        bearings: dict[tuple[str, int], BearingResult] = {}
         notes: list[Callable[[], Iterable[str]]] = []
         carrier = state.speeds[self.carrier]
         for planet in self.planets:
@@ -470,8 +480,11 @@ class GearSet:
                 notes.append(partial(planet.notes, carrier, load))
             speed = state.speeds[planet.body] - carrier
             oil = state.fluids.at(joined_key(self.key, planet.key))
-            last = last_rollers.get((planet.key, share))
-            if planet.bearing is None:
+            before = last_bearings.get((planet.key, place))
+            last = None if before is None else before.loads
+            if before is not None and planet.key in state.serve:
+                bearing = before
+            elif planet.bearing is None:
                 force = load.force / share if share else 0.0
                 reason, diameter = planet.no_bearing, planet.diameter
                 own = reason, force, diameter, speed
@@ -486,22 +499,23 @@ class GearSet:
                     solve_bearing, planet.key, planet.bearing, load, planets, oil, *at
                 )
             notes.append(bearing.notes.__iter__)
-            rollers[planet.key, share] = bearing.loads
-            bearings.append(bearing)
-        meshes = [
-            solve_mesh(
+            bearings[planet.key, place] = bearing
+        meshes = {
+            (key, place): last_meshes[key, place]
+            if key in state.serve
+            else solve_mesh(
                 duty,
                 state.fluids,
-                flows[duty.gears.key],
+                flows[key],
                 planets,
-                state.fluids.at(joined_key(self.key, duty.gears.key)),
-                last_meshes.get(duty.gears.key),
+                state.fluids.at(joined_key(self.key, key)),
+                last_meshes.get((key, place)),
             )
-            for duty in duties.values()
-        ]
+            for key, duty in duties.items()
+        }
         losses: dict[str, Loss] = {}
         flags = Flags()
-        for planet, bearing in zip(self.planets, bearings, strict=True):
+        for planet, bearing in zip(self.planets, bearings.values(), strict=True):
             between = planet.body, self.carrier
             if self.reference is not None:
                 between = self.reference.between
@@ -510,21 +524,21 @@ class GearSet:
                 if loss.group != LOAD_INDEPENDENT:  # that of the rollers heats planet and pin
                     placed = placed._replace(heat=tuple((node, 0.5) for node in planet.nodes))
                     if planet.bearing is not None and self._parts_apart:
-                        placed = placed._replace(follows=(planet.key,))
+                        placed = placed._replace(follows=planet.loads)
                 losses[name] = placed
             flags += bearing.flags
-        for duty, mesh in zip(duties.values(), meshes, strict=True):
+        for duty, mesh in zip(duties.values(), meshes.values(), strict=True):
             losses |= self._of_mesh(duty, mesh.losses)
             flags = mesh.flags + flags
-        parts: list[ElementResult] = [*bearings, *meshes]
+        parts: list[ElementResult] = [*bearings.values(), *meshes.values()]
         figures = {key: partial(it.figures.__getitem__, key) for it in parts for key in it.figures}
         return _Branch(
             losses=losses,
             figures=Figures(figures),
             flags=flags,
-            notes=Sought(*notes, *(mesh.notes.__iter__ for mesh in meshes)),
-            meshes=dict(zip(duties, meshes, strict=True)),
-            rollers=rollers,
+            notes=Sought(*notes, *(mesh.notes.__iter__ for mesh in meshes.values())),
+            meshes=meshes,
+            bearings=bearings,
         )
 
     def _of_mesh(self, duty: MeshDuty, losses: Mapping[str, Loss]) -> dict[str, Loss]:

@@ -548,6 +548,8 @@ class BearingFigures:
     heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
 
 
+BENT_SLICES = 50.0
+"""`BENT` of rollers whose slices leave the range of a formula, or their race, one by one. [1]"""
 Carried = RollerLoads | JournalState | None
 """What the bearing of a planet carried in the last pass."""
 
@@ -646,7 +648,7 @@ def solve_bearing(
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     return BearingResult(
         {
-            f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * watts, *own.method),
+            f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * watts, *own.method, bent=BENT_SLICES),
             f"{key}_viscous": Loss(
                 LOAD_INDEPENDENT, count * viscous_loss, VISCOUS_METHOD, VISCOUS_SOURCE
             ),

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property, partial, reduce
+from operator import and_
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -51,16 +52,12 @@ from epicyclic.machine.machine import Machine, Operation, forces_of
 #
 # Losses and torques agree after some passes, each with a little other loads. A loss over the load
 # that it follows is there so nearly a straight line that most passes need not ask its element
-# again.
+# again, or only for the parts of which that does not hold.
 
 
+Losses = Mapping[str, Loss]
 CAUTION = 2.0  # How much larger the error of predicted losses is taken to be than its estimate. [1]
-STEEPEST = 3.0  # Power above which no loss rises with its load. [1]
-BENT = 0.25
-"""Change of the power with which a loss rises, over the relative change of its load. Where friction
-turns from one regime into another it is more: 1.1e-7 was the most by which losses of 20,000 random
-cases differed that were stated at either end; with 4.0 it is 4e-11, at up to half as many
-evaluations more. [1]"""
+STEEP, STEEPEST = 3.0, 10.0  # Power with which few losses rise with a load, and none. [1]
 NEAR = 3e-5  # Change of a load over which the figures of an answer serve. [1]
 ROUNDING = 1e-14  # Change, relative to the largest load, that is rounding. [1]
 
@@ -78,35 +75,53 @@ class Answer:
         self,
         loads: Mapping[str, float],
         allowed: float,  # Error of all losses together, relative. [1]
-    ) -> ElementResult | None:
-        """What the element would answer; None if that may be off by more than `allowed`.
+    ) -> tuple[Losses, frozenset[str]]:
+        """Losses that the element would answer; the loads by which those that follow them serve.
 
-        Losses only: figures and flags are those of the last answer, to loads no farther off than
-        `NEAR`. Raises `Apart` if that holds for a part of the points that is worth it.
+        If all do, they are off by no more than `allowed` together. Figures and flags are those of
+        the last answer, to loads no farther off than `NEAR`. Raises `Apart` if all serve for a part
+        of the points that is worth it.
         """
-        losses, off = {}, 0.0
+        losses: dict[str, Loss] = {}
         before = self.before or self
-        holds = self.alike(loads, self.result)
+        alike = self.alike(loads, self.result)
         steps: dict[tuple[str, ...], _Step] = {}
+        off: dict[tuple[str, ...], float] = {}
         with np.errstate(over="ignore", invalid="ignore"):  # of errors without bound
             for name, loss in self.result.losses.items():
                 older = before.result.losses[name].watts
                 if loss.follows not in steps:
                     steps[loss.follows] = self._step(loads, loss)
                 step = steps[loss.follows]
-                holds = holds & (step.size <= NEAR)
-                off += step.error(loss.watts, older) * loss.watts
+                error = CAUTION * step.error(loss, older) * loss.watts
+                off[loss.follows] = off.get(loss.follows, 0.0) + error
                 line = loss.watts + step.part * (loss.watts - older)
                 # no prediction makes a loss negative
                 losses[name] = loss._replace(watts=larger(loss.watts * (loss.watts < 0), line))
-        holds = holds & (CAUTION * off <= allowed * sum(loss.watts for loss in losses.values()))
+        most = allowed * sum(loss.watts for loss in losses.values())
+        near = {follows: alike & (step.size <= NEAR) for follows, step in steps.items()}
+        holds = reduce(and_, near.values(), alike & (sum(off.values()) <= most))
         if every(holds):
-            return replace(self.result, losses=losses)
+            return losses, frozenset(loads)
         if isinstance(holds, Points):
             rows = np.asarray(holds)[:, 0]
             if min(rows.sum(), (~rows).sum()) >= FEWEST:
                 raise Apart(rows)
-        return None
+        serve = {it: near[it] & (len(off) * error <= most) for it, error in off.items()}
+        return losses, frozenset(key for it in serve if every(serve[it]) for key in it)
+
+    def then(
+        self, loads: Mapping[str, float], result: ElementResult, serve: frozenset[str]
+    ) -> Answer:
+        """The next answer; what follows the loads that `serve` is still that to the last ones."""
+        own = {key: self.loads[key] for key in serve}
+        if not every(self.alike(loads, result)):
+            return Answer({**loads, **own}, result)
+        old = self.before or self
+        older = {key: old.loads[key] for key in serve}
+        # of what contacts were like before, nobody asks
+        losses = ElementResult(_mixed(self.result.losses, old.result.losses, serve))
+        return Answer({**loads, **own}, result, Answer({**self.loads, **older}, losses))
 
     def alike(self, loads: Mapping[str, float], result: ElementResult) -> Any:
         """Whether loads have the same signs, and losses act at the same places."""
@@ -145,21 +160,30 @@ class _Step:
     size: float  # Size of the step before and of this one, relative to the largest load. [1]
     aside: float  # How far it ends beside the line, relative. [1]
 
-    def error(self, watts: float, older: float) -> float:
-        """Estimate of the error of a loss on the line from `older` to `watts`, relative.
+    def error(self, loss: Loss, older: float) -> float:
+        """Estimate of the error of a loss on the line through its `older` watts, relative.
 
         The loss goes with some power of its load, the slope of which bends the line, and which
         changes a little itself. What changed more than any power would, because it scatters or
         follows something else too, may change by as much again.
         """
+        watts = loss.watts
         change = abs(watts - older) / larger(abs(watts), TINY)
         power = change / larger(self.before, TINY)
-        bend = power * abs(power - 1) / 2 + BENT
-        smooth = bend * self.size * (self.before + self.size) + STEEPEST * self.aside
+        bend = power * abs(power - 1) / 2 + loss.bent
+        smooth = bend * self.size * (self.before + self.size) + STEEP * self.aside
         error = either(power <= STEEPEST, smooth, change + STEEPEST * self.size)
         error = either((watts == 0) & (watts != older), math.inf, error * (watts != older))
-        found: float = either(self.before == 0, STEEPEST * self.size, error)
+        found: float = either(self.before == 0, STEEP * self.size, error)
         return found
+
+
+def _mixed(losses: Losses, others: Losses, serve: frozenset[str]) -> Losses:
+    """Losses, but `others` of those that follow one of the loads that `serve`."""
+    return {
+        name: others[name] if serve.intersection(loss.follows) else loss
+        for name, loss in losses.items()
+    }
 
 
 def _apart(old: list[float], new: list[float]) -> float:
@@ -176,6 +200,7 @@ are small beside powers, so that the error leaves less of the change than a pass
 LOSS_AGREEMENT = 1e-7
 """Error of predicted losses, at most, however little losses move the loads. [1]"""
 NO_POWER = 1e-12  # Power, relative to the largest one, that is rounding. [1]
+LIKELY = 0.9985  # Efficiency of a mesh that the first pass begins with. [1]
 PLAIN_PASSES, SECANTS = 15, 40
 """Passes in which loads follow the losses, and after them passes of a method of secants."""
 SMALL_STEPS = ((0.5, 20), (0.2, 85))
@@ -473,7 +498,8 @@ class Evaluations:
 
 
 def _alike(one: State, two: State) -> bool:
-    return all(np.array_equal(load, two.torques[key]) for key, load in one.torques.items())
+    loads = ((load, two.torques[key]) for key, load in one.torques.items())
+    return one.serve == two.serve and all(np.array_equal(*pair) for pair in loads)
 
 
 class _Known(NamedTuple):
@@ -505,14 +531,13 @@ def _answered(
     if _agrees(known.loads, loads):
         return known
     passed = _apart([known.loads[key] for key in loads], [*loads.values()])
-    predicted = known.answer.predicted(loads, larger(allowed, PREDICTED * passed))
-    if predicted is not None:
-        return _Known(known.answer, predicted, loads, state.drives)
-    result = evaluate(state, known.result)
     last = known.answer
-    kept = ElementResult(last.result.losses)  # of what contacts were like, nobody asks
-    before = Answer(last.loads, kept) if every(last.alike(loads, result)) else None
-    return _Known(Answer(loads, result, before), result, loads, state.drives)
+    predicted, serve = last.predicted(loads, larger(allowed, PREDICTED * passed))
+    if serve >= loads.keys():
+        return _Known(last, replace(last.result, losses=predicted), loads, state.drives)
+    result = evaluate(replace(state, serve=serve), known.result)
+    whole = replace(result, losses=_mixed(result.losses, predicted, serve))
+    return _Known(last.then(loads, result, serve), whole, loads, state.drives)
 
 
 @dataclass(frozen=True, slots=True)
@@ -574,7 +599,16 @@ class _Branch:
         """Torques with the losses that are known so far."""
         if self.known:
             return self._with_losses(self.unlost)[0]
-        return self.unlost if self.earlier is None else self.under(self.unlost, self.earlier.meshes)
+        if self.earlier is not None:
+            return self.under(self.unlost, self.earlier.meshes)
+        whole = {it.key for it in self.machine.elements if getattr(it, "reference", None)}
+        likely = {
+            key: given if key.partition(".")[0] in whole else LIKELY * given
+            for key, given in self.start.efficiencies.items()
+        }
+        found = self.start.statics.balance(self.drives, likely)
+        one, two = (drives_first(it.powers, self.drives) for it in (found, self.unlost))
+        return found if one == two else self.unlost
 
     def under(self, found: Balance, meshes: Mapping[str, float]) -> Balance:
         """`found` with other loads of the meshes."""
