@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, FloatArray, Points, of_points, taken, total
+from epicyclic.arrays import AtOnce, BoolArray, FloatArray, Points, of_points, taken, total
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure, line_load_at_pressure
@@ -196,11 +196,11 @@ class RollerLoads:
     iterations: int
 
     @property
-    def loaded(self) -> BoolArray:
-        """Which slices carry load; of several points, shape (points, n)."""
-        several = isinstance(self.intensity, Points)
-        flat = self.intensity.reshape(len(self.intensity), -1) if several else self.intensity
-        return flat > 0
+    def carried(self) -> FloatArray:
+        """Load of each loaded slice; of several points that of all, shape (points, n). [N/m]"""
+        if isinstance(self.intensity, Points):
+            return self.intensity.reshape(len(self.intensity), -1)
+        return self.intensity[self.intensity > 0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -365,12 +365,7 @@ def mixed_ehl_rolling_loss(
     outside Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
-    several = isinstance(loads.intensity, Points)  # of which all slices are looked at
-    carried: FloatArray = (
-        loads.intensity.reshape(len(loads.intensity), -1)
-        if several
-        else loads.intensity[loads.intensity > 0]
-    )
+    carried = loads.carried
     if carried.size == 0 or speed == 0:
         return BearingLoss(0.0)
     modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
@@ -385,7 +380,7 @@ def mixed_ehl_rolling_loss(
     roughness = math.hypot(bearing.race_roughness, bearing.roller_roughness)
     rough = held_in_range(roughness, _COMPOSITE)
     given = held_pressure, held_speed, viscosity, alpha, held_radius, rough, modulus
-    if several:
+    if isinstance(carried, Points):
         each = taken(given, range(len(carried)))
         density: FloatArray = of_points([needle_rolling_loss_at(*own) for own in each])
     else:
@@ -393,7 +388,7 @@ def mixed_ehl_rolling_loss(
     held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
     beyond = beyond_data(carried, held_load, rolling, held_speed)
     local = bearing.slice_width * density * beyond
-    return BearingLoss(total(local), Flags(partial(_flags, bearing, loads, speed, oil, local)))
+    return BearingLoss(total(local), Flags(AtOnce(_flags, bearing, loads, speed, oil, local)))
 
 
 def _flags(
@@ -449,15 +444,15 @@ def _contacts(
     radii: tuple[float, ...],
 ) -> RaceContacts | None:
     """The loaded slices with races of some equivalent radii; None without load or motion."""
-    intensity = loads.intensity[loads.intensity > 0]
-    if intensity.size == 0 or speed == 0:
+    carried = loads.carried
+    if carried.size == 0 or speed == 0:
         return None
-    load = np.tile(intensity, len(radii))
+    load = np.concatenate([carried] * len(radii), axis=-1)
     rolling = bearing.rolling_speed(speed)
     return RaceContacts(
         line_load=load,
-        radius=np.repeat(radii, intensity.size),
-        rolling_speed=np.full_like(load, rolling),
+        radius=np.repeat(radii, carried.shape[-1]),
+        rolling_speed=rolling * np.ones_like(load),
         sliding_speed=np.zeros_like(load),
         flanks=Flanks(bearing.equivalent_modulus, bearing.race_roughness, bearing.roller_roughness),
         oil=oil,

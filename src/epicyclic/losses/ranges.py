@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
-from epicyclic.arrays import Each, FloatArray, Points
+from epicyclic.arrays import BoolArray, Each, FloatArray, Points
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
@@ -359,8 +359,8 @@ def check_ranges(
 ) -> tuple[ValidityFlag, ...]:
     """Flags for every quantity that leaves its range. Theory (P8)."""
     left = [(item, values[item.name]) for item in ranges if not _holds(item, values[item.name])]
-    flags = tuple(_flag(use, item, value, weight, part) for item, value in left)
-    return tuple(replace(flag, watts=watts, could_be=could_be) for flag in flags)
+    flags = (_flags(use, item, value, weight, part)[0] for item, value in left)
+    return tuple(replace(flag, watts=watts, could_be=could_be) for flag in flags if flag)
 
 
 def check_contacts(
@@ -370,23 +370,16 @@ def check_contacts(
 
     Of the contacts of several points an `Each` of what belongs to each of them.
     """
-    left = _not_within(ranges, contacts)
-    if not isinstance(weight, Points):
-        return tuple(
-            _flag(use, item, values, weight if np.shape(values) == weight.shape else 1.0, part)
-            for item, values in left
-        )
-    loaded, weights, found = np.asarray(contacts.loaded), np.asarray(weight), []
-    for row, places in enumerate(loaded):
-        flags = []
-        for item, values in left:
-            local = np.shape(values)[-1:] == loaded.shape[-1:]
-            whole = np.broadcast_to(values, loaded.shape if local else (len(loaded), 1))
-            own = whole[row, places] if local else float(whole[row, 0])
-            if not _holds(item, own):
-                flags.append(_flag(use, item, own, weights[row, places] if local else 1.0, part))
-        found.append(tuple(flags))
-    return Each(found)
+    several = isinstance(weight, Points)
+    loaded = np.asarray(contacts.loaded) if several else np.ones((1, weight.size), dtype=bool)
+    found: list[list[ValidityFlag]] = [[] for _ in loaded]
+    for item, values in _not_within(ranges, contacts):
+        local = np.shape(values)[-1:] == loaded.shape[-1:]
+        flags = _flags(use, item, values, weight if local else 1.0, part, loaded if local else True)
+        for own, flag in zip(found, len(found) * flags if len(flags) == 1 else flags, strict=True):
+            own += [flag] if flag else []
+    each = map(tuple, found)
+    return Each(each) if several else next(each)
 
 
 def _not_within(
@@ -402,30 +395,33 @@ def _not_within(
     return tuple(left)
 
 
-def _flag(
-    use: ModelUse, item: Range, values: FloatArray | float, weight: FloatArray | float, part: float
-) -> ValidityFlag:
-    """The flag of a quantity that leaves its range."""
-    least, most = float(np.min(values)), float(np.max(values))
-    low, high = item.bounds
-    outside = (values < low) | (values > high)
-    share = 1.0
-    if isinstance(outside, np.ndarray):  # share of the weight of all values
-        weights = np.broadcast_to(np.asarray(weight, dtype=float), outside.shape)
-        total = float(weights.sum())
-        share = min(float(weights[outside].sum()) / total, 1.0) if total > 0 else 1.0
+def _flags(
+    use: ModelUse,
+    item: Range,
+    values: FloatArray | float,  # Of each point, shape (points, n); (n,) or a number of one.
+    weight: FloatArray | float,
+    part: float,
+    held: BoolArray | bool = True,  # Which values there are.
+) -> list[ValidityFlag | None]:
+    """The flag of a quantity at each point; None where it keeps its range."""
+    values, (low, high) = np.atleast_2d(np.asarray(values)), item.bounds
+    outside: BoolArray = ((values < low) | (values > high)) & held
+    values, weights = (np.broadcast_to(it, outside.shape) for it in (values, np.asarray(weight)))
+    whole = np.sum(weights, axis=1, where=held)
+    with np.errstate(invalid="ignore"):
+        share = np.sum(weights, axis=1, where=outside) / whole
+    share = np.where(whole > 0, np.minimum(share, 1.0), 1.0)
     scale, offset = item.unit.scale_and_offset()
-    return ValidityFlag(
-        use,
-        item.label,
-        least * scale + offset,
-        most * scale + offset,
-        item.low,
-        item.high,
-        item.unit.display,
-        part * share,
-        item.source,
-    )
+    least = np.min(values, axis=1, where=held, initial=np.inf) * scale + offset
+    most = np.max(values, axis=1, where=held, initial=-np.inf) * scale + offset
+    made = partial(ValidityFlag, use, item.label)
+    ends = item.low, item.high, item.unit.display
+    left = np.atleast_1d(outside.any(axis=1))
+    rows = zip(left, least.tolist(), most.tolist(), share.tolist(), strict=True)
+    return [
+        made(low, high, *ends, part * beyond, item.source) if outside else None
+        for outside, low, high, beyond in rows
+    ]
 
 
 def _holds(item: Range, values: FloatArray | float) -> bool:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.contact.fitted_models import OilModel, regression_groups, rolling_scale
 from epicyclic.contact.line_contact import CONDITIONS, Flanks, LineContacts
 from epicyclic.gears.mesh import Mesh
@@ -224,6 +224,11 @@ class RaceContacts(LineContacts):
     oil: OilState
     races: tuple[float, ...]  # Equivalent radius at each. [m]
     speed: float  # Rolling speed. [m/s]
+
+    @property
+    def loaded(self) -> BoolArray:
+        """Which of them carry load at each of several points."""
+        return self.line_load > 0
 
 
 def tabulated(
