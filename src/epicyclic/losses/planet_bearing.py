@@ -195,13 +195,6 @@ class RollerLoads:
     displacement: FloatArray
     iterations: int
 
-    @property
-    def carried(self) -> FloatArray:
-        """Load of each loaded slice; of several points that of all, shape (points, n). [N/m]"""
-        if isinstance(self.intensity, Points):
-            return self.intensity.reshape(len(self.intensity), -1)
-        return self.intensity[self.intensity > 0]
-
 
 @dataclass(frozen=True, slots=True)
 class BearingLoss:
@@ -365,7 +358,9 @@ def mixed_ehl_rolling_loss(
     outside Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
-    carried = loads.carried
+    carried: FloatArray = loads.intensity[loads.intensity > 0]
+    if isinstance(loads.intensity, Points):  # of which all slices are looked at
+        carried = loads.intensity.reshape(len(loads.intensity), -1)
     if carried.size == 0 or speed == 0:
         return BearingLoss(0.0)
     modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
@@ -388,14 +383,14 @@ def mixed_ehl_rolling_loss(
     held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
     beyond = beyond_data(carried, held_load, rolling, held_speed)
     local = bearing.slice_width * density * beyond
-    return BearingLoss(total(local), Flags(AtOnce(_flags, bearing, loads, speed, oil, local)))
+    return BearingLoss(total(local), Flags(AtOnce(_flags, bearing, carried, speed, oil, local)))
 
 
 def _flags(
-    bearing: RollerBearing, loads: RollerLoads, speed: float, oil: OilState, local: FloatArray
+    bearing: RollerBearing, carried: FloatArray, speed: float, oil: OilState, local: FloatArray
 ) -> tuple[ValidityFlag, ...]:
     """Flags of `mixed_ehl_rolling_loss`, with its loss at every slice."""
-    contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius,))
+    contacts = _contacts(bearing, carried, speed, oil, (bearing.outer_radius,))
     use = ModelUse("bearing", "mixed-ehl", "planet bearing")
     return check_contacts(use, NEEDLE_RANGES, contacts, local)
 
@@ -415,7 +410,11 @@ def fitted_rolling_loss(
     Theory (O9), (O11). What was simulated is one contact, and a roller has two; the published
     formula is evaluated once for a slice, as its source does.
     """
-    contacts = _contacts(bearing, loads, speed, oil, (bearing.outer_radius, bearing.inner_radius))
+    carried, radii = (
+        loads.intensity[loads.intensity > 0],
+        (bearing.outer_radius, bearing.inner_radius),
+    )
+    contacts = _contacts(bearing, carried, speed, oil, radii)
     if contacts is None:
         return BearingLoss(0.0)
     local = bearing.slice_width * model.loss_density(contacts)
@@ -438,13 +437,12 @@ def fitted_rolling_loss(
 
 def _contacts(
     bearing: RollerBearing,
-    loads: RollerLoads,
+    carried: FloatArray,  # Load of each slice, at each point. [N/m]
     speed: float,
     oil: OilState,
     radii: tuple[float, ...],
 ) -> RaceContacts | None:
     """The loaded slices with races of some equivalent radii; None without load or motion."""
-    carried = loads.carried
     if carried.size == 0 or speed == 0:
         return None
     load = np.concatenate([carried] * len(radii), axis=-1)

@@ -358,9 +358,9 @@ def check_ranges(
     could_be: float = 0.0,  # As of `ValidityFlag`. [W]
 ) -> tuple[ValidityFlag, ...]:
     """Flags for every quantity that leaves its range. Theory (P8)."""
-    left = [(item, values[item.name]) for item in ranges if not _holds(item, values[item.name])]
-    flags = (_flags(use, item, value, weight, part)[0] for item, value in left)
-    return tuple(replace(flag, watts=watts, could_be=could_be) for flag in flags if flag)
+    left = (_flags(use, item, values[item.name], weight, part) for item in ranges)
+    flags = (flag for own in left for flag in own if flag)
+    return tuple(replace(flag, watts=watts, could_be=could_be) for flag in flags)
 
 
 def check_contacts(
@@ -373,26 +373,14 @@ def check_contacts(
     several = isinstance(weight, Points)
     loaded = np.asarray(contacts.loaded) if several else np.ones((1, weight.size), dtype=bool)
     found: list[list[ValidityFlag]] = [[] for _ in loaded]
-    for item, values in _not_within(ranges, contacts):
+    for item in ranges:
+        values = getattr(contacts, item.name) if item.of is None else item.of(contacts)
         local = np.shape(values)[-1:] == loaded.shape[-1:]
         flags = _flags(use, item, values, weight if local else 1.0, part, loaded if local else True)
-        for own, flag in zip(found, len(found) * flags if len(flags) == 1 else flags, strict=True):
+        for own, flag in zip(found, flags * (len(found) if len(flags) == 1 else 1), strict=False):
             own += [flag] if flag else []
     each = map(tuple, found)
     return Each(each) if several else next(each)
-
-
-def _not_within(
-    ranges: Iterable[Range], contacts: object
-) -> tuple[tuple[Range, FloatArray | float], ...]:
-    """The ranges that not all contacts keep, with the quantities."""
-    left = []
-    for item in ranges:
-        found = getattr(contacts, item.name) if item.of is None else item.of(contacts)
-        values = found if isinstance(found, float) else np.asarray(found, dtype=float)
-        if not _holds(item, values):
-            left.append((item, values))
-    return tuple(left)
 
 
 def _flags(
@@ -403,9 +391,14 @@ def _flags(
     part: float,
     held: BoolArray | bool = True,  # Which values there are.
 ) -> list[ValidityFlag | None]:
-    """The flag of a quantity at each point; None where it keeps its range."""
-    values, (low, high) = np.atleast_2d(np.asarray(values)), item.bounds
+    """The flag of a quantity at each point, None where it keeps its range; nothing if all do."""
+    low, high = item.bounds
+    if isinstance(values, float) and low <= values <= high:
+        return []
+    values = np.atleast_2d(np.asarray(values, dtype=float))
     outside: BoolArray = ((values < low) | (values > high)) & held
+    if not outside.any():
+        return []
     values, weights = (np.broadcast_to(it, outside.shape) for it in (values, np.asarray(weight)))
     whole = np.sum(weights, axis=1, where=held)
     with np.errstate(invalid="ignore"):
@@ -422,13 +415,6 @@ def _flags(
         made(low, high, *ends, part * beyond, item.source) if outside else None
         for outside, low, high, beyond in rows
     ]
-
-
-def _holds(item: Range, values: FloatArray | float) -> bool:
-    """True if all values that are numbers lie in the range."""
-    low, high = item.bounds
-    outside = (values < low) | (values > high)
-    return not (outside.any() if isinstance(outside, np.ndarray) else outside)
 
 
 FITTED_QUANTITIES = {

@@ -45,6 +45,7 @@ from epicyclic.machine.planets import (
 from epicyclic.machine.pocket_flow import MeshFlow, mesh_flows
 from epicyclic.units import NEWTON, format_number
 
+OUTWARD = "{}_outward"  # Key of the load that presses a planet outward, beside that along its way.
 WORTH_A_NOTE = 0.1
 """Centrifugal force of an estimated mass over the load on a bearing, from which a note says so: it
 stands square to the force of the teeth, and changes the load by 0.5 %. [1]"""
@@ -121,15 +122,9 @@ class Planet:
             contacts, load = tilt_planet(contacts, self.bearing.bearing, centrifugal)
         return [contact.duty for contact in contacts], load
 
-    @property
-    def loads(self) -> tuple[str, str]:
-        """Keys of the load on its bearing, along the circle of the pins and outward."""
-        return self.key, f"{self.key}_outward"
-
-    def forces(self, duties: Mapping[str, MeshDuty], carrier_speed: float) -> tuple[float, float]:
-        """The load on its bearing, whose keys are `loads`, if it does not tilt. [N]"""
-        force = radial_force(self._contacts(duties), self.centrifugal(carrier_speed))
-        return force.real, force.imag
+    def force(self, duties: Mapping[str, MeshDuty], carrier_speed: float) -> complex:
+        """The load on its bearing if it does not tilt: along the circle of pins + i outward. [N]"""
+        return radial_force(self._contacts(duties), self.centrifugal(carrier_speed))
 
     def centrifugal(self, carrier_speed: float) -> float:
         """Its centrifugal force. [N]"""
@@ -285,10 +280,8 @@ class GearSet:
             ahead.clear()
         branches = []
         for place, share in enumerate(sorted(set(shares), reverse=True)):
-            branch = self._branch(
-                state, torques, (place, share), shares.count(share), flows[driving], meshes,
-                bearings,
-            )  # fmt: skip
+            last_ones = flows[driving], meshes, bearings
+            branch = self._branch(state, torques, (place, share), shares.count(share), *last_ones)
             meshes |= branch.meshes
             bearings |= branch.bearings
             branches.append(branch)
@@ -350,13 +343,12 @@ class GearSet:
             return torques
         duties = {duty.gears.key: duty for duty in self.duties(state, torques, 1 / self.count)}
         speed = state.speeds[self.carrier]
-        bearings = {
-            key: self.count * planet.pin_radius * force
-            for planet in self.planets
-            if planet.bearing is not None
-            for key, force in zip(planet.loads, planet.forces(duties, speed), strict=True)
-        }
-        return torques | bearings
+        loads = dict(torques)
+        for planet in self.planets:
+            if planet.bearing is not None:
+                load = self.count * planet.pin_radius * planet.force(duties, speed)
+                loads |= {planet.key: load.real, OUTWARD.format(planet.key): load.imag}
+        return loads
 
     @property
     def _parts_apart(self) -> bool:
@@ -524,7 +516,7 @@ class GearSet:
                 if loss.group != LOAD_INDEPENDENT:  # that of the rollers heats planet and pin
                     placed = placed._replace(heat=tuple((node, 0.5) for node in planet.nodes))
                     if planet.bearing is not None and self._parts_apart:
-                        placed = placed._replace(follows=planet.loads)
+                        placed = placed._replace(follows=(planet.key, OUTWARD.format(planet.key)))
                 losses[name] = placed
             flags += bearing.flags
         for duty, mesh in zip(duties.values(), meshes.values(), strict=True):
