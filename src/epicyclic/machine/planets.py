@@ -548,7 +548,7 @@ class BearingFigures:
     heat_conductance: float = figure("heat from race to race through the rollers", WATT_PER_KELVIN)
 
 
-BENT_SLICES = 50.0
+BENT_SLICES = 5.0
 """`BENT` of rollers whose slices leave the range of a formula, or their race, one by one. [1]"""
 Carried = RollerLoads | JournalState | None
 """What the bearing of a planet carried in the last pass."""
