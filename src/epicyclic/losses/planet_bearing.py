@@ -410,11 +410,8 @@ def fitted_rolling_loss(
     Theory (O9), (O11). What was simulated is one contact, and a roller has two; the published
     formula is evaluated once for a slice, as its source does.
     """
-    carried, radii = (
-        loads.intensity[loads.intensity > 0],
-        (bearing.outer_radius, bearing.inner_radius),
-    )
-    contacts = _contacts(bearing, carried, speed, oil, radii)
+    radii = bearing.outer_radius, bearing.inner_radius
+    contacts = _contacts(bearing, loads.intensity[loads.intensity > 0], speed, oil, radii)
     if contacts is None:
         return BearingLoss(0.0)
     local = bearing.slice_width * model.loss_density(contacts)
