@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -41,7 +40,6 @@ def one_thread() -> AbstractContextManager[object]:
 
 @cache
 def _blas() -> ThreadpoolController:
-    import_module("scipy.linalg")  # compiled kernels call its library, which must be there first
     return ThreadpoolController().select(user_api="blas")
 
 

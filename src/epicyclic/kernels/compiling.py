@@ -13,11 +13,13 @@ import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar, cast
 
 import numba
 from numba.core import caching, event
+from numba.np import linalg
 
 from epicyclic.cache_folder import is_private, private_folder
 from epicyclic.kernels import ahead, listeners
@@ -261,6 +263,20 @@ class _Listener(event.Listener):
 
 
 event.register("numba:compile", _Listener())
+
+
+def _leave_out_scipy() -> None:
+    """Load numba's sums and products without scipy.linalg, which takes a tenth of a `run`.
+
+    They only ask whether it is there. A kernel that calls it, as none of this package does, loads
+    it all the same.
+    """
+    ask, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+    import_module("numba.np.arraymath")
+    linalg.ensure_blas = ask
+
+
+_leave_out_scipy()
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:

@@ -177,11 +177,8 @@ def _unit(bodies: Sequence[str], body: str) -> FloatArray:
 
 def _null_space(matrix: FloatArray) -> FloatArray:
     """Columns that span what the rows of `matrix` leave open."""
-    from scipy.linalg import null_space
-
-    if not len(matrix):
-        return np.eye(matrix.shape[1])
-    space: FloatArray = null_space(matrix, rcond=SINGULAR)
+    _, sizes, directions = np.linalg.svd(matrix)
+    space: FloatArray = directions[np.count_nonzero(sizes > SINGULAR * sizes.max(initial=0.0)) :].T
     return space
 
 
