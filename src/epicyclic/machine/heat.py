@@ -566,10 +566,9 @@ class NetworkModel:
 
     def _wall(self, fixed: Sequence[Link], heat: Mapping[str, float]) -> float:
         """Temperature of the housing, on which the heat to the air depends. [K]"""
-        from scipy.optimize import brentq
-
         if self.settings.housing is None:
             return math.nan
+        from scipy.optimize import brentq  # takes a third of a second
 
         def off(wall: float) -> float:
             return self._with_wall(fixed, heat, wall).steady(heat)[HOUSING] - wall
