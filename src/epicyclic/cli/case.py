@@ -26,7 +26,7 @@ from epicyclic.cli.common import (
     show,
     tell_given,
 )
-from epicyclic.errors import EXIT_NO_SOLUTION, InputError, Problem, Status
+from epicyclic.errors import EXIT_NO_SOLUTION, Status, one_problem
 from epicyclic.messages import either
 
 if TYPE_CHECKING:
@@ -35,9 +35,6 @@ if TYPE_CHECKING:
     from epicyclic.case.case import Case
     from epicyclic.result.result import Result
     from epicyclic.study.heat import Found
-
-
-# Commands on one case: run, check, friction, mesh.
 
 
 @click.command()
@@ -177,9 +174,6 @@ def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
             draw(mesh_figure(details), beside(plot, key), point_of(loaded))
 
 
-# The command heat: temperatures of all parts, and what leads to one of the oil.
-
-
 AS_GIVEN = "oil_temperature"
 QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
 
@@ -235,7 +229,12 @@ def heat(
             f"Computed with models.temperatures = network instead of {stated.models.temperatures}.",
             err=True,
         )
-    show(lambda: _tables(solved, result, found), lambda: _json(result, found), json_file)
+
+    def as_json() -> str:
+        contents = result.to_dict() | ({} if found is None else {"found": found.to_dict()})
+        return json.dumps(contents, indent=2, allow_nan=False, ensure_ascii=False)
+
+    show(lambda: _tables(solved, result, found), as_json, json_file)
     if plot is not None:
         from epicyclic.show.plots.catalogue import figure_of
         from epicyclic.show.record import record
@@ -244,15 +243,13 @@ def heat(
 
 
 def _check_target(quantity: str, target: str | None) -> None:
-    if (quantity == AS_GIVEN) == (target is None):
-        return
-    if target is None:
+    if quantity != AS_GIVEN and target is None:
         allowed = f"is needed with --solve {quantity}."
-        problem = Problem("--target", "", allowed, 'For example "90 degC".')
-    else:
-        remedy = f"Add --solve {either(QUANTITIES[1:])}."
-        problem = Problem("--target", f'"{target}"', "needs a quantity to solve for.", remedy)
-    raise InputError([problem], "the command")
+        raise one_problem("--target", "", allowed, 'For example "90 degC".', "the command")
+    if quantity == AS_GIVEN and target is not None:
+        given, remedy = f'"{target}"', f"Add --solve {either(QUANTITIES[1:])}."
+        allowed = "needs a quantity to solve for."
+        raise one_problem("--target", given, allowed, remedy, "the command")
 
 
 def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
@@ -263,20 +260,9 @@ def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
     return titled(
         result.title or result.kind,
         *([] if found is None else [found_text(found)]),
-        *(as_on_page(item) for item in heat_items(result.heat)),
-        *(as_on_page(item) for item in heat_path_items(result.heat)),
+        *map(as_on_page, (*heat_items(result.heat), *heat_path_items(result.heat))),
         *remarks(case, result),
     )
-
-
-def _json(result: Result, found: Found | None) -> str:
-    contents = result.to_dict()
-    if found is not None:
-        contents["found"] = found.to_dict()
-    return json.dumps(contents, indent=2, allow_nan=False, ensure_ascii=False)
-
-
-# The command warm-up: temperatures and losses over time.
 
 
 @click.command("warm-up")

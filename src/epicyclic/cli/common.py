@@ -27,7 +27,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from epicyclic.errors import InputError, Problem, printable_lines
+from epicyclic.errors import Problem, one_problem, printable_lines, raise_any
 from epicyclic.files import write_file
 from epicyclic.kernels import listeners
 from epicyclic.messages import one_line
@@ -183,9 +183,7 @@ MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 def check_ending(option: str, path: Path, endings: Sequence[str] = PICTURES) -> None:
     """Raise `InputError` for a file that ends otherwise."""
-    problems = wrong_ending(option, path, endings)
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(wrong_ending(option, path, endings), "the command")
 
 
 def wrong_ending(option: str, path: Path, endings: Sequence[str]) -> list[Problem]:
@@ -236,8 +234,7 @@ def parse_size(text: str) -> tuple[float, float]:
             if low <= min(width, height) and max(width, height) <= high:
                 return width, height
     allowed = f"must be a width and a height of {low} to {high} mm, in mm, cm or in."
-    problem = Problem("--size", f'"{text}"', allowed, 'For example "160x90 mm".')
-    raise InputError([problem], "the command")
+    raise one_problem("--size", f'"{text}"', allowed, 'For example "160x90 mm".', "the command")
 
 
 def draw(figure: Figure, path: Path, caption: str = "") -> None:
@@ -433,19 +430,12 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
     for option in options:
         key, equals, text = option.partition("=")
         if not equals or not key.strip():
-            problems.append(
-                Problem(
-                    "--set",
-                    f'"{option}"',
-                    "must be KEY=VALUE.",
-                    'For example --set "operation.torque=500 N*m".',
-                )
-            )
+            remedy = 'For example --set "operation.torque=500 N*m".'
+            problems.append(Problem("--set", f'"{option}"', "must be KEY=VALUE.", remedy))
         else:
             value = parse_value(text.strip()) if text.strip() else None
             changes |= dict.fromkeys(_alternatives(key.strip()), value)
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
     return changes
 
 
@@ -459,6 +449,6 @@ def _alternatives(key: str) -> list[str]:
     count = math.prod(map(len, choices))
     if count > MOST_KEYS:
         allowed = f"stands for more than {MOST_KEYS} keys."
-        problem = Problem("--set", f'"{one_line(key)}"', allowed, "Give fewer names in braces.")
-        raise InputError([problem], "the command")
+        shown, remedy = f'"{one_line(key)}"', "Give fewer names in braces."
+        raise one_problem("--set", shown, allowed, remedy, "the command")
     return ["".join(chosen) for chosen in product(*choices)]

@@ -25,7 +25,7 @@ from epicyclic.cli.common import (
     table_options,
 )
 from epicyclic.cli.many import Write, compute
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import write_file
 from epicyclic.messages import refused
 from epicyclic.units import NUMBER
@@ -143,7 +143,12 @@ def compare(
 
     rig = Rig(baseline, unloaded, torque_uncertainty)
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
-    _check_output(output, keys)
+    if output is not None:
+        check_ending("-o", output, (".toml",))
+        if not keys:
+            allowed = "holds the calibrated case, but no keys are calibrated."
+            remedy = "Name the keys with --fit."
+            raise one_problem("-o", str(output), allowed, remedy, "the command")
     if runner.shard is not None:
         others = {"--relative": relative, "--hold-out": hold_out, "--journal": journal}
         _check_shard(json_file, {"--fit": fit, **others})
@@ -230,8 +235,7 @@ def _check_shard(json_file: str | None, others: Mapping[str, object]) -> None:
     if json_file in (None, "-"):
         allowed = "must name the file beside which the points of a shard are kept."
         problems.append(Problem("--json", json_file or "", allowed, "For example --json c.json."))
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
 
 
 def _share(text: str) -> float:
@@ -240,17 +244,6 @@ def _share(text: str) -> float:
         return float(NUMBER.parse(text if text.strip()[-1:] == "%" else f"{text} dimensionless"))
     except PydanticCustomError as error:
         raise InputError([refused(error, "--relative", f'"{text}"')], "the command") from None
-
-
-def _check_output(output: Path | None, keys: list[str]) -> None:
-    if output is None:
-        return
-    check_ending("-o", output, (".toml",))
-    if not keys:
-        allowed = "holds the calibrated case, but no keys are calibrated."
-        raise InputError(
-            [Problem("-o", str(output), allowed, "Name the keys with --fit.")], "the command"
-        )
 
 
 def _calibrated_text(comparison: MeasuredComparison) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from epicyclic.cli.common import (
+    check_ending,
     echo,
     journal_option,
     json_option,
@@ -23,7 +24,7 @@ from epicyclic.cli.common import (
     wrong_ending,
 )
 from epicyclic.cli.many import Write, compute
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.files import write_file
 
 if TYPE_CHECKING:
@@ -137,9 +138,7 @@ def duty_writer(
     from epicyclic.files import check_place
     from epicyclic.study.maps.duty import check_same
 
-    problems = wrong_ending("-o", output, (*_OUTPUTS, _JSON))
-    if problems:
-        raise InputError(problems, "the command")
+    check_ending("-o", output, (*_OUTPUTS, _JSON))
     check_place(output)
     path = Path(cycle) if Path(cycle).is_file() else Path(folder, cycle)
     check_same(plan, path)
@@ -200,8 +199,7 @@ def _check_options(
     for name, path, suffixes in (("--map", map_file, (_MAP_SUFFIX,)), ("-o", output, _OUTPUTS)):
         if path is not None:
             problems += wrong_ending(name, path, suffixes)
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
     for path in (map_file, output):
         if path is not None:
             check_place(path)
@@ -222,8 +220,7 @@ def _check_shard(output: Path | None, json_file: str | None, journal: Path | Non
     elif json_file is None and output is None:
         allowed = "must name the file beside which the points of a shard are kept."
         problems.append(Problem("-o", "", allowed, "For example -o duty.nc."))
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
 
 
 def _map(

@@ -39,11 +39,8 @@ from epicyclic.errors import (
 )
 from epicyclic.registry import load, offered
 
-# The command ``epicyclic``: parses, calls the library, prints.
-#
-# Its exit codes are listed in docs/reference/errors.md; ``EPICYCLIC_TRACEBACK=1`` shows where in
+# The exit codes are listed in docs/reference/errors.md; ``EPICYCLIC_TRACEBACK=1`` shows where in
 # the program an error arose.
-
 
 UNDER: Mapping[tuple[str, ...], str] = {
     ("pockets", "table"): "pockets-table",

@@ -1,4 +1,4 @@
-"""A stored map written in another format."""
+"""Commands on many cases, resumed where they were interrupted: sweep, map."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from epicyclic.cli.common import (
     shard_option,
     temperature_option,
 )
-from epicyclic.errors import EXIT_FAILED_POINTS, InputError, Problem
+from epicyclic.errors import EXIT_FAILED_POINTS, Problem, one_problem, raise_any
 
 if TYPE_CHECKING:
     from epicyclic.case.case import Case
@@ -34,18 +34,10 @@ if TYPE_CHECKING:
 
 def refuse_options(options: Mapping[str, object]) -> None:
     """Raise `InputError` for options that say what is computed: a stored map holds it."""
-    problems = [
-        Problem(
-            f"--{name}",
-            "",
-            "selects what is computed, but a stored map already holds its results.",
-            "Leave it out, or give the case in place of the file.",
-        )
-        for name, value in options.items()
-        if value
-    ]
-    if problems:
-        raise InputError(problems, "the command")
+    allowed = "selects what is computed, but a stored map already holds its results."
+    remedy = "Leave it out, or give the case in place of the file."
+    wrong = (Problem(f"--{it}", "", allowed, remedy) for it, value in options.items() if value)
+    raise_any(wrong, "the command")
 
 
 def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None:
@@ -60,14 +52,11 @@ def convert(file: Path, output: Path, name: str | None, *, heated: bool) -> None
         case = map_case(data)
         if case is None:
             allowed = "cannot be given, because the case of the map was not made by this version."
-            problem = Problem("--temperature-state", "", allowed, "Compute the map again.")
-            raise InputError([problem], str(file))
+            remedy = "Compute the map again."
+            raise one_problem("--temperature-state", "", allowed, remedy, str(file))
         data = with_temperature_state(data, case)
     write_map(data, output, name)
     echo(f"Wrote the map of {file} to {output}.")
-
-
-# Commands on many cases, resumed where they were interrupted: sweep, map.
 
 
 Write = Callable[["Rows"], str]  # Writes the rows of a plan, and tells what it wrote.
@@ -287,24 +276,19 @@ def _check_given(values: Mapping[str, str | None]) -> None:
         for name, example in examples.items()
         if values[name] is None
     ]
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
 
 
 def check_values(values: Mapping[str, str | None]) -> None:
     """Raise `InputError` for options that name no values."""
+    allowed = "must be a,b,c or start:stop:count with a unit."
+    remedy = 'For example "0:4000:41 rpm" for the speed.'
     problems = [
-        Problem(
-            f"--{name}",
-            f'"{text}"',
-            "must be a,b,c or start:stop:count with a unit.",
-            'For example "0:4000:41 rpm" for the speed.',
-        )
+        Problem(f"--{name}", f'"{text}"', allowed, remedy)
         for name, text in values.items()
         if text is not None and not text.strip()
     ]
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
 
 
 def parse_axes(case: Case, values: Mapping[str, str | None]) -> dict[str, list[Any]]:

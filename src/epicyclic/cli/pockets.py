@@ -31,9 +31,6 @@ if TYPE_CHECKING:
     from epicyclic.study.sweeps.runner import Rows, Runner
 
 
-# The command pockets.
-
-
 ANIMATION = ".gif"
 
 
@@ -81,9 +78,6 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
             path = beside(animate, key)
             write_file(path, moving)
             echo(f"Wrote {path}.")
-
-
-# The command ``epicyclic pockets-table``.
 
 
 FORMATS = (".nc", ".csv")

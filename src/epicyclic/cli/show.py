@@ -20,14 +20,11 @@ from epicyclic.cli.common import (
     set_option,
     write_page,
 )
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.files import write_file
 
 if TYPE_CHECKING:
     from epicyclic.show.plots.catalogue import Stored
-
-
-# Commands that show or write what is built in: cases, oils, init, schema.
 
 
 @click.command()
@@ -53,7 +50,7 @@ def oils(name: str | None) -> None:
         return
     if name not in library.names("oils"):
         remedy = did_you_mean(name, library.names("oils")) or "See 'epicyclic oils'."
-        raise InputError([Problem("NAME", repr(name), "is not a built-in oil.", remedy)])
+        raise one_problem("NAME", repr(name), "is not a built-in oil.", remedy)
     terminal().print(oil_sheet(name))
 
 
@@ -69,13 +66,13 @@ def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
 
     if like is not None and (minimal or kind is not None):
         given = "--minimal" if minimal else "--kind"
-        problem = Problem("--like", like, f"conflicts with {given}.", "Give one of them.")
-        raise InputError([problem], "the command")
+        allowed = f"conflicts with {given}."
+        raise one_problem("--like", like, allowed, "Give one of them.", "the command")
     allowed, remedy = "already exists.", "Name another file."
     if str(file) in library.names("cases"):  # it would stand in for that from then on
         allowed, remedy = "is a built-in case.", f"Name a file; --like {file} copies the case."
     if file.exists() or str(file) in library.names("cases"):
-        raise InputError([Problem("FILE", str(file), allowed, remedy)], "the command")
+        raise one_problem("FILE", str(file), allowed, remedy, "the command")
     if like is not None:
         text = text_like(like)
     else:
@@ -93,9 +90,6 @@ def schema() -> None:
     from epicyclic.case.case import case_schema
 
     click.echo(json.dumps(case_schema(), indent=2))
-
-
-# Commands that show a stored result or map, or a case solved afresh: report, plot.
 
 
 stored_argument = click.argument("source", metavar="CASE|FILE.nc")
@@ -176,11 +170,7 @@ def _stored(source: str, changes: Sequence[str]) -> Stored:
     if not is_stored(source):
         return record(load_with(source, changes))
     if changes:
-        problem = Problem(
-            "--set",
-            f'"{changes[0]}"',
-            "changes a case and cannot be applied to a stored result.",
-            "Solve the case with it: epicyclic run CASE --set ... --save FILE.nc.",
-        )
-        raise InputError([problem], "the command")
+        allowed = "changes a case and cannot be applied to a stored result."
+        remedy = "Solve the case with it: epicyclic run CASE --set ... --save FILE.nc."
+        raise one_problem("--set", f'"{changes[0]}"', allowed, remedy, "the command")
     return open_result(source)

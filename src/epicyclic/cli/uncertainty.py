@@ -21,7 +21,7 @@ from epicyclic.cli.common import (
     temperature_option,
 )
 from epicyclic.cli.many import check_values, compute, parse_axes
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,7 +89,10 @@ def uncertainty(
             check_place(path)
     check_values(values)
     _check_use(source, cycle, changes, points, values)
-    loaded = _source(source, changes)
+    from epicyclic.show.record import open_map
+
+    is_map = Path(source).suffix == MAP_SUFFIX
+    loaded = open_map(source) if is_map else load_with(source, changes)
     if cycle is not None:
         study = _cycle_study(loaded, cycle, values["temperature"], samples, points, seed, runner)
     else:
@@ -121,18 +124,8 @@ def _check_use(
         wrong.append(("--set", "applies to a case, not to a map."))
     if points is not None and cycle is None:
         wrong.append(("--points", "requires a cycle."))
-    if wrong:
-        remedy = "Add it, or leave this out." if "needs" in wrong[0][1] else "Leave it out."
-        raise InputError([Problem(name, "", text, remedy) for name, text in wrong], "the command")
-
-
-def _source(source: str, changes: tuple[str, ...]) -> Case | xr.Dataset:
-    from epicyclic.show.record import open_map
-
-    if Path(source).suffix == MAP_SUFFIX:
-        return open_map(source)
-    loaded: Case = load_with(source, changes)
-    return loaded
+    remedy = "Add it, or leave this out." if wrong and "needs" in wrong[0][1] else "Leave it out."
+    raise_any((Problem(name, "", text, remedy) for name, text in wrong), "the command")
 
 
 def _study(
