@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -30,15 +30,8 @@ from epicyclic.show.page import (
 )
 from epicyclic.show.power_flow import power_flow
 from epicyclic.show.template import toml_value
-from epicyclic.study.heat import (
-    BeyondRange,
-    Found,
-    beyond_range,
-    hottest,
-    takes_minutes,
-    with_warm_flanks,
-    without_holding,
-)
+from epicyclic.study.heat import BeyondRange, Found, beyond_range, hottest, takes_minutes
+from epicyclic.study.solve import solve
 from epicyclic.study.trains import LOSS_KINDS, loss_sums
 from epicyclic.units import (
     CELSIUS,
@@ -625,16 +618,19 @@ def remarks(case: Case, result: Result) -> Iterator[str]:
             yield NOT_LOOKED_AT
         return
     if result.heat is None and any(mesh.contact is not None for mesh in result.meshes.values()):
-        yield _flank_text(result, _or_reason(with_warm_flanks, case))
+        # at the bulk temperatures that its own meshes give to its gears
+        warm = _or_reason(case.updated({"models.temperatures": "flank"}))
+        yield _flank_text(result, warm)
     beyond = beyond_range(case, result)
     if beyond is not None:
-        yield _beyond_text(beyond, _or_reason(without_holding, case))
+        free = _or_reason(case.updated({"models.oil_beyond_range": "extrapolated"}))
+        yield _beyond_text(beyond, free)
 
 
-def _or_reason(look: Callable[[Case], Result], case: Case) -> Result | str:
-    """A further result of a case, or why there is none."""
+def _or_reason(case: Case) -> Result | str:
+    """The result of a case, or why there is none."""
     try:
-        return look(case)
+        return solve(case)
     except ConvergenceError as error:
         return sentence(str(error), capital=False)
 

@@ -98,11 +98,6 @@ def takes_minutes(result: Result) -> bool:
     return "ehl-direct" in result.models.values()
 
 
-def with_warm_flanks(case: Case) -> Result:
-    """The result of a case at the bulk temperatures that its own meshes give to its gears."""
-    return solve(case.updated({"models.temperatures": "flank"}))
-
-
 @dataclass(frozen=True, slots=True)
 class BeyondRange:
     """Meshes with oil hotter than the range of their formulas, and held at its limit."""
@@ -134,11 +129,6 @@ def beyond_range(case: Case, result: Result) -> BeyondRange | None:
     assert high is not None
     loaded = sum(term.watts for term in result.terms if term.group == LOAD_DEPENDENT)
     return BeyondRange(watts / loaded, low, high)
-
-
-def without_holding(case: Case) -> Result:
-    """The result of a case whose formulas go on beyond their range of oil."""
-    return solve(case.updated({"models.oil_beyond_range": "extrapolated"}))
 
 
 # --- what leads to a temperature ------------------------------------------------------------------
@@ -282,12 +272,9 @@ def _bracket(
         f"{_limit(search, at)} it is at {celsius_text(excess(at) + target, 4)}"
         for at in (0.0, before or number)
     )
-    raise one_problem(
-        f"oil at {celsius_text(target)}",
-        "",
-        f"cannot be reached: {', '.join(ends)}.",
-        "Choose another temperature, or change other heat paths in [thermal].",
-    )
+    wanted, allowed = f"oil at {celsius_text(target)}", f"cannot be reached: {', '.join(ends)}."
+    remedy = "Choose another temperature, or change other heat paths in [thermal]."
+    raise one_problem(wanted, "", allowed, remedy)
 
 
 def _limit(search: _Search, number: float) -> str:

@@ -89,13 +89,8 @@ def mesh_details(case: CaseSource) -> dict[str, xr.Dataset]:
     """
     case = as_case(case)
     if case.operation.torque == 0:
-        raise one_problem(
-            "operation.torque",
-            "0 N*m",
-            "leaves the meshes without load.",
-            "Give a torque other than zero.",
-            case.source,
-        )
+        allowed, remedy = "leaves the meshes without load.", "Give a torque other than zero."
+        raise one_problem("operation.torque", "0 N*m", allowed, remedy, case.source)
     built = build_computed(case)
     notes = {name: tuple(load_notes(own)) for name, own in built.set_cases.items()}
     state = built.loaded_state()

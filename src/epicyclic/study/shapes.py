@@ -152,8 +152,6 @@ def _meshing(
     return outwards - (passed + (HALF if forward else -HALF)) * 2 * math.pi / mate
 
 
-# Shapes of the gears of a case and where they stand, as drawings need them.
-#
 # Each gear is one dataset: the outline of one tooth about the axis of the gear, the tooth pointing
 # along y, and the places at which the gear stands, each with the direction of its first tooth.
 
@@ -294,9 +292,7 @@ def _view(mesh: Mesh) -> xr.Dataset:
             "center_x": variable("gear", np.zeros(2), "x of the centre", MILLIMETRE),
             "center_y": variable("gear", np.array(heights), "y of the centre", MILLIMETRE),
             "direction": variable("gear", np.array(directions), "direction of a tooth", DEGREE),
-            "operating_radius": variable(
-                ("gear",), np.array(radii), "operating radius", MILLIMETRE
-            ),
+            "operating_radius": variable("gear", np.array(radii), "operating radius", MILLIMETRE),
             "path_x": variable("end", path[:, 0], "x of the path of contact", MILLIMETRE),
             "path_y": variable("end", path[:, 1], "y of the path of contact", MILLIMETRE),
             "pressure_angle": variable((), alpha, "operating pressure angle", DEGREE),

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
-from epicyclic.errors import InputError, Problem, first_of, raise_any
+from epicyclic.errors import InputError, Problem, first_of, one_problem, raise_any
 from epicyclic.files import check_archive, read_bytes, refuse
 from epicyclic.messages import one_line, sentence
 from epicyclic.units import CELSIUS, NEWTON_METRE, NUMBER, RPM, SECOND, WATT, Quantity, one_of
@@ -118,16 +118,14 @@ def parse_form(
         wanted, equals, header = (part.strip() for part in option.partition("="))
         if not (wanted and equals and header):
             example = 'For example --column "speed [rpm]=nMot".'
-            problems.append(
-                Problem("--column", f'"{one_line(option)}"', "must be NAME=HEADER.", example)
-            )
+            shown = f'"{one_line(option)}"'
+            problems.append(Problem("--column", shown, "must be NAME=HEADER.", example))
         named[wanted] = header
     lines = re.fullmatch(r"\s*(\d{1,12})\s*-\s*(\d{1,12})\s*", rows or "1-1")
     if lines is None or int(lines[1]) > int(lines[2]):
         allowed = "must be the first and the last line of the file to be read."
-        problems.append(
-            Problem("--rows", f'"{one_line(rows or "")}"', allowed, "Give --rows 2-60.")
-        )
+        shown = f'"{one_line(rows or "")}"'
+        problems.append(Problem("--rows", shown, allowed, "Give --rows 2-60."))
     raise_any(problems, "the command")
     first_last = (int(lines[1]), int(lines[2])) if rows and lines else None
     return TableForm(named, sheet, first_last, decimal)
@@ -359,13 +357,11 @@ def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
                 rows = list(compress(rows, kept))
                 numbers = numbers[kept]
                 _check_widths(zip(numbers.tolist(), rows, strict=True), width, cells.separator)
-            columns = {
-                header: pa.array([row[index[header]] for row in rows], pa.string())
-                for header in chosen
-            }
-            yield Piece(
-                numbers, {header: pc.utf8_trim_whitespace(one) for header, one in columns.items()}
-            )
+            columns = {}
+            for header in chosen:
+                cells_of = pa.array([row[index[header]] for row in rows], pa.string())
+                columns[header] = pc.utf8_trim_whitespace(cells_of)
+            yield Piece(numbers, columns)
 
     def batches(chosen: Sequence[str]) -> Iterator[Piece]:
         try:
@@ -430,9 +426,8 @@ def _head(sample: Sequence[tuple[int, list[str]]], form: TableForm) -> tuple[int
         if named:
             rows, place = [named[-1], *rows], 0
         elif not texts:
-            refuse(
-                "has no line with the column names.", 'Start it with "speed [rpm],torque [N*m]".'
-            )
+            remedy = 'Start it with "speed [rpm],torque [N*m]".'
+            refuse("has no line with the column names.", remedy)
         else:
             place = texts[0]
     line, names = rows[place]
@@ -477,9 +472,8 @@ def headers_of(names: Sequence[str], form: TableForm, units: Sequence[str] = ())
         ]
         if len(places) != 1:
             shown = first_of([f'"{one_line(name)}"' for name in names], 20)
-            allowed = f"must name one of the columns {shown}."
-            problem = Problem("--column", f"{wanted}={one_line(given)}", allowed, "Correct it.")
-            raise InputError([problem])
+            asked, allowed = f"{wanted}={one_line(given)}", f"must name one of the columns {shown}."
+            raise one_problem("--column", asked, allowed, "Correct it.")
         (place,) = places
         match = HEADER.fullmatch(wanted.strip())
         base = match["name"] if match else wanted
@@ -488,7 +482,7 @@ def headers_of(names: Sequence[str], form: TableForm, units: Sequence[str] = ())
         if own and unit != own:
             allowed = f"has the unit [{own}] in the table, not [{unit}]."
             remedy = f'Write --column "{base}={one_line(given)}".'
-            raise InputError([Problem("--column", f"{wanted}={given}", allowed, remedy)])
+            raise one_problem("--column", f"{wanted}={given}", allowed, remedy)
         new = _recognised(base, unit)
         for i, header in enumerate(headers):  # another column of that name is a label now
             if new and HEADER.sub(r"\g<name>", header) == new[0]:
@@ -706,7 +700,7 @@ def _of_parquet(path: Path, name: str, form: TableForm) -> Source:
                     done += batch.num_rows
         except (pa.ArrowException, OSError) as error:
             allowed = f"the file cannot be read: {one_line(str(error), 200)}."
-            raise InputError([Problem("", "", allowed, "Write it again.")], name) from None
+            raise one_problem("", "", allowed, "Write it again.", name) from None
 
     return _within(Source(name, tuple(headers), batches, "row"), form)
 
@@ -744,7 +738,7 @@ def _of_frame(table: Any, form: TableForm) -> Source:
         frame = table if isinstance(table, pd.DataFrame) else pd.DataFrame(table)
     except (TypeError, ValueError) as error:
         allowed = f"is not a table: {one_line(str(error))}."
-        raise InputError([Problem("", "", allowed, "Give a file.")], "the table") from None
+        raise one_problem("", "", allowed, "Give a file.", "the table") from None
     columns = []
     for position in range(frame.shape[1]):
         values = frame.iloc[:, position]
@@ -757,13 +751,9 @@ def _of_frame(table: Any, form: TableForm) -> Source:
     def batches(chosen: Sequence[str]) -> Iterator[Piece]:
         for start in range(0, len(frame), _BATCH_ROWS):
             lines = np.arange(start, min(start + _BATCH_ROWS, len(frame))) + 1
-            yield Piece(
-                lines,
-                {
-                    header: _cells(header, columns[headers.index(header)].slice(start, _BATCH_ROWS))
-                    for header in chosen
-                },
-            )
+            own = {header: columns[headers.index(header)] for header in chosen}
+            cells = {it: _cells(it, column.slice(start, _BATCH_ROWS)) for it, column in own.items()}
+            yield Piece(lines, cells)
 
     return _within(Source("the table", tuple(headers), batches, "row"), form)
 

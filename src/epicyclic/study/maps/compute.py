@@ -288,7 +288,6 @@ def _takes_minutes(case: Case) -> bool:
 # over the magnitude of the speed of that shaft. With it the torque that the shaft passes on is the
 # torque on it less the torque loss times the sign of its speed, driving and coasting.
 
-_OWN_AXES = {**AXES, STATE: STATE_KEY}
 _SHAFT_KEYS = ("operation.input", "operation.output", "operation.fixed", "operation.second_input")
 """Keys that decide which shaft is the reference, and which the output."""
 _SUMS = (
@@ -403,8 +402,14 @@ def map_plan(
 ) -> MapPlan:
     """The points of a map. Parameters as for `loss_map`."""
     further = dict(vary or {})
-    problems = [_own_option(key) for key in further if key in _OWN_AXES.values()]
-    problems += [_shaft_key(key) for key in further if key in _SHAFT_KEYS]
+    problems = []
+    for key in (it for it in further if it in (*AXES.values(), STATE_KEY)):
+        option = "states" if key == STATE_KEY else axis_name(key)
+        remedy = f"Give its values there, as --{option}."
+        problems.append(Problem(key, "", f"is varied by {option}.", remedy))
+    allowed = "defines the shafts and cannot vary within a map."
+    remedy = "Compute one map for each value."
+    problems += [Problem(key, "", allowed, remedy) for key in further if key in _SHAFT_KEYS]
     chosen, found = _states(case, states)
     problems += found
     if temperature is not None and not case.computed:
@@ -442,17 +447,6 @@ def stored_plan(data: xr.Dataset) -> MapPlan:
     return map_plan(case, speed or (), torque or (), temperature, further, states)
 
 
-def _own_option(key: str) -> Problem:
-    (name,) = (name for name, own in _OWN_AXES.items() if own == key)
-    option = "states" if name == STATE else name
-    return Problem(key, "", f"is varied by {option}.", f"Give its values there, as --{option}.")
-
-
-def _shaft_key(key: str) -> Problem:
-    allowed = "defines the shafts and cannot vary within a map."
-    return Problem(key, "", allowed, "Compute one map for each value.")
-
-
 def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[Problem]]:
     """The states of a map, and what is wrong with those that were chosen."""
     known = list(case.states)
@@ -466,16 +460,10 @@ def _states(case: Case, chosen: Iterable[Any] | None) -> tuple[list[str], list[P
         able = [name for name in known if name not in left_out]
         return able, [] if able else [_unable(*item) for item in left_out.items()]
     names = [str(name) for name in ([chosen] if isinstance(chosen, str) else chosen)]
-    problems = [
-        Problem(
-            "states",
-            written(name),
-            "is not a state of the train.",
-            did_you_mean(name, known) or f"Choose one of {', '.join(known)}.",
-        )
-        for name in dict.fromkeys(names)
-        if name not in known
-    ]
+    problems = []
+    for name in (it for it in dict.fromkeys(names) if it not in known):
+        remedy = did_you_mean(name, known) or f"Choose one of {', '.join(known)}."
+        problems.append(Problem("states", written(name), "is not a state of the train.", remedy))
     left_out = states_left_out(case, [name for name in names if name in known])
     problems += [_unable(*item) for item in left_out.items()]
     return names, problems
@@ -647,9 +635,8 @@ def with_temperature_state(data: xr.Dataset, case: CaseSource) -> xr.Dataset:
     check_axis(data.sizes.get("temperature", 0))
     if map_inputs(data).get("models", {}).get("temperatures") == "network":
         allowed = "must be inlet, because the map has to give the losses at the oil temperature."
-        raise one_problem(
-            "models.temperatures", '"network"', allowed, "Compute the map again.", "the map"
-        )
+        key, remedy = "models.temperatures", "Compute the map again."
+        raise one_problem(key, '"network"', allowed, remedy, "the map")
     return data.assign_attrs(lumped(as_case(case)))
 
 

@@ -29,8 +29,6 @@ from epicyclic.study.table_file import (
 from epicyclic.study.table_file import Piece as TablePiece
 from epicyclic.units import SECOND, Quantity
 
-# Duty cycles: what the columns of their tables are, and their points in pieces.
-#
 # A cycle is a time series (a column of time) or a histogram (a column of durations or shares). It
 # is read once to check it, which finds every problem, and once more for each use; it is never in
 # memory as a whole.

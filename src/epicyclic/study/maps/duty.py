@@ -47,8 +47,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# Energy that a duty cycle puts in, takes out and loses, by interpolation in a loss map.
-#
 # Linear interpolation is a weighted sum of the values at the nodes of the map. The weights of all
 # points are added up first, each times the angle turned through; multiplied by the torque losses at
 # the nodes they give the energy of every component at once.
@@ -169,9 +167,8 @@ def parse_temperatures(cycle: Cycle, temperature: Iterable[Any] | None) -> tuple
         allowed = "is also a column of the cycle."
         problems.append(Problem("temperature", "", allowed, "Keep one of them."))
     if not texts or len(set(values)) < len(values):
-        problems.append(
-            Problem("temperature", "", "must give each value once.", "Give different values.")
-        )
+        allowed = "must give each value once."
+        problems.append(Problem("temperature", "", allowed, "Give different values."))
     raise_any(problems, "the command")
     return tuple(values)
 
@@ -314,23 +311,14 @@ def check_states(cycle: Cycle, known: tuple[str, ...]) -> None:
     text = ", ".join(known)
     if not cycle.states:
         allowed = f"is not among the columns, but the map has several: {text}."
-        raise one_problem(
-            STATE,
-            "",
-            allowed,
-            f"Name a column {STATE}, or compute a map of one state.",
-            cycle.source.name,
-        )
-    problems = [
-        Problem(
-            STATE,
-            written(name),
-            f"must be one of {text}.",
-            did_you_mean(name, known) or "Correct these rows, or include this state in the map.",
-        )
-        for name in cycle.states
-        if name not in known
-    ]
+        remedy = f"Name a column {STATE}, or compute a map of one state."
+        raise one_problem(STATE, "", allowed, remedy, cycle.source.name)
+    other = "Correct these rows, or include this state in the map."
+    problems = (
+        Problem(STATE, written(it), f"must be one of {text}.", did_you_mean(it, known) or other)
+        for it in cycle.states
+        if it not in known
+    )
     raise_any(problems, cycle.source.name)
 
 
@@ -389,7 +377,8 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
     ranges = dict(cycle.ranges)
     if celsius is not None:
         ranges["temperature"] = (celsius, celsius)
-    share = totals.outside / totals.duration.sum()
+    share = percent(totals.outside / totals.duration.sum())
+    remedy = f"Compute a larger map, or use --clamp; {share} of the duration is outside."
     problems = []
     units = (RPM, NEWTON_METRE, CELSIUS)
     for name, axis, unit in zip(lookup.names, lookup.axes, units, strict=False):
@@ -399,15 +388,7 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
         first, last = (format_number(float(value)) for value in (axis[0], axis[-1]))
         if ranges[name][0] < axis[0] or ranges[name][1] > axis[-1]:
             allowed = f"lies outside the map, which covers {first} to {last} {unit.display}."
-            problems.append(
-                Problem(
-                    name,
-                    f"{low} to {high} {unit.display}",
-                    allowed,
-                    f"Compute a larger map, or use --clamp; {percent(share)} of the duration is "
-                    "outside.",
-                )
-            )
+            problems.append(Problem(name, f"{low} to {high} {unit.display}", allowed, remedy))
     return InputError(problems, "the cycle")
 
 

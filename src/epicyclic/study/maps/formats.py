@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.registry import load, offered
 from epicyclic.study.maps import tables
@@ -75,7 +75,9 @@ def write_map(data: xr.Dataset, path: str | Path, format: str | None = None) -> 
     chosen = check_map_output(target, format, axes, data.attrs["held_shaft"])
     if chosen.axes is not None:
         tables.check_gaps(data)
-    kept = data if chosen is NETCDF else tables.bare_map(data)
+    # how well a map is known stands beside it, over further dimensions
+    beside = [name for name in data.dims if name not in axes]
+    kept = data if chosen is NETCDF else data.drop_dims(beside)
     with ExitStack() as stack:
         for state, file in files_of_map(target, chosen, axes).items():
             part = kept.sel({STATE: [state]}) if state else kept
@@ -108,11 +110,17 @@ def check_map_output(path: Path, format: str | None, axes: Coordinates, held: st
         problems.append(Problem("states", "", allowed, "Choose them one by one."))
     if chosen.axes is not None:
         several = (*chosen.axes, STATE) if chosen.each_state else chosen.axes
-        problems = _several(axes, several) + problems
+        counts = {name: len(it) for name, it in axes.items() if name not in several}
+        remedy = "Write one file for each."
+        many = [
+            Problem(name, "", f"has {count} values, but the format holds one.", remedy)
+            for name, count in counts.items()
+            if count > 1
+        ]
+        problems = [*many, *problems]
         if not held:
-            problems.append(
-                tables.driven_problem("the format covers gears with one input and one output")
-            )
+            why = "the format covers gears with one input and one output"
+            problems.append(tables.driven_problem(why))
     raise_any(problems, f"the map for {chosen.about}")
     return chosen
 
@@ -121,31 +129,10 @@ def _choose(path: Path, format: str | None) -> Format:
     if format is not None:
         if format in formats():
             return formats()[format]
-        problem = Problem(
-            "--format", f'"{format}"', f"must be one of {', '.join(formats())}.", "Choose one."
-        )
-        raise InputError([problem], "the command")
+        allowed = f"must be one of {', '.join(formats())}."
+        raise one_problem("--format", f'"{format}"', allowed, "Choose one.", "the command")
     by_suffix = {item.suffix: item for item in formats().values() if item.suffix}
     if path.suffix in by_suffix:
         return by_suffix[path.suffix]
-    problem = Problem(
-        "-o",
-        str(path),
-        f"must end in {', '.join(by_suffix)}, or --format must be given.",
-        "Choose one of these formats.",
-    )
-    raise InputError([problem], "the command")
-
-
-def _several(axes: Coordinates, allowed: tuple[str, ...]) -> list[Problem]:
-    """Axes of which the format can hold one value only."""
-    return [
-        Problem(
-            name,
-            "",
-            f"has {len(values)} values, but the format holds one.",
-            "Write one file for each.",
-        )
-        for name, values in axes.items()
-        if name not in allowed and len(values) > 1
-    ]
+    allowed = f"must end in {', '.join(by_suffix)}, or --format must be given."
+    raise one_problem("-o", str(path), allowed, "Choose one of these formats.", "the command")

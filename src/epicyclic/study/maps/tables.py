@@ -41,7 +41,6 @@ _STATED = (
 _LONGEST_STATEMENT = 1000
 _NEEDED = ("title", "reference_shaft", "output_shaft", "held_shaft", "case")
 """Attributes without which a dataset is no map."""
-_OPERATING = {name: part.quantity for name, part in OPERATING.items()}
 _MAKE_AGAIN = "Give a map from 'epicyclic map' or loss_map."
 
 
@@ -111,13 +110,13 @@ def check_map(data: xr.Dataset, source: str = "the map") -> None:
 
 def _axis_problems(data: xr.Dataset) -> Iterator[Problem]:
     """Axes that cannot be looked up: of another unit, not finite, not rising."""
-    for name, quantity in _OPERATING.items():
+    for name, part in OPERATING.items():
         if name not in data.coords:
             continue
         axis = data[name]
         unit = axis.attrs.get("units")
-        if unit not in (None, quantity.display):  # arithmetic drops it; files must have it
-            allowed = f"must be in {quantity.display}."
+        if unit not in (None, part.unit):  # arithmetic drops it; files must have it
+            allowed = f"must be in {part.unit}."
             yield Problem(name, one_line(str(unit)), allowed, _MAKE_AGAIN)
         if axis.dtype.kind not in "fiu" or axis.ndim != 1 or not axis.size:
             yield Problem(name, "", "must be numbers along its own axis.", _MAKE_AGAIN)
@@ -142,12 +141,6 @@ def _value_problems(data: xr.Dataset) -> Iterator[Problem]:
             yield Problem(str(name), "", "must be numbers over all axes.", _MAKE_AGAIN)
         elif np.isinf(array.values).any():
             yield Problem(str(name), "", "must be finite.", _MAKE_AGAIN)
-
-
-def bare_map(data: xr.Dataset) -> xr.Dataset:
-    """A map without what stands beside it, over further dimensions: how well it is known."""
-    beside = [name for name in data.dims if name not in data["torque_loss"].dims]
-    return data.drop_dims(beside)
 
 
 def check_gaps(data: xr.Dataset) -> None:
@@ -316,20 +309,15 @@ def _nearest_moving(speed: FloatArray) -> IntArray:
 
 
 def _check_usable(data: xr.Dataset) -> None:
-    problems = [
-        Problem(
-            str(name),
-            "",
-            f"has {data.sizes[name]} values, but only one can be used.",
-            f"Select one, as with .isel({name}=[0]).",
-        )
-        for name in data["torque_loss"].dims
-        if name not in (*AXES, STATE) and data.sizes[name] > 1
-    ]
+    problems = []
+    for name in data["torque_loss"].dims:
+        if name not in (*AXES, STATE) and data.sizes[name] > 1:
+            allowed = f"has {data.sizes[name]} values, but only one can be used."
+            remedy = f"Select one, as with .isel({name}=[0])."
+            problems.append(Problem(str(name), "", allowed, remedy))
     if not data.attrs["held_shaft"]:
         problems.append(driven_problem("only one speed and one torque can be looked up"))
     if not data["speed"].values.any():
-        problems.append(
-            Problem("speed", "", "has only the value zero.", "Compute a map with other speeds.")
-        )
+        remedy = "Compute a map with other speeds."
+        problems.append(Problem("speed", "", "has only the value zero.", remedy))
     raise_any(problems, "the map")

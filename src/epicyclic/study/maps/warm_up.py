@@ -90,15 +90,13 @@ def heat_samples(
     samples: list[list[HeatSample]] = [[] for _ in knots]
     last: dict[int, Solution] = {}  # by the number of the machine, at the knot before
     for row, knot in zip(samples, knots, strict=True):
-        for number, built in enumerate(
-            machines
-        ):  # next to each other if they differ in torque only
+        # next to each other if they differ in torque only
+        for number, built in enumerate(machines):
             model = built.thermal
             assert isinstance(model, NetworkModel)
             even = dict.fromkeys(model.nodes, knot)
             fluids = model.fluids(even)
-            earlier = last.get(number)
-            wanted = Wanted(built.machine, built.operation, fluids, earlier=earlier)
+            wanted = Wanted(built.machine, built.operation, fluids, earlier=last.get(number))
             solution, _ = solve_machine(wanted)
             last[number] = solution
             networks = [model.network(value, solution) for value in _between([knot])]
@@ -154,9 +152,9 @@ class HeatTables:
         self.terms = tuple(dict.fromkeys(source.term for source in self.sources))
         heat = [[[one.heat.get(it, 0.0) for it in self.sources] for one in row] for row in samples]
         conductances = [
-            [[_conductance(one.links[step], key) for key in links] for one in row]
+            [[it[key].conductance if key in it else 0.0 for key in links] for it in paths]
             for row in samples
-            for step in range(WAYS)
+            for paths in zip(*(one.links for one in row), strict=True)
         ]
         self._between = _between(knots)
         self._heat = _coefficients(self.knots, heat)
@@ -195,10 +193,6 @@ class HeatTables:
             for node in nodes:
                 found[row, place[node]] += 1 / len(nodes)
         return found
-
-
-def _conductance(links: Mapping[str, Link], key: str) -> float:
-    return links[key].conductance if key in links else 0.0
 
 
 def _coefficients(knots: FloatArray, values: Sequence[Sequence[Sequence[float]]]) -> FloatArray:
@@ -356,9 +350,7 @@ class _Step:
     # With which the losses, and the conductances, at the points of the grid add up to their means.
     # [1]
     heating: FloatArray
-    coasting: (
-        FloatArray  # The part of `heating` for which power enters at the output, or nowhere. [1]
-    )
+    coasting: FloatArray  # Of `heating` where power enters at the output, or nowhere. [1]
     flowing: FloatArray
     # Mean power that enters and leaves at the reference shaft; NaN if two are driven. [W]
     entering: float
@@ -617,9 +609,8 @@ def _to_dataset(
 def _times_reached(course: Course, ends: FloatArray) -> FloatArray:
     """When each node has come `REACHED` of the way from its start to the end; NaN if never. [s]"""
     start = course.temperatures[:, 0]
-    way = (course.temperatures - start[:, None]) / np.where(ends == start, np.nan, ends - start)[
-        :, None
-    ]
+    whole = np.where(ends == start, np.nan, ends - start)
+    way = (course.temperatures - start[:, None]) / whole[:, None]
     first = [np.argmax(row >= REACHED) if (row >= REACHED).any() else 0 for row in way]
     found = [
         np.interp(REACHED, row[at - 1 : at + 1], course.times[at - 1 : at + 1]) if at else math.nan

@@ -196,12 +196,6 @@ def _tested_problems(case: Case, table: Measurements, load_dependent: str) -> It
         yield Problem(_OUTLET, "", allowed, "Give thermal.oil_flow instead.")
 
 
-# Measured losses beside computed ones, with or without a fit of uncertain inputs.
-#
-# A fit never passes for a prediction: what it touched is named ``calibrated`` everywhere, and its
-# errors are given apart for the points it used and for those held out.
-
-
 def compare_measured(
     case: CaseSource,
     measured: str | Path | pd.DataFrame,

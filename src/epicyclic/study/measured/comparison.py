@@ -215,8 +215,6 @@ def _errors(
     )
 
 
-# What a comparison of measured with computed losses comes to: errors, notes, tables.
-#
 # A fit never passes for a prediction: what it touched is named ``calibrated`` everywhere, and its
 # errors are given apart for the points it used and for those held out.
 

@@ -128,8 +128,6 @@ def _is_inside(parameters: Sequence[Parameter], scaled: FloatArray) -> bool:
     )
 
 
-# Fit of uncertain inputs to measured losses: weighted least squares, bounded by the schema.
-#
 # `scipy.optimize.least_squares` with its trust-region-reflective method, which keeps to bounds.
 # Covariances are those of the linearised model at the solution, from its derivatives there;
 # intervals of few parameters follow from profiles of the likelihood.

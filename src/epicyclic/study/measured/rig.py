@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, FloatArray
-from epicyclic.errors import InputError, Problem, first_of, one_problem
+from epicyclic.arrays import BoolArray
+from epicyclic.errors import first_of, one_problem
 from epicyclic.messages import one_line
 from epicyclic.study.measured.comparison import near_values
 from epicyclic.study.measured.table import LOAD_DEPENDENT, SENSOR, Grid, Measurements
@@ -58,7 +58,9 @@ class Rig:
             raise one_problem("component", given, reason, 'Give "total" in all rows.', _PLACE)
         if self.baseline:
             two = rows_where(table, self.baseline, "baseline")
-            half = _scaled(table, np.where(two, 0.5, 1.0))
+            factor = np.where(two, 0.5, 1.0)
+            known = None if table.uncertainty is None else factor * table.uncertainty
+            half = replace(table, loss=factor * table.loss, uncertainty=known)
             table = _less(half, ~two, two, tuple(AXES), "in the baseline")
         if self.unloaded:
             torque = np.abs(table.conditions["torque"])
@@ -79,9 +81,8 @@ def rows_where(table: Measurements, text: str, key: str) -> BoolArray:
     match = _EQUATION.fullmatch(text)
     column = match["column"].strip() if match else ""
     if match is None or column not in table.labels:
-        allowed = "must be COLUMN=VALUE" + (
-            ", or a share between 0 and 1." if key == "hold_out" else "."
-        )
+        share = ", or a share between 0 and 1" if key == "hold_out" else ""
+        allowed = f"must be COLUMN=VALUE{share}."
         remedy = f"Columns are {', '.join(table.labels)}."
         raise one_problem(key, text, allowed, remedy, _PLACE)
     wanted = match["value"].strip()
@@ -100,13 +101,6 @@ def _same(cell: str, wanted: str) -> bool:
         return cell == wanted or float(cell) == float(wanted)
     except ValueError:
         return False
-
-
-def _scaled(table: Measurements, factor: FloatArray) -> Measurements:
-    known = table.uncertainty
-    return replace(
-        table, loss=factor * table.loss, uncertainty=None if known is None else factor * known
-    )
 
 
 def _less(
@@ -137,7 +131,7 @@ def _less(
     if lacking:
         reason = f"have no row {where} at their {' and '.join(equal)}."
         remedy = f"Measure {'them' if len(lacking) > 1 else 'it'}, or delete these rows."
-        raise InputError([Problem("rows", first_of(lacking), reason, remedy)], table.source)
+        raise one_problem("rows", first_of(lacking), reason, remedy, table.source)
     return replace(table, loss=loss, uncertainty=None if squares is None else np.sqrt(squares))
 
 

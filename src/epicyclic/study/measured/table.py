@@ -242,9 +242,8 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
         match = HEADER.fullmatch(header)
         if match is None:
             allowed, remedy = "is not a name with a unit.", "Write it as: speed [rpm]."
-            problems.found.append(
-                Problem(f"column {number + 1}", one_line(header), allowed, remedy)
-            )
+            place = f"column {number + 1}"
+            problems.found.append(Problem(place, one_line(header), allowed, remedy))
             continue
         name = match["name"]
         name = name.lower() if name.lower() in (*_OWN, *own) else short.get(name, name)
@@ -315,8 +314,7 @@ def _numbers(column: _Column | None, quantity: Quantity | None, problems: _Probl
         if column.unit:
             kind.scale_from(column.unit)
     except PydanticCustomError as error:
-        given = (column.name, column.header, column.unit, kind, error)
-        problems.found.append(unit_problem(*given))
+        problems.found.append(unit_problem(column.name, column.header, column.unit, kind, error))
         return np.full(len(problems.lines), np.nan)
     return _read(
         column, problems, lambda cell: kind.to_display(kind.parse(_with_unit(column, cell)))
@@ -371,8 +369,7 @@ def _speed_out(
     """Of the output. [rpm]"""
     if _SPEED_OUT in columns:
         return _numbers(columns[_SPEED_OUT], RPM, problems)
-    speed = conditions["speed"]
-    return speed * _ratios(columns.get(STATE), case, speed.size)
+    return conditions["speed"] * _ratios(columns.get(STATE), case, len(problems.lines))
 
 
 def _of_torques(
@@ -426,10 +423,8 @@ def _read(column: _Column, problems: _Problems, parse: Callable[[str], float]) -
             problems.cell(column, row, "is empty.", "Fill it, or delete the row.")
             continue
         if column.unit and _NUMBER_WITH_UNIT.fullmatch(cell):
-            remedy = "Give units in the header or in every cell."
-            problems.cell(
-                column, row, f"has a unit, but the header already has [{column.unit}].", remedy
-            )
+            allowed = f"has a unit, but the header already has [{column.unit}]."
+            problems.cell(column, row, allowed, "Give units in the header or in every cell.")
             continue
         try:
             numbers[row] = parse(cell)
@@ -536,13 +531,6 @@ def _refused(
         try:
             case.updated(changes[row])
         except InputError as error:
-            problems += [
-                Problem(
-                    f"line {lines[row]}: {problem.key}",
-                    problem.value,
-                    problem.allowed,
-                    problem.remedy,
-                )
-                for problem in error.problems
-            ]
+            place = f"line {lines[row]}"
+            problems += [replace(it, key=f"{place}: {it.key}") for it in error.problems]
     return problems

@@ -118,11 +118,9 @@ def make_axis(
         problems.append(Problem(key, "", "has the same value twice.", "Give each value once."))
     if problems:
         return None, _one_for_alike(problems)
+    unit = unit_of(case, key)
     if any(isinstance(item, str) for item in coordinate):
-        coordinate = [str(item) for item in coordinate]
-        unit = ""
-    else:
-        unit = unit_of(case, key)
+        coordinate, unit = [str(item) for item in coordinate], ""
     return Axis(key, tuple(map(plain, values)), tuple(coordinate), unit), []
 
 
@@ -182,10 +180,18 @@ def _columns(
 def field_problem(case: Case, key: str) -> Problem | None:
     """Why a key cannot be varied: there is none, or it holds several values."""
     field = field_at(case, key)
-    if field is not None:
-        return _unsuitable(key, *field)
-    remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for the keys."
-    return Problem(key, "", "is not a known key.", remedy)
+    if field is None:
+        remedy = did_you_mean(key, known_keys(case)) or "See 'epicyclic init' for the keys."
+        return Problem(key, "", "is not a known key.", remedy)
+    annotation, metadata = field
+    if is_array(annotation):
+        allowed = "is a list; a sweep varies keys that hold one value."
+        return Problem(key, "", allowed, "Set it in the case, and run a sweep for each list.")
+    table = table_of(annotation)
+    if table is None or is_named(metadata):
+        return None
+    allowed = "is a table; a sweep varies keys that hold one value."
+    return Problem(key, "", allowed, f"Vary keys of it, such as {key}.{all_keys(table)[0]}.")
 
 
 def _one_for_alike(problems: Sequence[Problem]) -> list[Problem]:
@@ -197,18 +203,6 @@ def _one_for_alike(problems: Sequence[Problem]) -> list[Problem]:
         replace(first, value=f"{first.value} and {len(others)} more") if others else first
         for first, *others in alike.values()
     ]
-
-
-def _unsuitable(key: str, annotation: Any, metadata: tuple[Any, ...]) -> Problem | None:
-    """Why a key cannot be an axis: it holds several values."""
-    if is_array(annotation):
-        allowed = "is a list; a sweep varies keys that hold one value."
-        return Problem(key, "", allowed, "Set it in the case, and run a sweep for each list.")
-    table = table_of(annotation)
-    if table is None or is_named(metadata):
-        return None
-    allowed = "is a table; a sweep varies keys that hold one value."
-    return Problem(key, "", allowed, f"Vary keys of it, such as {key}.{all_keys(table)[0]}.")
 
 
 def coordinate_of(value: Any, quantity: Quantity | None) -> float | str:
@@ -573,9 +567,8 @@ def _problem_of(case: Case, key: str, text: str, varied: set[str]) -> Problem | 
     if key in varied:
         return Problem(key, "", "is both varied and linked.", "Either vary or link it.")
     if not _is_number(case, key):
-        return Problem(
-            key, "", "is not a number.", "Link numbers only; vary this key together with others."
-        )
+        remedy = "Link numbers only; vary this key together with others."
+        return Problem(key, "", "is not a number.", remedy)
     try:
         named = parse_expression(text).keys
     except ValueError as error:

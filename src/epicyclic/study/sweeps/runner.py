@@ -160,9 +160,9 @@ class Journal:
         except FileNotFoundError:
             return
         except OSError as error:
-            raise self._error(f"cannot be read: {error.strerror}.") from None
+            raise _error(self.path, f"cannot be read: {error.strerror}.") from None
         if not own and strange:
-            raise self._error("contains something other than points of this sweep.")
+            raise _error(self.path, "contains something other than points of this sweep.")
 
     def begin(self, content: Mapping[str, Any]) -> None:
         """Say in the file what the study is, unless it does."""
@@ -197,22 +197,15 @@ class Journal:
             full = error.errno in (errno.ENOSPC, errno.EDQUOT)
             whole, reason = False, str(error.strerror)
         if not whole:
-            raise one_problem(
-                "journal",
-                str(self.path),
-                f"cannot be written: {reason}.",
-                f"Finished points are kept; {'free some space' if full else 'let it be written'} "
-                "and give the same command again.",
-                "the sweep",
-            )
+            first = "free some space" if full else "let it be written"
+            remedy = f"Finished points are kept; {first} and give the same command again."
+            allowed = f"cannot be written: {reason}."
+            raise one_problem("journal", str(self.path), allowed, remedy, "the sweep")
 
     def _may_be_cut_short(self, line: bytes) -> bool:
         """True for the start of a line of this study."""
         mark = b'{"sweep":"%s"' % self.fingerprint.encode()
         return line.startswith(mark) or mark.startswith(line)
-
-    def _error(self, allowed: str) -> InputError:
-        return _error(self.path, allowed)
 
 
 def _opened(path: Path) -> BinaryIO:
@@ -396,9 +389,8 @@ class Runner:
         if self.shard is not None and not 1 <= self.shard[0] <= self.shard[1]:
             raise _no_shard("/".join(map(str, self.shard)))
         if self.jobs is not None and self.jobs < 1:
-            raise one_problem(
-                "jobs", str(self.jobs), "must be 1 or more.", "Give more, or None.", "the command"
-            )
+            remedy = "Give more, or None."
+            raise one_problem("jobs", str(self.jobs), "must be 1 or more.", remedy, "the command")
 
     def check(self) -> None:
         """Raise `InputError` if there is no such cluster: before anything is written."""
@@ -426,14 +418,10 @@ class Runner:
             # absolute, because workers may have been started in another folder
             journal = Journal(Path(self.journal).absolute(), fingerprint(plan))
             kept = journal.read()
-            blocks = _blocks(plan, left)
+            blocks = _cut(plan, left, plan.block)
             left = [index for block in blocks if not kept.keys() >= {*block} for index in block]
-            yield [
-                (index, kept[index])
-                for block in blocks
-                if kept.keys() >= {*block}
-                for index in block
-            ]
+            whole = [block for block in blocks if kept.keys() >= {*block}]
+            yield [(index, kept[index]) for block in whole for index in block]
             journal.begin(heading(plan, self.shard, self.output))
         if not left:
             return
@@ -498,7 +486,7 @@ def _run_here(
 ) -> Iterator[Batch]:
     """Finished points, in any order: here as long as that pays, then in worker processes."""
     start, done, untimed = time.perf_counter(), 0, 0
-    blocks = _blocks(plan, indices)
+    blocks = _cut(plan, indices, plan.block)
     while blocks:
         spent = time.perf_counter() - start
         if done and not untimed and spent < TRIAL_SECONDS:  # most of it to load kernels
@@ -621,12 +609,8 @@ def _batches(plan: Plan, indices: list[int], workers: int) -> list[list[int]]:
     return _cut(plan, indices, max(1, size // plan.block) * plan.block)
 
 
-def _blocks(plan: Plan, indices: list[int]) -> list[list[int]]:
-    """`indices` in the blocks of a plan."""
-    return _cut(plan, indices, plan.block)
-
-
 def _cut(plan: Plan, indices: list[int], size: int) -> list[list[int]]:
+    """`indices` in blocks that end at multiples of `size` in the order of all points."""
     place = {index: i for i, index in enumerate(plan.order())}
     return [list(batch) for _, batch in groupby(indices, lambda index: place[index] // size)]
 
@@ -662,13 +646,8 @@ def _distributed() -> Any:
     try:
         import distributed
     except ImportError:
-        raise one_problem(
-            "--dask",
-            "",
-            "needs the package distributed.",
-            'Install "epicyclic[dask]".',
-            "the command",
-        ) from None
+        allowed, remedy = "needs the package distributed.", 'Install "epicyclic[dask]".'
+        raise one_problem("--dask", "", allowed, remedy, "the command") from None
     return distributed
 
 
