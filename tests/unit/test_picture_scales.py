@@ -24,9 +24,9 @@ from epicyclic.show.plots.losses import banded, plot_loss_sum, plot_losses
 from epicyclic.show.plots.mesh import (
     mesh_figure,
     plot_along_path,
+    plot_over_period,
     plot_plane_of_action,
     plot_roller_loads,
-    plot_transmission_error,
 )
 from epicyclic.show.plots.pockets import plot_power, pocket_figure
 from epicyclic.show.plots.power_flow import SLIDE
@@ -83,7 +83,7 @@ def test_an_efficiency_map_tells_98_from_99_percent(pair_map):
 
 def test_curves_over_a_mesh_period_are_closed(talbot_record):
     mesh = talbot_record.group("meshes")["sun_mesh"]
-    angles, errors = plot_transmission_error(mesh, axes()).lines[0].get_data()
+    angles, errors = plot_over_period(mesh, "transmission_error", axes()).lines[0].get_data()
     assert errors[0] == errors[-1] != errors[1]
     assert angles[-1] - angles[0] == pytest.approx(mesh.attrs["pitch_angle_deg"], rel=1e-12)
     assert len(errors) == mesh.sizes["mesh_position"] + 1

@@ -16,7 +16,7 @@ import jinja2
 import xarray as xr
 from markupsafe import Markup
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.show.inputs import input_tables
 from epicyclic.show.page import Drawings, Item, KeyFigure, Section, gallery
 from epicyclic.show.plots.catalogue import Stored, available, draw
@@ -81,8 +81,13 @@ def report_html(
         figures, sections = map_key_figures(stored), map_sections(stored, drawings)
         content = _content(stored, "Loss map", map_line(stored), figures, sections)
     else:
-        cycle = str(stored.attrs.get("cycle", ""))
-        sections = _uncertainty_sections(stored, drawings)
+        cycle, inputs = str(stored.attrs.get("cycle", "")), map_inputs(stored)
+        title = "Energy of a duty cycle" if "point_error" in stored else "Result"
+        pictures = (*gallery(drawings, "drivers", wide=True), *gallery(drawings, "band"))
+        sections = [
+            Section("uncertainty", title, (*pictures, *uncertainty_items(stored))),
+            Section("inputs", "Inputs", tuple(input_tables(inputs, inputs))),
+        ]
         content = _content(stored, "Uncertainty", cycle, band_figures(stored), sections)
     return page_html(**content)
 
@@ -130,16 +135,6 @@ def _content(
         "key_figures": figures,
         "sections": sections,
     }
-
-
-def _uncertainty_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
-    title = "Energy of a duty cycle" if "point_error" in data else "Result"
-    pictures = (*gallery(drawings, "drivers", wide=True), *gallery(drawings, "band"))
-    inputs = tuple(input_tables(map_inputs(data), map_inputs(data)))
-    return [
-        Section("uncertainty", title, (*pictures, *uncertainty_items(data))),
-        Section("inputs", "Inputs", inputs),
-    ]
 
 
 def _drawings(
@@ -193,13 +188,11 @@ def check_pdf() -> ModuleType:
     try:
         return import_module("weasyprint")
     except (ImportError, OSError) as error:  # it needs Pango, a library of the system
-        problem = Problem(
-            "-o",
-            ".pdf",
-            f"needs WeasyPrint, which cannot be used: {error}.",
-            'Install it (pip install "epicyclic[pdf]"), or print the .html page from a browser.',
+        allowed = f"needs WeasyPrint, which cannot be used: {error}."
+        remedy = (
+            'Install it (pip install "epicyclic[pdf]"), or print the .html page from a browser.'
         )
-        raise InputError([problem], "the command") from None
+        raise one_problem("-o", ".pdf", allowed, remedy, "the command") from None
 
 
 def page_bytes(page: str, ending: str) -> bytes:

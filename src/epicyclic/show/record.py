@@ -8,15 +8,15 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic_core import from_json
 
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem, raise_any
-from epicyclic.files import check_place, whole_file
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.files import check_place, refuse, whole_file
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.messages import one_line
 from epicyclic.netcdf_file import read_groups
@@ -169,11 +169,16 @@ def _makers(case: Case, result: Result) -> dict[str, Callable[[], Mapping[str, x
 
 
 def _bearings(case: Case, result: Result) -> dict[str, xr.Dataset]:
-    return {
-        key: bearing_details(_bearing_of(case, key), figures.loads)
-        for key, figures in result.bearings.items()
-        if figures.loads is not None
-    }
+    found = {}
+    for key, figures in result.bearings.items():
+        if figures.loads is not None:
+            name, _, planets = key.rpartition(".")
+            sets = build(case).sets
+            own = next(one.bearing for one in sets[name].planets if one.key == planets)
+            assert own is not None
+            assert isinstance(own.bearing, RollerBearing)
+            found[key] = bearing_details(own.bearing, figures.loads)
+    return found
 
 
 def _uncertainty(case: Case, result: Result) -> dict[str, xr.Dataset]:
@@ -190,15 +195,6 @@ def _pockets(case: Case, result: Result) -> dict[str, xr.Dataset]:
     # the outlines, for pictures of one moment, would be ten times all the rest
     pockets = pocket_details(case, flowing) if flowing else {}
     return {name: data.drop_dims("end") for name, data in pockets.items()}
-
-
-def _bearing_of(case: Case, key: str) -> RollerBearing:
-    """The bearing of the planets that `key` names."""
-    name, _, planets = key.rpartition(".")
-    found = next(one.bearing for one in build(case).sets[name].planets if one.key == planets)
-    assert found is not None
-    assert isinstance(found.bearing, RollerBearing)
-    return found.bearing
 
 
 def sets_of(fields: Mapping[str, xr.Dataset]) -> dict[str, dict[str, xr.Dataset]]:
@@ -488,8 +484,8 @@ def save_result(result: ResultRecord | CaseSource, path: str | Path) -> None:
 def check_result_output(path: Path) -> None:
     """Raise `InputError` unless a result can be written to `path`."""
     if path.suffix != SUFFIX:
-        problem = Problem("FILE", str(path), f"must end in {SUFFIX}.", f"Name it {path.stem}.nc.")
-        raise InputError([problem], "the command")
+        allowed, remedy = f"must end in {SUFFIX}.", f"Name it {path.stem}.nc."
+        raise one_problem("FILE", str(path), allowed, remedy, "the command")
     check_place(path)
 
 
@@ -538,7 +534,8 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
             raise_any(sweep_problems(root))
             raise_any(_attribute_problems(root.attrs))
             return root
-        _refuse("is neither a stored result nor a loss map nor an uncertainty nor a sweep.")
+        allowed = "is neither a stored result nor a loss map nor an uncertainty nor a sweep."
+        refuse(allowed, RUN_AGAIN)
     except InputError as error:
         raise InputError(error.problems, str(source)) from None
 
@@ -547,20 +544,17 @@ def open_map(path: str | Path) -> xr.Dataset:
     """Read a loss map. Parameters and errors as for `open_result`."""
     found = open_result(path)
     if isinstance(found, ResultRecord):
-        problem = Problem("MAP", str(path), "is a stored result.", "Give a loss map.")
-        raise InputError([problem], "the command")
+        allowed, remedy = "is a stored result.", "Give a loss map."
+        raise one_problem("MAP", str(path), allowed, remedy, "the command")
     check_map(found, str(path))
     return found
-
-
-def _refuse(what: str, remedy: str = RUN_AGAIN) -> NoReturn:
-    raise InputError([Problem("", "", f"the file {what}", remedy)])
 
 
 def _record_of(root: xr.Dataset, fields: dict[str, xr.Dataset]) -> ResultRecord:
     version = root.attrs.get("format_version")
     if version != FORMAT_VERSION:
-        _refuse(f"has the format version {version}; this program reads {FORMAT_VERSION}.")
+        allowed = f"has the format version {version}; this program reads {FORMAT_VERSION}."
+        refuse(allowed, RUN_AGAIN)
     raise_any(problem for path, data in fields.items() for problem in field_problems(path, data))
     stated = dict(root.attrs)
     problems: list[Problem] = []
@@ -568,7 +562,7 @@ def _record_of(root: xr.Dataset, fields: dict[str, xr.Dataset]) -> ResultRecord:
         datetime.fromisoformat(stated.get("created", ""))
     except (TypeError, ValueError) as error:
         problems.append(_problem("created", f"Input should be a valid datetime, {error}"))
-    result: Result | None = None
+    result = None
     content = _read_json(stated, "result", problems)
     if content is not None:
         result, found = read_result(content, _wrong_inputs)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self, cast
 
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.files import check_place, write_file
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.result import result as plain
@@ -65,8 +65,8 @@ class Result(plain.Result):
             rows = [(it.key, it.value, it.unit, it.label) for it in self.numbers()]
             return pd.DataFrame(rows, columns=["key", "value", "unit", "label"]).set_index("key")
         if of != "losses":
-            problem = Problem("of", f'"{of}"', 'must be "losses" or "numbers".', "Choose one.")
-            raise InputError([problem], "the table")
+            allowed = 'must be "losses" or "numbers".'
+            raise one_problem("of", f'"{of}"', allowed, "Choose one.", "the table")
         terms = [(it.name, it.watts, it.group, it.left_out or it.method) for it in self.terms]
         sums = ("load_dependent", "load_independent", "total")
         terms += [(name, getattr(self, name), "sum", "") for name in sums]
@@ -142,7 +142,7 @@ def save(result: plain.Result, path: Path) -> None:
 
     if path.suffix not in FILES:
         allowed = f"must end in {', '.join(FILES)}."
-        raise InputError([Problem("path", str(path), allowed, "Name such a file.")], "the result")
+        raise one_problem("path", str(path), allowed, "Name such a file.", "the result")
     check_place(path)
     if path.suffix == ".pdf":
         check_pdf()

@@ -27,7 +27,7 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.text import Annotation
 from scipy.interpolate import LinearNDInterpolator
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.result.result import in_words, set_of
 from epicyclic.show.page import Drawing
 from epicyclic.show.plots import loss_map, losses, mesh, sweep
@@ -42,9 +42,6 @@ from epicyclic.study.maps.tables import map_case, map_inputs
 from epicyclic.study.operating import operating_line
 from epicyclic.study.shapes import gear_shapes
 from epicyclic.study.sweeps.run import is_sweep
-
-# What can be drawn from a stored result or a map: one entry for each question of an engineer.
-
 
 Stored = ResultRecord | xr.Dataset
 MM_PER_INCH = 25.4
@@ -225,13 +222,10 @@ def _of_sweep(
 
 
 def _sweep_points(stored: Stored) -> list[Panel]:
-    if (
-        isinstance(stored, ResultRecord)
-        or "total" not in sweep.shown_results(stored)
-        or len(sweep.varied(stored)) < 2
-    ):
+    if isinstance(stored, ResultRecord) or "total" not in sweep.shown_results(stored):
         return []
-    return [Panel("", partial(sweep.plot_sweep_parallel, stored))]
+    enough = len(sweep.varied(stored)) > 1
+    return [Panel("", partial(sweep.plot_sweep_parallel, stored))] if enough else []
 
 
 def _pocket_pressure(stored: Stored) -> list[Panel]:
@@ -284,9 +278,11 @@ PLOTS: dict[str, Plot] = {
     ),
     "transmission-error": Plot(
         "How large is the loaded transmission error?",
-        _of_group("meshes", mesh.plot_transmission_error),
+        _of_group("meshes", mesh.plot_over_period, "transmission_error"),
     ),
-    "stiffness": Plot("How stiff is the mesh?", _of_group("meshes", mesh.plot_mesh_stiffness)),
+    "stiffness": Plot(
+        "How stiff is the mesh?", _of_group("meshes", mesh.plot_over_period, "mesh_stiffness")
+    ),
     "friction": Plot(
         "How does friction change along the path of contact?",
         _of_group("meshes", mesh.plot_along_path, "friction_coefficient"),
@@ -377,10 +373,8 @@ def panels_of(stored: Stored, name: str) -> list[Panel]:
         return panels
     found = available(stored)
     allowed = "cannot be drawn from this file" if name in PLOTS else "is not a plot"
-    problem = Problem(
-        "WHAT", name, f"{allowed}; it has {', '.join(found)}.", "Choose one of these."
-    )
-    raise InputError([problem], "the command")
+    allowed = f"{allowed}; it has {', '.join(found)}."
+    raise one_problem("WHAT", name, allowed, "Choose one of these.", "the command")
 
 
 def in_inches(size: tuple[float, float]) -> tuple[float, float]:

@@ -123,8 +123,8 @@ def mesh_figure(mesh: xr.Dataset) -> Figure:
     with styled_figure(6, 2, str(mesh.attrs["title"])) as (figure, axes):
         flat = axes.ravel()
         plot_pair_loads(mesh, flat[0])
-        plot_transmission_error(mesh, flat[1])
-        plot_mesh_stiffness(mesh, flat[2])
+        plot_over_period(mesh, "transmission_error", flat[1])
+        plot_over_period(mesh, "mesh_stiffness", flat[2])
         for ax, name in zip(flat[3:8], MAPS, strict=True):
             plot_plane_of_action(mesh, name, ax)
         for (over_plane, along_path), name in zip(axes[4:], BOTH_WAYS, strict=True):
@@ -197,17 +197,8 @@ def plot_pair_loads(mesh: xr.Dataset, ax: Axes) -> Axes:
     return ax
 
 
-def plot_transmission_error(mesh: xr.Dataset, ax: Axes) -> Axes:
-    """Loaded transmission error over one mesh period."""
-    return _plot_over_period(mesh, "transmission_error", ax)
-
-
-def plot_mesh_stiffness(mesh: xr.Dataset, ax: Axes) -> Axes:
-    """Mesh stiffness over one mesh period."""
-    return _plot_over_period(mesh, "mesh_stiffness", ax)
-
-
-def _plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
+def plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
+    """Loaded transmission error or mesh stiffness, by its `name`, over one mesh period."""
     values = mesh[name].to_numpy()
     if np.isfinite(values).any():
         angles = mesh["roll_angle"].to_numpy()
@@ -238,9 +229,8 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
             for pick in (np.min, np.mean, np.max)
         )
         if name == FRICTION and np.ptp(values) <= SAME * abs(values).max():
-            ax.plot(
-                middle, mean, label="one mean value for the whole mesh; the model gives no other"
-            )
+            label = "one mean value for the whole mesh; the model gives no other"
+            ax.plot(middle, mean, label=label)
         elif (high - low).max() <= 2 * np.ptp(mean) / len(mean):  # the same across the face
             ax.plot(middle, mean)
         else:
@@ -291,16 +281,13 @@ def plot_friction_models(rows: Sequence[FrictionComparison], ax: Axes) -> Axes:
             edgecolor=colour,
             linewidth=1.0,
         )
-        marks = [
-            mark
-            for mark, holds in (
-                ("chosen", row.chosen),
-                ("recommended", row is best),
-                ("made for another oil", row.other_oil),
-            )
-            if holds
-        ]
-        text = ", ".join([f"{row.sliding:.{digits}f} W", *marks])
+        marks = {
+            "chosen": row.chosen,
+            "recommended": row is best,
+            "made for another oil": row.other_oil,
+        }
+        kept = (mark for mark, holds in marks.items() if holds)
+        text = ", ".join([f"{row.sliding:.{digits}f} W", *kept])
         weight = "bold" if row.chosen else "normal"
         write_beside(ax, text, (row.sliding, place), fontweight=weight)
     ax.set_yticks(range(len(rows)), [row.name for row in rows])

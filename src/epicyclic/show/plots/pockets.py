@@ -49,7 +49,8 @@ GAP_SHARE = 0.05
 def pocket_figure(mesh: xr.Dataset) -> Figure:
     """Everything an engineer looks at on the pockets of one mesh, both kinds side by side."""
     with styled_figure(6, 2, str(mesh.attrs["title"])) as (figure, axes):
-        plot_areas(mesh, axes[0, 0])
+        first = mesh["end_area"].isel(station=0)
+        _plot_kinds(mesh, first, axes[0, 0], "Area at the first end")
         plot_volumes(mesh, axes[0, 1])
         plot_gaps(mesh, axes[1, 0])
         plot_power(mesh, axes[1, 1])
@@ -70,11 +71,6 @@ def plot_life_with_scale(mesh: xr.Dataset, name: str, kind: int, ax: Axes) -> Ax
 def _add_face_scale(mesh: xr.Dataset, figure: FigureBase, axes: Any, **options: Any) -> None:
     place = label_of(mesh["station_position"])
     figure.colorbar(_face_colours(mesh), ax=axes, label=place, **options)
-
-
-def plot_areas(mesh: xr.Dataset, ax: Axes) -> Axes:
-    """Area of the section at the first end of the face."""
-    return _plot_kinds(mesh, mesh["end_area"].isel(station=0), ax, "Area at the first end")
 
 
 def plot_volumes(mesh: xr.Dataset, ax: Axes) -> Axes:

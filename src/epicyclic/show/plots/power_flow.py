@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -88,21 +89,13 @@ _LABEL: Any = {"ha": "center", "fontsize": 11, "zorder": 6}
 
 
 @dataclass(frozen=True, slots=True)
-class _Tap:
-    """Bearings, seals and drags of one line."""
-
-    line: str
-    loss: float
-
-
-@dataclass(frozen=True, slots=True)
 class _Layout:
     """What is drawn where."""
 
     flow: TrainFlow
     columns: Mapping[str, float]  # x of each set and y of each line that passes power.
     lanes: Mapping[str, float]  # x of each set and y of each line that passes power.
-    taps: Mapping[str, _Tap]  # By line.
+    taps: Mapping[str, float]  # Losses of bearings, seals and drags by their line. [W]
     width: float  # Width of a column, and spacing of lanes.
     spacing: float  # Width of a column, and spacing of lanes.
     scale: float = 0.0  # Width of an arrow over its power. [inch/W]
@@ -187,13 +180,11 @@ def _layout(flow: TrainFlow) -> _Layout:
     ends = [key for key, line in flow.lines.items() if line.role in ("input", "output")]
     lines = [key for key in flow.lines if key in busy or key in ends]
     stages: list[str] = []
-    taps: dict[str, _Tap] = {}
+    taps: defaultdict[str, float] = defaultdict(float)
     for stage in flow.stages:
         links = [link for link in flow.of_stage(stage) if link.line in lines]
         if not any(link.members for link in links) and len(links) == 1:
-            key = links[0].line
-            before = taps.get(key, _Tap(key, 0.0))
-            taps[key] = _Tap(key, before.loss + flow.stages[stage].loss)
+            taps[links[0].line] += flow.stages[stage].loss
         elif any(abs(link.power) > NO_POWER * most for link in links):
             stages.append(stage)
     stages = _ordered_stages(flow, stages, lines)
@@ -366,14 +357,12 @@ def _draw_line(ax: Axes, layout: _Layout, line: Line, y: float) -> None:
             _label_band(ax, piece, (start + end) / 2, y, whole / 2)
     if line.key in layout.taps and pieces:
         piece = pieces[-1] if line.role == "output" else pieces[0]
-        edge = y - sum(_widths(layout, piece)) / 2
-        _draw_tap(ax, layout.taps[line.key], _middle(layout, piece), edge)
-
-
-def _middle(layout: _Layout, piece: _Piece) -> float:
-    """The middle of a piece of a line, beside the sets that it passes."""
-    after = min(x for x in (*layout.columns.values(), piece.end) if x > piece.start)
-    return (piece.start + after) / 2
+        # amid the piece as far as the first set that it passes
+        after = min(x for x in (*layout.columns.values(), piece.end) if x > piece.start)
+        x, edge = (piece.start + after) / 2, y - sum(_widths(layout, piece)) / 2
+        _draw_loss(ax, (x, edge), edge - 0.28, THINNEST)
+        style: Any = {"va": "center", "fontsize": 10, "color": LOST, "zorder": 6}
+        ax.text(x + 0.12, edge - 0.16, _power(layout.taps[line.key]), **style)
 
 
 def _widths(layout: _Layout, piece: _Piece) -> tuple[float, float]:
@@ -408,12 +397,6 @@ def _label_band(ax: Axes, piece: _Piece, x: float, y: float, half: float) -> Non
         ax.text(x, y + half + 0.07, _power(piece.through), va="bottom", color=THROUGH, **_LABEL)
     if piece.circulating:
         ax.text(x, y - half - 0.07, _power(piece.circulating), va="top", color=DARK, **_LABEL)
-
-
-def _draw_tap(ax: Axes, tap: _Tap, x: float, y: float) -> None:
-    """The losses of bearings and seals on a line, whose lower edge is at `y`."""
-    _draw_loss(ax, (x, y), y - 0.28, THINNEST)
-    ax.text(x + 0.12, y - 0.16, _power(tap.loss), va="center", fontsize=10, color=LOST, zorder=6)
 
 
 def _draw_loss(ax: Axes, start: tuple[float, float], tip: float, width: float) -> None:
