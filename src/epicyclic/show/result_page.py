@@ -426,16 +426,13 @@ def _grid(point: xr.Dataset, name: str, temperature: int) -> Table:
     values = point[name].transpose("speed", "torque").to_numpy()
 
     def cell(i: int, j: int) -> Cell:
-        return _value(name, values[i, j], f"{name}[{i},{j},{temperature}]")
+        value = float(values[i, j])
+        if not np.isfinite(value):
+            return Cell(MISSING)
+        text = f"{100 * value:.2f}" if name == "efficiency" else f"{value:.1f}"
+        return number(value, f"{name}[{i},{j},{temperature}]", text=text)
 
     return grid_table(point, GRIDS[name], cell)
-
-
-def _value(name: str, value: float, key: str) -> Cell:
-    if not np.isfinite(value):
-        return Cell(MISSING)
-    text = f"{100 * value:.2f}" if name == "efficiency" else f"{value:.1f}"
-    return number(float(value), key, text=text)
 
 
 def validity_items(data: xr.Dataset) -> tuple[Listing, ...]:

@@ -181,7 +181,8 @@ class _Writer:
         if subtable is None:
             return [_line(f"# {full} = {_default(field)}", about)]
         if dict_value(field.annotation) is not None:
-            return [_line(f"# {full} = {{ NAME = {_keys_of(subtable)} }}", about)]
+            keys = ", ".join(f"{it} = {_default(own)}" for it, own in subtable.model_fields.items())
+            return [_line(f"# {full} = {{ NAME = {{ {keys} }} }}", about)]
         if key == "losses":
             return [_line(f"# {name} = {{ include = true, factor = 1.0 }}", "")]
         if isinstance(field.default, str):
@@ -198,12 +199,6 @@ class _Writer:
 
 def _line(text: str, about: str) -> str:
     return f"{text.ljust(COMMENT_COLUMN - 1)} # {about}" if about else text
-
-
-def _keys_of(table: type[BaseModel]) -> str:
-    """The keys of a table on one line, with their defaults."""
-    shown = [f"{name} = {_default(field)}" for name, field in table.model_fields.items()]
-    return f"{{ {', '.join(shown)} }}"
 
 
 def _about(field: FieldInfo) -> str:

@@ -354,11 +354,12 @@ def _budget(data: xr.Dataset) -> Table | Listing:
         shares = [percent(max(float(one[name]), 0.0)) for name in orders]
         for place, key in enumerate(keys):
             own = total.sel(input=key)
+            unit = unit_text(str(own["input_unit"].values)).removesuffix("1")
             rows.append(
                 (
                     Cell(names[key]),
                     Cell(str(own["distribution"].values)),
-                    _input_value(own),
+                    aligned(f"{shown(float(own['input_value']))} {unit}".rstrip()),
                     _shown(float(own["contribution"]), _unit(data), float(total["nominal"])),
                     *(aligned("" if place else text) for text in shares),
                 )
@@ -372,11 +373,6 @@ def _budget(data: xr.Dataset) -> Table | Listing:
         note = note.replace("alone and with all interactions; ", "each alone; ")
     head = heads[: len(heads) + len(orders) - 2]
     return _causes(head, rows, note)
-
-
-def _input_value(own: xr.Dataset) -> Cell:
-    unit = unit_text(str(own["input_unit"].values)).removesuffix("1")
-    return aligned(f"{shown(float(own['input_value']))} {unit}".rstrip())
 
 
 def _notes(data: xr.Dataset) -> Iterator[str]:
@@ -400,10 +396,9 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
     for key in map(str, data["input"].values):
         share = float(data["cut_off"].sel(input=key))
         if share > CUT_OFF:
-            beyond = percent(share)
             yield (
-                f"{key}: {beyond} of its distribution lies outside its possible range and is "
-                "cut off."
+                f"{key}: {percent(share)} of its distribution lies outside its possible range and "
+                "is cut off."
             )
     idle = [str(key) for key in data["input"].values if not _moves(data, str(key))]
     names = _names(data)
@@ -430,10 +425,8 @@ def _of_points(data: xr.Dataset) -> Iterator[str]:
     """How well some points stand for a whole cycle."""
     if "point_error" not in data:
         return
-    error, spread = (
-        float(data["point_error"]),
-        float(data["standard_uncertainty"].sel(result="total")),
-    )
+    error = float(data["point_error"])
+    spread = float(data["standard_uncertainty"].sel(result="total"))
     if not error:
         yield f"Cycle: {data.attrs['cycle']}, all solved for every sample."
     else:

@@ -130,8 +130,9 @@ def _details(
         ),
         "contact_line": np.arange(lines.length.shape[1]),
     }
+    words = mesh_words(key)
     attributes = {
-        "title": f"{_words(key)} of {title or 'the case'}",
+        "title": f"{words if '.' in key else words.capitalize()} of {title or 'the case'}",
         "notes": "\n".join((*notes, *_other_programs(mesh, loads))),
         "load_distribution": duty.gears.models.load_distribution,
         "force_N": duty.force,
@@ -156,11 +157,10 @@ def _other_programs(mesh: Mesh, loads: LineLoads) -> Iterator[str]:
     yield from loss_factor_notes(mesh)
 
 
-def _words(key: str) -> str:
+def mesh_words(key: str) -> str:
     """A mesh in words, that of a train with its set: ``"P1: sun mesh"``."""
     name, dot, mesh = key.rpartition(".")
-    words = mesh.replace("_", " ")
-    return f"{name}: {words}" if dot else words.capitalize()
+    return f"{name}{': ' if dot else ''}{mesh.replace('_', ' ')}"
 
 
 _points = partial(variable, _DIMENSIONS)

@@ -29,7 +29,7 @@ from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.pocket_flow import flow_family, oil_in_mesh, pocket_notes, solve_pockets
 from epicyclic.result.result import of_gear
 from epicyclic.study.load import CaseSource, as_case
-from epicyclic.study.meshes import Variable, variable
+from epicyclic.study.meshes import Variable, mesh_words, variable
 from epicyclic.study.solve import build_computed
 from epicyclic.units import (
     BAR,
@@ -202,13 +202,6 @@ class _Life:
         return (leading, trailing) if self.drives1 else (trailing, leading)
 
 
-def _words(key: str) -> str:
-    """A mesh in words, that of a train with its set: ``"P1: sun mesh"``."""
-    name, dot, mesh = key.rpartition(".")
-    words = mesh.replace("_", " ")
-    return f"{name}: {words}" if dot else f"the {words}"
-
-
 def _dataset(
     title: str, key: str, duty: MeshDuty, flow: PocketFlow, fluids: Fluids, meshes: int
 ) -> xr.Dataset:
@@ -225,9 +218,7 @@ def _dataset(
         "slice_position": variable(
             ("slice",), (stations[1:] + stations[:-1]) / 2, "position across the face", MILLIMETRE
         ),
-        "station_position": variable(
-            ("station",), stations, "position across the face", MILLIMETRE
-        ),
+        "station_position": variable("station", stations, "position across the face", MILLIMETRE),
         "period_angle": variable(
             ("mesh_position",), flow.angle, f"roll angle {of_gear(mesh.gear1.name)}", DEGREE
         ),
@@ -241,7 +232,8 @@ def _dataset(
         **_numbers(duty, flow, fluids),
     }
     attributes = {
-        "title": f"Pockets of {_words(key)} of {title or 'the case'}",
+        "title": f"Pockets of {'' if '.' in key else 'the '}{mesh_words(key)} of "
+        f"{title or 'the case'}",
         "notes": "\n".join(pocket_notes(duty, flow_figures(flow), fluids, meshes)),
         "model": POCKETING_MODELS[duty.gears.models.pockets.model],
         "drives": mesh.gear1.name if family.drives1 else mesh.gear2.name,
@@ -373,18 +365,14 @@ def _tooth(gear: Gear, tool: Tool | None, dimension: str) -> Variable:
     return variable((dimension, _AXIS), points, label, MILLIMETRE)
 
 
-def _with_model(duty: MeshDuty, model: PocketModel) -> MeshDuty:
-    """The same mesh with another fluid in its pockets."""
-    pockets = replace(duty.gears.models.pockets, model=model)
-    models = replace(duty.gears.models, pockets=pockets)
-    return replace(duty, gears=replace(duty.gears, models=models))
-
-
 def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Variable]:
     """What holds for the whole mesh."""
     model = duty.gears.models.pockets.model
     other: PocketModel = "incompressible" if model == "isentropic" else "isentropic"
-    end = solve_pockets(_with_model(duty, other), fluids)
+    # the same mesh with another fluid in its pockets
+    pockets = replace(duty.gears.models.pockets, model=other)
+    gears = replace(duty.gears, models=replace(duty.gears.models, pockets=pockets))
+    end = solve_pockets(replace(duty, gears=gears), fluids)
     assert end is not None  # it turns
     origins = ("from the work at the boundaries", "from the energy balance")
     if model == "talbot-2012":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from epicyclic.case.case import TrainCase
@@ -80,7 +80,7 @@ def _state(case: TrainCase, name: str, state: StateTable) -> StateKinematics:
     held = shape.held(state)
     drawn = StateKinematics(name, state.fixed, state.joined, None, {})
     if driven in held:
-        return _with(drawn, f"blocked: {operation.input} is held")
+        return replace(drawn, remark=f"blocked: {operation.input} is held")
     unit = operation.speed or 1.0
     further = {shape.shaft_of(key) or "": value for key, value in operation.speeds.items()}
     given = dict.fromkeys(held, 0.0) | {
@@ -88,7 +88,7 @@ def _state(case: TrainCase, name: str, state: StateTable) -> StateKinematics:
     }
     found = freedom(machine, driven, list(given))
     if found.blocked:
-        return _with(drawn, f"blocked: {operation.input} cannot turn")
+        return replace(drawn, remark=f"blocked: {operation.input} cannot turn")
     speeds = speeds_of(machine, {driven: 1.0} | given)
     shafts = {
         shaft: math.nan if shaft in found.loose else speeds[shaft]
@@ -96,15 +96,10 @@ def _state(case: TrainCase, name: str, state: StateTable) -> StateKinematics:
         if shaft != HOUSING
     }
     if output in found.loose:
-        return _with(drawn, f"neutral: {operation.output} is free to turn", shafts)
+        remark = f"neutral: {operation.output} is free to turn"
+        return replace(drawn, remark=remark, speeds=shafts)
     if abs(speeds[output]) < AT_REST:
-        return _with(drawn, f"{operation.output} stands still", shafts)
+        return replace(drawn, remark=f"{operation.output} stands still", speeds=shafts)
     loose = [shaft for shaft in shafts if shaft in found.loose]
     remark = f"free to turn: {', '.join(loose)}" if loose else ""
-    return StateKinematics(name, state.fixed, state.joined, 1 / speeds[output], shafts, remark)
-
-
-def _with(
-    state: StateKinematics, remark: str, speeds: dict[str, float] | None = None
-) -> StateKinematics:
-    return StateKinematics(state.name, state.held, state.joined, None, speeds or {}, remark)
+    return replace(drawn, ratio=1 / speeds[output], speeds=shafts, remark=remark)

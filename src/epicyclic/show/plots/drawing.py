@@ -53,7 +53,7 @@ def plot_gear_set(
         front = order[row + 1 :] if hidden else ()
         if hider := next((one for one, it in front if _hides(it, gear)), ""):
             label += f", behind {in_words(hider)}"
-        outline = _whole_outline(gear, SKIPPED_POINTS)
+        outline = _whole_outline(gear)
         inside = bool(gear.attrs["internal"])
         for number in range(gear.sizes["place"]):
             center, turn = _place(gear, number)
@@ -233,11 +233,11 @@ def _path(points: FloatArray) -> Path:
     return Path(points, closed=False)
 
 
-def _whole_outline(gear: xr.Dataset, step: int) -> FloatArray:
-    """All teeth, of their points every `step`-th, or the tip circle if there is no outline."""
+def _whole_outline(gear: xr.Dataset) -> FloatArray:
+    """All teeth, of their points one of `SKIPPED_POINTS`; without an outline the tip circle."""
     if "x" not in gear:
         return _circle(_scalar(gear, "tip_diameter") / 2)
-    thinned = gear.isel(point=slice(None, None, step))
+    thinned = gear.isel(point=slice(None, None, SKIPPED_POINTS))
     return _teeth(thinned, range(int(gear.attrs["teeth"])))
 
 
@@ -322,7 +322,8 @@ def turning_set(
     phase: float = 0.0,  # At which it is drawn. [mesh periods of the first gear]
 ) -> Turning:
     """A set seen along its axis, from its carrier."""
-    turns = {name: _degrees_per_period(gears, name) for name in gears}
+    period = 360.0 / int(next(iter(gears.values())).attrs["teeth"])  # [deg]
+    turns = {name: period * float(gear.attrs["relative_speed"]) for name, gear in gears.items()}
     turned = {
         name: gear.assign(direction=gear["direction"] + phase * turns[name])
         for name, gear in gears.items()
@@ -340,11 +341,6 @@ def turning_set(
             for number in range(gear.sizes["place"])
         }
     return Turning(figure, ax, layers, ())
-
-
-def _degrees_per_period(gears: Mapping[str, xr.Dataset], name: str) -> float:
-    first = next(iter(gears.values()))
-    return 360.0 / int(first.attrs["teeth"]) * float(gears[name].attrs["relative_speed"])
 
 
 def turning_mesh(
@@ -416,7 +412,7 @@ def _in_the_middle(mesh: xr.Dataset, number: int) -> list[tuple[float, float]]:
     """
     face, path = _values(mesh, "face_position", number), _values(mesh, "path_position", number)
     loads = mesh["pair_load"].isel(mesh_position=number).to_numpy()
-    middle = _middle(mesh)
+    middle = sum(float(pick(mesh["face_position"])) for pick in (np.nanmin, np.nanmax)) / 2
     found = []
     for line in range(len(face)):
         order = np.argsort(face[line])
@@ -424,11 +420,6 @@ def _in_the_middle(mesh: xr.Dataset, number: int) -> list[tuple[float, float]]:
             place = float(np.interp(middle, face[line][order], path[line][order]))
             found.append((place, float(loads[line])))
     return found
-
-
-def _middle(mesh: xr.Dataset) -> float:
-    low, high = (float(pick(mesh["face_position"])) for pick in (np.nanmin, np.nanmax))
-    return (low + high) / 2
 
 
 def _values(mesh: xr.Dataset, name: str, number: int) -> FloatArray:

@@ -297,7 +297,10 @@ def _draw(ax: Axes, layout: _Layout, flow: _Flow) -> None:
             _upright(ax, layout, flow, x - aside, ends, left=layout.has_housing)
         elif HOUSING in nodes:
             at = x + 0.4 * layout.width
-            _bridge(ax, layout, flow, at)
+            # a gap in the rail of the oil, through which heat reaches the housing
+            half, low = layout.broad(flow) / 2 + 0.05, rail - FLAT - 0.02
+            gap = Rectangle((at - half, low), 2 * half, 2 * FLAT + 0.04, color=PAPER, zorder=3)
+            ax.add_patch(gap)
             ends = {part: parts - TALL, HOUSING: shell + FLAT}
             _upright(ax, layout, flow, at, ends, middle=(rail + shell) / 2)
         else:
@@ -333,13 +336,6 @@ def _upright(
     at = x + aside * (broad / 2 + 0.06)
     y = max(start, tip) - 0.4 * abs(tip - start) if middle is None else middle
     _write(ax, at, y, _power(flow.watts), layout.letters, ha=side, zorder=6)
-
-
-def _bridge(ax: Axes, layout: _Layout, flow: _Flow, x: float) -> None:
-    """A gap in the rail of the oil, through which heat reaches the housing."""
-    half = layout.broad(flow) / 2 + 0.05
-    corner = x - half, layout.rows[1] - FLAT - 0.02
-    ax.add_patch(Rectangle(corner, 2 * half, 2 * FLAT + 0.04, color=PAPER, zorder=3))
 
 
 def _across(ax: Axes, layout: _Layout, flow: _Flow) -> None:

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.show.plots.style import COLOURS, styled_figure
@@ -31,7 +30,9 @@ def measured_figure(comparison: MeasuredComparison) -> Figure:
     """Parity, residuals over speed, torque and temperature, and residuals point by point."""
     with styled_figure(2, 3, _title(comparison), panel=PANEL) as (figure, axes):
         plot_parity(comparison, axes[0, 0])
-        plot_points(comparison, _joined(figure, axes[1, 1:]))
+        for ax in axes[1, 1:]:  # one in their place
+            ax.remove()
+        plot_points(comparison, figure.add_subplot(axes[1, 1].get_gridspec()[1, 1:]))
         for name, ax in zip(OPERATING, axes.flat[1:4], strict=True):
             if name in comparison.measured.conditions:
                 plot_residuals(comparison, name, ax)
@@ -64,15 +65,6 @@ def plot_parity(comparison: MeasuredComparison, ax: Axes) -> Axes:
         ylim=line,
     )
     return ax
-
-
-def _joined(figure: Figure, row: NDArray[Any]) -> Axes:
-    """One Axes in place of the last ones of a figure."""
-    grid = row[0].get_gridspec()
-    for ax in row:
-        ax.remove()
-    joined: Axes = figure.add_subplot(grid[-1, -len(row) :])
-    return joined
 
 
 def plot_points(comparison: MeasuredComparison, ax: Axes) -> Axes:

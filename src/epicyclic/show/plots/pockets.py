@@ -184,20 +184,14 @@ def section_figure(
             section.draw(ax, step % section.stride)
             section.follow(ax, step)
             ax.set_title(f"roll angle {section.roll[0, step]:.1f}°")
-        _name_members(mesh, axes[0, 0])
-        figure.legend(
-            handles=_legend(mesh), loc="outside lower right", ncols=COLUMNS, frameon=False
-        )
+        names, ax = mesh["tooth"].to_numpy(), axes[0, 0]
+        for name, height, place in zip(names, (0.03, 0.97), ("bottom", "top"), strict=True):
+            ax.text(0.5, height, name, transform=ax.transAxes, ha="center", va=place, zorder=4)
+        handles = _legend(mesh)
+        figure.legend(handles=handles, loc="outside lower right", ncols=COLUMNS, frameon=False)
         row = PANEL_WIDTH * section.aspect + 0.3
         figure.set_size_inches(COLUMNS * PANEL_WIDTH, len(axes) * row + 0.9)
     return figure
-
-
-def _name_members(mesh: xr.Dataset, ax: Axes) -> None:
-    for name, height, place in zip(
-        mesh["tooth"].to_numpy(), (0.03, 0.97), ("bottom", "top"), strict=True
-    ):
-        ax.text(0.5, height, name, transform=ax.transAxes, ha="center", va=place, zorder=4)
 
 
 def _legend(mesh: xr.Dataset) -> list[Patch | Line2D]:
@@ -393,14 +387,11 @@ class MeshScene:
 
     def __init__(self, mesh: xr.Dataset) -> None:
         helical = float(mesh["twist"]) != 0.0
-        self._sections = [
-            Section(mesh, end) for end in (("first", "last") if helical else ("first",))
-        ]
+        ends = ("first", "last") if helical else ("first",)
+        self._sections = [Section(mesh, end) for end in ends]
         pressure = mesh["pressure"].to_numpy()
         largest = float(np.nanmax(np.abs(pressure)))
-        scale, unit = next(
-            (scale, unit) for scale, unit, least in PRESSURE_UNITS if largest >= least
-        )
+        scale, unit, _ = next(it for it in PRESSURE_UNITS if largest >= it[2])
         self._pressure = scale * pressure
         shades = mpl.colormaps[PRESSURE_MAP].with_extremes(bad=NO_POCKET)
         self._colours = ScalarMappable(Normalize(-scale * largest, scale * largest), shades)
@@ -417,9 +408,8 @@ class MeshScene:
                 axes[0, 1].set_title("Last end of the face")
             else:
                 axes[0, 1].remove()
-            bar = figure.colorbar(
-                self._colours, ax=figure.axes, label=f"pressure above ambient, {unit}"
-            )
+            label = f"pressure above ambient, {unit}"
+            bar = figure.colorbar(self._colours, ax=figure.axes, label=label)
             bar.ax.set_ylim(np.nanmin(self._pressure), np.nanmax(self._pressure))
             self._map = _PressureMap(mesh, axes[1, 0])
             self._dot = plot_power(mesh, axes[1, 1]).plot([], [], "o", color="black")[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -319,23 +320,16 @@ def _fit_problems(
 def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> BoolArray:
     """Which points the fit must not see."""
     count = len(table)
+    chosen = np.zeros(count, dtype=bool)
     if hold_out is None:
-        return np.zeros(count, dtype=bool)
-    share = _share(hold_out)
-    if share is not None:
-        chosen = np.zeros(count, dtype=bool)
-        drawn = np.random.default_rng(seed).permutation(count)[: round(share * count)]
-        chosen[drawn] = True
         return chosen
-    return rows_where(table, str(hold_out), "hold_out")
-
-
-def _share(hold_out: str | float) -> float | None:
-    try:
+    share = math.nan
+    with suppress(ValueError):
         share = float(hold_out)
-    except ValueError:
-        return None
-    return share if 0 < share < 1 else None
+    if not 0 < share < 1:
+        return rows_where(table, str(hold_out), "hold_out")
+    chosen[np.random.default_rng(seed).permutation(count)[: round(share * count)]] = True
+    return chosen
 
 
 def make_parameters(

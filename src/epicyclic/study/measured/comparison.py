@@ -76,16 +76,11 @@ def uncertainty_tables(fit: Fit) -> dict[str, dict[str, Any]]:
 
 def _distribution(item: FittedParameter) -> dict[str, Any]:
     """What [uncertainty] says of a value; that of a model is a factor on its losses."""
-    if not item.key.startswith(MODEL_FORM):
-        return {"normal": _stated(item)}
-    return {"lognormal_factor": float(f"{math.exp(item.uncertainty / item.value):.6g}")}
-
-
-def _stated(item: FittedParameter) -> Any:
-    """A standard uncertainty as a case file has it."""
+    if item.key.startswith(MODEL_FORM):
+        return {"lognormal_factor": float(f"{math.exp(item.uncertainty / item.value):.6g}")}
     number = float(f"{item.uncertainty:.6g}")
     unit = "K" if item.unit == CELSIUS.display else item.unit
-    return f"{number!r} {unit}" if unit else number
+    return {"normal": f"{number!r} {unit}" if unit else number}
 
 
 def _without(table: dict[str, Any], keys: Collection[str]) -> dict[str, Any]:

@@ -104,10 +104,11 @@ def _curved(residuals: Residuals, found: Linearised) -> Iterator[str]:
     if not (found.is_separable and expected > 0):
         return
     pairs = {int(parameter): found.ends(int(parameter)) for parameter in found.free}
+    low, high = residuals.bounds.T
     inside = {
         parameter: pair
         for parameter, pair in pairs.items()
-        if all(_is_inside(residuals.parameters, end) for end in pair)
+        if all(((low <= end) & (end <= high)).all() for end in pair)
     }
     deviations = residuals.at([end for pair in inside.values() for end in pair])
     growth = [(float(one @ one) - found.sum_of_squares) / expected for one in deviations]
@@ -119,13 +120,6 @@ def _curved(residuals: Residuals, found: Linearised) -> Iterator[str]:
                 f"{grown[0]:.2g} and {grown[1]:.2g} times as much as expected, so the interval is "
                 "rough."
             )
-
-
-def _is_inside(parameters: Sequence[Parameter], scaled: FloatArray) -> bool:
-    """True if all of `scaled` are within the bounds."""
-    return all(
-        item.ends[0] <= z <= item.ends[1] for item, z in zip(parameters, scaled, strict=True)
-    )
 
 
 # `scipy.optimize.least_squares` with its trust-region-reflective method, which keeps to bounds.
