@@ -22,11 +22,15 @@ from epicyclic.cli.common import (
     output_option,
     plot_option,
     point_of,
+    print_tables,
+    progress_bar,
     set_option,
     show,
     tell_given,
+    working,
 )
 from epicyclic.errors import EXIT_NO_SOLUTION, Status, one_problem
+from epicyclic.files import check_place
 from epicyclic.messages import either
 
 if TYPE_CHECKING:
@@ -89,8 +93,6 @@ def run(
 @contextmanager
 def telling_contacts(case: Case) -> Iterator[None]:
     """A progress bar: of the contacts of each mesh if they are solved, which takes minutes."""
-    from epicyclic.cli.common import progress_bar, working
-
     if case.models.friction == "ehl-direct":
         from epicyclic.losses.friction import contact_progress
 
@@ -114,22 +116,22 @@ def check(case: str, changes: tuple[str, ...]) -> None:
     """
     from epicyclic.show.data_sheet import data_sheet, reservations, state_tables
     from epicyclic.show.result_tables import details
-    from epicyclic.show.terminal import Sentence, as_on_page, spaced, terminal
+    from epicyclic.show.terminal import Sentence, as_on_page, spaced
 
     loaded = load_with(case, changes)
     found = list(reservations(loaded))
     kind = loaded.kind.replace("_", " ")
     points = "1 point" if len(found) == 1 else f"{len(found)} points"
     echo(f"{case}: a valid {kind} case{f'; {points} to check:' if found else '.'}")
-    terminal().print(*map(Sentence, found), end="")
+    print_tables(*map(Sentence, found), end="")
     if loaded.lubrication is not None:
         from epicyclic.build.models import set_cases
         from epicyclic.build.result import oil_supplies
 
         for name, supply in oil_supplies(set_cases(loaded)):
-            terminal().print(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
+            print_tables(f"Lubrication{f' of {name}' if name else ''}: {supply.text}.")
     states = [state_tables(loaded)] if loaded.kind == "train" else []
-    terminal().print(spaced(data_sheet(loaded), *states, *map(as_on_page, details(loaded))))
+    print_tables(spaced(data_sheet(loaded), *states, *map(as_on_page, details(loaded))))
 
 
 @click.command()
@@ -139,7 +141,6 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Compare all friction models on a case, with their ranges and a recommendation."""
     from epicyclic.show.details import friction_table
-    from epicyclic.show.terminal import terminal
     from epicyclic.study.friction import compare_friction
 
     loaded = load_with(case, changes)
@@ -147,7 +148,7 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
         return
     with telling_contacts(loaded):
         rows = compare_friction(loaded)
-    terminal().print(friction_table(rows))
+    print_tables(friction_table(rows))
     if plot is not None:
         from epicyclic.show.plots.mesh import friction_figure
 
@@ -161,12 +162,11 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
 def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Show the tooth contact: load, transmission error, stiffness, pressure, friction power."""
     from epicyclic.show.studies import mesh_tables
-    from epicyclic.show.terminal import terminal
     from epicyclic.study.meshes import mesh_details
 
     loaded = load_with(case, changes)
     meshes = mesh_details(loaded)
-    terminal().print(mesh_tables(meshes))
+    print_tables(mesh_tables(meshes))
     if plot is not None:
         from epicyclic.show.plots.mesh import mesh_figure
 
@@ -212,7 +212,6 @@ def heat(
     epicyclic heat talbot-2012 --set "thermal.oil_flow=4 l/min"
     epicyclic heat talbot-2012 --solve oil_flow --target "100 degC"
     """
-    from epicyclic.cli.common import progress_bar
     from epicyclic.study.heat import solve_for, with_network
     from epicyclic.study.solve import solve
 
@@ -297,10 +296,7 @@ def warm_up(
     Temperatures follow from the heat network, which needs thermal.oil_volume and, with a housing,
     thermal.housing.mass.
     """
-    from epicyclic.cli.common import progress_bar
-    from epicyclic.files import check_place
     from epicyclic.show.studies import warm_up_rows, warm_up_tables
-    from epicyclic.show.terminal import terminal
     from epicyclic.study.maps.warm_up import warm_up as compute
     from epicyclic.study.sweeps.run import FORMATS, write_dataset
 
@@ -314,7 +310,7 @@ def warm_up(
         data = compute(loaded, duration, start, cycle=cycle, progress=progress)
     if output is not None:
         write_dataset(data, output, warm_up_rows)
-    terminal().print(warm_up_tables(data))
+    print_tables(warm_up_tables(data))
     if plot is not None:
         from epicyclic.show.plots.heat_network import warm_up_figure
 

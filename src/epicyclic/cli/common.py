@@ -206,12 +206,17 @@ def show(
     if json_file == "-":
         click.echo(as_json())
         return
-    from epicyclic.show.terminal import terminal
-
     if json_file is not None:
         write_file(Path(json_file), as_json() + "\n")
         echo(f"Wrote {json_file}.")
-    terminal().print(tables())
+    print_tables(tables())
+
+
+def print_tables(*parts: RenderableType, end: str = "\n") -> None:
+    """Print tables and sentences of results."""
+    from epicyclic.show.terminal import terminal
+
+    terminal().print(*parts, end=end)
 
 
 def tell_given(case: Case, doing: str, err: bool = False) -> bool:

@@ -18,15 +18,18 @@ from epicyclic.cli.common import (
     load_with,
     output_option,
     plot_option,
+    print_tables,
+    progress_bar,
     runner_options,
     set_option,
     shard_option,
     show,
     table_options,
+    tell,
 )
 from epicyclic.cli.many import Write, compute
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
-from epicyclic.files import write_file
+from epicyclic.files import check_place, write_file
 from epicyclic.messages import refused
 from epicyclic.units import NUMBER
 
@@ -136,7 +139,6 @@ def compare(
 
     A shard keeps its points beside the file of --json, which 'epicyclic merge' writes.
     """
-    from epicyclic.cli.common import progress_bar, tell
     from epicyclic.show.studies import measured_tables
     from epicyclic.study.measured.compare import compare_measured
     from epicyclic.study.measured.rig import Rig
@@ -193,17 +195,14 @@ def comparison_writer(plan: ComparisonPlan, output: Path, plot: str | None = Non
 
     Raises `InputError` if it cannot.
     """
-    from epicyclic.files import check_place
-
     check_place(output)
 
     def write(rows: Rows) -> str:
         from epicyclic.show.studies import measured_tables
-        from epicyclic.show.terminal import terminal
 
         comparison = plan.comparison(rows)
         write_file(output, comparison.to_json() + "\n")
-        terminal().print(measured_tables(comparison))
+        print_tables(measured_tables(comparison))
         if plot is not None:
             _draw(comparison, Path(plot))
         return f"Wrote {output}."

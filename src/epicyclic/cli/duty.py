@@ -16,6 +16,7 @@ from epicyclic.cli.common import (
     json_option,
     load_with,
     output_option,
+    progress_bar,
     runner_options,
     set_option,
     shard_option,
@@ -25,7 +26,7 @@ from epicyclic.cli.common import (
 )
 from epicyclic.cli.many import Write, compute
 from epicyclic.errors import Problem, raise_any
-from epicyclic.files import write_file
+from epicyclic.files import check_place, write_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -90,7 +91,6 @@ def duty(
     A shard computes its share of the points of that map and keeps them beside the file of -o or
     --json, which 'epicyclic merge' writes.
     """
-    from epicyclic.cli.common import progress_bar
     from epicyclic.study.maps.cycle import open_cycle
     from epicyclic.study.maps.duty import parse_temperatures, with_distance
 
@@ -135,7 +135,6 @@ def duty_writer(
 
     The cycle is that of this name here, else that in `folder`.
     """
-    from epicyclic.files import check_place
     from epicyclic.study.maps.duty import check_same
 
     check_ending("-o", output, (*_OUTPUTS, _JSON))
@@ -170,7 +169,6 @@ def duty_writer(
 def _result(
     data: xr.Dataset, cycle: Cycle, celsius: tuple[float, ...] | None, clamp: bool, runner: Runner
 ) -> xr.Dataset:
-    from epicyclic.cli.common import progress_bar
     from epicyclic.study.maps.duty import add_up, make_duty
 
     with progress_bar("rows") as progress:
@@ -186,8 +184,6 @@ def _check_options(
     output: Path | None,
     runner: Runner,
 ) -> None:
-    from epicyclic.files import check_place
-
     problems = []
     if Path(map_or_case).suffix == _MAP_SUFFIX:
         given = (("--set", changes), ("--map", map_file), ("--shard", runner.shard))
@@ -232,7 +228,6 @@ def _map(
     runner: Runner,
 ) -> xr.Dataset:
     """The map that is named, or one of the case that is."""
-    from epicyclic.cli.common import progress_bar
     from epicyclic.show.record import open_map
     from epicyclic.study.maps.duty import cycle_map
 

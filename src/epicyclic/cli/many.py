@@ -18,6 +18,7 @@ from epicyclic.cli.common import (
     echo,
     load_with,
     output_option,
+    progress_bar,
     runner_options,
     set_option,
     shard_option,
@@ -308,7 +309,6 @@ def compute(
 
     Those of a shard are kept only, with `how` they are to be written.
     """
-    from epicyclic.cli.common import progress_bar
     from epicyclic.study.sweeps.runner import Journal, fingerprint, share_of
 
     mark = fingerprint(plan)

@@ -17,13 +17,16 @@ from epicyclic.cli.common import (
     output_option,
     plot_option,
     point_of,
+    print_tables,
+    progress_bar,
     runner_options,
     set_option,
     shard_option,
     temperature_option,
+    working,
 )
 from epicyclic.cli.many import Write, check_values, compute, parse_axes
-from epicyclic.files import write_file
+from epicyclic.files import check_place, write_file
 from epicyclic.units import percent
 
 if TYPE_CHECKING:
@@ -52,9 +55,7 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     epicyclic pockets table CASE    pocketing loss over speed and temperature, to a file
     epicyclic pockets study CASE    pocketing loss over helix, width, backlash and module
     """
-    from epicyclic.cli.common import working
     from epicyclic.show.studies import pocket_tables
-    from epicyclic.show.terminal import terminal
     from epicyclic.study.pockets import pocket_details
 
     if animate is not None:
@@ -62,7 +63,7 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     loaded = load_with(case, changes)
     with working():
         meshes = pocket_details(loaded)
-    terminal().print(pocket_tables(meshes))
+    print_tables(pocket_tables(meshes))
     for key, mesh in meshes.items():
         if plot is not None:
             from epicyclic.show.plots.pockets import pocket_figure, section_figure
@@ -70,7 +71,6 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
             draw(pocket_figure(mesh), beside(plot, key), point_of(loaded))
             draw(section_figure(mesh), beside(plot, f"{key}-section"), point_of(loaded))
         if animate is not None:
-            from epicyclic.cli.common import progress_bar
             from epicyclic.show.plots.pockets import pocket_animation
 
             with progress_bar("frames") as progress:
@@ -116,7 +116,6 @@ def pockets_table(
 
 def table_writer(plan: TablePlan, output: Path) -> Write:
     """Writes tables; raises `InputError` if it cannot."""
-    from epicyclic.files import check_place
     from epicyclic.study.pocketing_table import table_dataset
     from epicyclic.study.sweeps.run import write_dataset
 

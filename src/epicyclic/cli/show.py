@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,11 +18,14 @@ from epicyclic.cli.common import (
     load_with,
     output_option,
     parse_size,
+    print_tables,
+    progress_bar,
     set_option,
     write_page,
 )
 from epicyclic.errors import one_problem
 from epicyclic.files import write_file
+from epicyclic.messages import did_you_mean
 
 if TYPE_CHECKING:
     from epicyclic.show.plots.catalogue import Stored
@@ -31,9 +35,8 @@ if TYPE_CHECKING:
 def cases() -> None:
     """List the built-in cases and their variants."""
     from epicyclic.show.data_sheet import case_table
-    from epicyclic.show.terminal import terminal
 
-    terminal().print(case_table())
+    print_tables(case_table())
 
 
 @click.command()
@@ -41,17 +44,15 @@ def cases() -> None:
 def oils(name: str | None) -> None:
     """List the built-in oils, or show one with the source of every value."""
     from epicyclic import library
-    from epicyclic.messages import did_you_mean
     from epicyclic.show.data_sheet import oil_sheet, oil_table
-    from epicyclic.show.terminal import terminal
 
     if name is None:
-        terminal().print(oil_table())
+        print_tables(oil_table())
         return
     if name not in library.names("oils"):
         remedy = did_you_mean(name, library.names("oils")) or "See 'epicyclic oils'."
         raise one_problem("NAME", repr(name), "is not a built-in oil.", remedy)
-    terminal().print(oil_sheet(name))
+    print_tables(oil_sheet(name))
 
 
 @click.command()
@@ -85,8 +86,6 @@ def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
 @click.command()
 def schema() -> None:
     """Print the JSON Schema of case files."""
-    import json
-
     from epicyclic.case.case import case_schema
 
     click.echo(json.dumps(case_schema(), indent=2))
@@ -105,8 +104,6 @@ def report(source: str, changes: tuple[str, ...], output: Path, size: str | None
 
     FILE.nc is what run --save, map, sweep or uncertainty wrote; a CASE is solved first.
     """
-    from epicyclic.cli.common import progress_bar
-
     check_page(output)
     millimetres = None if size is None else parse_size(size)
     stored = _stored(source, changes)

@@ -16,12 +16,15 @@ from epicyclic.cli.common import (
     load_with,
     output_option,
     plot_option,
+    print_tables,
+    progress_bar,
     runner_options,
     set_option,
     temperature_option,
 )
 from epicyclic.cli.many import check_values, compute, parse_axes
 from epicyclic.errors import Problem, raise_any
+from epicyclic.files import check_place
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -78,8 +81,6 @@ def uncertainty(
     [uncertainty] in the case, or estimates; an input has the same error at all points of a map or
     cycle. With -o, an interrupted computation continues where it stopped.
     """
-    from epicyclic.files import check_place
-    from epicyclic.show.terminal import terminal
     from epicyclic.show.uncertainty_tables import uncertainty_tables
 
     if output is not None:
@@ -98,7 +99,7 @@ def uncertainty(
     else:
         study = _study(loaded, values, samples, seed, runner)
     data = _computed(study, output, runner)
-    terminal().print(uncertainty_tables(data))
+    print_tables(uncertainty_tables(data))
     if plot is not None:
         _draw(data, plot)
 
@@ -137,7 +138,6 @@ def _study(
 ) -> Study:
     """The study of a case, or of a map, which is computed first if it is not given."""
     from epicyclic.case.case import Case
-    from epicyclic.cli.common import progress_bar
     from epicyclic.study.bands.plan import check_samples
     from epicyclic.study.bands.points import map_study
     from epicyclic.study.bands.study import uncertainty_study
@@ -166,7 +166,6 @@ def _cycle_study(
     runner: Runner,
 ) -> Study:
     from epicyclic.case.case import Case
-    from epicyclic.cli.common import progress_bar
     from epicyclic.study.bands.points import cycle_study
     from epicyclic.study.maps.cycle import open_cycle
     from epicyclic.study.maps.duty import cycle_map, parse_temperatures
@@ -194,8 +193,6 @@ def _draw(data: xr.Dataset, plot: Path) -> None:
 
 
 def _computed(study: Study, output: Path | None, runner: Runner) -> xr.Dataset:
-    from epicyclic.cli.common import progress_bar
-
     if output is None:
         with progress_bar("samples") as progress:
             return study.dataset(replace(runner, progress=progress).run(study.plan))
@@ -230,8 +227,6 @@ def compare_cases(first: str, second: str, samples: int, seed: int, runner: Runn
 
     Inputs that both cases share are drawn once for both.
     """
-    from epicyclic.cli.common import progress_bar
-    from epicyclic.show.terminal import terminal
     from epicyclic.show.uncertainty_tables import pair_tables
     from epicyclic.study.bands.compare_cases import compare_cases as compare
 
@@ -245,4 +240,4 @@ def compare_cases(first: str, second: str, samples: int, seed: int, runner: Runn
             dask=runner.dask,
             progress=progress,
         )
-    terminal().print(pair_tables(data))
+    print_tables(pair_tables(data))

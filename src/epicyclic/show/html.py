@@ -30,6 +30,7 @@ from epicyclic.show.result_page import (
     sweep_key_figures,
     sweep_sections,
 )
+from epicyclic.show.summary import head_figures
 from epicyclic.show.uncertainty_tables import band_figures, uncertainty_items
 from epicyclic.study.bands.advice import known_of
 from epicyclic.study.maps.tables import map_inputs
@@ -108,8 +109,6 @@ def page_html(**content: Any) -> str:
 
 
 def _result_content(record: ResultRecord, drawings: Drawings) -> dict[str, Any]:
-    from epicyclic.show.summary import head_figures  # builds on the terminal
-
     result = record.result
     known = next(map(known_of, record.group("uncertainty").values()), None)
     created = f"{datetime.fromisoformat(record.created):%Y-%m-%d %H:%M} UTC"

@@ -86,52 +86,24 @@ def power_flow(result: Result) -> TrainFlow:
     members, train = result.flow.members, result.train
     speeds = {name: member.speed for name, member in members.items()}
     torques = {name: member.torque for name, member in members.items()}
+    stages: Mapping[str, Mapping[str, float]]  # Torque that each takes from each shaft. [N m]
+    clutches: Mapping[str, float]  # Torque through each closed one. [N m]
+    rolling: Mapping[str, float]  # Of each mesh. [W]
+    shafts: Mapping[str, Sequence[str]]  # Members of each that has a name of its own.
     if train is None:
         stage = "gear set" if result.kind == "planetary" else "gear pair"
-
-        def power_of(key: str) -> float:
-            return members[key].power
-
-        return _flow(
-            speeds,
-            torques,
-            {stage: torques},
-            {stage: result.total},
-            ends=(max(members, key=power_of), min(members, key=power_of)),
-            shafts={name: (f"{stage}.{name}",) for name in torques},
-        )
-    return _flow(
-        speeds,
-        torques,
-        train.stages,
-        result.stage_losses,
-        clutches=train.clutches,
-        rolling=train.rolling,
-        ends=(train.input, train.output),
-        shafts=result.inputs.get("shafts", {}),
-    )
-
-
-def _flow(
-    speeds: Mapping[str, float],  # Speeds of every shaft, and torques from outside. [rad/s], [N m]
-    torques: Mapping[str, float],  # Speeds of every shaft, and torques from outside. [rad/s], [N m]
-    # Torque that each stage takes from each shaft. [N m]
-    stages: Mapping[str, Mapping[str, float]],
-    losses: Mapping[str, float],  # Losses of each stage. [W]
-    *,
-    clutches: Mapping[str, float] | None = None,  # Torque through each closed clutch. [N m]
-    rolling: Mapping[str, float] | None = None,  # Rolling power of each mesh. [W]
-    ends: Sequence[str] = (),  # Input and output shaft.
-    # Members of each shaft that has a name of its own.
-    shafts: Mapping[str, Sequence[str]] | None = None,
-) -> TrainFlow:
-    """The power flow of the numbers that a result holds."""
-    joined = clutches or {}
-    groups = _groups(speeds, joined)
+        powers = {name: member.power for name, member in members.items()}
+        ends = max(powers, key=powers.__getitem__), min(powers, key=powers.__getitem__)
+        stages, losses, clutches, rolling = {stage: torques}, {stage: result.total}, {}, {}
+        shafts = {name: (f"{stage}.{name}",) for name in torques}
+    else:
+        ends = train.input, train.output
+        stages, losses = train.stages, result.stage_losses
+        clutches, rolling, shafts = train.clutches, train.rolling, result.inputs.get("shafts", {})
     largest = max((abs(torque) for own in stages.values() for torque in own.values()), default=0.0)
     lines = {
-        "+".join(group): _line(group, speeds, torques, stages, joined, ends, NO_POWER * largest)
-        for group in groups
+        "+".join(group): _line(group, speeds, torques, stages, clutches, ends, NO_POWER * largest)
+        for group in _groups(speeds, clutches)
     }
     line_of = {shaft: key for key, line in lines.items() for shaft in line.shafts}
     links = []
@@ -142,10 +114,10 @@ def _flow(
         for key, own in found.items():
             torque = sum(taken[shaft] for shaft in own)
             speed = lines[key].speed if key in lines else 0.0
-            names = tuple(name for shaft in own for name in _members(stage, shaft, shafts or {}))
+            names = tuple(name for shaft in own for name in _members(stage, shaft, shafts))
             links.append(Link(stage, key, names, torque, torque * speed))
     of_meshes: dict[str, dict[str, float]] = {}
-    for mesh, power in (rolling or {}).items():
+    for mesh, power in rolling.items():
         stage, _, name = mesh.partition(".")
         of_meshes.setdefault(stage, {})[name] = power
     return TrainFlow(
@@ -172,16 +144,16 @@ def _line(
     torques: Mapping[str, float],
     stages: Mapping[str, Mapping[str, float]],
     clutches: Mapping[str, float],
-    ends: Sequence[str],
+    ends: tuple[str, str],
     none: float,
 ) -> Line:
     speed = speeds[group[0]]
     outside = sum(torques[shaft] for shaft in group)
     given = [outside, *(-sum(own.get(shaft, 0.0) for shaft in group) for own in stages.values())]
     passed = sum(torque for torque in given if torque > 0)
-    if ends and ends[0] in group:
+    if ends[0] in group:
         role = "input"
-    elif ends and ends[1] in group:
+    elif ends[1] in group:
         role = "output"
     elif speed == 0:
         role = "held" if abs(outside) > none else "at rest"

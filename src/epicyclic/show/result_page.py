@@ -35,6 +35,7 @@ from epicyclic.show.page import (
 from epicyclic.show.plots.loss_map import at_temperatures, left_out_line, map_at
 from epicyclic.show.plots.sweep import LEFT_OUT, shown_results
 from epicyclic.show.record import ResultRecord, sets_of
+from epicyclic.show.summary import all_warnings, first_remarks, first_warnings
 from epicyclic.show.uncertainty_tables import grid_table, uncertainty_items
 from epicyclic.study.friction import methods_of
 from epicyclic.study.maps.tables import map_case, map_inputs, statements
@@ -105,8 +106,6 @@ def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
 
 def _first(result: Result) -> Iterator[Item]:
     """What is missing or outside every model, and what weighs most, as on the first screen."""
-    from epicyclic.show.summary import first_remarks, first_warnings  # builds on the terminal
-
     remarks, warnings = tuple(first_remarks(result, None)), first_warnings(result)
     if remarks:
         yield Listing(remarks)
@@ -146,8 +145,6 @@ def _validity_lead(result: Result) -> str:
 
 
 def _validity(result: Result) -> tuple[Table | Listing, ...]:
-    from epicyclic.show.summary import all_warnings  # builds on the terminal
-
     items: list[Table | Listing] = []
     if result.flags:
         rows = tuple(

@@ -189,30 +189,23 @@ def _dataset(
     sound = np.isfinite(one[total]) & np.isfinite(two[total])
     if sound.sum() < 2:
         raise ConvergenceError("no pair of samples has a result in both cases.")
-    columns: dict[str, list[float]] = {
-        key: []
-        for key in (
-            "difference", "standard_uncertainty", "low", "high", "unpaired_uncertainty",
-            "probability",
-        )
-    }  # fmt: skip
+    keys = ("difference", "standard_uncertainty", "low", "high", "unpaired_uncertainty",
+            "probability")  # fmt: skip
+    table = np.full((len(names), len(keys)), np.nan)
     for row in range(len(names)):
         left, right = one[row, sound], two[row, sound]
         known = np.isfinite(left) & np.isfinite(right)
         apart = right[known] - left[known]
-        if apart.size < 2:
-            values = [np.nan] * len(columns)
-        else:
+        if apart.size > 1:
             whole = sample_summary(apart)
-            unpaired = float(np.hypot(left[known].std(ddof=1), right[known].std(ddof=1)))
-            values = [
+            unpaired = np.hypot(left[known].std(ddof=1), right[known].std(ddof=1))
+            table[row] = (
                 whole.mean, whole.standard_uncertainty, whole.low, whole.high, unpaired,
-                float((apart < 0).mean()),
-            ]  # fmt: skip
-        for key, value in zip(columns, values, strict=True):
-            columns[key].append(value)
+                (apart < 0).mean(),
+            )  # fmt: skip
     stated = [found[own] for found, own in zip(nominal, places, strict=True)]
-    variables: dict[str, Any] = {key: ("result", values) for key, values in columns.items()}
+    columns = zip(keys, table.T, strict=True)
+    variables: dict[str, Any] = {key: ("result", values) for key, values in columns}
     variables |= {"first": ("result", stated[0]), "second": ("result", stated[1])}
     units = ["1" if name == "efficiency" else "W" for name in names]
     used = versions()

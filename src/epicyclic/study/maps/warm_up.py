@@ -503,24 +503,25 @@ def _run(
         times = seconds * np.linspace(0, 1, TIMES) ** 2  # it is fastest at the beginning
         course = tables.transient(step.heating, step.flowing).integrate(begin, times)
         rows = [_lost(tables, step, values) for values in course.temperatures.T]
-        return _told(course, rows)
-    ends, temperatures, energies = [0.0], [begin], [np.zeros(2)]
-    rows = [_lost(tables, drive.steps[0], begin)]
-    for step in itertools.cycle(drive.steps):
-        end = min(ends[-1] + step.duration, seconds)
-        transient = tables.transient(step.heating, step.flowing)
-        part = transient.integrate(temperatures[-1], np.array([ends[-1], end]), TOLERANCE)
-        ends.append(end)
-        temperatures.append(part.temperatures[:, -1])
-        energies.append(energies[-1] + [part.gained[-1], part.given_off[-1]])
-        rows.append(_lost(tables, step, temperatures[-1]))
-        if progress is not None:
-            progress(round(end), round(seconds))
-        if end >= seconds:
-            break
-    gained, given_off = np.transpose(energies)
-    course = Course(np.array(ends), np.transpose(temperatures), gained, given_off)
-    return _told(course, rows)
+    else:
+        ends, temperatures, energies = [0.0], [begin], [np.zeros(2)]
+        rows = [_lost(tables, drive.steps[0], begin)]
+        for step in itertools.cycle(drive.steps):
+            end = min(ends[-1] + step.duration, seconds)
+            transient = tables.transient(step.heating, step.flowing)
+            part = transient.integrate(temperatures[-1], np.array([ends[-1], end]), TOLERANCE)
+            ends.append(end)
+            temperatures.append(part.temperatures[:, -1])
+            energies.append(energies[-1] + [part.gained[-1], part.given_off[-1]])
+            rows.append(_lost(tables, step, temperatures[-1]))
+            if progress is not None:
+                progress(round(end), round(seconds))
+            if end >= seconds:
+                break
+        gained, given_off = np.transpose(energies)
+        course = Course(np.array(ends), np.transpose(temperatures), gained, given_off)
+    losses, efficiencies = zip(*rows, strict=True)
+    return _Told(course, np.transpose(losses), np.array(efficiencies))
 
 
 def _lost(tables: HeatTables, step: _Step, temperatures: FloatArray) -> tuple[FloatArray, float]:
@@ -528,11 +529,6 @@ def _lost(tables: HeatTables, step: _Step, temperatures: FloatArray) -> tuple[Fl
     heat, _ = tables.heat(step.heating).read(temperatures)
     coasting, _ = tables.heat(step.coasting).read(temperatures)
     return tables.losses(heat), step.efficiency(float(heat.sum()), float(coasting.sum()))
-
-
-def _told(course: Course, rows: Sequence[tuple[FloatArray, float]]) -> _Told:
-    losses, efficiencies = zip(*rows, strict=True)
-    return _Told(course, np.transpose(losses), np.array(efficiencies))
 
 
 def _runaway(tables: HeatTables, course: Course) -> ConvergenceError:
