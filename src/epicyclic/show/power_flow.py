@@ -166,7 +166,6 @@ def _line(
 
 
 def _members(stage: str, shaft: str, shafts: Mapping[str, Sequence[str]]) -> list[str]:
-    """The members of a set on a shaft."""
     prefix = f"{stage}." if stage else ""
     return [
         name.removeprefix(prefix)

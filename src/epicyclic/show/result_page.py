@@ -178,7 +178,6 @@ def _number(value: float | None) -> str:
 
 
 def _heat(result: Result, drawings: Drawings) -> tuple[Item, ...]:
-    """Temperatures, and the paths of the heat."""
     if result.heat is None:
         return ()
     heat = result.heat

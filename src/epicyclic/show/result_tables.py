@@ -241,7 +241,6 @@ def oil_table(result: Result) -> Iterable[Table]:
 
 
 def _figure_table(title: str, part: str, source: DataclassInstance) -> Table:
-    """Figures of one part."""
     rows = tuple(
         (Cell(it.label), _figure(it, f"{part}.{it.key}"), Cell(unit_text(it.unit)))
         for it in figures(source)
@@ -250,7 +249,6 @@ def _figure_table(title: str, part: str, source: DataclassInstance) -> Table:
 
 
 def _figure(it: Figure, place: str) -> Cell:
-    """The value of a figure."""
     if math.isnan(it.value):
         return Cell(MISSING)
     return number(it.value, place, text=error_text(it.value) if it.key in _ERRORS else "")

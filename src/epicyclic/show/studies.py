@@ -52,9 +52,8 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
     notes = _notes(meshes)
     parts += map(Sentence, notes)
     if any(mesh["transmission_error"].isnull().all() for mesh in meshes.values()):
-        parts.append(
-            Text(f'"{MISSING}": this load distribution gives no deflection; compliance does.')
-        )
+        told = f'"{MISSING}": this load distribution gives no deflection; compliance does.'
+        parts.append(Text(told))
     if any(mesh["film_ratio"].isnull().all() for mesh in meshes.values()):
         parts.append(Text(f'"{MISSING}": without motion there is no film and no friction power.'))
     return spaced(*parts)
@@ -334,9 +333,8 @@ def _correlation_table(fit: Fit) -> Table:
 
 
 def _fit_line(fit: Fit) -> str:
-    text = (
-        f"Weighted least squares, {fit.points} points, {fit.degrees_of_freedom} degrees of freedom"
-    )
+    free = fit.degrees_of_freedom
+    text = f"Weighted least squares, {fit.points} points, {free} degrees of freedom"
     if math.isfinite(fit.chi_squared):
         text += f", χ² {shown(fit.chi_squared, 4)}"
     text += f"; {fit.evaluations} computed points. {_about_intervals(fit)}"
@@ -365,9 +363,8 @@ def _about_intervals(fit: Fit) -> str:
 def fitted_comment(item: FittedParameter, fit: Fit) -> str:
     """What a case file says behind a calibrated value."""
     start = f"{shown(item.start)} {unit_text(item.unit)}".rstrip()
-    return (
-        f"{CALIBRATED}; {100 * fit.confidence:.4g} % interval: {_interval(item)}; before: {start}"
-    )
+    share = f"{100 * fit.confidence:.4g} %"
+    return f"{CALIBRATED}; {share} interval: {_interval(item)}; before: {start}"
 
 
 # Energies of a duty cycle as tables, for a terminal and for files.
@@ -394,10 +391,8 @@ def duty_tables(data: xr.Dataset) -> RenderableType:
 def _in_other_units(data: xr.Dataset) -> str:
     """What is lost in kWh, in W on average, and per distance if that is known."""
     lost, seconds = float(data["energy_lost"].sum()), float(data["duration"].sum())
-    text = (
-        f"Lost: {shown(lost / KILOJOULES_PER_KWH, 4)} kWh, {shown(1e3 * lost / seconds, 4)} W on "
-    )
-    text += f"average over {duration_text(seconds)}"
+    kwh, watts = shown(lost / KILOJOULES_PER_KWH, 4), shown(1e3 * lost / seconds, 4)
+    text = f"Lost: {kwh} kWh, {watts} W on average over {duration_text(seconds)}"
     if "distance" not in data:
         return f"{text}."
     per_km, distance = float(data["lost_per_distance"]), float(data["distance"])
@@ -427,7 +422,6 @@ def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
 
 
 def _states_table(data: xr.Dataset, decimals: int) -> Table:
-    """Energy of each state."""
     heads = ("", "entering", "leaving", "lost", "duration s", "efficiency")
     table = number_table("States: energy in kJ", *heads)
     for name in data["state"].values:
@@ -449,9 +443,8 @@ def _add_row(
 
 def _error_text(data: xr.Dataset, lost: float) -> str:
     """How far the energy lost is off, and what lies outside."""
-    error, spread = (
-        float(data[name]) for name in ("interpolation_error", "interpolation_standard_error")
-    )
+    error = float(data["interpolation_error"])
+    spread = float(data["interpolation_standard_error"])
     scatter = "" if math.isnan(spread) or not spread else f" ± {shown(spread, 2)}"
     part = f" ({percent(error / lost, 2, signed=True)} of the energy lost)" if lost else ""
     largest, outside = float(data["largest_deviation"]), float(data["share_outside"])

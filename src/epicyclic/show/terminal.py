@@ -61,16 +61,8 @@ class FittedTable(Table):
 
     def _part(self, block: Sequence[int], widths: Sequence[int], continued: bool) -> Table:
         """Some of the columns, in the style of the whole."""
-        part = Table(
-            title=None if continued else self.title,
-            title_justify=self.title_justify,
-            title_style=self.title_style,
-            header_style=self.header_style,
-            box=self.box,
-            pad_edge=self.pad_edge,
-            show_header=self.show_header,
-            show_edge=self.show_edge,
-        )
+        part = plain_table("")
+        part.title, part.show_header = None if continued else self.title, self.show_header
         chosen = [self.columns[place] for place in block]
         for column, width in zip(chosen, widths, strict=True):
             part.add_column(column.header, justify=column.justify, width=width, overflow="fold")

@@ -55,9 +55,7 @@ def arrangement_of(
     if sets - origins.keys():
         return None
     widths = {name: _millimetres(_table(inputs, name)["face_width"]) for name in gears}
-    middles, starts, assumed = _along(
-        inputs, sorted(sets, key=list(inputs["sets"]).index), on, widths
-    )
+    middles, starts, assumed = _along(inputs, list(inputs["sets"]), on, widths)
     moved = {
         name: gear.assign(
             center_x=gear["center_x"] + origins[own][0], center_y=gear["center_y"] + origins[own][1]
@@ -69,7 +67,6 @@ def arrangement_of(
 
 
 def _table(inputs: Mapping[str, Any], gear: str) -> Mapping[str, Any]:
-    """The table of a gear in the inputs."""
     name, _, own = gear.partition(".")
     table = inputs["sets"][name]
     found: Mapping[str, Any] = table.get(own) or table["gears"][own]
@@ -188,9 +185,8 @@ def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) 
             _rectangle(ax, place, (width, low, high), facecolor="white", hatch="xxxx", zorder=3)
         spans[shaft] += [middle - width / 2, middle + width / 2]
         bores[shaft] = min(2 * bore, bores.get(shaft, math.inf))
-    length = max(map(max, filter(None, spans.values()))) - min(
-        map(min, filter(None, spans.values()))
-    )
+    ends_of_all = [end for own in spans.values() for end in own]
+    length = max(ends_of_all) - min(ends_of_all)
     for shaft, own in spans.items():
         if shaft not in heights or not own or shaft == HOUSING:
             continue
@@ -218,7 +214,6 @@ def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) 
 
 
 def _millimetres(text: str) -> float:
-    """A length of the inputs."""
     return MILLIMETRE.to_display(MILLIMETRE.parse(text))
 
 
@@ -248,14 +243,8 @@ def _write_names(
         taken[height] = taken.get(height, 0) + 1
         place = min(own) - 1.5 * gap if is_left else max(own) + 1.5 * gap
         side = "right" if is_left else "left"
-        style: dict[str, Any] = {
-            "facecolor": "white",
-            "edgecolor": "none",
-            "alpha": 0.8,
-            "pad": 0.5,
-        }
         text = ax.text(place, height, in_words(shaft), ha=side, va="center", fontsize="small")
-        text.set_bbox(style)
+        text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
         letters = len(shaft) + 2  # with a gap to the axis
         ends.append((place, -letters if is_left else letters))
     return ends

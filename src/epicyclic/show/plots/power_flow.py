@@ -400,7 +400,6 @@ def _label_band(ax: Axes, piece: _Piece, x: float, y: float, half: float) -> Non
 
 
 def _draw_loss(ax: Axes, start: tuple[float, float], tip: float, width: float) -> None:
-    """An upright arrow of a loss."""
     x, y = start
     points = _ARROW.corners(y, tip, x, width, upright=True)
     ax.add_patch(Polygon(points, closed=True, color=LOST, lw=0, zorder=3.5))
@@ -413,9 +412,8 @@ def _draw_spine(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
     """What joins the boxes of a set to its card and its brakes, and the power within it."""
     links = layout.crossing(stage)
     lowest = GROUNDS if layout.grounds(stage) else layout.lanes[links[0].line]
-    ax.add_patch(
-        Rectangle((x - 0.11, lowest), 0.22, TOP - HEAD - lowest, color=BOX, lw=0, zorder=2)
-    )
+    spine = Rectangle((x - 0.11, lowest), 0.22, TOP - HEAD - lowest, color=BOX, lw=0, zorder=2)
+    ax.add_patch(spine)
     for piece in _rises(layout, stage):
         within = replace(piece, start=piece.start + layout.height, end=piece.end - layout.height)
         _draw_band(ax, layout, within, x, upright=True)
@@ -492,22 +490,14 @@ def _draw_grounds(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
     for number, link in enumerate(grounds):
         at = x + (number - (len(grounds) - 1) / 2) * step
         if len(grounds) > 1:
-            ax.add_patch(
-                Rectangle((min(x, at), GROUNDS - 0.03), abs(at - x), 0.06, color=BOX, zorder=2)
-            )
+            corner = min(x, at), GROUNDS - 0.03
+            ax.add_patch(Rectangle(corner, abs(at - x), 0.06, color=BOX, zorder=2))
         ax.add_patch(Rectangle((at - 0.03, GROUNDS - 0.22), 0.06, 0.22, color=INK, lw=0, zorder=3))
         ax.add_patch(Rectangle((at - 0.26, GROUNDS - 0.25), 0.52, 0.04, color=INK, lw=0, zorder=3))
         for stroke in range(5):
             right = at - 0.2 + 0.11 * stroke
-            ax.add_patch(
-                Polygon(
-                    [(right, GROUNDS - 0.25), (right - 0.1, GROUNDS - 0.37)],
-                    closed=False,
-                    ec=INK,
-                    fill=False,
-                    lw=1.1,
-                )
-            )
+            ends = [(right, GROUNDS - 0.25), (right - 0.1, GROUNDS - 0.37)]
+            ax.add_patch(Polygon(ends, closed=False, ec=INK, fill=False, lw=1.1))
         member = " + ".join(name.replace("_", " ") for name in link.members)
         held = link.line.replace("_", " ")
         name = member if held in (member, f"{stage}.{member}") else f"{member}, {held}"

@@ -130,7 +130,6 @@ class Cycle:
             yield Piece(speed, rows["torque"], temperature, state, duration)
 
     def _state_numbers(self, column: Any) -> FloatArray:
-        """Numbers of the states in a column."""
         place = {name: float(number) for number, name in enumerate(self.states)}
         codes, texts = _texts(column)
         return np.array([place.get(text, math.nan) for text in texts])[codes]

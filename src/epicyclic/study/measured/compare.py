@@ -340,12 +340,15 @@ def make_parameters(
     Raises `InputError` for keys that are unknown, hold no number, or have no start value.
     """
     chosen, taken = list(keys), set(varied)
-    found = [
-        _of_models(case, key, taken | set(chosen))
-        if key.startswith(MODEL_FORM)
-        else _not_zero(parameter_of(case, key, taken))
-        for key in chosen
-    ]
+    found = []
+    for key in chosen:
+        if key.startswith(MODEL_FORM):
+            item = _of_models(case, key, taken | set(chosen))
+        else:
+            item = parameter_of(case, key, taken)
+            if isinstance(item, Parameter) and item.start == 0:  # nothing to scale it by
+                item = no_start(item.key, "is 0 in the case")
+        found.append(item)
     problems = [item for item in found if isinstance(item, Problem)]
     raise_any(problems, "the fit")
     return tuple(item for item in found if isinstance(item, Parameter))
@@ -365,10 +368,3 @@ def _of_models(case: CaseTable, key: str, taken: set[str]) -> Parameter | Proble
         allowed = f"contains {both[0]}, which is fitted or varied too."
         return Problem(key, "", allowed, "Fit one of them.")
     return Parameter(key, "", 1.0, OFF_OPEN_BOUND, math.inf, factors)
-
-
-def _not_zero(item: Parameter | Problem) -> Parameter | Problem:
-    """The same unless it has no start value to be scaled by."""
-    if isinstance(item, Problem) or item.start != 0:
-        return item
-    return no_start(item.key, "is 0 in the case")

@@ -7,6 +7,7 @@ import os
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Self
 
@@ -96,10 +97,8 @@ class NearbyPoints(PointList):
 
     def _cases(self, indices: Sequence[int]) -> Iterable[Case]:
         for changes in flows_asked(self, indices).values():
-            try:
+            with suppress(InputError):  # the point reports it
                 yield self.case.updated(changes)
-            except InputError:
-                continue  # the point reports it
 
 
 _EXACT = {"numerics.pocket_interpolation": 0.0}
@@ -172,7 +171,6 @@ class MeasuredPoints:
         return Computed(losses, tuple(messages), tuple(rows.warnings[own]))
 
     def _loss(self, rows: Rows, unloaded: IntArray, name: str) -> FloatArray:
-        """A loss of all points."""
         if name == LOAD_DEPENDENT and self.load_dependent == AS_TESTED:
             return as_tested(rows, unloaded)
         return rows.numbers(name)
