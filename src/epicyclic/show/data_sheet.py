@@ -19,7 +19,7 @@ from epicyclic.show import page
 from epicyclic.show.page import MISSING, shown
 from epicyclic.show.result_tables import adjusted
 from epicyclic.show.terminal import as_on_page, plain_table, titled
-from epicyclic.study.data_sheet import DataSheet, GearSheet, MeshSheet, data_sheets, oil_at_inlet
+from epicyclic.study.data_sheet import DataSheet, GearSheet, MeshSheet, data_sheets
 from epicyclic.study.trains import StateKinematics, train_states
 from epicyclic.units import (
     CELSIUS,
@@ -176,10 +176,11 @@ def _table(
 
 def _oil(case: Case) -> str | None:
     """One line on the oil at the inlet."""
-    state = oil_at_inlet(case)
-    if state is None or case.lubricant is None:
+    temperature = case.operation.oil_inlet_temperature
+    if case.lubricant is None or temperature is None:
         return None
     oil = case.lubricant.oil
+    state = oil_state(oil, temperature)
     law = "Gold" if isinstance(oil.pressure_viscosity, GoldLaw) else "Roelands"
     return (
         f"Oil {oil.name} at {state.temperature - 273.15:.4g} °C: "

@@ -12,7 +12,6 @@ from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.measures import FlankTolerances
 from epicyclic.gears.mesh import Mesh, recommended_backlash
 from epicyclic.gears.stated import StatedGear, allowance_shift, allowances, tolerances_of
-from epicyclic.oil.oil import OilState, oil_state
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +60,14 @@ def data_sheets(case: Case) -> dict[str, DataSheet]:
     >>> round(sheet.meshes[0].mesh.transverse_contact_ratio, 2)
     1.36
     """
-    return {name: _sheet(gearing) for name, gearing in case.gearings.items() if gearing.computed}
-
-
-def _sheet(gearing: Gearing) -> DataSheet:
-    return DataSheet(
-        tuple(_gear_sheet(gearing, name, table) for name, table in gearing.tables.items()),
-        tuple(map(_mesh_sheet, gearing.geometries)),
-    )
+    return {
+        name: DataSheet(
+            tuple(_gear_sheet(gearing, gear, table) for gear, table in gearing.tables.items()),
+            tuple(map(_mesh_sheet, gearing.geometries)),
+        )
+        for name, gearing in case.gearings.items()
+        if gearing.computed
+    }
 
 
 def _gear_sheet(gearing: Gearing, name: str, table: StatedGear) -> GearSheet:
@@ -105,10 +104,8 @@ def _span(gear: Gear, table: StatedGear) -> tuple[int, float] | None:
 def _pins(gear: Gear, table: StatedGear) -> tuple[float, float] | None:
     pin = table.measuring_pin_diameter or measures.usual_pin(gear.rack)
     try:
-        radius, value = (
-            measures.pin_contact_radius(gear, pin),
-            measures.dimension_over_pins(gear, pin),
-        )
+        radius = measures.pin_contact_radius(gear, pin)
+        value = measures.dimension_over_pins(gear, pin)
     except ValueError:
         return None
     return (pin, value) if _on_flank(gear, radius) else None
@@ -130,11 +127,3 @@ def _mesh_sheet(mesh: Mesh) -> MeshSheet:
 def _sliding(own: float, other: float) -> float | None:
     """zeta = 1 - v_other/v_own, the specific sliding of DIN 3960; None at the base circle. [1]"""
     return 1 - other / own if own > 0 else None
-
-
-def oil_at_inlet(case: Case) -> OilState | None:
-    """Properties of the oil at the inlet temperature; None of a case without oil."""
-    temperature = case.operation.oil_inlet_temperature
-    if case.lubricant is None or temperature is None:
-        return None
-    return oil_state(case.lubricant.oil, temperature)

@@ -229,13 +229,6 @@ def _table_of(rows: Rows, index: int) -> FlowTable:
     )
 
 
-def _coordinate(
-    name: str, values: tuple[float | str, ...], unit: str
-) -> tuple[str, list[float | str], dict[str, str]]:
-    labels = {"speed": "speed of the input member", "temperature": "oil inlet temperature"}
-    return name, list(values), {"long_name": labels[name], "units": unit}
-
-
 def table_dataset(plan: TablePlan, rows: Rows) -> xr.Dataset:
     """The tables, and what they say at the speeds and temperatures of the plan."""
     import xarray as xr
@@ -245,14 +238,15 @@ def table_dataset(plan: TablePlan, rows: Rows) -> xr.Dataset:
         raise one_problem("", "", rows.failures[0], "Change the case.", case.source)
     made = [i for i, status in enumerate(rows.status) if status == Status.CONVERGED]
     tables = {families[i]: _table_of(rows, i) for i in made}
-    speed, temperature = plan.places.axes
     meshes = [duty.gears.key for duty in mesh_duties(case)]
-    coordinates = {
+    coordinates: dict[str, Any] = {
         "mesh": meshes,
         "driver": ("driver", list(_DRIVERS), {"long_name": "member that drives"}),
-        "speed": _coordinate("speed", speed.coordinate, speed.unit),
-        "temperature": _coordinate("temperature", temperature.coordinate, temperature.unit),
     }
+    labels = {"speed": "speed of the input member", "temperature": "oil inlet temperature"}
+    for (name, label), axis in zip(labels.items(), plan.places.axes, strict=True):
+        about = {"long_name": label, "units": axis.unit}
+        coordinates[name] = name, list(axis.coordinate), about
     both = (len(meshes), len(_DRIVERS))
     values = np.full((len(FLOW_NUMBERS), *both, *plan.places.shape), math.nan)
     flat = values.reshape(len(FLOW_NUMBERS), len(families), plan.places.size)

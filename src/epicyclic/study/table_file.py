@@ -457,14 +457,12 @@ def headers_of(names: Sequence[str], form: TableForm, units: Sequence[str] = ())
     units = units or [""] * len(names)
     known = [_recognised(name, unit) for name, unit in zip(names, units, strict=True)]
     exact = {one[0] for one in known if one and one[2]}
-    headers = [
-        f"{one[0]} [{one[1]}]" if one and one[1] else one[0] if one else _with_unit(name, unit)
-        for name, unit, one in zip(names, units, known, strict=True)
-    ]
-    headers = [
-        _with_unit(name, unit) if one and one[0] in exact and not one[2] else header
-        for header, name, unit, one in zip(headers, names, units, known, strict=True)
-    ]
+    headers = []
+    for name, unit, one in zip(names, units, known, strict=True):
+        if one is None or (one[0] in exact and not one[2]):
+            headers.append(_with_unit(name, unit))
+        else:
+            headers.append(_with_unit(*one[:2]))
     for wanted, given in form.columns.items():
         places = [i for i, name in enumerate(names) if _folded(name) == _folded(given)]
         places = places or [

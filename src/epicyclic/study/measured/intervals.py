@@ -15,6 +15,7 @@ from epicyclic.case.case import Case
 from epicyclic.case.keys import Parameter
 from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
 from epicyclic.study.bands.inputs import uncertain_values
+from epicyclic.study.bands.samples import standard_uncertainty
 from epicyclic.study.measured.residuals import STEP, Residuals
 from epicyclic.units import format_number
 
@@ -164,29 +165,16 @@ def profile_ends(residuals: Residuals, found: Linearised) -> FloatArray:
         for side in (0, 1)
         if not found.is_idle[parameter]
     }
-    asked: dict[tuple[int, int], FloatArray] = {}
-    for place, walk in walks.items():
-        _ask(asked, ends, place, walk)
-    while asked:  # all walks side by side: their points are computed in one go
-        places = list(asked)
-        for place, deviations in zip(places, residuals.at(list(asked.values())), strict=True):
-            _ask(asked, ends, place, walks[place], deviations)
+    answers: dict[tuple[int, int], Any] = dict.fromkeys(walks)  # to the first step there is none
+    while answers:  # all walks side by side: their points are computed in one go
+        asked = {}
+        for place, deviations in answers.items():
+            try:
+                asked[place] = walks[place].send(deviations)
+            except StopIteration as done:
+                ends[place] = done.value
+        answers = dict(zip(asked, residuals.at(list(asked.values())), strict=True))
     return ends
-
-
-def _ask(
-    asked: dict[tuple[int, int], FloatArray],
-    ends: FloatArray,
-    place: tuple[int, int],
-    walk: Walk,
-    deviations: FloatArray | None = None,
-) -> None:
-    """The next parameters that a walk asks for, or the end that it came to."""
-    try:
-        asked[place] = next(walk) if deviations is None else walk.send(deviations)
-    except StopIteration as done:
-        asked.pop(place, None)
-        ends[place] = done.value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -469,10 +457,7 @@ def reaches(case: Case, parameters: Sequence[Parameter]) -> FloatArray:
 def _reach(value: UncertainValue) -> float:
     if value.kind == "lognormal":
         return math.log(value.spread[0])
-    if value.kind == "normal":
-        return value.spread[0] / abs(value.value)
-    low, high = value.spread
-    return (high - low) / math.sqrt(12.0) / abs(value.value)
+    return standard_uncertainty(value) / abs(value.value)
 
 
 def combinations(
