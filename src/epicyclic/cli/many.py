@@ -5,8 +5,7 @@ from __future__ import annotations
 import glob
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -318,13 +317,22 @@ def compute(
     size, kept = len(share_of(plan, runner.shard)), len(journal.read())
     if kept:
         echo(f"Continuing from {kept} of {size} points in {journal.path}.", err=True)
-    with _kept_in(journal, size):
+    try:
         with progress_bar(noun) as progress:
             rows = replace(runner, journal=journal.path, progress=progress, output=how).run(plan)
         if runner.shard is None:
             finish(plan, rows, write, journal)
         else:
             echo(f"{size} of {plan.size} points are in {journal.path}.")
+    except (KeyboardInterrupt, Exception):
+        kept = len(journal.read())
+        if kept:
+            echo(
+                f"{kept} of {size} points kept in {journal.path}; give the same command again to "
+                "continue.",
+                err=True,
+            )
+        raise
 
 
 def finish(plan: Plan, rows: Rows, write: Write, journal: Journal | None = None) -> None:
@@ -369,22 +377,6 @@ def _tell_others(output: Path, own: Path) -> None:
                 "values, and is kept. Delete it if you do not need it.",
                 err=True,
             )
-
-
-@contextmanager
-def _kept_in(journal: Journal, size: int) -> Iterator[None]:
-    """Say what is left of a sweep that does not reach its end."""
-    try:
-        yield
-    except (KeyboardInterrupt, Exception):
-        kept = len(journal.read())
-        if kept:
-            echo(
-                f"{kept} of {size} points kept in {journal.path}; give the same command again to "
-                "continue.",
-                err=True,
-            )
-        raise
 
 
 def _print_failures(reasons: Sequence[str]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +13,6 @@ from rich.console import Group, JustifyMethod, RenderableType
 from rich.table import Column, Table
 from rich.text import Text
 
-from epicyclic.arrays import FloatArray
 from epicyclic.messages import one_line
 from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.page import MISSING, error_text, shown
@@ -180,13 +179,10 @@ def _extremes(mesh: xr.Dataset) -> Table:
     table = _table("Extremes", "", "value", "unit", "pocket of", "roll angle", "across the face")
     for label, name, pick in _EXTREMES_OF_POCKETS:
         values = mesh[name].to_numpy()
-        index = _place(np.abs(values), np.nanargmax) if pick is None else _place(values, pick)
+        place = np.nanargmax(np.abs(values)) if pick is None else pick(values)
+        index = tuple(map(int, np.unravel_index(int(place), values.shape)))
         table.add_row(label, *_at(mesh, name, index))
     return table
-
-
-def _place(values: FloatArray, pick: Callable[[FloatArray], Any]) -> tuple[int, ...]:
-    return tuple(map(int, np.unravel_index(int(pick(values)), values.shape)))
 
 
 def _at(mesh: xr.Dataset, name: str, index: tuple[int, ...]) -> Iterator[str]:
