@@ -21,6 +21,7 @@ from epicyclic.study.bands.advice import (
     known_of,
     limits_of,
     main_causes,
+    mean_shares,
     measurements_of,
 )
 from epicyclic.units import (
@@ -158,7 +159,7 @@ def map_band_tables(data: xr.Dataset) -> Iterator[Table | Listing]:
 
 def _limits(data: xr.Dataset) -> Iterator[str]:
     """What to do about the drivers that matter over the whole map, in the order of `_drivers`."""
-    total, mean = data.sel(result="total"), _mean_shares(data)
+    total, mean = data.sel(result="total"), mean_shares(data)
     width = total["high"] - total["low"]
     for driver in mean["driver"].values[:MOST_DRIVERS]:
         if mean.sel(driver=driver) <= LEAST:
@@ -173,14 +174,6 @@ def _limits(data: xr.Dataset) -> Iterator[str]:
             f"{name}: up to {format_number(float(alone.max()), 3)} W of the band, at {place}; "
             f"{advice}."
         )
-
-
-def _mean_shares(data: xr.Dataset) -> xr.DataArray:
-    """`mean_shares`, the largest first."""
-    from epicyclic.show.plots.losses import mean_shares  # which `run` need not load
-
-    mean = mean_shares(data)
-    return mean.sortby(-mean)
 
 
 def _place(data: xr.Dataset, point: xr.DataArray) -> str:
@@ -202,7 +195,7 @@ def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
 
 def _drivers(data: xr.Dataset) -> Table | Listing:
     """Shares of the variance of the total loss: where the loss is, and where they are largest."""
-    shares, mean, names = data["first_order"], _mean_shares(data), _names(data)
+    shares, mean, names = data["first_order"], mean_shares(data), _names(data)
     rows = []
     for driver in mean["driver"].values:
         own = shares.sel(driver=driver)

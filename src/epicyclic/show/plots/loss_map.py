@@ -22,6 +22,7 @@ from epicyclic.show.plots.style import (
     in_percent,
     label_of,
     legend_below,
+    span_text,
     title_of,
 )
 from epicyclic.study.operating import AXES, PLANE, STATE
@@ -97,17 +98,9 @@ def at_temperatures(data: xr.Dataset) -> dict[int, xr.Dataset]:
 def map_line(data: xr.Dataset) -> str:
     """Which points the map has, in one line."""
     axes = [name for name in AXES if name in data.dims]
-    spans = [f"{name} {_span(data[name])}" for name in axes]
+    spans = [f"{name} {span_text(data[name])}" for name in axes]
     line = f"at the {data.attrs['reference_shaft']}: {', '.join(spans)}"
     return "; ".join(filter(None, (line, left_out_line(data))))
-
-
-def _span(axis: xr.DataArray) -> str:
-    low, high = float(axis.min()), float(axis.max())
-    unit = unit_text(str(axis.attrs["units"]))
-    if low == high:
-        return f"{format_number(low)} {unit}"
-    return f"{format_number(low)} to {format_number(high)} {unit}"
 
 
 def limits_of(data: xr.Dataset, name: str) -> Limits:

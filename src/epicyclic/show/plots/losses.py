@@ -16,7 +16,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.plots.style import COLOURS, legend_below, write_beside
-from epicyclic.study.bands.advice import in_few_words
+from epicyclic.study.bands.advice import in_few_words, mean_shares
 from epicyclic.units import decimals_of, format_number, part_text, percent, power_unit
 
 if TYPE_CHECKING:
@@ -156,12 +156,6 @@ def banded(data: xr.Dataset) -> tuple[str, ...]:
     """Results whose bands are drawn: the efficiency if power is passed on."""
     low, high = (float(data[end].sel(result="efficiency")) for end in ("low", "high"))
     return ("total", "efficiency") if low < high else ("total",)
-
-
-def mean_shares(data: xr.Dataset) -> xr.DataArray:
-    """Shares of the variance of the total loss over a map, the mean where the loss is."""
-    shares, weights = data["first_order"], data["total"].fillna(0.0)
-    return (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
 
 
 def plot_shares(

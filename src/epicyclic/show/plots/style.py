@@ -220,6 +220,13 @@ def label_of(variable: xr.DataArray) -> str:
     return f"{name}, {unit}" if unit else name
 
 
+def span_text(values: xr.DataArray) -> str:
+    """Least and greatest of some numbers with their unit, ``"0 to 4000 rpm"``."""
+    ends = dict.fromkeys((float(values.min()), float(values.max())))
+    unit = unit_text(str(values.attrs.get("units", "1")))
+    return f"{' to '.join(map(format_number, ends))} {unit}".rstrip()
+
+
 def in_percent(values: xr.DataArray) -> xr.DataArray:
     """`values`, an efficiency in percent where anything comes out."""
     if values.name != "efficiency":

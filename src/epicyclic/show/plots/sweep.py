@@ -27,6 +27,7 @@ from epicyclic.show.plots.style import (
     label_of,
     legend_below,
     room_of,
+    span_text,
     title_of,
     write_beside,
 )
@@ -278,6 +279,4 @@ def _span(values: xr.DataArray) -> str:
         names = list(dict.fromkeys(map(str, values.values)))
         more = len(names) - MOST_NAMES
         return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
-    low, high = float(values.min()), float(values.max())
-    texts = [format_number(one) for one in ((low,) if low == high else (low, high))]
-    return f"{' to '.join(texts)} {_unit(values)}".rstrip()
+    return span_text(values)

@@ -77,6 +77,13 @@ def known_of(data: xr.Dataset) -> Known:
     )
 
 
+def mean_shares(data: xr.Dataset) -> xr.DataArray:
+    """Shares of the variance of the total loss over a map, the mean where the loss is, in order."""
+    shares, weights = data["first_order"], data["total"].fillna(0.0)
+    mean = (shares.fillna(0.0) * weights).sum(weights.dims) / weights.sum()
+    return mean.sortby(-mean)
+
+
 _KEY = re.compile(r"[\w.-]+\.[\w.-]+")
 _OF_ALL = ("sets", "gears", "operation", "models")  # Tables that the name of a key needs not.
 LEAST = 0.02
