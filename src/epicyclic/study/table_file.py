@@ -359,8 +359,8 @@ def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
                 _check_widths(zip(numbers.tolist(), rows, strict=True), width, cells.separator)
             columns = {}
             for header in chosen:
-                cells_of = pa.array([row[index[header]] for row in rows], pa.string())
-                columns[header] = pc.utf8_trim_whitespace(cells_of)
+                texts = pa.array([row[index[header]] for row in rows], pa.string())
+                columns[header] = pc.utf8_trim_whitespace(texts)
             yield Piece(numbers, columns)
 
     def batches(chosen: Sequence[str]) -> Iterator[Piece]:

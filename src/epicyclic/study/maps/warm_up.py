@@ -350,7 +350,8 @@ class _Step:
     # With which the losses, and the conductances, at the points of the grid add up to their means.
     # [1]
     heating: FloatArray
-    coasting: FloatArray  # Of `heating` where power enters at the output, or nowhere. [1]
+    # The part of `heating` for which power enters at the output, or nowhere. [1]
+    coasting: FloatArray
     flowing: FloatArray
     # Mean power that enters and leaves at the reference shaft; NaN if two are driven. [W]
     entering: float
