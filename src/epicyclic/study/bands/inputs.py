@@ -175,11 +175,7 @@ def _assumed_factor(case: CaseTable, key: str) -> UncertainValue | None:
 
 SLOPES = {"profile_slope": "profile_slope", "lead_slope": "helix_slope"}
 """Keys of ``micro_geometry``, and what ISO 1328-1 calls their tolerance."""
-
-
 _FLANKS = ("micro_geometry", "micro_geometry_ring_side")
-
-
 _TAKES_DEVIATIONS = "compliance"  # The load distribution to which slopes matter.
 
 
