@@ -27,7 +27,7 @@ from epicyclic.cli.common import (
     write_page,
 )
 from epicyclic.cli.many import Write, compute
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.files import make_folder, write_file
 
 if TYPE_CHECKING:
@@ -87,19 +87,12 @@ def validate(
     chosen = [name for name, is_on in options.items() if is_on]
     others = [*chosen[1:], *(["-o"] if output is not None else [])]
     parts = {"--models": models, "--json": json_file is not None, "--plot": plot is not None}
-    if measured is None and any(parts.values()):
-        problems = [
-            Problem(name, "", "goes with --measured.", "Give both, or leave it out.")
-            for name, is_on in parts.items()
-            if is_on
-        ]
-        raise InputError(problems, "the command")
-    if chosen and others:
-        problems = [
-            Problem(name, "", f"conflicts with {chosen[0]}.", "Remove one of them.")
-            for name in others
-        ]
-        raise InputError(problems, "the command")
+    alone = [name for name, is_on in parts.items() if is_on and measured is None]
+    remedy = "Give both, or leave it out."
+    raise_any((Problem(it, "", "goes with --measured.", remedy) for it in alone), "the command")
+    if chosen:
+        told = f"conflicts with {chosen[0]}."
+        raise_any((Problem(it, "", told, "Remove one of them.") for it in others), "the command")
     if measured is not None:
         scores(measured, plot, json_file, models=models)
         return
@@ -178,18 +171,13 @@ def reproduce(
     from epicyclic.validation.plots import reproduce as figures_of
 
     known = CHAPTERS[chapter]
+    told = f"is not available; the figures are {', '.join(known)}."
     problems = [
-        Problem(
-            "--figure",
-            name,
-            f"is not available; the figures are {', '.join(known)}.",
-            "Choose one of these.",
-        )
+        Problem("--figure", name, told, "Choose one of these.")
         for name in chosen
         if name not in known
     ]
-    if problems:
-        raise InputError(problems, "the command")
+    raise_any(problems, "the command")
     make_folder(output)
     found = []
     with progress_bar("points") as progress:

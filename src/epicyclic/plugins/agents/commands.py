@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from epicyclic.cli.common import echo
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.files import make_folder, write_file
 
 NAME = "epicyclic"
@@ -26,7 +26,7 @@ def mcp() -> None:
     """
     if find_spec("mcp") is None:
         remedy = "Install it: pip install 'epicyclic[mcp]'."
-        raise InputError([Problem("mcp", "", "needs the package mcp.", remedy)], "the command")
+        raise one_problem("mcp", "", "needs the package mcp.", remedy, "the command")
     from epicyclic.plugins.agents.tools import server
     from epicyclic.plugins.agents.wire import bounded_wire
 

@@ -19,7 +19,7 @@ from pydantic.fields import FieldInfo
 from epicyclic import library
 from epicyclic.case.case import FILE_KEYS, KINDS, Case, build_case, changed_tables
 from epicyclic.case.train_tables import PlanetarySet, form_of_set
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import dotted, key_parts, value_at, written
 from epicyclic.plugins.app.worker import Worker
 from epicyclic.plugins.rexs.files import is_rexs
@@ -515,7 +515,7 @@ def received(
     cases = [name for name, _ in contents if Path(name).suffix.lower() in ENDINGS]
     if len(cases) != 1:
         allowed = f"One of the files must be a case, {', '.join(ENDINGS)}."
-        raise InputError([Problem("", "", allowed, "")], "the upload")
+        raise one_problem("", "", allowed, "", "the upload")
     desk = opened(str(folder / cases[0]), cases[0])
     raise_any(_elsewhere(desk.tables), desk.source)
     return desk
@@ -545,13 +545,13 @@ def _keep(folder: Path, name: str, content: bytes) -> None:
     except OSError as error:
         told = f"cannot be kept: {error.strerror}"
     if told:
-        raise InputError([Problem("file", written(name), f"{told}.", "Rename it.")], "the upload")
+        raise one_problem("file", written(name), f"{told}.", "Rename it.", "the upload")
 
 
 def built_in(name: str) -> Desk:
     """The desk of a built-in case, and of nothing else."""
     if name not in library.names("cases"):
-        raise InputError([Problem("CASE", name, "is not a built-in case.", "Choose one.")])
+        raise one_problem("CASE", name, "is not a built-in case.", "Choose one.")
     return opened(name)
 
 

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 import click
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 
 EXAMPLE = "talbot-2012"
 
@@ -22,8 +22,8 @@ def app(case: str, host: str, port: int, browser: bool) -> None:
     Only this machine can reach it, with the token in the printed address.
     """
     if find_spec("nicegui") is None:
-        problem = Problem("app", "", "needs NiceGUI.", "Install it: pip install 'epicyclic[app]'.")
-        raise InputError([problem], "the command")
+        remedy = "Install it: pip install 'epicyclic[app]'."
+        raise one_problem("app", "", "needs NiceGUI.", remedy, "the command")
     from epicyclic.plugins.app.case_form import opened
     from epicyclic.plugins.app.page import LOOPBACK, serve
 

@@ -23,7 +23,7 @@ from nicegui import events, ui
 
 from epicyclic import library
 from epicyclic.case.case import Case
-from epicyclic.errors import EpicyclicError, InputError, Problem
+from epicyclic.errors import EpicyclicError, InputError, one_problem
 from epicyclic.messages import one_line
 from epicyclic.plugins.app import worker as tasks
 from epicyclic.plugins.app.case_form import ENDINGS, Desk, Shelf, Shelves, built_in, received
@@ -530,11 +530,9 @@ def _listening(host: str, port: int) -> socket.socket:
 
 
 def _not_listening(host: str, port: int, told: str) -> InputError:
+    allowed = f"cannot be used as a server address: {told}."
     address = one_line(f"{host}:{port}")
-    problem = Problem(
-        "--host", address, f"cannot be used as a server address: {told}.", "Choose another."
-    )
-    return InputError([problem], "the command")
+    return one_problem("--host", address, allowed, "Choose another.", "the command")
 
 
 def application(shelves: Shelves) -> FastAPI:

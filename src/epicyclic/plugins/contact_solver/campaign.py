@@ -19,7 +19,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic import library
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.elastic_teeth import one_thread
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import make_folder, read_bytes, read_text, write_file
 from epicyclic.messages import did_you_mean, one_line
 from epicyclic.plugins.contact_solver.conditions import SOLVER_BOX
@@ -155,7 +155,7 @@ def quantity_of_axis(name: str) -> Quantity:
     """Unit and range of an axis; raises `InputError` if there is no such axis."""
     if name not in AXES:
         remedy = did_you_mean(name, list(AXES)) or f"The axes are {', '.join(AXES)}."
-        raise InputError([Problem("--range", name, "is not an axis of a design.", remedy)])
+        raise one_problem("--range", name, "is not an axis of a design.", remedy)
     field = find_field(ContactCase, AXES[name])
     assert field is not None
     return quantity_of(*field) or NUMBER
@@ -375,8 +375,7 @@ def make_campaign(
     for name, count in (("size", size), ("bearing_size", bearing_size)):
         if count is not None and count > MOST_CONTACTS:
             allowed = f"must be {MOST_CONTACTS} or less."
-            problem = Problem(name, str(count), allowed, "Give a smaller one.")
-            raise InputError([problem], "the command")
+            raise one_problem(name, str(count), allowed, "Give a smaller one.", "the command")
     designs = []
     if size is None:
         designs.append(GEAR_TABLE)
@@ -388,10 +387,8 @@ def make_campaign(
         within = _ranges_of("bearing", ranges)
         designs.append(BEARING_TABLE.within(within).filling(bearing_size, seed))
     if ranges and not size:
-        problem = Problem(
-            "ranges", ", ".join(ranges), "needs a space-filling design.", "Give a size."
-        )
-        raise InputError([problem], "the command")
+        stated, allowed = ", ".join(ranges), "needs a space-filling design."
+        raise one_problem("ranges", stated, allowed, "Give a size.", "the command")
     for name in ranges or {}:
         quantity_of_axis(name.removeprefix("bearing."))  # says which axes there are
     for design in designs:
@@ -482,8 +479,8 @@ def oil_tables(oil: str | Path | Mapping[str, Any]) -> Any:
     path = Path(oil)
     if path.suffix != ".toml":
         remedy = did_you_mean(str(oil), library.names("oils")) or "See 'epicyclic oils'."
-        problem = Problem("OIL", str(oil), "is neither a .toml file nor a built-in oil.", remedy)
-        raise InputError([problem], "the command")
+        allowed = "is neither a .toml file nor a built-in oil."
+        raise one_problem("OIL", str(oil), allowed, remedy, "the command")
     tables, problems = read_file(path, "'epicyclic oils' shows the properties of others.")
     raise_any(problems, str(path))
     return {"name": path.stem} | tables
@@ -690,4 +687,4 @@ def _read_json(path: Path) -> Any:
 def _folder_error(
     path: Path, allowed: str, remedy: str = "Give another folder, or repair this one."
 ) -> InputError:
-    return InputError([Problem("DIR", str(path), allowed, remedy)], "the campaign")
+    return one_problem("DIR", str(path), allowed, remedy, "the campaign")

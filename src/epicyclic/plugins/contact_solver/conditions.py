@@ -10,7 +10,7 @@ import numpy as np
 
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import LineContacts
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.oil.oil import ROELANDS_OFFSET, ROELANDS_PRESSURE, OilState
 from epicyclic.oil.rheology import (
@@ -156,8 +156,7 @@ class LineContact:
             for name, value, allowed in shear_problems(self.oil.shear)
             if self.oil.shear_law is not None
         ]
-        if problems:
-            raise InputError(problems, "the contact")
+        raise_any(problems, "the contact")
 
     @property
     def rolling_speed(self) -> float:

@@ -24,7 +24,7 @@ from epicyclic.contact.fitted_models import (
     check_resistance,
 )
 from epicyclic.contact.line_contact import CONDITIONS, LineContacts, contacts_at
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import Problem, raise_any
 from epicyclic.files import write_file
 from epicyclic.oil.oil import oil_state
 from epicyclic.plugins.contact_solver.campaign import (
@@ -257,8 +257,7 @@ def fit_campaigns(
             given = f"{target.size} simulations"
             remedy = "Simulate more contacts, with a larger --size in another folder."
             reasons.append(Problem(quantity, given, f"not fitted: {error}.", remedy))
-    if reasons:
-        raise InputError(reasons, str(folders[0].path))
+    raise_any(reasons, str(folders[0].path))
     frame, parts = _read(folders), QUANTITIES.values()
     return OilModel(
         format=FORMAT,
@@ -306,8 +305,7 @@ def _check_alike(folders: Sequence[CampaignFolder]) -> None:
         for name, told in _SHARED.items()
         if getattr(other.campaign, name) != getattr(first.campaign, name)
     ]  # fmt: skip
-    if wrong:
-        raise InputError(wrong, "the campaigns")
+    raise_any(wrong, "the campaigns")
 
 
 def _read(folders: Sequence[CampaignFolder]) -> pd.DataFrame:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from epicyclic.arrays import FloatArray
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import check_archive, read_bytes, read_text, refuse
 
 POINTS_PER_CORRELATION = 8  # Points of a generated profile within one correlation length.
@@ -138,25 +138,21 @@ def mean_line(
 def _check_statistics(
     rms: float, correlation_length: float, length: float, skewness: float, kurtosis: float
 ) -> None:
-    problems = []
-    if not rms >= 0:
-        problems.append(Problem("rms", f"{rms:g}", "must be zero or more.", "Change it."))
-    if not correlation_length > 0:
-        problems.append(
-            Problem("correlation_length", f"{correlation_length:g}", "must be > 0.", "Change it.")
-        )
-    elif not length >= 4 * correlation_length:
-        problems.append(
-            Problem("length", f"{length:g}", "is under four correlation lengths.", "Increase it.")
-        )
-    if not kurtosis >= skewness**2 + 1:
-        problems.append(
-            Problem(
-                "kurtosis", f"{kurtosis:g}", "cannot be less than 1 + skewness^2.", "Increase it."
-            )
-        )
-    if problems:
-        raise InputError(problems, "the roughness")
+    checks = (
+        ("rms", rms, rms >= 0, "must be zero or more.", "Change it."),
+        ("correlation_length", correlation_length, correlation_length > 0, "must be > 0.",
+         "Change it."),
+        ("length", length, not correlation_length > 0 or length >= 4 * correlation_length,
+         "is under four correlation lengths.", "Increase it."),
+        ("kurtosis", kurtosis, kurtosis >= skewness**2 + 1, "cannot be less than 1 + skewness^2.",
+         "Increase it."),
+    )  # fmt: skip
+    problems = (
+        Problem(name, f"{value:g}", allowed, remedy)
+        for name, value, is_met, allowed, remedy in checks
+        if not is_met
+    )
+    raise_any(problems, "the roughness")
 
 
 def _with_moments(normal: FloatArray, skewness: float, kurtosis: float) -> FloatArray:
@@ -181,10 +177,8 @@ def _with_moments(normal: FloatArray, skewness: float, kurtosis: float) -> Float
     found = least_squares(lack, np.zeros(2), bounds=([-5, -3], [5, 1.5]))
     if np.abs(found.fun).max() > 0.01:
         value = f"skewness {skewness:g}, kurtosis {kurtosis:g}"
-        raise InputError(
-            [Problem("roughness", value, "cannot be reached.", "Choose values closer to 0 and 3.")],
-            "the roughness",
-        )
+        remedy = "Choose values closer to 0 and 3."
+        raise one_problem("roughness", value, "cannot be reached.", remedy, "the roughness")
     return transformed(found.x)
 
 
@@ -255,8 +249,7 @@ def _read(
     profile = Profile(heights - heights.mean(), spacing)
     if profile.rms < FLAT:
         remedy = "Give another file, or none for a smooth surface."
-        problem = Problem("profile", str(path), "has no roughness left.", remedy)
-        raise InputError([problem], str(path))
+        raise one_problem("profile", str(path), "has no roughness left.", remedy, str(path))
     return profile
 
 
@@ -358,5 +351,4 @@ def _check_cutoffs(
         given = f"{short_cutoff / MILLIMETRE:g} mm"
         allowed = "must be less than the cutoff of long waves."
         problems.append(Problem("short_cutoff", given, allowed, "Reduce it."))
-    if problems:
-        raise InputError(problems, "the profile")
+    raise_any(problems, "the profile")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from epicyclic.arrays import FloatArray
 from epicyclic.case.tables.strength import GearStrength, StrengthTable
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.gears.gear import BasicRack
 from epicyclic.gears.mesh import closing_number, profile_shift_sum
 from epicyclic.plugins.design import iso_6336 as iso
@@ -218,7 +218,7 @@ def enumerate_all(task: Task) -> tuple[pd.DataFrame, int]:
         stated = ", ".join(map(str, task.choices.pinion_teeth))
         told = f"allow no gears of the ratio {task.ratio:g}."
         remedy = "Allow more teeth or other arrangements."
-        raise InputError([Problem("choices.pinion_teeth", stated, told, remedy)], task.title)
+        raise one_problem("choices.pinion_teeth", stated, told, remedy, task.title)
     numbers = np.arange(total)
     if total > most:
         numbers = np.sort(random.Random(task.search.seed).sample(range(total), most))
@@ -238,8 +238,8 @@ class _Choices:
         if len(found) > MOST_TEETH:
             stated = ", ".join(map(str, choices.pinion_teeth))
             told = f"allow more than {MOST_TEETH:,} combinations of teeth, arrangement {name}."
-            problem = Problem("choices.pinion_teeth", stated, told, "Narrow it, as in [17, 35].")
-            raise InputError([problem], task.title)
+            remedy = "Narrow it, as in [17, 35]."
+            raise one_problem("choices.pinion_teeth", stated, told, remedy, task.title)
         self.teeth = np.array(found, dtype=float).reshape(-1, len(self.layout.gears))
         planets = (1,) if name == "pair" else choices.planets
         later = choices.module if "sun2" in self.layout.gears else (math.nan,)
@@ -550,8 +550,8 @@ def _shifts(task: Task, row: Row, stage: str, rack: BasicRack, distance: float) 
         try:
             total = profile_shift_sum(rack, one + sign * two, distance, task.choices.backlash)
         except ValueError as error:
-            problem = Problem("design", teeth_text(row), str(error), "Choose another one.")
-            raise InputError([problem], task.title) from None
+            remedy = "Choose another one."
+            raise one_problem("design", teeth_text(row), str(error), remedy, task.title) from None
         found.setdefault(mesh.second, total - first)
     return found
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.netcdf_file import read_groups
 from epicyclic.plugins.design.candidates import SHARED, case_tables, teeth_text
 from epicyclic.plugins.design.report import (
@@ -55,9 +55,8 @@ def stored(path: Path) -> Found:
         raw = None
     needed = {"fate", "arrangement", "loss", "bound", *KNOWN, *SAFETIES, *SHARED}
     if not isinstance(raw, dict) or not needed <= set(data.data_vars):
-        text = "is no dataset of designs."
-        problem = Problem("", path.name, text, "Give candidates.nc of 'epicyclic design -o'.")
-        raise InputError([problem], path.name)
+        remedy = "Give candidates.nc of 'epicyclic design -o'."
+        raise one_problem("", path.name, "is no dataset of designs.", remedy, path.name)
     table = data.to_dataframe()
     fronts = [int(it) for it in table.index[table["fate"] == "front"]]
     chosen = [it for it in fronts if str(it) in str(data.attrs.get("chosen", "")).split(", ")]

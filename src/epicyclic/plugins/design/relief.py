@@ -11,7 +11,7 @@ import numpy as np
 
 from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.plugins.design.search import dominated
@@ -106,7 +106,7 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
     solved = np.isfinite(nominal).all(axis=1)
     if not solved.any():
         first = next(iter(rows.failures), "nothing was solved")
-        raise InputError([Problem("--vary", "", f"leads to no result: {first}", "Narrow it.")])
+        raise one_problem("--vary", "", f"leads to no result: {first}", "Narrow it.")
     front = np.zeros(len(variants), dtype=bool)
     front[solved] = ~dominated(nominal[solved], nominal[solved])
     data: dict[str, Any] = {

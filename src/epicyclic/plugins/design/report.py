@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import one_problem
 from epicyclic.files import whole_file, write_file
 from epicyclic.plugins.design.candidates import case_tables, teeth_text
 from epicyclic.plugins.design.search import (
@@ -194,8 +194,8 @@ def parse_length(option: str, text: str | None) -> float:
     try:
         return float(TypeAdapter(Length).validate_python(text))
     except ValidationError:
-        problem = Problem(option, f'"{text}"', "must be a length.", 'For example "3 um".')
-        raise InputError([problem], "the command") from None
+        remedy = 'For example "3 um".'
+        raise one_problem(option, f'"{text}"', "must be a length.", remedy, "the command") from None
 
 
 def variants_table(data: xr.Dataset) -> Table:

@@ -22,7 +22,7 @@ import pandas as pd
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case, read_case
-from epicyclic.errors import EpicyclicError, InputError, Problem, Status, raise_any
+from epicyclic.errors import EpicyclicError, InputError, Problem, Status, one_problem, raise_any
 from epicyclic.messages import did_you_mean
 from epicyclic.plugins.design.candidates import (
     LAYOUTS,
@@ -84,7 +84,7 @@ def evaluate(task: Task, row: Mapping[str, Any]) -> dict[str, float]:
     for number, point in enumerate(task.points):
         result = solve(read_case(case_tables(task, row, number)))
         if result.status is not Status.CONVERGED:
-            raise InputError([Problem("design", "", result.notes[0], "Leave it out.")])
+            raise one_problem("design", "", result.notes[0], "Leave it out.")
         loss += point.share / total * result.total
     case = read_case(case_tables(task, row))
     found = {"loss": loss, **strength(case).least()}

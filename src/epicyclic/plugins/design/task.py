@@ -10,7 +10,7 @@ from pydantic import Field
 
 from epicyclic.case.case import FILE_KEYS
 from epicyclic.case.tables.base import ShortLength
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.schema.read import plain, read_file
 from epicyclic.schema.table import Table, option
 from epicyclic.schema.validation import validate
@@ -141,7 +141,7 @@ def read_task(source: str | Path | Mapping[str, Any]) -> Task:
     raise_any([*problems, *found.problems], name)
     task = found.case
     if task is None:
-        raise InputError([Problem("TASK", name, "is not a task.", "See the page on design.")])
+        raise one_problem("TASK", name, "is not a task.", "See the page on design.")
     raise_any(_problems(task), name)
     return task
 

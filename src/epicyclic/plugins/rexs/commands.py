@@ -20,7 +20,7 @@ from epicyclic.cli.common import (
     parse_changes,
     set_option,
 )
-from epicyclic.errors import EXIT_INCOMPLETE, InputError, Problem
+from epicyclic.errors import EXIT_INCOMPLETE, InputError, Problem, one_problem
 from epicyclic.files import write_file
 from epicyclic.show.terminal import plain_table
 
@@ -94,8 +94,8 @@ def import_(
 
     target = output or Path(f"{stem(file)}.toml")
     if target.exists():
-        problem = Problem("--output", str(target), "already exists.", "Name another file.")
-        raise InputError([problem], "the command")
+        remedy = "Name another file."
+        raise one_problem("--output", str(target), "already exists.", remedy, "the command")
     parsed = parse_changes(changes)
     found = read_rexs(file, component, load_case)
     unknown = [key for key in parsed if not _is_key(found, key)]
@@ -132,7 +132,7 @@ def export(
 
     if not is_rexs(output):
         allowed = "must end in .rexs, .rexsj or .rexsz."
-        raise InputError([Problem("--output", str(output), allowed, "Name such a file.")])
+        raise one_problem("--output", str(output), allowed, "Name such a file.")
     if is_rexs(case):
         original = original or case
         loaded = case_with_remarks(read_rexs(case, component), parse_changes(changes))

@@ -14,7 +14,7 @@ from epicyclic.build.machine import operation_of
 from epicyclic.build.models import SetCase, set_cases
 from epicyclic.case.case import Case, TrainCase, read_case
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ShaftBearingTable
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import whole_file
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import CARRIER, HOUSING
@@ -745,7 +745,7 @@ def _chosen(model: Model, result: Result, component: int | None) -> PlanetaryPar
             allowed = "names one stage, and the result is of a train."
         shown = "" if component is None else str(component)
         remedy = "Write it into the file of all its stages."
-        raise InputError([Problem("--component", shown, allowed, remedy)])
+        raise one_problem("--component", shown, allowed, remedy)
     return train
 
 

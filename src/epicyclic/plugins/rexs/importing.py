@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
@@ -189,8 +189,8 @@ def _with_load_case(model: Model, load_case: int | None) -> Model:
         return model
     if load_case not in model.load_cases:
         known = ", ".join(map(str, list(model.load_cases)[:12])) or "none"
-        problem = Problem("--load-case", str(load_case), "is not in the file.", f"It has {known}.")
-        raise InputError([problem])
+        allowed = "is not in the file."
+        raise one_problem("--load-case", str(load_case), allowed, f"It has {known}.")
     return model.with_load_case(load_case)
 
 

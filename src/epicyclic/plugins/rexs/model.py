@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from epicyclic.arrays import FloatArray
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.units import Quantity
 
@@ -115,7 +115,7 @@ class _KindError(ValueError):
 
 def refuse(allowed: str, remedy: str = "Correct the file.") -> InputError:
     """The error of a file that cannot be used as a whole."""
-    return InputError([Problem("", "", f"the file {allowed}", remedy)])
+    return one_problem("", "", f"the file {allowed}", remedy)
 
 
 @dataclass(frozen=True, slots=True)

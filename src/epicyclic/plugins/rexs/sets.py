@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.plugins.rexs.model import Component, Model, types_of
 
@@ -122,12 +122,12 @@ def choose(model: Model, component: int | None) -> PlanetaryParts | Pair:
         chosen = model.components.get(component)
         if chosen is None or chosen.type not in ("planetary_stage", "cylindrical_stage"):
             allowed = "is neither a planetary_stage nor a cylindrical_stage of the file."
-            raise InputError([Problem("--component", str(component), allowed, _remedy(model))])
+            raise one_problem("--component", str(component), allowed, _remedy(model))
     else:
         sets = gear_sets(model)
         if len(sets) != 1:
             allowed = f"the file has {len(sets) or 'no'} stages to choose from."
-            raise InputError([Problem("--component", "", allowed, _remedy(model))])
+            raise one_problem("--component", "", allowed, _remedy(model))
         chosen = sets[0]
     return read_stage(model, chosen)
 
@@ -187,16 +187,8 @@ def _planetary_set(model: Model, stage: Component) -> PlanetaryParts:
         found = f"{counts[0]} suns, {counts[2]} planets, {counts[1]} rings and {counts[3]} meshes"
         if between:
             found += ", planets that mesh with each other"
-        raise InputError(
-            [
-                Problem(
-                    str(stage),
-                    "",
-                    f"has {found}.",
-                    "Only one sun, one ring and planets that mesh with both can be read.",
-                )
-            ]
-        )
+        remedy = "Only one sun, one ring and planets that mesh with both can be read."
+        raise one_problem(str(stage), "", f"has {found}.", remedy)
     (sun,), (ring,) = suns.values(), rings.values()
     for name, gear in (("sun", sun), ("ring", ring)):
         own = [shaft for shaft in central if gear.id in {g.id for g in gears_on(model, [shaft])}]
@@ -216,7 +208,7 @@ def _pair(model: Model, stage: Component) -> Pair:
     meshes = [mesh for mesh in _meshes(model) if mesh.stage.id == stage.id]
     if len(meshes) != 1:
         allowed = f"has {len(meshes)} relations of type stage with two gears."
-        raise InputError([Problem(str(stage), "", allowed, "Correct the file.")])
+        raise one_problem(str(stage), "", allowed, "Correct the file.")
 
     def size(gear: Component) -> tuple[bool, float]:
         teeth = gear.get("number_of_teeth")
@@ -437,7 +429,7 @@ def chosen_train(model: Model) -> Train | None:
 def _too_many(found: str, most: int) -> InputError:
     allowed = f"has {found}, but at most {most} are read as one train."
     remedy = "Import one stage with --component, or export fewer."
-    return InputError([Problem("", "", f"the file {allowed}", remedy)])
+    return one_problem("", "", f"the file {allowed}", remedy)
 
 
 class Names:
