@@ -6,13 +6,12 @@ import itertools
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.bands.plan import nearby_at
 from epicyclic.study.bands.samples import sample_summary
@@ -22,6 +21,7 @@ from epicyclic.study.sweeps.run import PointList, as_tested, with_unloaded
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.validation.compute import (
     FIGURES,
+    LoadedTest,
     LoadedTests,
     data_file,
     loaded_conditions,
@@ -45,8 +45,8 @@ class Published:
     source: str
     low: float  # The published value, twice, or the ends of the published range.
     high: float
-    tolerance: float  # Relative to the published value. [1]
-    cause: str  # Why that tolerance.
+    tolerance: float = 0.0  # Relative to the published value. [1]
+    cause: str = ""  # Why that tolerance.
 
     def off(self, computed: float) -> float:
         """(computed - published)/published; 0 within a published range. [1]"""
@@ -72,19 +72,8 @@ def closure_figures(
     found: list[ClosureFigure] = []
     figures = [figure for figure in open_figures() if figure.get("role") != "context"]
     for figure in figures:
-        low, high = published_ends(figure)
-        found.append(
-            ClosureFigure(
-                what=figure["what"],
-                unit=figure["unit"],
-                source=figure["source"],
-                low=low,
-                high=high,
-                tolerance=figure["tolerance"],
-                cause=figure["cause"],
-                computed={model: _computed(figure, model=model) for model in CLOSURES},
-            )
-        )
+        computed = {model: _computed(figure, model=model) for model in CLOSURES}
+        found.append(ClosureFigure(**_stated(ClosureFigure, figure), computed=computed))
         progress(len(found), len(figures))
     return tuple(found)
 
@@ -107,6 +96,12 @@ def open_figures() -> list[dict[str, Any]]:
 def published_ends(figure: Mapping[str, Any]) -> tuple[float, float]:
     """The published value, twice, or the ends of the published range."""
     return (figure["low"], figure["high"]) if "low" in figure else (figure["value"],) * 2
+
+
+def _stated(kind: type[Published], figure: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields of a comparison that the entry of a figure states."""
+    stated = {field.name: figure[field.name] for field in fields(kind) if field.name in figure}
+    return stated | dict(zip(("low", "high"), published_ends(figure), strict=True))
 
 
 def _computed(figure: Mapping[str, Any], **more: Any) -> float:
@@ -262,23 +257,8 @@ def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:
 
 
 def _compare(figure: dict[str, Any]) -> Comparison:
-    low, high = published_ends(figure)
-    return Comparison(
-        what=figure["what"],
-        topic=_topic(figure),
-        unit=figure["unit"],
-        source=figure["source"],
-        low=low,
-        high=high,
-        computed=_computed(figure),
-        tolerance=figure.get("tolerance", 0.0),
-        cause=figure.get("cause", ""),
-        role=figure["role"],
-        settled=figure.get("settled", ""),
-        inferred=figure.get("inferred", ""),
-        reason=figure.get("reason", ""),
-        missed=figure.get("missed", ""),
-    )
+    known = {"topic": _topic(figure), "computed": _computed(figure)}
+    return Comparison(**_stated(Comparison, figure) | known)
 
 
 # Published measurements beside the band that the shipped distributions give. Nothing is fitted.
@@ -305,21 +285,8 @@ class MeasuredFigure:
         return self.low <= self.measured <= self.high
 
 
-class _Test(NamedTuple):
-    input_power: float
-    load_dependent: float
-    load_independent: float = math.nan
-
-
-class _Band(NamedTuple):
-    """Input power, and load-dependent and load-independent losses in all draws, of one test."""
-
-    input_power: float
-    load_dependent: FloatArray
-    load_independent: FloatArray
-
-
-_Bands = Mapping[tuple[Any, ...], _Band]
+_Tests = dict[tuple[Any, ...], LoadedTest]
+"""Tests by the values of the keys that they change."""
 
 
 def measured_figures(runner: Runner = HERE) -> tuple[MeasuredFigure, ...]:
@@ -328,10 +295,10 @@ def measured_figures(runner: Runner = HERE) -> tuple[MeasuredFigure, ...]:
     All inputs and errors of models are off by the same in all tests of a draw.
     """
     figures = list(_figures())
-    bands = _bands(figures, runner)
+    draws = _drawn_tests(figures, runner)
     found = []
     for figure in figures:
-        nominal, *drawn = (_compute(figure, bands, number) for number in range(DRAWS + 1))
+        nominal, *drawn = (_by_tests(figure, partial(_chosen, tests)) for tests in draws)
         band = sample_summary(np.array(drawn))
         found.append(
             MeasuredFigure(
@@ -350,49 +317,35 @@ def _figures() -> Iterable[dict[str, Any]]:
             yield {**figure, "what": what.removesuffix(f", {MEASURED}")}
 
 
-def _conditions(figure: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """The tests that a figure follows from."""
-    asked: list[dict[str, Any]] = []
+def _conditions(figures: Iterable[Mapping[str, Any]]) -> dict[tuple[Any, ...], dict[str, Any]]:
+    """The tests that figures follow from: the keys that they change, by their values."""
+    asked: dict[tuple[Any, ...], dict[str, Any]] = {}
+    numbers = itertools.count()
 
-    def tests(temperature: str, finish: str, planets: Iterable[int]) -> list[_Test]:
+    def tests(temperature: str, finish: str, planets: Iterable[int]) -> list[LoadedTest]:
         conditions = loaded_conditions(temperature, finish, planets)
-        asked.extend(conditions)
+        asked.update((tuple(test.values()), test) for test in conditions)
         # any powers, no two of them equal: only the conditions are wanted
-        return [_Test(9.0 + place, 2.0 + place**2, 5.0 + place) for place, _ in enumerate(asked)][
-            -len(conditions) :
-        ]
+        places = itertools.islice(numbers, len(conditions))
+        return [LoadedTest(9.0 + place, 2.0 + place**2, 5.0 + place) for place in places]
 
-    _by_tests(figure, tests)
+    for figure in figures:
+        _by_tests(figure, tests)
     return asked
 
 
-def _bands(figures: Iterable[Mapping[str, Any]], runner: Runner) -> dict[tuple[Any, ...], _Band]:
-    """All tests of the figures, each at its values first, then in all draws."""
-    tests = {tuple(test.values()): test for figure in figures for test in _conditions(figure)}
-    case = source_case()
-    found = {}
-    nearby = nearby_at(case, solve(case), list(tests.values()), runner)
-    for key, own in zip(tests, nearby, strict=True):
+def _drawn_tests(figures: Iterable[Mapping[str, Any]], runner: Runner) -> list[_Tests]:
+    """All tests of the figures: at their values first, then in each draw."""
+    conditions, case = _conditions(figures), source_case()
+    draws: list[_Tests] = [{} for _ in range(DRAWS + 1)]
+    nearby = nearby_at(case, solve(case), list(conditions.values()), runner)
+    for key, own in zip(conditions, nearby, strict=True):
         drawn = quick_band(own).results[:, :DRAWS]
         nominal = own.outputs.of(own.losses[:, None], own.powers, {})
-        whole = np.concatenate([nominal, drawn], axis=1)
-        found[key] = _Band(float(own.powers.entering[0]), whole[-4], whole[-3])
-    return found
-
-
-def _compute(figure: Mapping[str, Any], bands: _Bands, draw: int) -> float:
-    """A figure in one draw."""
-
-    def tests(temperature: str, finish: str, planets: Iterable[int]) -> list[_Test]:
-        chosen = (
-            bands[tuple(it.values())] for it in loaded_conditions(temperature, finish, planets)
-        )
-        return [
-            _Test(it.input_power, float(it.load_dependent[draw]), float(it.load_independent[draw]))
-            for it in chosen
-        ]
-
-    return _by_tests(figure, tests)
+        losses = np.concatenate([nominal, drawn], axis=1)[-4:-2]
+        for tests, loss in zip(draws, losses.T.tolist(), strict=True):
+            tests[key] = LoadedTest(float(own.powers.entering[0]), *loss)
+    return draws
 
 
 # The loaded tests of the dissertation with temperatures that follow from the losses.
@@ -453,20 +406,19 @@ def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
     settings = [{_MODEL: "inlet"}, {_MODEL: "flank"}, *networks]
     # The loaded tests with each of the settings, all computed in one go.
     figures = _settled_figures()
-    conditions = list(
-        {tuple(it.values()): it for figure in figures for it in _conditions(figure)}.values()
-    )
-    points, unloaded = with_unloaded([{**test, **own} for own in settings for test in conditions])
+    conditions = _conditions(figures)
+    tested = ({**test, **own} for own in settings for test in conditions.values())
+    points, unloaded = with_unloaded(list(tested))
     rows = runner.run(PointList(source_case(), points))
     if rows.failures:
         raise ConvergenceError(
             f"{len(rows.failures)} of {len(rows)} tests cannot be computed: {rows.failures[0]}"
         )
     loss = as_tested(rows, unloaded)
-    tests = list(map(_Test, rows.numbers("input_power")[: loss.size].tolist(), loss.tolist()))
-    names, count = [tuple(test.values()) for test in conditions], len(conditions)
+    tests = list(map(LoadedTest, rows.numbers("input_power")[: loss.size].tolist(), loss.tolist()))
+    count = len(conditions)
     inlet, flank, *others = [
-        partial(_chosen, dict(zip(names, tests[first : first + count], strict=True)))
+        partial(_chosen, dict(zip(conditions, tests[first : first + count], strict=True)))
         for first in range(0, len(tests), count)
     ]
     middle = others[networks.index(likely)]
@@ -500,7 +452,7 @@ def _by_tests(figure: Mapping[str, Any], tests: LoadedTests) -> float:
 
 
 def _chosen(
-    tests: Mapping[tuple[Any, ...], _Test], temperature: str, finish: str, planets: Iterable[int]
-) -> list[_Test]:
+    tests: _Tests, temperature: str, finish: str, planets: Iterable[int]
+) -> list[LoadedTest]:
     chosen = loaded_conditions(temperature, finish, planets)
     return [tests[tuple(test.values())] for test in chosen]

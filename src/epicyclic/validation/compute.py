@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from importlib import resources
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -221,19 +221,15 @@ def _published_case(**changes: object) -> Case:
     return source_case().updated({key.replace("__", "."): value for key, value in changes.items()})
 
 
-class LoadedTest(Protocol):
-    """What a test of the dissertation under load is about. [W]"""
+class LoadedTest(NamedTuple):
+    """What of a `Result` a test of the dissertation under load is about. [W]"""
 
-    @property
-    def input_power(self) -> float: ...
-
-    @property
-    def load_dependent(self) -> float: ...
-    @property
-    def load_independent(self) -> float: ...
+    input_power: float
+    load_dependent: float
+    load_independent: float = math.nan
 
 
-LoadedTests = Callable[[str, str, Iterable[int]], Sequence[LoadedTest]]
+LoadedTests = Callable[[str, str, Iterable[int]], Sequence[LoadedTest | Result]]
 """Those at a temperature, with a finish and some numbers of planets, torques and speeds rising."""
 
 
@@ -410,7 +406,7 @@ def loss_in_test(
     return power if unit == "W" else power / 1e3
 
 
-def _part(test: LoadedTest, part: str) -> float:
+def _part(test: LoadedTest | Result, part: str) -> float:
     if part == "total":
         return test.load_dependent + test.load_independent
     if part == "without_union":  # the predictions of the source leave it out, p. 144

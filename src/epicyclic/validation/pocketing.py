@@ -64,7 +64,7 @@ class PocketVariant:
     speed: float  # Speed of member 1 against the line of centres. [rad/s]
 
 
-def base_variant(case: Case, duty: MeshDuty) -> PocketVariant:
+def base_variant(duty: MeshDuty) -> PocketVariant:
     """The mesh as the case has it."""
     mesh = duty.gears.mesh
     return PocketVariant(
@@ -301,7 +301,7 @@ class StudyPlan(Plan):
 
     def variants(self, name: str) -> Iterator[PocketVariant]:
         """All points of study `name`, its last axis fastest."""
-        return _variants(base_variant(self.case, self.duty), self.axes[name])
+        return _variants(base_variant(self.duty), self.axes[name])
 
 
 def make_study(
@@ -322,7 +322,7 @@ def make_study(
     given_levels, level_problems = _parsed("level", levels, list(LEVELS))
     problems = [*_unknown_studies(names), *range_problems, *level_problems]
     raise_any(problems, "the study")
-    base = base_variant(case, duty)
+    base = base_variant(duty)
     axes = {}
     for name in names:
         study = STUDIES[name]
