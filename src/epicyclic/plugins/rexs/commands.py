@@ -88,8 +88,10 @@ def import_(
     the file has, it is written anyway, with these keys marked NEEDED, and the command ends
     with exit code 5.
     """
+    from epicyclic.case.case import KINDS
     from epicyclic.plugins.rexs.files import stem
     from epicyclic.plugins.rexs.importing import read_rexs
+    from epicyclic.schema.fields import find_field
     from epicyclic.show.terminal import terminal
 
     target = output or Path(f"{stem(file)}.toml")
@@ -98,8 +100,7 @@ def import_(
         raise one_problem("--output", str(target), "already exists.", remedy, "the command")
     parsed = parse_changes(changes)
     found = read_rexs(file, component, load_case)
-    unknown = [key for key in parsed if not _is_key(found, key)]
-    if unknown:
+    if any(find_field(KINDS[found.kind], key) is None for key in parsed):
         found.case(parsed)  # tells which keys it does not know
     write_file(target, found.text(parsed))
     problems, notes = _state(found, parsed)
@@ -140,13 +141,6 @@ def export(
         loaded = load_with(case, changes)
     write_file(output, rexs_bytes(output, solve(loaded), original, component))
     echo(f"Wrote {output}.")
-
-
-def _is_key(found: RexsImport, key: str) -> bool:
-    from epicyclic.case.case import KINDS
-    from epicyclic.schema.fields import find_field
-
-    return find_field(KINDS[found.kind], key) is not None
 
 
 def _state(

@@ -195,9 +195,9 @@ _OR_NAME = "Or give an oil of the library instead: lubricant.oil."
 def lubricant_table(draft: Draft, model: Model, stages: Sequence[Component]) -> None:
     """The oil of the stages, or else of the casing."""
     oils: dict[int, Component] = {}
-    for owner in (*stages, *model.of_type("gear_casing")):
-        for oil in model.partners(owner.id, "reference", "origin", "referenced", "lubricant"):
-            oils.setdefault(oil.id, oil)
+    owners = (*stages, *model.of_type("gear_casing"))
+    for oil in model.partners_of(owners, "reference", "origin", "referenced", "lubricant"):
+        oils.setdefault(oil.id, oil)
     if not oils:
         draft.lack("lubricant.oil", "lubricant", stages)
         return

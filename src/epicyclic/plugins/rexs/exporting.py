@@ -31,7 +31,6 @@ from epicyclic.plugins.rexs.model import (
     CUSTOM,
     Attribute,
     Component,
-    Content,
     Model,
     Relation,
     build_model,
@@ -119,9 +118,8 @@ def surroundings(builder: Builder, case: Case, **attributes: Any) -> tuple[int, 
 
 def _lubricant(builder: Builder, oil: Oil) -> int:
     at_40, at_100, at_15, at_38 = (oil_state(oil, _CELSIUS + t) for t in (40, 100, 15, 38))
-    kind = {}
-    if oil.kind in _OIL_TYPES:
-        kind["lubricant_type_iso_6336_2019"] = _OIL_TYPES[oil.kind]
+    known = oil.kind in _OIL_TYPES
+    kind = {"lubricant_type_iso_6336_2019": _OIL_TYPES[oil.kind]} if known else {}
     return builder.add(
         "lubricant",
         oil.title,
@@ -514,18 +512,6 @@ def _absorption(table: ShaftBearingTable) -> str:
 # are written anew each time.
 
 
-def write_results(
-    content: Content, model: Model, chosen: PlanetaryParts | Pair | Train, result: Result
-) -> None:
-    """Give the components of a gear set, or of a train, the figures of `result`."""
-    if isinstance(chosen, Train):
-        attributes = _of_train(model, chosen, result)
-    else:
-        attributes = _of_set(model, chosen, result)
-    for component, attribute in attributes:
-        content.set_attribute(component.id, attribute)
-
-
 def check_match(chosen: PlanetaryParts | Pair | Train, result: Result) -> None:
     """Raise InputError if a result is not of the gears of a file, by their numbers of teeth."""
     if not isinstance(chosen, Train):
@@ -730,7 +716,12 @@ def rexs_bytes(
         check_match(chosen, result)
     except InputError as error:
         raise InputError(error.problems, one_line(str(original), 500)) from None
-    write_results(document.content, model, chosen, result)
+    if isinstance(chosen, Train):
+        figures = _of_train(model, chosen, result)
+    else:
+        figures = _of_set(model, chosen, result)
+    for owner, attribute in figures:
+        document.content.set_attribute(owner.id, attribute)
     return document.to_bytes()
 
 

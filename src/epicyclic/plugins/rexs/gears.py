@@ -42,8 +42,8 @@ def _tools_of(model: Model, gears: Iterable[Component]) -> list[Component]:
     found: dict[int, Component] = {}
     for gear in gears:
         tools = model.partners(gear.id, "ordered_reference", "origin", "referenced", *_TOOLS)
-        for flank in flanks_of(model, [gear]):
-            tools += model.partners(flank.id, "manufacturing_step", "workpiece", "tool", *_TOOLS)
+        flanks = flanks_of(model, [gear])
+        tools += model.partners_of(flanks, "manufacturing_step", "workpiece", "tool", *_TOOLS)
         if tools:
             found[tools[0].id] = tools[0]
     return list(found.values())
@@ -108,13 +108,8 @@ def _thickness(draft: Draft, model: Model, key: str, gears: Sequence[Component])
         length = amount_text(abs(diameter.number), diameter.unit)
         draft.give(f"{key}.thickness_diameter", length, diameter.origin)
         return None
-    settings = [
-        item
-        for flank in flanks
-        for item in model.partners(
-            flank.id, "manufacturing_step", "workpiece", "manufacturing_settings"
-        )
-    ]
+    roles = ("manufacturing_step", "workpiece", "manufacturing_settings")
+    settings = model.partners_of(flanks, *roles)
     generated = "generated_addendum_modification_coefficient"
     if draft.take(target, generated, settings, None) is None:
         draft.lack(target, name, flanks or gears)
@@ -213,12 +208,8 @@ def _roughness(draft: Draft, key: str, gears: Sequence[Component]) -> None:
 
 
 def _material(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> None:
-    materials = {
-        item.id: item
-        for gear in gears
-        for item in model.partners(gear.id, "reference", "origin", "referenced", "material")
-    }
-    sources = list(materials.values())
+    materials = model.partners_of(gears, "reference", "origin", "referenced", "material")
+    sources = list({item.id: item for item in materials}.values())
     target = f"{key}.material"
     modulus = draft.read("elastic_modulus", sources, target)
     if modulus is None:
@@ -299,11 +290,7 @@ def micro_geometry(draft: Draft, model: Model, key: str, gears: Sequence[Compone
 
 
 def _of_type(model: Model, flanks: Sequence[Component], kind: str) -> list[Component]:
-    return [
-        item
-        for flank in flanks
-        for item in model.partners(flank.id, "reference", "origin", "referenced", kind)
-    ]
+    return model.partners_of(flanks, "reference", "origin", "referenced", kind)
 
 
 def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flanks: int) -> None:
@@ -313,7 +300,8 @@ def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flank
     if len(items) < flanks or others or amount is None or amount <= 0:
         _leave(draft, key, form.key, items, "it is not the same positive amount on all flanks")
         return
-    if len(shapes) > 1 or shape not in _SHAPES or any(_is_added(item) for item in items):
+    adds_material = any(item.is_true("is_additive_modification") for item in items)
+    if len(shapes) > 1 or shape not in _SHAPES or adds_material:
         _leave(draft, key, form.key, items, "its shape is not linear or parabolic")
         return
     start = f"{key}.micro_geometry."
@@ -348,12 +336,6 @@ def _amount(item: Component, name: str) -> float | None:
 def _shape(item: Component) -> str:
     shape = item.get("shape_of_relief")
     return "linear" if shape is None else shape.text()
-
-
-def _is_added(item: Component) -> bool:
-    """True if the modification adds material."""
-    added = item.get("is_additive_modification")
-    return added is not None and added.text().lower() == "true"
 
 
 # Parts of a planetary set in a REXS file beside its gears: bearing, carrier, operation.
@@ -397,8 +379,9 @@ def bearing_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
         where = f"roller bearing with its geometry between planet and pin{what}"
         draft.lacks[key] = Lack(key, where, False, _LEFT_OUT)
         return
-    rows = _parts(model, rolling, "rolling_bearing_row")
-    elements = _parts(model, rows, "rolling_element")
+    inside = ("ordered_assembly", "assembly", "part")
+    rows = model.partners_of(rolling, *inside, "rolling_bearing_row")
+    elements = model.partners_of(rows, *inside, "rolling_element")
     _rows(draft, planetary, rolling, rows)
     draft.take(f"{key}.rollers_per_row", "number_of_rolling_elements", rows)
     roller = draft.take(f"{key}.roller_diameter", "diameter_of_rolling_element", elements)
@@ -419,15 +402,6 @@ def _has_rollers(bearing: Component) -> bool:
     """True if a bearing is of a type that can be computed, or of none that is stated."""
     kind = bearing.get("bearing_type")
     return kind is None or kind.text() in _ROLLERS
-
-
-def _parts(model: Model, owners: Sequence[Component], kind: str) -> list[Component]:
-    """Parts of a kind of all owners, in order."""
-    return [
-        part
-        for owner in owners
-        for part in model.partners(owner.id, "ordered_assembly", "assembly", "part", kind)
-    ]
 
 
 def _rows(
@@ -463,11 +437,7 @@ def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
     """The carrier as a disc: the largest side plate, as wide as all of them stand."""
     stage = planetary.component.id
     carriers = model.partners(stage, "assembly", "assembly", "part", "planet_carrier")
-    plates = [
-        plate
-        for carrier in carriers
-        for plate in model.partners(carrier.id, "assembly", "assembly", "part", "side_plate")
-    ]
+    plates = model.partners_of(carriers, "assembly", "assembly", "part", "side_plate")
     instead = "Without the carrier's size its drag is left out."
     sizes = [(draft.read("outer_diameter", [p]), draft.read("length", [p]), p) for p in plates]
     known = [(outer, length, plate) for outer, length, plate in sizes if outer and length]
@@ -534,21 +504,13 @@ def file_notes(chosen: PlanetaryParts | Pair) -> Iterator[str]:
     """Contradictions within the file: hands of helices."""
     said: set[bool] = set()
     for mesh in chosen.meshes:
-        first, second = map(_signed_helix, mesh.gears)
+        first, second = (it.number("helix_angle_reference_diameter") for it in mesh.gears)
         internal = any(map(is_internal, mesh.gears))
         if first * second == 0 or (first * second > 0) == internal or internal in said:
             continue
         said.add(internal)
         hands = "the same hand, as on internal gears" if internal else "opposite hands"
         yield f"{mesh.gears[0]} and {mesh.gears[1]} should have {hands}: check the helix angles."
-
-
-def _signed_helix(gear: Component) -> float:
-    found = gear.get("helix_angle_reference_diameter")
-    try:
-        return 0.0 if found is None else found.number()
-    except ValueError:  # told when it is read
-        return 0.0
 
 
 def geometry_notes(

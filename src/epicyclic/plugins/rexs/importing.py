@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
@@ -164,7 +164,9 @@ def read_rexs(
     source = str(path)
     document = read_document(Path(path))
     try:
-        model = _with_load_case(build_model(document.content), load_case)
+        model = build_model(document.content)
+        if load_case is not None:
+            model = model.with_load_case(load_case)
         train = chosen_train(model) if component is None else None
         chosen = train or choose(model, component)
         draft = _draft(model, chosen)
@@ -184,20 +186,9 @@ def read_rexs(
     )
 
 
-def _with_load_case(model: Model, load_case: int | None) -> Model:
-    if load_case is None:
-        return model
-    if load_case not in model.load_cases:
-        known = ", ".join(map(str, list(model.load_cases)[:12])) or "none"
-        allowed = "is not in the file."
-        raise one_problem("--load-case", str(load_case), allowed, f"It has {known}.")
-    return model.with_load_case(load_case)
-
-
 def _draft(model: Model, chosen: PlanetaryParts | Pair | Train) -> Draft:
     draft = train_draft(model, chosen) if isinstance(chosen, Train) else _set_draft(model, chosen)
-    if len(model.load_cases) > 0:
-        cases = ", ".join(map(str, list(model.load_cases)[:12]))
+    if cases := model.known_load_cases:
         draft.notes.append(f"The file has load cases: {cases}. Choose one with --load-case.")
     raise_any([*draft.problems, *check_places(model)])
     return draft

@@ -213,6 +213,19 @@ class Component:
                     return found if found.unit else replace(found, unit=known.unit)
         return None
 
+    def is_true(self, name: str) -> bool:
+        """True if an attribute is given as true."""
+        found = self.get(name)
+        return found is not None and found.text().lower() == "true"
+
+    def number(self, name: str) -> float:
+        """The number of an attribute; 0 without one, and without one that can be read."""
+        found = self.get(name)
+        try:
+            return 0.0 if found is None else found.number()
+        except ValueError:  # told when it is read
+            return 0.0
+
     def amount(self, name: str) -> tuple[float, str] | None:
         """Number and unit, of this package, of an attribute; None if it is not given.
 
@@ -282,6 +295,10 @@ class Model:
         ]
         return [item for item in found if not wanted or item.type in wanted]
 
+    def partners_of(self, owners: Iterable[Component], *wanted: str) -> list[Component]:
+        """The `partners` of several components, one after the other."""
+        return [item for owner in owners for item in self.partners(owner.id, *wanted)]
+
     def place(self, part: Component) -> tuple[int | None, FloatArray] | None:
         """In whose axes a part is placed, None for those of the gear unit, and where. [mm]"""
         reference, point = part.get("reference_component_for_position"), vector(part, _PLACE)
@@ -308,8 +325,16 @@ class Model:
         ]
         return senses[0] if senses else found  # they tell the sense of an axis that is theirs
 
+    @property
+    def known_load_cases(self) -> str:
+        """The first load cases of the file."""
+        return ", ".join(map(str, list(self.load_cases)[:12]))
+
     def with_load_case(self, load_case: int) -> Model:
-        """The model with the attributes that a load case changes."""
+        """The model with the attributes that a load case changes; InputError if there is none."""
+        if load_case not in self.load_cases:
+            remedy = f"It has {self.known_load_cases or 'none'}."
+            raise one_problem("--load-case", str(load_case), "is not in the file.", remedy)
         components = dict(self.components)
         for number, changed in self.load_cases[load_case].items():
             components[number] = components[number].changed(changed.attributes)

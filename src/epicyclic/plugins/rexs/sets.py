@@ -103,11 +103,8 @@ def gear_sets(model: Model) -> list[Component]:
     """Planetary stages, and cylindrical stages outside of them."""
     planetary = model.of_type("planetary_stage")
     inside = {mesh.stage.id for stage in planetary for mesh in _planet_meshes(model, stage)}
-    inside |= {
-        part.id
-        for stage in planetary
-        for part in model.partners(stage.id, "assembly", "assembly", "part", "cylindrical_stage")
-    }
+    parts = model.partners_of(planetary, "assembly", "assembly", "part", "cylindrical_stage")
+    inside |= {part.id for part in parts}
     cylindrical = model.of_type("cylindrical_stage")
     return [*planetary, *(stage for stage in cylindrical if stage.id not in inside)]
 
@@ -211,11 +208,7 @@ def _pair(model: Model, stage: Component) -> Pair:
         raise one_problem(str(stage), "", allowed, "Correct the file.")
 
     def size(gear: Component) -> tuple[bool, float]:
-        teeth = gear.get("number_of_teeth")
-        try:
-            return is_internal(gear), 0.0 if teeth is None else abs(teeth.number())
-        except ValueError:  # told when the number of teeth is read
-            return is_internal(gear), 0.0
+        return is_internal(gear), abs(gear.number("number_of_teeth"))
 
     pinion, gear = sorted(meshes[0].gears, key=size)
     return Pair(meshes[0], pinion, gear)
@@ -225,7 +218,7 @@ def rigid_parts(model: Model, start: Iterable[Component]) -> list[Component]:
     """`start` and all that turns with it: parts on shafts and parts coupled to them."""
     found = {component.id: component for component in start}
     waiting = list(found)
-    neighbours = _rigid_neighbours(model)
+    neighbours = _neighbours(rigid_links(model))
     while waiting:
         for other in neighbours.get(waiting.pop(0), ()):
             component = model.components[other]
@@ -235,9 +228,10 @@ def rigid_parts(model: Model, start: Iterable[Component]) -> list[Component]:
     return list(found.values())
 
 
-def _rigid_neighbours(model: Model) -> dict[int, list[int]]:
+def _neighbours(links: Iterable[tuple[int, int]]) -> dict[int, list[int]]:
+    """What each part is linked with."""
     neighbours: dict[int, list[int]] = {}
-    for first, second in rigid_links(model):
+    for first, second in links:
         neighbours.setdefault(first, []).append(second)
         neighbours.setdefault(second, []).append(first)
     return neighbours
@@ -499,10 +493,7 @@ def _bodies(model: Model, joined: Iterable[list[Component]]) -> dict[int, int]:
         for pair in rigid_links(model, switched=False)
         if all(model.components[part].type != "gear_casing" for part in pair)
     ]
-    neighbours: dict[int, list[int]] = {}
-    for one, two in (*own, *others):
-        neighbours.setdefault(one, []).append(two)
-        neighbours.setdefault(two, []).append(one)
+    neighbours = _neighbours([*own, *others])
     bodies: dict[int, int] = {}
     for start in neighbours:
         waiting = [start]

@@ -512,12 +512,8 @@ def _give_all(draft: Draft, key: str, amounts: Mapping[str, Amount], sense: floa
 def _definers(shaft: Shaft) -> Sequence[Component]:
     """Parts of a shaft whose speed is one that the user set, if the file tells which are."""
     marked = [part for part in shaft.components if part.get("defines_speed") is not None]
-    return [part for part in marked if _is_true(part)] if marked else shaft.components
-
-
-def _is_true(part: Component) -> bool:
-    defines = part.get("defines_speed")
-    return defines is not None and defines.text().lower() == "true"
+    stated = [part for part in marked if part.is_true("defines_speed")]
+    return stated if marked else shaft.components
 
 
 _OTHER_STAGES = ("bevel_stage", "worm_stage")
