@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -84,14 +85,21 @@ class Design:
         names = [name for name, _ in self.axes]
         return dict(zip(names, map(float, _points(self)[index]), strict=True))
 
-    def filling(self, size: int, seed: int) -> Design:
+    def filling(
+        self,
+        size: int,
+        seed: int,
+        # Other limits of some axes, in display units; see `prefix`.
+        ranges: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+    ) -> Design:
         """`size` points that fill the ranges of the axes: a scrambled Sobol sequence."""
-        return replace(self, size=size, seed=seed)
+        axes = tuple((name, ranges.get(self.prefix + name, values)) for name, values in self.axes)
+        return replace(self, axes=axes, size=size, seed=seed)
 
-    def within(self, ranges: Mapping[str, tuple[float, float]]) -> Design:
-        """The design with other limits of some axes, in display units."""
-        axes = tuple((name, ranges.get(name, values)) for name, values in self.axes)
-        return replace(self, axes=axes)
+    @property
+    def prefix(self) -> str:
+        """What stands before the names of its axes where limits are given."""
+        return "" if self.part == "gear" else f"{self.part}."
 
     def describe(self) -> dict[str, Any]:
         """As plain data, for files."""
@@ -380,12 +388,11 @@ def make_campaign(
     if size is None:
         designs.append(GEAR_TABLE)
     elif size > 0:
-        designs.append(GEAR_TABLE.within(_ranges_of("gear", ranges)).filling(size, seed))
+        designs.append(GEAR_TABLE.filling(size, seed, ranges or {}))
     if bearing_size is None and size is None:
         designs.append(BEARING_TABLE)
     elif bearing_size:
-        within = _ranges_of("bearing", ranges)
-        designs.append(BEARING_TABLE.within(within).filling(bearing_size, seed))
+        designs.append(BEARING_TABLE.filling(bearing_size, seed, ranges or {}))
     if ranges and not size:
         stated, allowed = ", ".join(ranges), "needs a space-filling design."
         raise one_problem("ranges", stated, allowed, "Give a size.", "the command")
@@ -412,14 +419,14 @@ def command_of(campaign: Campaign) -> str:
     oil = name if name in library.names("oils") else None
     words = ["epicyclic oil characterise", oil or "OIL.toml"]
     for design, size in zip(campaign.designs, ("--size", "--bearing-size"), strict=False):
-        before = "" if design.part == "gear" else "bearing."
         table = GEAR_TABLE if design.part == "gear" else BEARING_TABLE
         if design.size is not None:
             words.append(f"{size} {design.size}")
         for (axis, values), (_, levels) in zip(design.axes, table.axes, strict=True):
             if values != levels:
                 unit = f" {quantity_of_axis(axis).display}".rstrip()
-                words.append(f'--range "{before}{axis}={min(values):g}:{max(values):g}{unit}"')
+                limits = f"{min(values):g}:{max(values):g}{unit}"
+                words.append(f'--range "{design.prefix}{axis}={limits}"')
     words.append(f"--seed {campaign.seed}")
     if oil is not None:
         usual_settings = json.loads(make_campaign(oil, size=1).settings)
@@ -430,18 +437,6 @@ def command_of(campaign: Campaign) -> str:
             if value != usual.get(key) and "oil" not in key.split(".")
         ]
     return " ".join(words)
-
-
-def _ranges_of(
-    part: str, ranges: Mapping[str, tuple[float, float]] | None
-) -> dict[str, tuple[float, float]]:
-    """Limits that are for the contacts of a part: bearings: ``bearing.radius``."""
-    before = "" if part == "gear" else f"{part}."
-    return {
-        name.removeprefix(before): limits
-        for name, limits in (ranges or {}).items()
-        if name.startswith(before) and "." not in name.removeprefix(before)
-    }
 
 
 def _check_changes(changes: Mapping[str, Any]) -> None:

@@ -275,13 +275,11 @@ def _beside(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
 def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
     """What is wrong across keys."""
     problems = []
-    lubricant = sections.get("lubricant")
-    if isinstance(lubricant, ContactLubricant):
-        problems += law_problems("lubricant", lubricant)
-    for name in SURFACES:
-        surface = sections.get(name)
-        if isinstance(surface, Surface):
-            problems += _check_surface(name, surface)
+    for name, table in sections.items():
+        if isinstance(table, ContactLubricant):
+            problems += law_problems(name, table)
+        elif isinstance(table, Surface):
+            problems += _check_surface(name, table)
     return problems
 
 
@@ -514,46 +512,39 @@ class ContactResult:
         """Everything a table shows; none if the smooth solution failed."""
         if self.smooth.status is not Status.CONVERGED:
             return []
-        contact, smooth = self.smooth.contact, self.smooth
+        contact, smooth, rough = self.smooth.contact, self.smooth, self.rough
         found = [
-            ContactFigure("Hertz pressure", contact.hertz_pressure, "Pa", "GPa"),
-            ContactFigure("Hertz half-width", contact.half_width, "m", "mm"),
-            ContactFigure("line load", contact.line_load, "N/m", "N/mm"),
-            ContactFigure("sliding speed", contact.sliding_speed, "m/s", "m/s"),
-            ContactFigure("Moes load number", contact.moes_load, "1", "1"),
-            ContactFigure("Moes material number", contact.moes_material, "1", "1"),
-            ContactFigure("smooth: central film", smooth.central_film, "m", "um"),
-            ContactFigure("smooth: minimum film", smooth.minimum_film, "m", "um"),
-            ContactFigure("smooth: highest pressure", float(smooth.pressure.max()), "Pa", "GPa"),
-            ContactFigure(
-                "smooth: highest shear stress", float(smooth.shear_stress.max()), "Pa", "MPa"
-            ),
-            ContactFigure("smooth: friction coefficient", smooth.friction_coefficient, "1", "1"),
-            ContactFigure("smooth: rolling loss", smooth.rolling_loss, "W/m", "W/m"),
+            ("Hertz pressure", contact.hertz_pressure, "Pa", "GPa"),
+            ("Hertz half-width", contact.half_width, "m", "mm"),
+            ("line load", contact.line_load, "N/m", "N/mm"),
+            ("sliding speed", contact.sliding_speed, "m/s", "m/s"),
+            ("Moes load number", contact.moes_load, "1", "1"),
+            ("Moes material number", contact.moes_material, "1", "1"),
+            ("smooth: central film", smooth.central_film, "m", "um"),
+            ("smooth: minimum film", smooth.minimum_film, "m", "um"),
+            ("smooth: highest pressure", float(smooth.pressure.max()), "Pa", "GPa"),
+            ("smooth: highest shear stress", float(smooth.shear_stress.max()), "Pa", "MPa"),
+            ("smooth: friction coefficient", smooth.friction_coefficient, "1", "1"),
+            ("smooth: rolling loss", smooth.rolling_loss, "W/m", "W/m"),
         ]
         rise = float(smooth.temperature_rise.max())
         if rise > 0:
-            found.append(ContactFigure("smooth: highest temperature rise", rise, "K", "K"))
-        rough = self.rough
+            found.append(("smooth: highest temperature rise", rise, "K", "K"))
         if rough is not None:
             found += [
-                ContactFigure("film ratio", film_ratio(self.model, smooth), "1", "1"),
-                ContactFigure("friction coefficient", rough.friction_coefficient, "1", "1"),
-                ContactFigure("its standard error", rough.friction_error, "1", "1"),
-                ContactFigure("friction of asperities", rough.asperity_friction_share, "1", "%"),
-                ContactFigure("load on asperities", rough.asperity_load_share, "1", "%"),
-                ContactFigure("length in contact", rough.contact_share, "1", "%"),
-                ContactFigure("central film, mean in time", rough.mean_central_film, "m", "um"),
-                ContactFigure("least film, mean in time", rough.mean_least_film, "m", "um"),
-                ContactFigure(
-                    "highest pressure, mean in time", rough.mean_highest_pressure, "Pa", "GPa"
-                ),
-                ContactFigure("rolling loss", rough.rolling_loss, "W/m", "W/m"),
-                ContactFigure(
-                    "standard error of the rolling loss", rough.rolling_loss_error, "W/m", "W/m"
-                ),
+                ("film ratio", film_ratio(self.model, smooth), "1", "1"),
+                ("friction coefficient", rough.friction_coefficient, "1", "1"),
+                ("its standard error", rough.friction_error, "1", "1"),
+                ("friction of asperities", rough.asperity_friction_share, "1", "%"),
+                ("load on asperities", rough.asperity_load_share, "1", "%"),
+                ("length in contact", rough.contact_share, "1", "%"),
+                ("central film, mean in time", rough.mean_central_film, "m", "um"),
+                ("least film, mean in time", rough.mean_least_film, "m", "um"),
+                ("highest pressure, mean in time", rough.mean_highest_pressure, "Pa", "GPa"),
+                ("rolling loss", rough.rolling_loss, "W/m", "W/m"),
+                ("standard error of the rolling loss", rough.rolling_loss_error, "W/m", "W/m"),
             ]
-        return [figure for figure in found if math.isfinite(figure.value)]
+        return [ContactFigure(*figure) for figure in found if math.isfinite(figure[1])]
 
     def shear_stress(self, frame: Frame) -> FloatArray:
         """At a moment of the rough contact, of film and touching asperities, shape (n,). [Pa]
@@ -595,14 +586,9 @@ class ContactResult:
         }
         smooth = self.smooth
         if smooth.status is Status.CONVERGED:
-            data["smooth"] = {
-                "iterations": smooth.iterations,
-                "x": smooth.x.tolist(),
-                "pressure": smooth.pressure.tolist(),
-                "film": smooth.film.tolist(),
-                "shear_stress": smooth.shear_stress.tolist(),
-                "temperature_rise": smooth.temperature_rise.tolist(),
-            }
+            names = ("x", "pressure", "film", "shear_stress", "temperature_rise")
+            data["smooth"] = {"iterations": smooth.iterations}
+            data["smooth"] |= {name: getattr(smooth, name).tolist() for name in names}
         if self.rough is not None:
             data["rough"] = self._rough_data(self.rough)
         return json.dumps(data, indent=2, allow_nan=False)
@@ -627,14 +613,8 @@ class ContactResult:
 
 def _statistics(surface: Profile) -> dict[str, float]:
     """Statistics of a profile, lengths in m."""
-    if surface.rms == 0:
-        return {"rms": 0.0}
-    return {
-        "rms": surface.rms,
-        "correlation_length": surface.correlation_length,
-        "skewness": surface.skewness,
-        "kurtosis": surface.kurtosis,
-    }
+    names = ("rms", "correlation_length", "skewness", "kurtosis")
+    return {name: getattr(surface, name) for name in names if surface.rms > 0 or name == "rms"}
 
 
 def solve_contact(

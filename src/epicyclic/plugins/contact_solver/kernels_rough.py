@@ -51,11 +51,10 @@ class Column(IntEnum):
     LEAST_FILM = 4
     FLOW_POWER = 5
     """Power of the pressure flow. Theory (H33)."""
-    NEWTON_STEPS = 6
-    ERROR = 7
+    ERROR = 6
     """What the tolerance of a step bounds."""
-    HIGHEST_PRESSURE = 8
-    CENTRAL_FILM = 9
+    HIGHEST_PRESSURE = 7
+    CENTRAL_FILM = 8
 
 
 REFRESH = 1  # GMRES steps beyond which the preconditioner is made anew in the next Newton step.
@@ -187,10 +186,10 @@ def solve_step(
     linear_tolerance: float,  # As `tolerance` for `solve_linear`.
     max_iterations: int,
     space: Space,  # As for `solve_linear`.
-) -> tuple[float, int, float]:
+) -> tuple[float, float]:
     """Pressure and film after one time step, in place. Theory (H21), (H22).
 
-    Returns H_0, the iterations and what `tolerance` bounds: not a number if they broke down.
+    Returns H_0 and what `tolerance` bounds: not a number if the iterations broke down.
     """
     n = pressure.size
     rho, d_rho = np.empty(n), np.empty(n)
@@ -232,7 +231,7 @@ def solve_step(
             bend,
         )
         if not np.isfinite(change).all():
-            return approach, iteration, np.nan
+            return approach, np.nan
         # asperities may carry many times p_h
         peak = max(1.0, pressure.max())
         length = min(1.0, LARGEST_STEP * peak / np.abs(change[:n]).max())
@@ -252,7 +251,7 @@ def solve_step(
             deflect(kernel_row, kept, back)
         for i in range(n):
             film[i] += length * bend[i] + (back[i] if any_kept else 0.0)
-    return approach, iteration, error
+    return approach, error
 
 
 @kernel
@@ -370,7 +369,7 @@ def march(
     tolerance: float,  # As for `solve_step`.
     linear_tolerance: float,
     max_iterations: int,
-    records: FloatArray,  # Shape (steps, 10), see `Column`.
+    records: FloatArray,  # Shape (steps, 9), see `Column`.
 ) -> float:
     """Time steps, as many as `records` has rows; state arrays change in place. Theory (H21), (H25).
 
@@ -393,7 +392,6 @@ def march(
                 pressure[i] = 0.0
         active[1 : stride + 1] = True
         tried[:] = pressure
-        iterations = 0
         for attempt in range(2):
             carry(now, before, stride, order, history, attempt == 0)
             deflect(kernel_row, pressure, bent)
@@ -404,13 +402,12 @@ def march(
                 pressure, film, approach, kernel_row, order, history, fluid, dx, load,
                 active, groups, HELD[attempt], tolerance, linear_tolerance, tries, space,
             )  # fmt: skip
-            iterations += result[1]
-            if result[2] < tolerance or attempt == 1:
+            if result[1] < tolerance or attempt == 1:
                 break
             pressure[:] = tried  # again with short steps and first order
             for i in range(1, n - 1):
                 active[i] = pressure[i] > 0.0
-        if np.isfinite(result[2]):
+        if np.isfinite(result[1]):
             approach = result[0]
         else:  # counted as unsolved; what the roughness adds has moved with the oil
             pressure[:] = tried
@@ -420,8 +417,7 @@ def march(
         masses(pressure, film, fluid, now)
         measure(pressure, film, thinned, fluid, dx, contact_film, boundary_friction, records[t])
         records[t, Column.FLOW_POWER] = flow_power(pressure, now, order, history, fluid) / stride
-        records[t, Column.NEWTON_STEPS] = iterations
-        records[t, Column.ERROR] = result[2]
+        records[t, Column.ERROR] = result[1]
         records[t, Column.HIGHEST_PRESSURE] = pressure.max()
         records[t, Column.CENTRAL_FILM] = film[center]
     return approach

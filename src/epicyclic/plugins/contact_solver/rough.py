@@ -246,7 +246,6 @@ class RoughSolution:
     roughness_kept: float  # Share of Rq that the grid resolves, of the surface that loses more. [1]
     steps: int  # Time steps in all, and those without convergence.
     unsolved_steps: int  # Time steps in all, and those without convergence.
-    newton_steps: float  # Mean over the time steps.
     frames: Sequence[Frame] = field(default_factory=list)  # The last moments, if asked for.
 
 
@@ -318,14 +317,9 @@ class _Simulation:
         self.heights = [  # longer than their period, as the kernel wants them
             np.take(row, np.arange(-1, row.size + nodes + 1), mode="wrap") for row in heights
         ]
+        moved = 0 if frozen else self.stride
         self.shifts = [
-            (not frozen)
-            * self.stride
-            * speed
-            / contact.rolling_speed
-            * row.size
-            * spacing
-            / surface.length
+            moved * speed / contact.rolling_speed * row.size * spacing / surface.length
             for speed, row, surface in zip(
                 (contact.speed1, contact.speed2), heights, surfaces, strict=True
             )
@@ -343,7 +337,7 @@ class _Simulation:
         self.smooth_state = _State(self.pressure.copy(), self.now.copy(), self.approach)
 
     def advance(self, time: float) -> FloatArray:
-        """Records of a `time` in b/u_r, shape (steps, 10); keeps frames if they are asked for.
+        """Records of a `time` in b/u_r, shape (steps, 9); keeps frames if they are asked for.
 
         What whole steps lack of one time is added to the next: grids stay in step.
         """
@@ -373,7 +367,7 @@ class _Simulation:
         self.approach = smooth.approach + other.approach - its.approach
 
     def march(self, steps: int) -> FloatArray:
-        """Records of `steps` more time steps, shape (steps, 10)."""
+        """Records of `steps` more time steps, shape (steps, 9)."""
         records = np.zeros((steps, len(Column)))
         scale = self.contact.film_scale
         self.approach = march(
@@ -576,7 +570,6 @@ def _solution(run: _Simulation, series: _Series, means: _Means, message: str) ->
         roughness_kept=run.roughness_kept,
         steps=run.tried,
         unsolved_steps=run.unsolved,
-        newton_steps=float(records[:, Column.NEWTON_STEPS].mean()),
         frames=list(run.frames),
     )
 
@@ -587,5 +580,5 @@ def _failed(smooth: SmoothSolution, message: str) -> RoughSolution:
     return RoughSolution(
         smooth.contact, smooth, Status.FAILED, message, np.empty(0), np.empty(0), nothing, nothing,
         nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0,
-        0, nothing,
+        0,
     )  # fmt: skip
