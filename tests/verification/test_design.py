@@ -22,10 +22,9 @@ from epicyclic.plugins.design import candidates as enumerating
 from epicyclic.plugins.design import search as searching
 from epicyclic.plugins.design.candidates import LAYOUTS, case_tables, distances, sizes
 from epicyclic.plugins.design.commands import design as command
-from epicyclic.plugins.design.front import front_of, stored
+from epicyclic.plugins.design.mass import rotor_dynamics, rotor_text
 from epicyclic.plugins.design.relief import Relief, relief_front
-from epicyclic.plugins.design.report import fates_table
-from epicyclic.plugins.design.rotor import rotor_dynamics, rotor_text
+from epicyclic.plugins.design.report import fates_table, front_of, stored
 from epicyclic.plugins.design.search import case_text, design, dominated, screen, search
 from epicyclic.plugins.design.task import read_task
 from epicyclic.study.load import load_case
@@ -100,7 +99,7 @@ def test_screened_sizes_are_those_of_the_case(name):
         assert known == pytest.approx(least, rel=1e-4)
         for mesh in meshes:
             assert mesh.normal_backlash == pytest.approx(task.choices.backlash, abs=1e-8)
-        distance = distances(task, passing.loc[[number]].dropna(axis=1))[0]
+        distance = distances(passing.loc[[number]].dropna(axis=1))[0]
         assert meshes[0].center_distance == pytest.approx(distance, rel=ROUNDING)
         assert meshes[0].face_width == pytest.approx(
             row["width_ratio"] * 2 * meshes[0].gear1.reference_radius, rel=1e-5

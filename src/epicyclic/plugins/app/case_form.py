@@ -126,11 +126,6 @@ def form_of(
     return _group(KINDS[tables["kind"]], "", "", tables)
 
 
-def has_form(tables: Mapping[str, Any]) -> bool:
-    """False if something else stands where a table belongs: no field shows that."""
-    return _is_table([KINDS[tables["kind"]]], tables)
-
-
 def _is_table(tables: list[type[BaseModel]], given: Any) -> bool:
     """True for a table that has tables where its schema, one of several, has them."""
     return isinstance(given, Mapping) and all(
@@ -237,20 +232,16 @@ def _kind(table: type[BaseModel], *, is_one: bool) -> Kind:
         return Kind(about, {})
     needed = [name for name, field in table.model_fields.items() if field.is_required()]
     needed += [group[0] for group in getattr(table, "EXACTLY_ONE", ())]
-    tables = {
-        _GEARS if name == _MEMBERS else name: {} if _has_tables(table, name) else ""
-        for name in needed
-    }
+    tables: dict[str, Any] = {}
+    for own in needed:
+        holds_tables = any(tables_in(table.model_fields[own].annotation))
+        tables[_GEARS if own == _MEMBERS else own] = {} if holds_tables else ""
     return Kind(about, tables)
 
 
 def _first_line(table: type[BaseModel]) -> str:
     """What a table holds, without the marks of the manual."""
     return (table.__doc__ or "").strip().partition("\n")[0].replace("`", "")
-
-
-def _has_tables(table: type[BaseModel], name: str) -> bool:
-    return next(tables_in(table.model_fields[name].annotation), None) is not None
 
 
 def _likeliest(tables: list[type[BaseModel]], given: Mapping[str, Any]) -> type[BaseModel]:
@@ -484,7 +475,8 @@ def opened(
     if Path(path).suffix.lower() == ".toml":
         tables, problems = read_file(Path(path))
         is_known = not problems and tables.get("kind") in tuple(KINDS)
-        if is_known and has_form(tables):
+        # what else stands where a table belongs is shown by no field
+        if is_known and _is_table([KINDS[tables["kind"]]], tables):
             return Desk(shown or path, tables, lambda changes: build_case(tables, changes, path))
     case = load_case(path)
     return Desk(shown or path, case.given(), case.updated)
@@ -502,10 +494,9 @@ def received(
     """
     contents = [(Path(name).name, content) for name, content in files]
     counts = Counter(name.casefold() for name, _ in contents)  # as some systems compare names
+    remedy = "Rename all but one of them."
     problems = [
-        Problem(
-            "file", written(name), f"is the name of {count} files.", "Rename all but one of them."
-        )
+        Problem("file", written(name), f"is the name of {count} files.", remedy)
         for name, count in counts.items()
         if count > 1
     ]
@@ -615,7 +606,9 @@ class Shelves:
             shelf = Shelf(shelf.desk, shelf.folder, shelf.chapter)
         self._kept[tab] = shelf
         self._pages[tab] = page
-        self._forget()
+        closed = [own for own in self._kept if own not in self._pages]
+        for own in closed[: max(0, len(self._kept) - MOST_KEPT)]:  # those closed longest ago
+            shutil.rmtree(self._kept.pop(own).folder, ignore_errors=True)
         return shelf
 
     def leave(self, tab: str, page: str) -> None:
@@ -628,9 +621,3 @@ class Shelves:
         """End all work."""
         for shelf in self._kept.values():
             shelf.close()
-
-    def _forget(self) -> None:
-        """Forget the tabs that were closed longest ago."""
-        closed = [tab for tab in self._kept if tab not in self._pages]
-        for tab in closed[: max(0, len(self._kept) - MOST_KEPT)]:
-            shutil.rmtree(self._kept.pop(tab).folder, ignore_errors=True)

@@ -515,9 +515,8 @@ def _leave(number: int, frame: object) -> NoReturn:
 def _listening(host: str, port: int) -> socket.socket:
     """A socket that listens at an address, before anything else is started."""
     if not host:
-        raise _not_listening(
-            host, port, "an empty address would mean every address of this machine"
-        )
+        told = "an empty address would mean every address of this machine"
+        raise _not_listening(host, port, told)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     try:

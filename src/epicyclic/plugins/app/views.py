@@ -24,7 +24,7 @@ from epicyclic.study.maps.formats import formats
 from epicyclic.study.operating import OPERATING, OperatingValue
 
 if TYPE_CHECKING:
-    from epicyclic.plugins.design.front import Front
+    from epicyclic.plugins.design.report import Front
 
 # Chapters of a report on the page: tables at once, figures as they are drawn, each to save.
 
@@ -375,6 +375,7 @@ class TurningView:
 
 
 MAP_STEPS = {"speed": 9, "torque": 13}
+_NAMES = ("kept", "now")  # Of two cases beside each other.
 _TOLD = "Keep the current case, then change it: both are shown here side by side."
 
 
@@ -508,12 +509,10 @@ class CompareView:
     async def show(self) -> None:
         """Buttons that set the other case, and both side by side."""
         with ui.row().classes("values"):
-            ui.button("Keep the current case for comparison", on_click=self._keep).props(
-                "outline no-caps dense"
-            )
-            ui.button("Another case", on_click=lambda: self._choose(self._set)).props(
-                "outline no-caps dense"
-            )
+            keep = ui.button("Keep the current case for comparison", on_click=self._keep)
+            other = ui.button("Another case", on_click=lambda: self._choose(self._set))
+            for button in (keep, other):
+                button.props("outline no-caps dense")
         self._body = ui.element("div")
         self._sheet = None
 
@@ -545,10 +544,10 @@ class CompareView:
             with self._body:
                 ui.label(told).classes("soft")
             return
-        study, names = Study(now.case), ("kept", "now")
+        study, cases = Study(now.case), (other.case, now.case)
         try:
-            tables = await self._do(tasks.compared, other.case, now.case, names)
-            drawings = await self._do(tasks.beside, other.case, now.case, names, IN_PAGE)
+            tables = await self._do(tasks.compared, *cases, _NAMES)
+            drawings = await self._do(tasks.beside, *cases, _NAMES, IN_PAGE)
         except EpicyclicError as error:
             if not self._body.is_deleted:
                 self._body.clear()
@@ -569,14 +568,13 @@ class CompareView:
         """Places for both cases."""
 
         async def draw(ending: str) -> bytes:
-            shown, kept = self._place.drawn or study, other.case
-            names = ("kept", "now")
-            return cast(bytes, await self._do(tasks.beside, kept, shown.case, names, ending))
+            cases = other.case, (self._place.drawn or study).case
+            return cast(bytes, await self._do(tasks.beside, *cases, _NAMES, ending))
 
         self._sheet = sheet = Sheet(self._do, study)
         self._body.clear()
         with self._body:
-            for label, desk in (("kept", other), ("now", self._desk())):
+            for label, desk in zip(_NAMES, (other, self._desk()), strict=True):
                 ui.label(f"{label}: {desk.title}").classes("soft")
                 self._command = ui.code(desk.command()).classes("wrapped")
             self._place = Place("Losses of both cases", "losses-beside", "wide", draw)

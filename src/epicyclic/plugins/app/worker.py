@@ -53,7 +53,7 @@ from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.run import parse_vary
 
 if TYPE_CHECKING:
-    from epicyclic.plugins.design.front import Front
+    from epicyclic.plugins.design.report import Front
 
 
 class Latest:
@@ -149,10 +149,11 @@ class Worker:
     def end(self) -> None:
         """End what is being done; the next thing starts a new process."""
         if self._process is not None:
-            _end_group(self._process)
+            with suppress(OSError, AttributeError):  # it has no group yet, or the system has none
+                os.killpg(self._process.pid, signal.SIGTERM)  # with those it started for a map
+            self._process.terminate()
             self._process = None
-        if self._ours is not None:
-            self._ours = None
+        self._ours = None
 
     def close(self) -> None:
         """End what is being done, and begin nothing more."""
@@ -171,17 +172,10 @@ class Worker:
         return self._ours
 
 
-def _end_group(process: Any) -> None:
-    """End a process and those that it has started for a map."""
-    with suppress(OSError, AttributeError):  # it has no group yet, or the system has none
-        os.killpg(process.pid, signal.SIGTERM)
-    process.terminate()
-
-
 def _serve(pipe: Connection, niceness: int) -> None:
     """What the process does: tasks until the pipe is closed."""
     if hasattr(os, "setsid"):
-        os.setsid()  # a group of its own, see `_end_group`
+        os.setsid()  # a group of its own, see `Worker.end`
         os.nice(niceness)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the app ends this process
     compiled = itertools.count(1)
@@ -434,7 +428,7 @@ def _turning(
 
 def designs(path: Path, progress: Progress) -> Front:
     """The front of a search for designs."""
-    from epicyclic.plugins.design.front import found_in  # only this view needs it
+    from epicyclic.plugins.design.report import found_in  # only this view needs it
 
     return found_in(path, progress)
 

@@ -279,15 +279,13 @@ def ring_tip(usual: Any, base: Any, action: Any, module: Any) -> Any:
     return np.maximum(usual, np.hypot(base, action + TIP_ROOM * module))
 
 
-def distances(task: Task, table: pd.DataFrame, stage: str = "1") -> FloatArray:
-    """Centre distance of a stage. [m]"""
-    one, two = ("pinion", "gear") if "pinion" in table else ("sun", "planet")
-    if "wide" in table:
-        two = "wide"
-    if stage == "2":
-        one, two = "sun2", "planet2"
+def distances(table: pd.DataFrame, stage: str = "1") -> FloatArray:
+    """Centre distance of a stage of candidates of one arrangement. [m]"""
+    meshes = LAYOUTS[str(table["arrangement"].iloc[0])].meshes
+    mesh = next(it for it in meshes if it.set == stage)
     module = table["module2" if stage == "2" else "module"].to_numpy()
-    total = (table[one] + table[two]).to_numpy() / (2 * np.cos(table["helix"].to_numpy()))
+    teeth = (table[mesh.first] + table[mesh.second]).to_numpy()
+    total = teeth / (2 * np.cos(table["helix"].to_numpy()))
     found: FloatArray = module * (total + table["distance_shift"].to_numpy())
     return found
 
@@ -325,7 +323,7 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
                 faces[stage] = faces[stage] / np.cos(helix)
         for mesh in layout.meshes:
             module, face = modules[mesh.set], faces[mesh.set]
-            distance = distances(task, table, mesh.set)
+            distance = distances(table, mesh.set)
             sign = -1.0 if mesh.internal else 1.0
             z1, z2 = z[mesh.first], z[mesh.second]
             transverse = module / np.cos(helix)
@@ -524,7 +522,7 @@ def teeth_text(row: Row) -> str:
 def _shared(task: Task, row: Row, stage: str) -> tuple[dict[str, str], BasicRack, float]:
     module = float(row["module2" if stage == "2" else "module"])
     helix = float(row["helix"])
-    distance = float(distances(task, pd.DataFrame([dict(row)]).dropna(axis=1), stage)[0])
+    distance = float(distances(pd.DataFrame([dict(row)]).dropna(axis=1), stage)[0])
     alpha_n = task.choices.pressure_angle
     alpha_t = math.atan(math.tan(alpha_n) / math.cos(helix))
     rack = BasicRack(module / math.cos(helix), alpha_t, helix)

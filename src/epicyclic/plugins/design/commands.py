@@ -63,22 +63,21 @@ def strength(
     """
     from rich.console import Group
 
-    from epicyclic.plugins.design import rotor as dynamics
-    from epicyclic.plugins.design.mass import as_list, parts
+    from epicyclic.plugins.design.mass import ENDINGS, as_list, parts, rotor_dynamics, rotor_text
     from epicyclic.plugins.design.strength import as_dict
     from epicyclic.plugins.design.strength import strength as rate
     from epicyclic.plugins.design.tables import mass_table, tables_of
     from epicyclic.show.terminal import as_on_page, titled
 
     if rotor is not None:
-        check_ending("--rotor-dynamics", rotor, dynamics.ENDINGS)
+        check_ending("--rotor-dynamics", rotor, ENDINGS)
     loaded = load_with(case, changes)
     if tell_given(loaded, "rate", json_file is not None) and rotor is None:
         show(Group, lambda: '{"least": {}, "meshes": {}, "bearings": {}, "parts": []}', json_file)
         return
     found = rate(loaded)
     if rotor is not None:
-        write_file(rotor, dynamics.rotor_text(dynamics.rotor_dynamics(loaded), rotor.suffix))
+        write_file(rotor, rotor_text(rotor_dynamics(loaded), rotor.suffix))
     show(
         lambda: titled(
             loaded.title or loaded.kind,

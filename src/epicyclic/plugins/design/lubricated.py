@@ -168,12 +168,11 @@ def reference_film(oil: Oil, stage: int) -> ReferenceFilm:
     return ReferenceFilm(bulk, touching, float(film), float(film) / TEST_ROUGHNESS)
 
 
-def scuffing_temperature(
-    stage: int, viscosity: float, lubricant_factor: float, structure: float = 1.0
-) -> float:
+def scuffing_temperature(stage: int, viscosity: float, lubricant_factor: float) -> float:
     """theta_S of the flash temperature method with the oil at its own temperature. [K]
 
-    ISO/TS 6336-20, Eq. 25: 80 degC + (0.85 + 1.4 X_W) X_L S^2, X_L from the viscosity [Pa s].
+    ISO/TS 6336-20, Eq. 25: 80 degC + (0.85 + 1.4 X_W) X_L S^2, X_L from the viscosity [Pa s]; X_W
+    of the structure of the steel is 1.
 
     Examples
     --------
@@ -181,12 +180,10 @@ def scuffing_temperature(
     451.98
     """
     oil = lubricant_factor * math.pow(viscosity * 1e3, -0.05)
-    return ZERO_CELSIUS + 80 + (0.85 + 1.4 * structure) * oil * stage**2
+    return ZERO_CELSIUS + 80 + (0.85 + 1.4) * oil * stage**2
 
 
-def integral_scuffing_temperature(
-    stage: int, viscosity40: float, lubricant_factor: float, structure: float = 1.0
-) -> float:
+def integral_scuffing_temperature(stage: int, viscosity40: float, lubricant_factor: float) -> float:
     """theta_Sint of the integral method. ISO/TS 6336-21, second hand. [K]
 
     Bulk 80 + 0.23 T X_L and flash 0.2 T (100/nu40)^0.02 X_L of the test, weighted by 1.5.
@@ -198,7 +195,7 @@ def integral_scuffing_temperature(
     """
     torque = SCUFFING_TORQUES[stage - 1] * lubricant_factor
     flash = 0.2 * torque * math.pow(100 / (viscosity40 * 1e6), 0.02)
-    return ZERO_CELSIUS + 80 + 0.23 * torque + 1.5 * structure * flash
+    return ZERO_CELSIUS + 80 + 0.23 * torque + 1.5 * flash
 
 
 def integral_temperature(bulk: float, mean_flash: float) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -45,10 +45,6 @@ class Relief:
     tolerance: float = 0.0  # Of every amount that is varied, 95 %, either way. [m]
     objectives: Sequence[str] = ("loss", "transmission_error")
 
-    def combinations(self) -> list[dict[str, str]]:
-        """The full product of the values."""
-        return [dict(zip(self.vary, it, strict=True)) for it in product(*self.vary.values())]
-
 
 def mesh_keys(case: Case) -> list[str]:
     """Names of all meshes, the first one first."""
@@ -56,23 +52,21 @@ def mesh_keys(case: Case) -> list[str]:
     return [joined_key(name, mesh.key) for name, own in sets for mesh in own.meshes]
 
 
-def key_problems(relief: Relief) -> list[Problem]:
+def _problems(relief: Relief) -> Iterator[Problem]:
     """Keys that are none of micro-geometry or misalignment, a mesh that is not there."""
-    problems = []
     for key in relief.vary:
         if "micro_geometry" not in key and not key.endswith("misalignment"):
             allowed = "is no key of micro-geometry."
             remedy = 'For example "sun.micro_geometry.tip_relief=5:45:5 um".'
-            problems.append(Problem("--vary", key, allowed, remedy))
+            yield Problem("--vary", key, allowed, remedy)
     keys = mesh_keys(relief.case)
     if relief.mesh not in keys:
         allowed = f"must be one of {', '.join(keys)}."
-        problems.append(Problem("--mesh", relief.mesh, allowed, f"Give --mesh {keys[0]}."))
+        yield Problem("--mesh", relief.mesh, allowed, f"Give --mesh {keys[0]}.")
     for name in relief.objectives:
         if name not in OBJECTIVES:
             allowed = f"must be one of {', '.join(OBJECTIVES)}."
-            problems.append(Problem("--objective", name, allowed, "Give --objective loss."))
-    return problems
+            yield Problem("--objective", name, allowed, "Give --objective loss.")
 
 
 def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
@@ -89,8 +83,8 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
     """
     import xarray as xr
 
-    raise_any(key_problems(relief), "the command")
-    variants = relief.combinations()
+    raise_any(_problems(relief), "the command")
+    variants = [dict(zip(relief.vary, it, strict=True)) for it in product(*relief.vary.values())]
     points, owners = _points(relief, variants)
     rows = (runner or Runner()).run(PointList(relief.case, points=tuple(points)))
     values = _values(relief, rows)  # points by objectives

@@ -250,27 +250,18 @@ def _check_tables(task: Task, row: Mapping[str, Any]) -> None:
     gears = {
         gear.removesuffix("2") for name in task.choices.arrangements for gear in LAYOUTS[name].gears
     }
-    raise_any(
-        [
-            Problem(
-                f"case.strength.gears.{name}", "", "is no gear of the arrangements.",
-                did_you_mean(name, gears) or f"Name one of {', '.join(sorted(gears))}.",
-            )
-            for name in stated_gears(task) if name not in gears
-        ],
-        task.title or "the task",
-    )  # fmt: skip
+    problems = []
+    for name in stated_gears(task):
+        if name not in gears:
+            remedy = did_you_mean(name, gears) or f"Name one of {', '.join(sorted(gears))}."
+            key = f"case.strength.gears.{name}"
+            problems.append(Problem(key, "", "is no gear of the arrangements.", remedy))
+    raise_any(problems, task.title or "the task")
     try:
         read_case(case_tables(task, row))
     except InputError as error:
-        raise_any(
-            [
-                replace(it, key=f"case.{it.key}")
-                for it in error.problems
-                if it.key.split(".")[0] in OF_CASES
-            ],
-            task.title or "the task",
-        )
+        shared = (it for it in error.problems if it.key.split(".")[0] in OF_CASES)
+        raise_any((replace(it, key=f"case.{it.key}") for it in shared), task.title or "the task")
 
 
 def _objectives(found: Found, rows: Any, loss: str) -> FloatArray:
@@ -462,9 +453,8 @@ def _missed(task: Task, key: str, margin: float, what: str, is_bound: bool) -> P
     told = f"is missed by {100 * (1 - margin):.3g} %: {what}, has {known}"
     if is_bound and key in SAFETIES:
         told += " at best"
-    return Problem(
-        f"limits.{key}", stated, f"{told}.", f"Relax it to {safe}, or allow more choices."
-    )
+    remedy = f"Relax it to {safe}, or allow more choices."
+    return Problem(f"limits.{key}", stated, f"{told}.", remedy)
 
 
 def _needed(task: Task) -> dict[str, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
@@ -236,12 +236,7 @@ def strength(case: CaseSource) -> Strength:
     ['sun_mesh', 'ring_mesh']
     """
     case = as_case(case)
-    return strength_of(case, build_computed(case))
-
-
-def strength_of(case: Case, built: Built) -> Strength:
-    """The strength of a case whose machine is there."""
-    table = case.strength or StrengthTable()
+    built, table = build_computed(case), case.strength or StrengthTable()
     raise_any(_problems(case, table, built), case.source)
     state = built.loaded_state()
     assert case.lubricant is not None
@@ -267,18 +262,14 @@ def strength_of(case: Case, built: Built) -> Strength:
 
 def _about_ratings(shafts: Sequence[ShaftBearing]) -> Iterator[str]:
     """Shaft bearings by what their lives lack."""
-    all_of = {
-        "no life without dynamic_load_rating": [
-            one.key for one in shafts if math.isnan(one.bearing.dynamic_load_rating)
-        ],
-        "no modified life without static_load_rating": [
-            one.key for one in shafts if math.isnan(one.bearing.static_load_rating)
-        ],
-        f"ratings estimated, ±{percent(RATING_BAND, 0)}, and lives go with C^3": [
-            one.key for one in shafts if one.bearing.estimated
-        ],
+    estimated = f"ratings estimated, ±{percent(RATING_BAND, 0)}, and lives go with C^3"
+    lacks: dict[str, Callable[[CatalogueBearing], bool]] = {
+        "no life without dynamic_load_rating": lambda it: math.isnan(it.dynamic_load_rating),
+        "no modified life without static_load_rating": lambda it: math.isnan(it.static_load_rating),
+        estimated: lambda it: bool(it.estimated),
     }
-    for words, keys in all_of.items():
+    for words, is_lacking in lacks.items():
+        keys = [one.key for one in shafts if is_lacking(one.bearing)]
         if keys:
             yield f"{words}: {', '.join(keys)}"
 
@@ -388,10 +379,9 @@ class _Rating:
         cosine = math.cos(mesh.gear1.rack.transverse_pressure_angle)
         base = max(it.single_pitch for it in deviations) * cosine
         form = max(it.profile_form for it in deviations)
-        run = [iso.running_in(it.treatment, it.contact, base) for it in limits]
         worn, worn_form = (
-            min(run),
-            min(iso.running_in(it.treatment, it.contact, form) for it in limits),
+            min(iso.running_in(it.treatment, it.contact, deviation) for it in limits)
+            for deviation in (base, form)
         )
         reliefs = [
             0.0 if it.tip_relief is None else it.tip_relief.amount

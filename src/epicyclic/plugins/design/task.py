@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -116,9 +116,7 @@ class Task(Table):
     choices: Choices
     limits: Limits = Limits()
     search: Search = Search()
-    case: Any = Field(
-        default={}, description="Tables of every case: lubricant, strength, models, numerics."
-    )
+    case: Any = option("Tables of every case: lubricant, strength, models, numerics.", {})
 
     @property
     def points(self) -> tuple[DutyPoint, ...]:
@@ -163,30 +161,24 @@ def _found_from(folder: Path, value: Any, key: str = "") -> Any:
     return str(folder / value) if key in FILE_KEYS and isinstance(value, str) else value
 
 
-def _problems(task: Task) -> list[Problem]:
+def _problems(task: Task) -> Iterator[Problem]:
     """Contradictions between tables."""
-    problems = []
     low, high = task.choices.pinion_teeth
     if not 5 <= low <= high:
         allowed = "must be two numbers of teeth, 5 or more, the smaller one first."
-        problems.append(
-            Problem("choices.pinion_teeth", f"{low}, {high}", allowed, "Give [17, 35].")
-        )
+        yield Problem("choices.pinion_teeth", f"{low}, {high}", allowed, "Give [17, 35].")
     tables = task.case if isinstance(task.case, dict) else {}
     for key in tables.keys() - set(OF_CASES):
         allowed = f"is no table that designs share; these are {', '.join(OF_CASES)}."
-        problems.append(Problem(f"case.{key}", "", allowed, "Leave it out."))
+        yield Problem(f"case.{key}", "", allowed, "Leave it out.")
     if "lubricant" not in tables:
-        problems.append(
-            Problem("case.lubricant", "", "is missing.", 'Add [case.lubricant] oil = "...".')
-        )
+        yield Problem("case.lubricant", "", "is missing.", 'Add [case.lubricant] oil = "...".')
     if task.cycle and not any(point.torque * point.speed for point in task.cycle):
-        problems.append(Problem("cycle", "", "has no torque at a speed.", "Give points with both."))
+        yield Problem("cycle", "", "has no torque at a speed.", "Give points with both.")
     for key, values in task.choices:
         if key != "pinion_teeth" and isinstance(values, tuple) and len({*values}) < len(values):
-            twice = f"choices.{key}", "", "has the same value twice.", "Give each value once."
-            problems.append(Problem(*twice))
+            told = "has the same value twice."
+            yield Problem(f"choices.{key}", "", told, "Give each value once.")
     if task.operation.torque <= 0 or task.operation.speed <= 0:
         allowed = "must have a positive torque and speed."
-        problems.append(Problem("operation", "", allowed, "Give the point of the largest load."))
-    return problems
+        yield Problem("operation", "", allowed, "Give the point of the largest load.")
