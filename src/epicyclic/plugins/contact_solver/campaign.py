@@ -120,43 +120,32 @@ class Design:
 
     def check(self) -> None:
         """Raise `InputError` for every axis that leaves what the solver is tested for."""
-        problems = []
+        raise_any(self._problems(), "the design")
+
+    def _problems(self) -> Iterator[Problem]:
+        beyond = "exceeds the tested range of the solver"
         for name, values in self.axes:
-            quantity = quantity_of_axis(name)
+            key, quantity = f"{self.part}.{name}", quantity_of_axis(name)
             scale, offset = quantity.scale_and_offset()
             box = SOLVER_BOX.get(name, (-math.inf, math.inf))
             low, high = (limit * scale + offset for limit in box)
+            least, most = format_number(min(values)), format_number(max(values))
             if self.size is not None and name in LOGARITHMIC and min(values) <= 0:
                 allowed = (
                     "must be above zero, because it is filled uniformly on a logarithmic scale."
                 )
-                lowest = format_number(min(values))
-                problems.append(Problem(f"{self.part}.{name}", lowest, allowed, "Raise it."))
+                yield Problem(key, least, allowed, "Raise it.")
             slack = 1e-9 * max(abs(value) for value in values)
             if min(values) < low - slack or max(values) > high + slack:
                 unit = f" {quantity.display}".rstrip()
-                problems.append(
-                    Problem(
-                        f"{self.part}.{name}",
-                        f"{format_number(min(values))} to {format_number(max(values))}{unit}",
-                        f"exceeds the tested range of the solver, {format_number(low)} to "
-                        f"{format_number(high)}{unit}.",
-                        "Give a smaller range.",
-                    )
-                )
-        problems += self._check_roughness()
-        raise_any(problems, "the design")
-
-    def _check_roughness(self) -> Iterator[Problem]:
-        """Both surfaces together must not be rougher than the solver is tested for."""
-        names = ("roughness1", "roughness2")
-        highest = math.hypot(*(max(values) for name, values in self.axes if name in names))
+                allowed = f"{beyond}, {format_number(low)} to {format_number(high)}{unit}."
+                yield Problem(key, f"{least} to {most}{unit}", allowed, "Give a smaller range.")
+        rough = (max(values) for name, values in self.axes if name in ("roughness1", "roughness2"))
+        highest = math.hypot(*rough)
         limit = MICROMETRE.to_display(SOLVER_BOX["composite_roughness"][1])
         if highest > limit:
-            yield Problem(
-                f"{self.part}.roughness1, roughness2", f"up to {highest:.3g} um together",
-                f"exceeds the tested range of the solver, {limit:g} um.", "Give smaller ranges.",
-            )  # fmt: skip
+            key, given = f"{self.part}.roughness1, roughness2", f"up to {highest:.3g} um together"
+            yield Problem(key, given, f"{beyond}, {limit:g} um.", "Give smaller ranges.")
 
 
 def quantity_of_axis(name: str) -> Quantity:
@@ -198,9 +187,8 @@ def parse_ranges(options: Iterable[str]) -> dict[str, tuple[float, float]]:
             problems.append(Problem(f"--range {name}", f'"{option}"', f"{error}.", "Change it."))
             continue
         if not low < high:
-            problems.append(
-                Problem(f"--range {name}", f'"{option}"', "must be increasing.", "Swap them.")
-            )
+            allowed = "must be increasing."
+            problems.append(Problem(f"--range {name}", f'"{option}"', allowed, "Swap them."))
         ranges[name] = (low, high)
     raise_any(problems, "the command")
     return ranges

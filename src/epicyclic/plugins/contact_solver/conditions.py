@@ -147,10 +147,8 @@ class LineContact:
             if not (value > 0 and math.isfinite(value))
         ]
         if not self.oil.eyring_stress > 0:
-            value = f"{self.oil.eyring_stress:g}"
-            problems.append(
-                Problem("oil.eyring_stress", value, "must be above zero.", "Use inf for no limit.")
-            )
+            value, allowed = f"{self.oil.eyring_stress:g}", "must be above zero."
+            problems.append(Problem("oil.eyring_stress", value, allowed, "Use inf for no limit."))
         problems += [
             Problem(f"oil.shear_law.{name}", f"{value:g}", allowed, "Change it.")
             for name, value, allowed in shear_problems(self.oil.shear)
@@ -186,7 +184,8 @@ class LineContact:
     @property
     def moes_load(self) -> float:
         """M = W (2U)^-1/2. Theory (H3). [1]"""
-        return self._load_number / math.sqrt(2 * self._speed_number)
+        load = self.line_load / (self.equivalent_modulus * self.radius)
+        return load / math.sqrt(2 * self._speed_number)
 
     @property
     def moes_material(self) -> float:
@@ -196,10 +195,6 @@ class LineContact:
             * self.equivalent_modulus
             * math.pow(2 * self._speed_number, 0.25)
         )
-
-    @property
-    def _load_number(self) -> float:
-        return self.line_load / (self.equivalent_modulus * self.radius)
 
     @property
     def _speed_number(self) -> float:
@@ -270,9 +265,8 @@ def heating_of(oil: OilState, effusivity1: float, effusivity2: float) -> Heating
 def inlet_factor(contact: LineContact, heating: Heating) -> float:
     """Film over that without heat of shear in the inlet: Wilson and Sheu (1983). Theory (H29)."""
     speed = contact.rolling_speed
-    load = (
-        heating.thermoviscosity * contact.oil.viscosity * speed**2 / heating.oil_conductivity
-    )  # L = beta mu_0 u_r^2/k
+    # L = beta mu_0 u_r^2/k
+    load = heating.thermoviscosity * contact.oil.viscosity * speed**2 / heating.oil_conductivity
     slip = abs(contact.sliding_speed) / speed
     return 1 / (1 + 0.1 * (1 + 14.8 * math.pow(slip, 0.83)) * math.pow(load, 0.64))
 

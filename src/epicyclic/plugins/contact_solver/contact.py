@@ -97,13 +97,11 @@ class Contact(Table):
     EXACTLY_ONE = (("line_load", "hertz_pressure"),)
 
     radius: Length = Field(description="Equivalent radius of curvature.")
-    line_load: LineLoad | None = Field(default=None, description="Normal load per length.")
-    hertz_pressure: LoadPressure | None = Field(
-        default=None, description="Hertz pressure instead of line_load."
-    )
+    line_load: LineLoad | None = option("Normal load per length.")
+    hertz_pressure: LoadPressure | None = option("Hertz pressure instead of line_load.")
     rolling_speed: RollingSpeed = Field(description="Mean of both surface speeds.")
-    slide_to_roll_ratio: Number = Field(
-        default=0.0, ge=0.0, le=2.0, description="Difference of the surface speeds over their mean."
+    slide_to_roll_ratio: Number = option(
+        "Difference of the surface speeds over their mean.", 0.0, ge=0.0, le=2.0
     )
 
 
@@ -120,31 +118,26 @@ class Surface(Table):
     """A surface: its material and its roughness, generated or measured."""
 
     material: NamedMaterial = option("A name or a table of elastic constants.", "steel")
-    roughness: Roughness | None = Field(
-        default=None, description="Rq; a measured profile is scaled to it. Smooth by default."
+    roughness: Roughness | None = option(
+        "Rq; a measured profile is scaled to it. Smooth by default."
     )
     correlation_length: SmallLength = option(
         "Distance at which the autocorrelation has fallen to 1/e.", "20 um"
     )
-    skewness: Number = Field(default=0.0, ge=-5.0, le=5.0, description="Rsk.")
-    kurtosis: Number = Field(default=3.0, ge=1.0, le=50.0, description="Rku.")
-    seed: int = Field(default=1, ge=0, description="Of the generated profile.")
-    profile: str | None = Field(
-        default=None,
-        description="A measured profile instead: X3P, or CSV with position in mm and height in um.",
+    skewness: Number = option("Rsk.", 0.0, ge=-5.0, le=5.0)
+    kurtosis: Number = option("Rku.", 3.0, ge=1.0, le=50.0)
+    seed: int = option("Of the generated profile.", 1, ge=0)
+    profile: str | None = option(
+        "A measured profile instead: X3P, or CSV with position in mm and height in um."
     )
-    cutoff: Length | None = Field(
-        default=None, description="For a measured profile: longer waves are removed."
-    )
-    short_cutoff: Length | None = Field(
-        default=None, description="For a measured profile: shorter waves are removed."
-    )
+    cutoff: Length | None = option("For a measured profile: longer waves are removed.")
+    short_cutoff: Length | None = option("For a measured profile: shorter waves are removed.")
 
 
 class SecondSurface(Surface):
     """The other surface: a profile of its own."""
 
-    seed: int = Field(default=2, ge=0, description="Of the generated profile.")
+    seed: int = option("Of the generated profile.", 2, ge=0)
 
 
 class Asperities(Table):
@@ -153,43 +146,35 @@ class Asperities(Table):
     film: SmallLength = option(
         "Film thickness below which surfaces touch (estimate).", film_text(USUAL)
     )
-    friction: Number = Field(
-        default=USUAL.friction,
-        ge=0.0,
-        le=1.0,
-        description="Coefficient of friction where they touch (estimate).",
+    friction: Number = option(
+        "Coefficient of friction where they touch (estimate).", USUAL.friction, ge=0.0, le=1.0
     )
+
+
+_OF_SOLIDS = "Of both solids. Default: that of the material of each."
 
 
 class ContactHeating(Table):
     """Heat of sliding."""
 
-    model: HeatingModel = Field(default="isothermal", description=HEATING)
-    solid_conductivity: Conductivity | None = Field(
-        default=None, description="Of both solids. Default: that of the material of each."
-    )
-    solid_heat_capacity: HeatCapacity | None = Field(
-        default=None, description="Of both solids. Default: that of the material of each."
-    )
+    model: HeatingModel = option(HEATING, "isothermal")
+    solid_conductivity: Conductivity | None = option(_OF_SOLIDS)
+    solid_heat_capacity: HeatCapacity | None = option(_OF_SOLIDS)
 
 
 class ContactNumerics(Table):
     """The grid."""
 
-    nodes: int = Field(default=NODES, ge=128, le=4096, description="In the rough contact.")
-    most_blocks: int = Field(
-        default=MOST_BLOCKS, ge=4, le=100_000,
-        description="Multiples of half-width over rolling speed after which a rough contact is "
-                    "abandoned.",
+    nodes: int = option("In the rough contact.", NODES, ge=128, le=4096)
+    most_blocks: int = option(
+        "Multiples of half-width over rolling speed after which a rough contact is abandoned.",
+        MOST_BLOCKS, ge=4, le=100_000,
     )  # fmt: skip
-    friction_tolerance: Number = Field(
-        default=STATIONARY, ge=1e-3, le=0.5,
-        description="Standard error over the mean friction at which a rough contact counts as "
-                    "solved.",
+    friction_tolerance: Number = option(
+        "Standard error over the mean friction at which a rough contact counts as solved.",
+        STATIONARY, ge=1e-3, le=0.5,
     )  # fmt: skip
-    frozen_roughness: bool = Field(
-        default=False, description="Keep the roughness at rest: the steady rough contact."
-    )
+    frozen_roughness: bool = option("Keep the roughness at rest: the steady rough contact.", False)
 
 
 class ContactCase(Table):
@@ -197,7 +182,7 @@ class ContactCase(Table):
 
     kind: Literal["line_contact"] = "line_contact"
     title: str = ""
-    preset: PresetName = Field(default=DEFAULT, description=PRESET)
+    preset: PresetName = option(PRESET, DEFAULT)
     contact: Contact
     lubricant: ContactLubricant
     surface1: Surface = Surface()
@@ -257,7 +242,7 @@ def load_contact_case(
     for key, value in (changes or {}).items():
         tables = with_value(tables, key_parts(key), plain(value))
     checked = validate(ContactCase, tables)
-    found = [*problems, *checked.problems, *_cross_check(checked.sections)]
+    found = [*problems, *checked.problems, *_contradictions(checked.sections)]
     if checked.case is None or found:
         raise InputError(found, name)
     return checked.case
@@ -272,15 +257,13 @@ def _beside(tables: dict[str, Any], folder: Path) -> dict[str, Any]:
     return tables
 
 
-def _cross_check(sections: Mapping[str, Table]) -> list[Problem]:
+def _contradictions(sections: Mapping[str, Table]) -> Iterator[Problem]:
     """What is wrong across keys."""
-    problems = []
     for name, table in sections.items():
         if isinstance(table, ContactLubricant):
-            problems += law_problems(name, table)
+            yield from law_problems(name, table)
         elif isinstance(table, Surface):
-            problems += _check_surface(name, table)
-    return problems
+            yield from _check_surface(name, table)
 
 
 def _check_surface(name: str, surface: Surface) -> list[Problem]:

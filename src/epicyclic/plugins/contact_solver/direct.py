@@ -179,7 +179,8 @@ def _solve_mesh(contact: MeshContact, settings: DirectSettings) -> _Solved:
     limits = np.stack([own.min(axis=0), own.max(axis=0)])
     place = _spread(own, limits)
     power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
-    usable = _different(place)
+    _, first = np.unique(np.round(place, PLACES), axis=0, return_index=True)
+    usable = np.sort(first)  # each place once
     sliding = usable[contact.slide_to_roll_ratio[usable] >= SMALLEST_SLIP]
     if sliding.size > BATCH + CHECKS:
         usable = sliding
@@ -269,12 +270,6 @@ def _spread(values: FloatArray, limits: FloatArray) -> FloatArray:
     width = np.where(high - low > ALIKE, high - low, np.inf)
     spread: FloatArray = 2 * (values - low) / width - 1
     return spread
-
-
-def _different(place: FloatArray) -> IntArray:
-    """The first one of all points at the same place."""
-    _, first = np.unique(np.round(place, PLACES), axis=0, return_index=True)
-    return np.sort(first)
 
 
 def _quantiles(path: FloatArray, power: FloatArray, usable: IntArray) -> IntArray:

@@ -215,21 +215,9 @@ def solve_step(
             factor_band(local, by_film, near, active, band)
             coarse = factor_dense(coarse_matrix(local, by_film, groups.across, active, dx), rows)
         linear = solve_linear(
-            lack,
-            kernel_row,
-            coarse,
-            rows,
-            groups.bends,
-            local,
-            by_film,
-            band,
-            active,
-            dx,
-            linear_tolerance,
-            space,
-            change,
-            bend,
-        )
+            lack, kernel_row, coarse, rows, groups.bends, local, by_film, band, active, dx,
+            linear_tolerance, space, change, bend,
+        )  # fmt: skip
         if not np.isfinite(change).all():
             return approach, np.nan
         # asperities may carry many times p_h

@@ -227,25 +227,28 @@ class RoughSolution:
     # Failed if the friction did not become stationary or too many steps had no solution.
     status: Status
     message: str  # Why it failed; empty if it did not.
-    x: FloatArray  # [m]
-    friction: FloatArray  # Coefficient at every step that counts. [1]
-    friction_coefficient: float  # Mean and its standard error, from the means of blocks. [1]
-    friction_error: float  # Mean and its standard error, from the means of blocks. [1]
-    asperity_friction_share: float  # Share of friction from touching surfaces. [1]
-    contact_share: float  # Touching length over 2 b_h. [1]
-    asperity_load_share: float  # Load on touching surfaces over W'. [1]
-    minimum_film: float  # Least film of all moments, and the mean over them of the least. [m]
-    mean_least_film: float  # Least film of all moments, and the mean over them of the least. [m]
-    mean_central_film: float  # Mean over all moments of the film at x = 0. [m]
+    # What follows is of a simulation; without a smooth contact there is none.
+    x: FloatArray = field(default_factory=lambda: np.empty(0))  # [m]
+    # Coefficient at every step that counts. [1]
+    friction: FloatArray = field(default_factory=lambda: np.empty(0))
+    friction_coefficient: float = math.nan  # Mean, from the means of blocks. [1]
+    friction_error: float = math.nan  # Standard error of the mean. [1]
+    asperity_friction_share: float = math.nan  # Share of friction from touching surfaces. [1]
+    contact_share: float = math.nan  # Touching length over 2 b_h. [1]
+    asperity_load_share: float = math.nan  # Load on touching surfaces over W'. [1]
+    minimum_film: float = math.nan  # Least film of all moments. [m]
+    mean_least_film: float = math.nan  # Mean over all moments of the least film. [m]
+    mean_central_film: float = math.nan  # Mean over all moments of the film at x = 0. [m]
     # Mean over all moments of the highest pressure; above the hardness of a surface it would yield,
     # and this solution be wrong there. [Pa]
-    mean_highest_pressure: float
+    mean_highest_pressure: float = math.nan
     # Power per length of the pressure flow: mean and its standard error. [W/m]
-    rolling_loss: float
-    rolling_loss_error: float
-    roughness_kept: float  # Share of Rq that the grid resolves, of the surface that loses more. [1]
-    steps: int  # Time steps in all, and those without convergence.
-    unsolved_steps: int  # Time steps in all, and those without convergence.
+    rolling_loss: float = math.nan
+    rolling_loss_error: float = math.nan
+    # Share of Rq that the grid resolves, of the surface that loses more. [1]
+    roughness_kept: float = math.nan
+    steps: int = 0  # Time steps in all.
+    unsolved_steps: int = 0  # Those without convergence.
     frames: Sequence[Frame] = field(default_factory=list)  # The last moments, if asked for.
 
 
@@ -435,7 +438,9 @@ def solve_rough(
     """Simulate until the mean friction is known well enough. Theory (H21), (H25)."""
     smooth = solve_smooth(contact, heating=heating)
     if smooth.status is not Status.CONVERGED:
-        return _failed(smooth, f"the smooth contact: {smooth.message}")
+        return RoughSolution(
+            contact, smooth, Status.FAILED, f"the smooth contact: {smooth.message}"
+        )
     surfaces = (surface1, surface2)
     asperities = asperities or AsperityContact()
     run = _Simulation(smooth, surfaces, nodes, asperities, frame_interval, heating, frozen)
@@ -547,6 +552,7 @@ def _solution(run: _Simulation, series: _Series, means: _Means, message: str) ->
     contact = run.contact
     load = math.pi / 2
     records, mean, shear = np.concatenate(series.records), means.rest, means.friction
+    touching = mean[Column.ASPERITY_SHEAR] / shear.value if shear.value > 0 else 0.0
     return RoughSolution(
         contact=contact,
         smooth=run.smooth,
@@ -556,9 +562,7 @@ def _solution(run: _Simulation, series: _Series, means: _Means, message: str) ->
         friction=_shear(records) / load,
         friction_coefficient=shear.value / load,
         friction_error=shear.error / load,
-        asperity_friction_share=mean[Column.ASPERITY_SHEAR] / shear.value
-        if shear.value > 0
-        else 0.0,
+        asperity_friction_share=touching,
         contact_share=mean[Column.CONTACT_SHARE],
         asperity_load_share=mean[Column.ASPERITY_LOAD] / load,
         minimum_film=float(records[:, Column.LEAST_FILM].min()) * contact.film_scale,
@@ -572,13 +576,3 @@ def _solution(run: _Simulation, series: _Series, means: _Means, message: str) ->
         unsolved_steps=run.unsolved,
         frames=list(run.frames),
     )
-
-
-def _failed(smooth: SmoothSolution, message: str) -> RoughSolution:
-    """A result without numbers."""
-    nothing = math.nan
-    return RoughSolution(
-        smooth.contact, smooth, Status.FAILED, message, np.empty(0), np.empty(0), nothing, nothing,
-        nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, 0,
-        0,
-    )  # fmt: skip

@@ -337,16 +337,15 @@ def _check_cutoffs(
     length: float, spacing: float, cutoff: float | None, short_cutoff: float | None
 ) -> None:
     """Refuse cutoffs that the profile cannot be filtered with."""
+    allowed = (
+        f"must be between two point distances, {2 * spacing / MILLIMETRE:.4g} mm, and the "
+        f"length of the profile, {length / MILLIMETRE:.4g} mm."
+    )
     problems = [
-        Problem(
-            key, f"{value / MILLIMETRE:g} mm",
-            f"must be between two point distances, {2 * spacing / MILLIMETRE:.4g} mm, and the "
-            f"length of the profile, {length / MILLIMETRE:.4g} mm.",
-            "Change it or leave it out.",
-        )
+        Problem(key, f"{value / MILLIMETRE:g} mm", allowed, "Change it or leave it out.")
         for key, value in (("cutoff", cutoff), ("short_cutoff", short_cutoff))
         if value is not None and not 2 * spacing <= value <= length
-    ]  # fmt: skip
+    ]
     if cutoff is not None and short_cutoff is not None and not short_cutoff < cutoff:
         given = f"{short_cutoff / MILLIMETRE:g} mm"
         allowed = "must be less than the cutoff of long waves."
