@@ -103,7 +103,12 @@ def import_(
     if any(find_field(KINDS[found.kind], key) is None for key in parsed):
         found.case(parsed)  # tells which keys it does not know
     write_file(target, found.text(parsed))
-    problems, notes = _state(found, parsed)
+    problems: tuple[Problem, ...] = ()
+    notes: tuple[str, ...] = ()
+    try:
+        notes = found.geometry_notes(found.case(parsed))
+    except InputError as error:
+        problems = error.problems
     terminal().print(import_tables(found, parsed, problems, notes))
     echo(f"Wrote {target}.")
     if problems:
@@ -141,14 +146,3 @@ def export(
         loaded = load_with(case, changes)
     write_file(output, rexs_bytes(output, solve(loaded), original, component))
     echo(f"Wrote {output}.")
-
-
-def _state(
-    found: RexsImport, changes: dict[str, Any]
-) -> tuple[tuple[Problem, ...], tuple[str, ...]]:
-    """Problems of the case as it is written, and how its geometry differs from the file's."""
-    try:
-        case = found.case(changes)
-    except InputError as error:
-        return error.problems, ()
-    return (), found.geometry_notes(case)

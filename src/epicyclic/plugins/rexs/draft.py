@@ -165,14 +165,8 @@ class Draft:
     def wrong(self, key: str, attribute: Attribute, component: Component, what: str) -> None:
         """Note a value that cannot be read."""
         place = f"{attribute.id} of {component}"
-        self.problems.append(
-            Problem(
-                place,
-                f'"{attribute.text()}"',
-                f"{what}.",
-                "Correct the file." + (f" It is used for {key}." if key else ""),
-            )
-        )
+        remedy = "Correct the file." + (f" It is used for {key}." if key else "")
+        self.problems.append(Problem(place, f'"{attribute.text()}"', f"{what}.", remedy))
 
 
 _KINDS = (
@@ -258,7 +252,7 @@ def _pressure_viscosity(draft: Draft, oil: Component, density: Amount | None) ->
             key, law, f"computed from {factor.origin}, parameter s and the density at 15 degC"
         )
         return
-    draft.lacks[key] = Lack(key, f"{_ALPHA} of {oil}", True, _OR_NAME)
+    draft.need(key, _ALPHA, [oil], _OR_NAME)
 
 
 def temperature(draft: Draft, model: Model, stages: Sequence[Component]) -> None:
@@ -383,21 +377,15 @@ def speed_and_torque(draft: Draft, parts: Sequence[Component], shafts: Sequence[
         if speed is None:
             sense = " (its magnitude, as driving; without a speed the sign is meaningless)"
         sign = -1.0 if backward else 1.0
-        draft.give(
-            "operation.torque",
-            amount_text(sign * abs(torque.number), torque.unit),
-            torque.origin + sense,
-        )
+        value = amount_text(sign * abs(torque.number), torque.unit)
+        draft.give("operation.torque", value, torque.origin + sense)
         return
     power = draft.read("power", loads, "operation.torque")
     if power and speed and speed.number and power.unit in _WATTS and speed.unit == "rpm":
         watts = power.number * _WATTS[power.unit]
-        torque_value = watts / (abs(speed.number) * math.pi / 30)
-        draft.give(
-            "operation.torque",
-            amount_text(float(f"{torque_value:.12g}"), "N*m"),
-            f"computed: {power.origin} over the speed",
-        )
+        moment = float(f"{watts / (abs(speed.number) * math.pi / 30):.12g}")
+        origin = f"computed: {power.origin} over the speed"
+        draft.give("operation.torque", amount_text(moment, "N*m"), origin)
         return
     stated = f" ({power.origin} is {power.text})" if power is not None else ""
     draft.lack("operation.torque", f"torque_around_u_axis{stated}", loads or shafts)

@@ -67,7 +67,10 @@ class Builder:
         self.relations: list[Relation] = []
 
     def add(self, kind: str, name: str, /, **attributes: Any) -> int:
-        """A component; attributes as text, flags, numbers, or numbers with the unit they have."""
+        """A component; attributes as text, flags, numbers, or numbers with the unit they have.
+
+        Those that are None, with a unit or without, are left out.
+        """
         number = len(self.components) + 1
         self.components.append(Component(number, kind, name, tuple(_made(attributes))))
         return number
@@ -97,10 +100,11 @@ def _made(attributes: Mapping[str, Any]) -> Iterator[Attribute]:
     for key, value in attributes.items():
         known = term(key)
         if isinstance(value, tuple) and isinstance(value[-1], str):
-            value = written(value[0], value[1], known.unit)
+            value = None if value[0] is None else written(value[0], value[1], known.unit)
         if isinstance(value, float):
             value = float(f"{value:.15g}")
-        yield Attribute(known.id, known.unit, value)
+        if value is not None:
+            yield Attribute(known.id, known.unit, value)
 
 
 def surroundings(builder: Builder, case: Case, **attributes: Any) -> tuple[int, int, int]:
@@ -118,14 +122,12 @@ def surroundings(builder: Builder, case: Case, **attributes: Any) -> tuple[int, 
 
 def _lubricant(builder: Builder, oil: Oil) -> int:
     at_40, at_100, at_15, at_38 = (oil_state(oil, _CELSIUS + t) for t in (40, 100, 15, 38))
-    known = oil.kind in _OIL_TYPES
-    kind = {"lubricant_type_iso_6336_2019": _OIL_TYPES[oil.kind]} if known else {}
     return builder.add(
         "lubricant",
         oil.title,
         name=oil.title,
         kind="oil",
-        **kind,
+        lubricant_type_iso_6336_2019=_OIL_TYPES.get(oil.kind),
         viscosity_at_40_degree_celsius=(at_40.kinematic_viscosity, "m^2/s"),
         viscosity_at_100_degree_celsius=(at_100.kinematic_viscosity, "m^2/s"),
         density_at_15_degree_celsius=(at_15.density, "kg/m^3"),
@@ -137,8 +139,7 @@ def add_shaft(
     builder: Builder, unit: int, name: str, speed: float | None = None, **attributes: Any
 ) -> int:
     """A shaft of the gear unit."""
-    turning = {} if speed is None else {"rotational_speed": (speed, "rad/s")}
-    shaft = builder.add("shaft", name, **turning, **attributes)
+    shaft = builder.add("shaft", name, rotational_speed=(speed, "rad/s"), **attributes)
     builder.part(unit, shaft)
     return shaft
 
@@ -348,17 +349,10 @@ def train_parts(case: TrainCase) -> Iterator[Component | Relation]:
 
     Raises `InputError` if another set is among them.
     """
-    problems = [
-        Problem(
-            f"sets.{name}",
-            "",
-            "is neither a planetary set nor a pair with computed losses.",
-            "A new REXS file cannot describe it; write the results into the original file.",
-        )
-        for name, gearing in case.gearings.items()
-        if gearing.listed or not gearing.computed
-    ]
-    raise_any(problems)
+    others = [name for name, it in case.gearings.items() if it.listed or not it.computed]
+    allowed = "is neither a planetary set nor a pair with computed losses."
+    remedy = "A new REXS file cannot describe it; write the results into the original file."
+    raise_any(Problem(f"sets.{name}", "", allowed, remedy) for name in others)
     names = list(case.states)
     chosen = {}
     if case.operation.state is not None:
@@ -471,15 +465,6 @@ def _bearings(
     for kind, name, table in case.elements:
         if kind != "bearings" or not isinstance(table, ShaftBearingTable):
             continue
-        known = {
-            attribute: (value, unit)
-            for attribute, value, unit in (
-                ("width", table.width, "m"),
-                ("radial_dynamic_load_rating", table.dynamic_load_rating, "N"),
-                ("radial_static_load_rating", table.static_load_rating, "N"),
-            )
-            if value is not None
-        }
         factor = table.axial_factor
         if factor is None and table.contact_angle is not None:
             factor = 0.4 / math.tan(table.contact_angle)
@@ -487,12 +472,14 @@ def _bearings(
         number = builder.add(
             "rolling_bearing_with_catalog_geometry",
             name,
-            **({"bearing_type": _TYPES[table.type]} if table.type in _TYPES else {}),
+            bearing_type=_TYPES.get(table.type),
             inner_diameter=(table.bore, "m"),
             outer_diameter=(table.outside_diameter, "m"),
             axial_force_absorption=_absorption(table),
-            **known,
-            **({} if factor is None else {"axial_factor_y_2": factor}),
+            width=(table.width, "m"),
+            radial_dynamic_load_rating=(table.dynamic_load_rating, "N"),
+            radial_static_load_rating=(table.static_load_rating, "N"),
+            axial_factor_y_2=factor,
             **({} if table.position is None else _at(table.position, place)),
         )
         ends = {"inner_part": shafts[table.shaft], "outer_part": shafts[table.against]}
@@ -512,28 +499,25 @@ def _absorption(table: ShaftBearingTable) -> str:
 # are written anew each time.
 
 
-def check_match(chosen: PlanetaryParts | Pair | Train, result: Result) -> None:
-    """Raise InputError if a result is not of the gears of a file, by their numbers of teeth."""
+def _mismatches(chosen: PlanetaryParts | Pair | Train, result: Result) -> Iterator[Problem]:
+    """What tells that a result is not of the gears of a file: names of sets, numbers of teeth."""
     if not isinstance(chosen, Train):
-        problems = _differences(chosen, result.inputs, "")
-    else:
-        problems = []
-        tables = result.inputs["sets"]
-        for name in dict.fromkeys([*chosen.sets, *tables]):
-            if name in chosen.sets and name in tables:
-                problems += _differences(chosen.sets[name], tables[name], f"sets.{name}.")
-                continue
-            where = "the file" if name in tables else "the case"
-            remedy = "Keep the names of the sets as they were imported."
-            problems.append(Problem(f"sets.{name}", "", f"is not in {where}.", remedy))
-    raise_any(problems)
+        yield from _differences(chosen, result.inputs, "")
+        return
+    tables = result.inputs["sets"]
+    for name in dict.fromkeys([*chosen.sets, *tables]):
+        if name in chosen.sets and name in tables:
+            yield from _differences(chosen.sets[name], tables[name], f"sets.{name}.")
+            continue
+        where = "the file" if name in tables else "the case"
+        remedy = "Keep the names of the sets as they were imported."
+        yield Problem(f"sets.{name}", "", f"is not in {where}.", remedy)
 
 
 def _differences(
     chosen: PlanetaryParts | Pair, tables: Mapping[str, Any], place: str
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Numbers of teeth that are not those of the file."""
-    problems = []
     for name, component in chosen.gears.items():
         stated = component.get("number_of_teeth")
         table = tables.get(name)
@@ -541,15 +525,8 @@ def _differences(
         there = None if stated is None else abs(stated.number())
         is_left_out = bool(table) and here is None  # planets of a set of given efficiency
         if here != there and not is_left_out:
-            problems.append(
-                Problem(
-                    f"{place}{name}.teeth",
-                    f"{here}",
-                    f"is {there} in {component}.",
-                    "Write the results of a gear set into its own file.",
-                )
-            )
-    return problems
+            remedy = "Write the results of a gear set into its own file."
+            yield Problem(f"{place}{name}.teeth", f"{here}", f"is {there} in {component}.", remedy)
 
 
 def _of_set(
@@ -713,7 +690,7 @@ def rexs_bytes(
     try:
         model = build_model(document.content)
         chosen = _chosen(model, result, component)
-        check_match(chosen, result)
+        raise_any(_mismatches(chosen, result))
     except InputError as error:
         raise InputError(error.problems, one_line(str(original), 500)) from None
     if isinstance(chosen, Train):

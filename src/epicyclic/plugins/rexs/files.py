@@ -382,9 +382,8 @@ def read_document(
     """
     try:
         data = read_bytes(path, "REXS", LARGEST)
-        return (
-            _from_archive(data, with_others) if data.startswith(b"PK") else Document(_parse(data))
-        )
+        is_archive = data.startswith(b"PK")
+        return _from_archive(data, with_others) if is_archive else Document(_parse(data))
     except InputError as error:
         raise InputError(error.problems, one_line(str(path), 500)) from None
 
@@ -413,9 +412,8 @@ def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
             raise refuse(f"is an archive with a member outside of it: {shown}.", "Repack it.")
     model = _member(archive, members[0], LARGEST)
     if len(model) > LARGEST:
-        raise refuse(
-            f"is larger than {LARGEST // 10**6} MB.", "Export the gears without local results."
-        )
+        remedy = "Export the gears without local results."
+        raise refuse(f"is larger than {LARGEST // 10**6} MB.", remedy)
     content = _parse(model)
     others: list[tuple[zipfile.ZipInfo, bytes]] = []
     left = _LARGEST_REST

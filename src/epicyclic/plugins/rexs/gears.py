@@ -13,7 +13,7 @@ from epicyclic.case.case import Case
 from epicyclic.gears import mesh as geometry
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import involute
-from epicyclic.plugins.rexs.draft import Amount, Draft, Lack, amount_text
+from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text
 from epicyclic.plugins.rexs.model import IN_MILLIMETRES, Component, Model, vector
 from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, is_internal, rigid_parts
 from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
@@ -200,11 +200,8 @@ def _roughness(draft: Draft, key: str, gears: Sequence[Component]) -> None:
         return
     number, unit, origin = found
     value = amount_text(float(f"{number / RA_OVER_RQ:.6g}"), unit)
-    draft.give(
-        f"{key}.roughness",
-        value,
-        f"computed: Rq = {1 / RA_OVER_RQ:.4g} Ra of a Gaussian profile, Ra from {origin}",
-    )
+    told = f"computed: Rq = {1 / RA_OVER_RQ:.4g} Ra of a Gaussian profile, Ra from {origin}"
+    draft.give(f"{key}.roughness", value, told)
 
 
 def _material(draft: Draft, model: Model, key: str, gears: Sequence[Component]) -> None:
@@ -315,13 +312,9 @@ def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flank
 
 
 def _leave(draft: Draft, key: str, name: str, items: Sequence[Component], reason: str) -> None:
-    full = f"{key}.micro_geometry.{name}"
-    draft.lacks[full] = Lack(
-        full,
-        f"{items[0]} is there, but {reason}",
-        False,
-        "It was not imported; set the key yourself.",
-    )
+    instead = "It was not imported; set the key yourself."
+    what = f"{items[0]} is there, but {reason}"
+    draft.lack(f"{key}.micro_geometry.{name}", what, [], instead)
 
 
 def _amount(item: Component, name: str) -> float | None:
@@ -377,7 +370,7 @@ def bearing_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
         others = [item for item in bearings if item not in rolling]
         what = f"; {others[0]} is not one" if others else ""
         where = f"roller bearing with its geometry between planet and pin{what}"
-        draft.lacks[key] = Lack(key, where, False, _LEFT_OUT)
+        draft.lack(key, where, [], _LEFT_OUT)
         return
     inside = ("ordered_assembly", "assembly", "part")
     rows = model.partners_of(rolling, *inside, "rolling_bearing_row")
@@ -426,11 +419,8 @@ def _pin(draft: Draft, rows: list[Component], roller: float | None) -> None:
     if pitch is None or roller is None:
         draft.lack(key, name, rows)
         return
-    draft.give(
-        key,
-        amount_text(pitch.number - roller, pitch.unit),
-        f"computed: {pitch.origin} less the roller diameter",
-    )
+    diameter = amount_text(pitch.number - roller, pitch.unit)
+    draft.give(key, diameter, f"computed: {pitch.origin} less the roller diameter")
 
 
 def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
@@ -455,9 +445,8 @@ def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
     starts = [model.place(plate) for _, _, plate in known]
     points = [start[1] for start in starts if start is not None]
     if len(points) < len(known) or len({start and start[0] for start in starts}) > 1:
-        draft.lacks["carrier.width"] = Lack(
-            "carrier.width", f"support_vector of {first}", True, "Give the width over all plates."
-        )
+        hint = "Give the width over all plates."
+        draft.need("carrier.width", "support_vector", [first], hint)
         return
     axis = model.axis([plate for _, _, plate in known], [point - points[0] for point in points[1:]])
     ends: list[float] = []
@@ -465,11 +454,9 @@ def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
         along = vector(plate, "u_axis_vector")
         start, sense = float(point @ axis), 1.0 if along is None else float(np.sign(along @ axis))
         ends += [start, start + sense * own.number * IN_MILLIMETRES.get(own.unit, 1.0)]
-    draft.give(
-        "carrier.width",
-        amount_text(round(max(ends) - min(ends), 9), "mm"),
-        f"computed over {len(known)} side plates from support_vector and length",
-    )
+    width = amount_text(round(max(ends) - min(ends), 9), "mm")
+    origin = f"computed over {len(known)} side plates from support_vector and length"
+    draft.give("carrier.width", width, origin)
 
 
 def planet_angles(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:

@@ -113,7 +113,7 @@ class _KindError(ValueError):
     """A value of another type than the attribute needs."""
 
 
-def refuse(allowed: str, remedy: str = "Correct the file.") -> InputError:
+def refuse(allowed: str, remedy: str) -> InputError:
     """The error of a file that cannot be used as a whole."""
     return one_problem("", "", f"the file {allowed}", remedy)
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
-from epicyclic.plugins.rexs.model import Component, Model, types_of
+from epicyclic.plugins.rexs.model import Component, Model, refuse, types_of
 
 # Which gear sets a REXS file holds, and the components that each consists of.
 
@@ -421,9 +421,8 @@ def chosen_train(model: Model) -> Train | None:
 
 
 def _too_many(found: str, most: int) -> InputError:
-    allowed = f"has {found}, but at most {most} are read as one train."
     remedy = "Import one stage with --component, or export fewer."
-    return one_problem("", "", f"the file {allowed}", remedy)
+    return refuse(f"has {found}, but at most {most} are read as one train.", remedy)
 
 
 class Names:
