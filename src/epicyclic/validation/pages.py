@@ -36,12 +36,11 @@ from epicyclic.validation.compare import (
     Comparison,
     Estimate,
     MeasuredFigure,
-    Published,
     SettledFigure,
     by_topic,
     summary,
 )
-from epicyclic.validation.plots import Reproduced, deviations_size, plot_deviations
+from epicyclic.validation.plots import Reproduced, deviations_size, plot_deviations, published_text
 from epicyclic.validation.scoreboard import DEFAULTS, GRADES, Score, in_band
 
 _STYLES = {
@@ -222,12 +221,6 @@ def verdict_text(row: Comparison) -> str:
         return row.verdict
     seen = "*" if row.settled == "in view" else ""
     return f"{row.verdict} ({100 * row.tolerance:.2g} %{seen})"
-
-
-def published_text(row: Published) -> str:
-    """The published value, or the ends of its range."""
-    low, high = shown(row.low), shown(row.high)
-    return low if low == high else f"{low} to {high}"
 
 
 MOST_ROWS = 8  # Most rows of one picture.

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from epicyclic.show.page import shown
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
     COLOURS,
@@ -31,7 +32,7 @@ from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import format_number, percent, unit_text
 from epicyclic.validation import chapters
 from epicyclic.validation.chapters import Family, Mark
-from epicyclic.validation.compare import Comparison
+from epicyclic.validation.compare import Comparison, Published
 from epicyclic.validation.pocketing import PublishedStudy, published_study, study_again
 from epicyclic.validation.scoreboard import DEFAULTS, Score
 
@@ -382,7 +383,8 @@ def plot_deviations(rows: Sequence[Comparison], ax: Axes) -> Axes:
             ax.barh(place, 2 * tolerance, left=-tolerance, height=0.7, color=_BAND)
         value = 100 * min(max(row.difference, -SHOWN), SHOWN)
         ax.plot(value, place, ls="none", ms=6, **_MARKS[row.verdict])
-        text = f"{_number(row)}, {percent(row.difference, signed=True)}"
+        published = f"{published_text(row)} {unit_text(row.unit)}".rstrip()
+        text = f"{published}, {percent(row.difference, signed=True)}"
         write_beside(ax, text, (100 * SHOWN, place), gap=6, annotation_clip=False)
     ax.axvline(0.0, color="black", lw=0.8)
     ax.set_yticks(range(len(rows)), ["\n".join(textwrap.wrap(row.what, LETTERS)) for row in rows])
@@ -401,11 +403,10 @@ def plot_deviations(rows: Sequence[Comparison], ax: Axes) -> Axes:
     return ax
 
 
-def _number(row: Comparison) -> str:
-    """The published value with its unit."""
-    low, high = format_number(row.low, 4), format_number(row.high, 4)
-    value = low if low == high else f"{low} to {high}"
-    return f"{value} {unit_text(row.unit)}".rstrip()
+def published_text(row: Published) -> str:
+    """The published value, or the ends of its range."""
+    low, high = shown(row.low), shown(row.high)
+    return low if low == high else f"{low} to {high}"
 
 
 NEAR = 15  # Errors up to which a model is near, as the picture shows. [%]

@@ -133,13 +133,8 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
             family = replace(family, oil_fraction=variant.oil_fraction)
         return family.flow(speed, mixture, pressure)
     except ValueError as error:
-        raise one_problem(
-            duty.gears.key,
-            "",
-            f"is impossible: {error}.",
-            "Vary over a smaller range.",
-            "the study",
-        ) from None
+        allowed, remedy = f"is impossible: {error}.", "Vary over a smaller range."
+        raise one_problem(duty.gears.key, "", allowed, remedy, "the study") from None
 
 
 def _varied_mesh(mesh: Mesh, variant: PocketVariant) -> Mesh:
@@ -426,9 +421,8 @@ def _axis(duty: MeshDuty, name: str, values: tuple[float, ...]) -> StudyAxis:
     try:
         found = teeth_for_module(duty.gears.mesh, values)
     except ValueError as error:
-        raise one_problem(
-            "range module", "", f"{error}.", "Give smaller modules.", "the study"
-        ) from None
+        remedy = "Give smaller modules."
+        raise one_problem("range module", "", f"{error}.", remedy, "the study") from None
     return StudyAxis(name, tuple(found), tuple(found.values()))
 
 
@@ -606,7 +600,8 @@ def study_again(
 def published_study(case: Case) -> PublishedStudy | None:
     """The published values if they hold for `case`, the example of the source."""
     example = read_case(EXAMPLE)
-    if not _is_example(case, example):
+    one, other = (item.operation.oil_inlet_temperature for item in (case, example))
+    if one != other or any(getattr(case, it, None) != getattr(example, it) for it in _SAME):
         return None
     given = example.given()
     own = _place({
@@ -636,9 +631,3 @@ def _place(given: Mapping[str, Any]) -> dict[str, float]:
         "helix_angle": DEGREE.to_display(DEGREE.parse(given["helix_angle"])),
         "face_width": MILLIMETRE.to_display(MILLIMETRE.parse(given["face_width"])),
     }
-
-
-def _is_example(case: Case, example: Case) -> bool:
-    same = all(getattr(case, table, None) == getattr(example, table) for table in _SAME)
-    one, other = (item.operation.oil_inlet_temperature for item in (case, example))
-    return same and one == other

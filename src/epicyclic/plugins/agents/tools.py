@@ -268,9 +268,8 @@ def explain_key(
 
     if kind not in KINDS:
         allowed = f"must be {' or '.join(KINDS)}."
-        raise one_problem(
-            "kind", written(kind), allowed, did_you_mean(kind, tuple(KINDS)), "the call"
-        )
+        remedy = did_you_mean(kind, tuple(KINDS))
+        raise one_problem("kind", written(kind), allowed, remedy, "the call")
     known = all_keys(KINDS[kind])
     parts = key_parts(key)
     place = locate(KINDS[kind], parts)

@@ -76,9 +76,8 @@ def fmu_problems(axes: Mapping[str, Sequence[Any]]) -> list[Problem]:
         remedy = 'Install with: python -m pip install "epicyclic[fmu]".'
         problems.append(Problem("--format", "fmu", allowed, remedy))
     if not any(axes["speed"]):
-        problems.append(
-            Problem("speed", "", "has only the value zero.", "Give other values as well.")
-        )
+        allowed = "has only the value zero."
+        problems.append(Problem("speed", "", allowed, "Give other values as well."))
     return problems
 
 
