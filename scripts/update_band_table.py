@@ -14,7 +14,8 @@ from epicyclic.validation.compare import (
     compare_published,
     measured_figures,
 )
-from epicyclic.validation.pages import band_rows, published_text
+from epicyclic.validation.pages import band_rows
+from epicyclic.validation.plots import published_text
 
 PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
 TABLE = r"^\| {} \|.*?\n\n"

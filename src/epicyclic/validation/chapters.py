@@ -11,9 +11,10 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build
@@ -37,12 +38,7 @@ from epicyclic.validation.compute import (
 )
 from epicyclic.validation.pocketing import FIGURES_AGAIN
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 PLANETS = 3  # Planets of the set whose planet bearing chapter 3 studies.
-ROLLER_FIGURES = {"3.3": "branch", "3.7": "roller", "3.9": "clearance", "3.12": "helix"}
-"""Figures of roller loads, and what varies in them."""
 
 
 @dataclass(frozen=True)
@@ -155,6 +151,13 @@ _BEARING_STUDIES = {
     "3.11": ("helix angle", _CURVES["helix"], _speed()),
 }
 """Figures of chapter 3 over the torque on a branch: what each is about, its curves and panels."""
+ROLLER_FIGURES = {
+    "3.3": (_BRANCH, (42, 100, 333)),
+    "3.7": (_CURVES["roller"], _CURVES["roller"].values),
+    "3.9": (_CURVES["clearance"], _CURVES["clearance"].values),
+    "3.12": (_CURVES["helix"], (0, 20, 30)),
+}
+"""Figures of roller loads: what varies in them, and its values."""
 
 
 def bearing_families(figures: Sequence[str], runner: Runner = HERE) -> list[Family]:
@@ -192,11 +195,7 @@ def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
     Returns list of (str, xarray.Dataset): what varies, and `epicyclic.study.meshes.bearing_details`
     of it.
     """
-    name = ROLLER_FIGURES[figure]
-    lever = _BRANCH if name == "branch" else _CURVES[name]
-    values = (42, 100, 333) if name == "branch" else lever.values
-    if name == "helix":
-        values = (0, 20, 30)
+    lever, values = ROLLER_FIGURES[figure]
     found = []
     for value in values:
         case = source_case().updated(WITHOUT_FLOW | dict(lever.changes(value)))
@@ -210,8 +209,6 @@ def roller_loads_over(figure: str) -> list[tuple[str, xr.Dataset]]:
 
 def joined(cases: Sequence[tuple[str, xr.Dataset]]) -> xr.Dataset:
     """The loads of several cases as one dataset."""
-    import xarray as xr
-
     data = xr.concat([data for _, data in cases], dim="case")
     return data.assign_coords(case=[label for label, _ in cases])
 
@@ -261,8 +258,6 @@ def set_families(figures: Sequence[str], runner: Runner = HERE) -> list[Family]:
 
 def _drawn(**values: tuple[xr.DataArray, str, str]) -> xr.Dataset:
     """Named arrays with what they are and their units, without coordinates of one value."""
-    import xarray as xr
-
     found = xr.Dataset(
         {name: array.reset_coords(drop=True) for name, (array, *_) in values.items()}
     )
@@ -383,8 +378,6 @@ _WARM_UP = {"planet.count": 6, "thermal.oil_volume": "1 l"}  # The volume is an 
 
 def warm_up_families(figures: Sequence[str]) -> Iterator[Family]:
     """Temperatures of six planets, ring and outlet of the oil over the speeds of a test."""
-    import xarray as xr
-
     for figure in figures:
         if figure not in WARM_UPS:
             continue
@@ -536,8 +529,6 @@ def _numbers(
 
 
 def _dataset(values: Mapping[str, FloatArray], levers: Sequence[Lever]) -> xr.Dataset:
-    import xarray as xr
-
     dims = tuple(lever.name for lever in levers)
     coordinates: dict[str, Any] = {
         lever.name: (

@@ -20,7 +20,8 @@ from pydantic import Field
 
 from epicyclic.cli.common import echo, load_with
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
-from epicyclic.messages import one_line
+from epicyclic.messages import did_you_mean, key_parts, one_line, written
+from epicyclic.registry import offered
 
 MOST_POINTS = 400  # Of a map.
 MOST_SAMPLES = 1024
@@ -111,8 +112,6 @@ def _check(arguments: dict[str, Any]) -> None:
     Messages quote lines of a file. Of others than cases an agent is not told any, wherever a link
     leads.
     """
-    from epicyclic.registry import offered
-
     endings = (".toml", *offered("case_readers"))
     problems = []
     for name, value in arguments.items():
@@ -263,7 +262,6 @@ def explain_key(
 ) -> dict[str, Any]:
     """What a key of a case file means: unit, range or choices, default; of a table its keys."""
     from epicyclic.case.case import KINDS
-    from epicyclic.messages import did_you_mean, key_parts, written
     from epicyclic.schema.fields import all_keys, describe, locate, quantity_of, table_of
 
     if kind not in KINDS:

@@ -20,6 +20,7 @@ from epicyclic.cli.common import (
     parse_changes,
     picture_bytes,
     plot_option,
+    progress_bar,
     runner_options,
     shard_option,
     show,
@@ -82,9 +83,12 @@ def contact(
     [heating] and [numerics]; options and --set change its keys. A solution that did not converge
     ends with exit code 3.
     """
-    from epicyclic.cli.common import progress_bar
     from epicyclic.plugins.contact_solver.contact import load_contact_case, solve_contact
-    from epicyclic.plugins.contact_solver.show import contact_tables
+    from epicyclic.plugins.contact_solver.show import (
+        contact_animation,
+        contact_figure,
+        contact_tables,
+    )
     from epicyclic.schema.read import parse_value
 
     given = {
@@ -98,8 +102,6 @@ def contact(
         result = solve_contact(case, moments, lambda done, all_: percent(100 * done // all_, 100))
     show(lambda: contact_tables(result), result.to_json, json_file)
     if plot is not None and result.smooth.status is Status.CONVERGED:
-        from epicyclic.plugins.contact_solver.show import contact_animation, contact_figure
-
         if plot.suffix == ANIMATION and result.rough is not None:
             write_file(plot, contact_animation(result))
         else:
@@ -161,7 +163,6 @@ def characterise(
     epicyclic oil characterise atf-talbot-2012 --size 512 --seed 1 -o atf
     epicyclic run talbot-2012 --set models.friction=fitted --set models.oil_model=atf/model.json
     """
-    from epicyclic.cli.common import progress_bar
     from epicyclic.plugins.contact_solver.campaign import (
         SIMULATIONS,
         CampaignFolder,
@@ -246,17 +247,14 @@ def show_model(model: Path) -> None:
 
 def _fit(folders: Sequence[CampaignFolder], output: Path, plot: Path | None) -> None:
     """Fit, write and show the models."""
-    from epicyclic.plugins.contact_solver.fit import fit_and_write
-    from epicyclic.plugins.contact_solver.show import oil_model_tables
+    from epicyclic.plugins.contact_solver.fit import fit_and_write, simulated_quantities
+    from epicyclic.plugins.contact_solver.show import oil_model_figure, oil_model_tables
     from epicyclic.show.terminal import terminal
 
     model = fit_and_write(folders, output)
     terminal().print(oil_model_tables(model))
     echo(f"Wrote {output}.")
     if plot is not None:
-        from epicyclic.plugins.contact_solver.fit import simulated_quantities
-        from epicyclic.plugins.contact_solver.show import oil_model_figure
-
         simulated = {
             quantity: (states, target)
             for quantity, (states, target, _) in simulated_quantities(folders).items()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.fitted_models import (
@@ -39,10 +40,6 @@ from epicyclic.plugins.contact_solver.campaign import (
 from epicyclic.plugins.contact_solver.conditions import FEWEST_KEPT
 from epicyclic.plugins.contact_solver.contact import contact_model
 from epicyclic.study.sweeps.runner import Progress, Runner
-
-if TYPE_CHECKING:
-    import pandas as pd
-
 
 # Fits of all forms of a quantity, with errors at contacts that they had not seen.
 
@@ -310,8 +307,6 @@ def _check_alike(folders: Sequence[CampaignFolder]) -> None:
 
 def _read(folders: Sequence[CampaignFolder]) -> pd.DataFrame:
     """The tables of all simulations, one after the other."""
-    import pandas as pd
-
     return pd.concat([folder.read() for folder in folders], ignore_index=True)
 
 

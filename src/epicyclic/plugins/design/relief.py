@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
@@ -17,9 +18,6 @@ from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.plugins.design.search import dominated
 from epicyclic.study.sweeps.run import PointList
 from epicyclic.study.sweeps.runner import Rows, Runner
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 OBJECTIVES: Mapping[str, str] = {
     "loss": "total",
@@ -81,8 +79,6 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
 
     Raises `InputError` for keys that are none of micro-geometry, or if no variant is solved.
     """
-    import xarray as xr
-
     raise_any(_problems(relief), "the command")
     variants = [dict(zip(relief.vary, it, strict=True)) for it in product(*relief.vary.values())]
     points, owners = _points(relief, variants)

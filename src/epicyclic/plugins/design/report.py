@@ -12,8 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from pydantic import TypeAdapter, ValidationError
+from rich.console import Console, RenderableType
 
+from epicyclic.cli.common import picture_bytes
 from epicyclic.errors import one_problem
 from epicyclic.files import whole_file, write_file
 from epicyclic.netcdf_file import read_groups
@@ -30,6 +34,7 @@ from epicyclic.plugins.design.search import (
 )
 from epicyclic.plugins.design.tables import mass_table, strength_tables
 from epicyclic.plugins.design.task import read_task, task_tables
+from epicyclic.show.data_sheet import data_sheet
 from epicyclic.show.page import Cell, Drawing, Listing, Table, number
 from epicyclic.show.plots.catalogue import Panel, drawing
 from epicyclic.show.plots.style import styled_figure
@@ -41,8 +46,6 @@ from epicyclic.units import Length
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
-    from rich.console import RenderableType
 
 SHOWN = {
     "loss": ("loss [W]", 1.0), "mass": ("mass [kg]", 1.0), "diameter": ("diameter [mm]", 1e3),
@@ -135,11 +138,6 @@ def as_json(found: Found, sentences: Sequence[str]) -> str:
 
 def write_all(found: Found, sentences: Sequence[str], folder: Path) -> Iterator[Path]:
     """Dataset, picture, cases and data sheets; their paths."""
-    from rich.console import Console
-
-    from epicyclic.cli.common import picture_bytes
-    from epicyclic.show.data_sheet import data_sheet
-
     path = folder / "candidates.nc"
     with whole_file(path) as temporary:
         write_netcdf(found.dataset(), temporary)
@@ -268,8 +266,6 @@ def _hover(found: Found, number: int) -> str:
 
 def parse_length(option: str, text: str | None) -> float:
     """A length of an option; zero without one. [m]"""
-    from pydantic import TypeAdapter, ValidationError
-
     if text is None:
         return 0.0
     try:
