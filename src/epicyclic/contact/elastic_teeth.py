@@ -145,11 +145,8 @@ def tooth_plate(
     height, half = along[flank], across[flank]
     steep = np.arctan2(-np.gradient(half), np.gradient(height)) > ROOT_TANGENT
     start = int(np.argmin(steep)) if steep[0] else 0
-    offset, height, thickness = (
-        float(height[start]),
-        height[start:] - height[start],
-        2 * half[start:],
-    )
+    offset, thickness = float(height[start]), 2 * half[start:]
+    height = height[start:] - height[start]
     length = gear.face_width / math.cos(gear.rack.helix_angle)
     stiffness = _stiffness(height, thickness, length, elastic_modulus, poisson_ratio, face_terms)
     # scaled to a unit diagonal: deflections and rotations differ by orders of magnitude
@@ -308,15 +305,10 @@ class ElasticRing:
         shear = np.array([-n / r, -1 / r, 1.0])
         bending = np.array([0.0, 0.0, n / r])
         area = self.thickness * self.width
-        return (
-            math.pi
-            * r
-            * (
-                self.modulus * area * np.outer(stretch, stretch)
-                + self.shear_stiffness * np.outer(shear, shear)
-                + self.modulus * area * self.thickness**2 / 12 * np.outer(bending, bending)
-            )
-        )
+        stiffness = self.modulus * area * np.outer(stretch, stretch)
+        stiffness += self.shear_stiffness * np.outer(shear, shear)
+        stiffness += self.modulus * area * self.thickness**2 / 12 * np.outer(bending, bending)
+        return math.pi * r * stiffness
 
     def _even(self) -> FloatArray:
         """Flexibility of the even part: stretching by W, shear by T and M against the outside."""
@@ -453,14 +445,10 @@ def _plate(gear: Gear, body: GearBody) -> ToothPlate:
     depth = abs(gear.tip_radius - gear.root_radius)
     terms = round(FACE_TERMS_PER_HEIGHT * gear.face_width / depth)
     low, high = FACE_TERMS_LIMITS
+    terms = min(max(terms, low), high)
+    tool = default_tool(gear) if body.tool is None else body.tool
     try:
-        return tooth_plate(
-            gear,
-            body.modulus,
-            body.poisson_ratio,
-            min(max(terms, low), high),
-            default_tool(gear) if body.tool is None else body.tool,
-        )
+        return tooth_plate(gear, body.modulus, body.poisson_ratio, terms, tool)
     except np.linalg.LinAlgError as error:
         raise ConvergenceError(
             f"the stiffness of a tooth of the {gear.name} cannot be inverted; use "

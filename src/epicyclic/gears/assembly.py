@@ -85,13 +85,10 @@ def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         stated = [gear for gear, hand in own.items() if hand]
         words = "the same hand" if mesh.internal else "opposite hands"
         shown = ", ".join(f'"{own[gear]}"' for gear in stated)
-        allowed = f"{mesh.first} and {mesh.second} must have {words} of helix to mesh" + (
-            "." if len(stated) == 2 else ", which contradicts the other hands given."
-        )
-        remedy = "Correct or leave out hand."
-        yield Problem(
-            ", ".join(f"gears.{gear}.hand" for gear in stated or own), shown, allowed, remedy
-        )
+        allowed = f"{mesh.first} and {mesh.second} must have {words} of helix to mesh"
+        allowed += "." if len(stated) == 2 else ", which contradicts the other hands given."
+        keys = ", ".join(f"gears.{gear}.hand" for gear in stated or own)
+        yield Problem(keys, shown, allowed, "Correct or leave out hand.")
 
 
 # --- meshes ---------------------------------------------------------------------------------------
@@ -274,13 +271,9 @@ def place_problems(gearing: Gearing) -> Iterator[Problem]:
 def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
     """Planets must not touch each other."""
     angles = gearing.planet_angles
-    close = [
-        (one, two)
-        for one, two in combinations_with_replacement(
-            [gear for gear in gearing.bodies if gearing.bodies[gear] in gearing.pins], 2
-        )
-        if _side_by_side(gearing, sound, one, two)
-    ]
+    placed = [gear for gear, body in gearing.bodies.items() if body in gearing.pins]
+    pairs = combinations_with_replacement(placed, 2)
+    close = [pair for pair in pairs if _side_by_side(gearing, sound, *pair)]
     seen: set[tuple[str, str]] = set()
     for one, two in close:
         bodies = (gearing.bodies[one], gearing.bodies[two])
@@ -288,12 +281,10 @@ def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
         if gap > 0 or bodies in seen:
             continue
         seen.add(bodies)
-        touching = f"neighbouring {one}" if one == two else f"{one} and {two}"
-        which = (
-            f"the planets overlap: {touching}, by"
-            if gearing.listed
-            else ("neighbouring planets overlap by")
-        )
+        which = "neighbouring planets overlap by"
+        if gearing.listed:
+            touching = f"neighbouring {one}" if one == two else f"{one} and {two}"
+            which = f"the planets overlap: {touching}, by"
         key = gearing.count_key if gearing.stated_angles is None else "planet.angles"
         allowed = f"{which} {millimetres(-gap)}."
         yield Problem(key, str(gearing.count), allowed, _fewer(gearing, sound, close))

@@ -222,12 +222,10 @@ def fit_tool(gear: Gear, tool: Tool) -> Cut:
     """
     _check_gear(gear)
     if gear.internal != isinstance(tool, ShaperTool):
-        kind = (
-            "an internal gear needs a shaper cutter"
-            if gear.internal
-            else "an external gear needs a rack"
+        needed = (
+            "internal gear needs a shaper cutter" if gear.internal else "external gear needs a rack"
         )
-        raise ValueError(f"the {gear.name} cannot be cut with this tool: {kind}")
+        raise ValueError(f"the {gear.name} cannot be cut with this tool: an {needed}")
     if isinstance(tool, RackTool):
         return _rack_cut(gear, tool)
     cut = _shaper_cut(gear, tool)
@@ -610,9 +608,8 @@ def longest_involute(gear: Gear, rounding: float | None) -> float:
     if stated is not None:
         return form_radius(gear, stated)
     shaper = default_tool(gear)
-    assert isinstance(shaper, ShaperTool)
     try:
-        return form_radius(gear, ShaperTool(shaper.teeth, 0.0))
+        return form_radius(gear, replace(shaper, tip_radius=0.0))
     except ValueError:
         return form_radius(gear, shaper)
 
@@ -622,13 +619,7 @@ def stated_tool(gear: Gear, rounding: float | None) -> Tool | None:
 
     Raises `ValueError` if no default shaper cutter generates a ring.
     """
-    if rounding is None:
-        return None
-    if not gear.internal:
-        return RackTool(rounding)
-    shaper = default_tool(gear)
-    assert isinstance(shaper, ShaperTool)
-    return ShaperTool(shaper.teeth, rounding)
+    return None if rounding is None else replace(default_tool(gear), tip_radius=rounding)
 
 
 @lru_cache(maxsize=64)

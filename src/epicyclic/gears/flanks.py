@@ -77,14 +77,7 @@ def contact_lines(
     length = np.broadcast_to(
         ((high - low) / (segments * math.cos(rack.base_helix_angle)))[..., None], y.shape
     )
-    arrays = (
-        tau,
-        weight,
-        curvature1,
-        mesh.line_of_action - mesh.side * curvature1,
-        y,
-        np.array(length),
-    )
+    arrays = (tau, weight, curvature1, mesh.curvature2(curvature1), y, np.array(length))
     for array in arrays:
         array.flags.writeable = False
     return ContactLines(*arrays)
@@ -95,11 +88,8 @@ def _positions(mesh: Mesh, count: int) -> tuple[FloatArray, FloatArray]:
 
     Theory (G27).
     """
-    corners = (
-        mesh.transverse_contact_ratio,
-        mesh.overlap_ratio,
-        mesh.transverse_contact_ratio + mesh.overlap_ratio,
-    )
+    transverse, overlap = mesh.transverse_contact_ratio, mesh.overlap_ratio
+    corners = (transverse, overlap, transverse + overlap)
     breaks = np.unique([0.0, *(corner % 1.0 for corner in corners), 1.0])
     parts = [np.empty(0)]
     widths = [np.empty(0)]
@@ -149,14 +139,9 @@ class Topography:
 
         axes = (self.curvature, self.face_position)
         table = RegularGridInterpolator(axes, np.asarray(self.deviation))
-        points = np.stack(
-            [
-                np.clip(curvature, axes[0][0], axes[0][-1]),
-                np.clip(face_position, axes[1][0], axes[1][-1]),
-            ],
-            axis=-1,
-        )
-        deviation: FloatArray = table(points)
+        at = zip((curvature, face_position), axes, strict=True)
+        points = [np.clip(place, axis[0], axis[-1]) for place, axis in at]
+        deviation: FloatArray = table(np.stack(points, axis=-1))
         return deviation
 
 
@@ -227,7 +212,7 @@ class FlankDeviations:
         """
         # lines that are not in contact lie beyond the path of contact: any place on it serves
         rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
-        rho2 = mesh.line_of_action - mesh.side * rho1
+        rho2 = mesh.curvature2(rho1)
         y = mesh.face_width - lines.face_position if self.mirrored else lines.face_position
         gap = self.misalignment * y / mesh.face_width
         for member, flank, gear, rho in (

@@ -200,11 +200,8 @@ class Gearing:
         """The key that states the centre distance of a mesh."""
         assert self.shared is not None
         shared = mesh.own_distance is None and self.shared.center_distance is not None
-        return (
-            "gears.center_distance"
-            if shared or not self.listed
-            else (f"{mesh.table_key}.center_distance")
-        )
+        table = "gears" if shared or not self.listed else mesh.table_key
+        return f"{table}.center_distance"
 
     @cached_property
     def distances(self) -> dict[str, float | None]:

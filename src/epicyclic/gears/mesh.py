@@ -221,17 +221,12 @@ def closed_center_distance(
     if teeth == 0:
         raise ValueError("a ring and its mate have equal numbers of teeth")
     value = involute(rack.transverse_pressure_angle)
-    value += (
-        (shift_sum + thinning(rack, normal_backlash))
-        * 2
-        * math.tan(rack.normal_pressure_angle)
-        / teeth
-    )
+    closed = shift_sum + thinning(rack, normal_backlash)
+    value += closed * 2 * math.tan(rack.normal_pressure_angle) / teeth
     if value < 0:
         raise ValueError("the teeth are too thin for any centre distance")
-    return (
-        abs(teeth) * rack.transverse_base_pitch / (2 * math.pi * math.cos(inverse_involute(value)))
-    )
+    angle = inverse_involute(value)
+    return abs(teeth) * rack.transverse_base_pitch / (2 * math.pi * math.cos(angle))
 
 
 def tip_shortening(

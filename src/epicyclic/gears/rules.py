@@ -104,21 +104,18 @@ def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     return Problem(f"{key}.{what}", shown, allowed, f"Check it, tooth number and module. {remedy}")
 
 
-def _check_rim(gear: Gear, owner: str, table: StatedGear) -> list[Problem]:
+def _check_rim(gear: Gear, owner: str, table: StatedGear) -> Iterator[Problem]:
     thickness, key = rim_thickness(table), f"{owner}.rim_thickness"
-    if thickness is None:
-        return []
-    if not gear.internal:
+    least = max(THINNEST_RIM * gear.rack.normal_module, gear.root_radius / LARGEST_RIM_RATIO)
+    if thickness is not None and not gear.internal:
         allowed = "belongs to a ring gear, and this gear is external."
         remedy = f"Leave it out, or write {owner}.internal = true."
-        return [Problem(key, millimetres(thickness), allowed, remedy)]
-    least = max(THINNEST_RIM * gear.rack.normal_module, gear.root_radius / LARGEST_RIM_RATIO)
-    if thickness >= least:
-        return []
-    allowed = f"must be at least {millimetres(least)}: a quarter of the normal module, and a "
-    allowed += "thousandth of the root radius."
-    remedy = "Correct it, or leave it out for a rim that does not bend."
-    return [Problem(key, millimetres(thickness), allowed, remedy)]
+        yield Problem(key, millimetres(thickness), allowed, remedy)
+    elif thickness is not None and thickness < least:
+        allowed = f"must be at least {millimetres(least)}: a quarter of the normal module, and a "
+        allowed += "thousandth of the root radius."
+        remedy = "Correct it, or leave it out for a rim that does not bend."
+        yield Problem(key, millimetres(thickness), allowed, remedy)
 
 
 def _no_involute_for_thickness(gearing: Gearing, name: str) -> Problem:
@@ -222,7 +219,7 @@ def check_mesh(
         *_check_tip_passage(gearing, mesh),
     ]
     # where the teeth do not mesh the limits of the active profile mean nothing
-    return problems or _check_flanks(gearing, mesh)
+    return problems or list(_check_flanks(gearing, mesh))
 
 
 def _reference_distance(mesh: Mesh) -> str:
@@ -356,16 +353,16 @@ def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
     return Problem(f"{tip}, {root}", shown, allowed, remedy)
 
 
-def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> list[Problem]:
+def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> Iterator[Problem]:
     """The tips of an internal mesh must pass each other beside it."""
     one, two = mesh.gear1, mesh.gear2
-    if not mesh.internal or mesh.tip_clearances[1] < -ROUNDING or mesh.tip_passage >= 0:
-        return []
-    key, shown = _tips(gearing, one, two)
-    allowed = f"the tips of {one.name} and {two.name} collide beside the mesh, by "
-    allowed += f"{-math.degrees(mesh.tip_passage):.3g} deg of the {two.name} (tip interference)."
-    remedy = f"Shorten the teeth or choose more teeth for the {two.name}."
-    return [Problem(key, shown, allowed, remedy)]
+    if mesh.internal and mesh.tip_clearances[1] >= -ROUNDING and mesh.tip_passage < 0:
+        key, shown = _tips(gearing, one, two)
+        allowed = f"the tips of {one.name} and {two.name} collide beside the mesh, by "
+        allowed += f"{-math.degrees(mesh.tip_passage):.3g} deg of the {two.name} (tip "
+        allowed += "interference)."
+        remedy = f"Shorten the teeth or choose more teeth for the {two.name}."
+        yield Problem(key, shown, allowed, remedy)
 
 
 # --- backlash ---
@@ -485,9 +482,8 @@ class _Flank:
         return abs(tip - root)
 
 
-def _check_flanks(gearing: Gearing, mesh: Mesh) -> list[Problem]:
+def _check_flanks(gearing: Gearing, mesh: Mesh) -> Iterator[Problem]:
     """Problems of the micro-geometry of both working flanks of a mesh."""
-    problems = []
     for member, gear in ((1, mesh.gear1), (2, mesh.gear2)):
         gear_table = gearing.tables[gear.name]
         table = working_flank(member, gear_table)
@@ -495,23 +491,20 @@ def _check_flanks(gearing: Gearing, mesh: Mesh) -> list[Problem]:
             name = "micro_geometry"
             if table is not gear_table.micro_geometry:
                 name = "micro_geometry_ring_side"
-            problems += _check_flank(
-                _Flank(f"{gearing.key(gear.name)}.{name}", gear, mesh, member, table)
-            )
-    return problems
+            key = f"{gearing.key(gear.name)}.{name}"
+            yield from _check_flank(_Flank(key, gear, mesh, member, table))
 
 
-def _check_flank(flank: _Flank) -> list[Problem]:
-    lengths = {end: _relief_length(flank, end) for end in ("tip", "root")}
-    problems = [found for found in lengths.values() if isinstance(found, Problem)]
-    tip, root = lengths["tip"], lengths["root"]
-    if not problems and isinstance(tip, float) and isinstance(root, float):
-        problems += _check_overlap(flank, tip, root)
-    problems += _check_end_relief(flank)
-    problems += _without_amount(flank)
+def _check_flank(flank: _Flank) -> Iterator[Problem]:
+    tip, root = (_relief_length(flank, end) for end in ("tip", "root"))
+    if isinstance(tip, float) and isinstance(root, float):
+        yield from _check_overlap(flank, tip, root)
+    else:
+        yield from (found for found in (tip, root) if isinstance(found, Problem))
+    yield from _check_end_relief(flank)
+    yield from _without_amount(flank)
     if flank.table.topography is not None:
-        problems += _check_topography(flank, flank.table.topography)
-    return problems
+        yield from _check_topography(flank, flank.table.topography)
 
 
 def _relief_length(flank: _Flank, end: str) -> float | Problem:
@@ -520,20 +513,14 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
     amount: float = getattr(flank.table, f"{end}_relief")
     roll_length: float | None = getattr(flank.table, f"{end}_relief_roll_length")
     diameter: float | None = getattr(flank.table, f"{end}_relief_diameter")
-    given = [
-        name
-        for name, value in (("roll_length", roll_length), ("diameter", diameter))
-        if value is not None
-    ]
+    starts = {"roll_length": roll_length, "diameter": diameter}
+    given = [name for name, start in starts.items() if start is not None]
     if amount == 0 and not given:
         return 0.0
     if len(given) != 1:
-        return Problem(
-            key,
-            f"{amount * 1e6:.5g} um",
-            f"needs one start of the relief, and has {'two' if given else 'none'}.",
-            f"Give {end}_relief_roll_length or {end}_relief_diameter.",
-        )
+        allowed = f"needs one start of the relief, and has {'two' if given else 'none'}."
+        remedy = f"Give {end}_relief_roll_length or {end}_relief_diameter."
+        return Problem(key, f"{amount * 1e6:.5g} um", allowed, remedy)
     near, far = flank.active[::-1] if end == "tip" else flank.active
     inside = f"the active profile of the {flank.mesh.name}"
     if diameter is not None:
@@ -553,48 +540,38 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
     return Problem(f"{key}_{given[0]}", shown, reason, "Correct the start of the relief.")
 
 
-def _without_amount(flank: _Flank) -> list[Problem]:
+def _without_amount(flank: _Flank) -> Iterator[Problem]:
     """Length, diameter or shape of a relief whose amount is not given."""
     given = flank.table.model_fields_set
-    return [
-        Problem(
-            f"{flank.key}.{key}",
-            "",
-            f"belongs to {relief}, which is not given.",
-            f"Give {relief}, or leave out {key}.",
-        )
-        for relief in ("tip_relief", "root_relief", "end_relief")
-        if relief not in given
-        for key in sorted(given)
-        if key.startswith(f"{relief}_")
-    ]
+    for relief in ("tip_relief", "root_relief", "end_relief"):
+        for key in sorted(given):
+            if relief not in given and key.startswith(f"{relief}_"):
+                allowed = f"belongs to {relief}, which is not given."
+                remedy = f"Give {relief}, or leave out {key}."
+                yield Problem(f"{flank.key}.{key}", "", allowed, remedy)
 
 
 def _diameter_at(gear: Gear, roll_length: float) -> float:
     return float(2 * (gear.base_radius**2 + roll_length**2) ** 0.5)
 
 
-def _check_overlap(flank: _Flank, tip: float, root: float) -> list[Problem]:
-    if tip + root <= flank.active_length:
-        return []
-    allowed = f"tip relief over {millimetres(tip)} and root relief over {millimetres(root)} of "
-    allowed += f"roll overlap: the active profile of the {flank.mesh.name} is "
-    allowed += f"{millimetres(flank.active_length)} long."
-    return [Problem(f"{flank.key}.tip_relief", "", allowed, "Shorten one of the two.")]
+def _check_overlap(flank: _Flank, tip: float, root: float) -> Iterator[Problem]:
+    if tip + root > flank.active_length:
+        allowed = f"tip relief over {millimetres(tip)} and root relief over {millimetres(root)} of "
+        allowed += f"roll overlap: the active profile of the {flank.mesh.name} is "
+        allowed += f"{millimetres(flank.active_length)} long."
+        yield Problem(f"{flank.key}.tip_relief", "", allowed, "Shorten one of the two.")
 
 
-def _check_end_relief(flank: _Flank) -> list[Problem]:
+def _check_end_relief(flank: _Flank) -> Iterator[Problem]:
     length, width = flank.table.end_relief_length, flank.gear.face_width
     key = f"{flank.key}.end_relief_length"
-    if length is None:
-        if flank.table.end_relief == 0:
-            return []
-        return [Problem(key, "", "is missing; it belongs to end_relief.", "Add end_relief_length.")]
-    if 2 * length <= width:
-        return []
-    allowed = f"both end reliefs must fit into the face width of {millimetres(width)}."
-    remedy = f"Reduce it to {millimetres(width / 2)} or less."
-    return [Problem(key, millimetres(length), allowed, remedy)]
+    if length is None and flank.table.end_relief != 0:
+        yield Problem(key, "", "is missing; it belongs to end_relief.", "Add end_relief_length.")
+    elif length is not None and 2 * length > width:
+        allowed = f"both end reliefs must fit into the face width of {millimetres(width)}."
+        remedy = f"Reduce it to {millimetres(width / 2)} or less."
+        yield Problem(key, millimetres(length), allowed, remedy)
 
 
 def _check_topography(flank: _Flank, table: StatedTopography) -> list[Problem]:
@@ -613,24 +590,21 @@ def _check_topography(flank: _Flank, table: StatedTopography) -> list[Problem]:
         allowed = f"lies inside the base circle of {millimetres(base)}, where no involute exists."
         remedy = "Leave out these rows."
         problems.append(Problem(f"{key}.diameter", millimetres(table.diameter[0]), allowed, remedy))
-    return problems or _check_place(flank, table)
+    return problems or list(_check_place(flank, table))
 
 
-def _check_place(flank: _Flank, table: StatedTopography) -> list[Problem]:
+def _check_place(flank: _Flank, table: StatedTopography) -> Iterator[Problem]:
     """The points of a sound topography must lie where the flank works."""
     ends = sorted(_diameter_at(flank.gear, roll) for roll in flank.active)
     places = (
         ("diameter", table.diameter, f"active profile of the {flank.mesh.name}", ends),
         ("face_position", table.face_position, "face", [0.0, flank.gear.face_width]),
     )
-    return [
-        Problem(
-            f"{flank.key}.topography.{name}",
-            f"{millimetres(points[0])} to {millimetres(points[-1])}",
-            f"must overlap the {where}, {millimetres(low)} to {millimetres(high)}, by at least "
-            "half of the longer of the two.",
-            "Give the deviations on the active part of the flank.",
-        )
-        for name, points, where, (low, high) in places
-        if min(points[-1], high) - max(points[0], low) < max(points[-1] - points[0], high - low) / 2
-    ]
+    for name, points, where, (low, high) in places:
+        first, last = points[0], points[-1]
+        if min(last, high) - max(first, low) < max(last - first, high - low) / 2:
+            shown = f"{millimetres(first)} to {millimetres(last)}"
+            allowed = f"must overlap the {where}, {millimetres(low)} to {millimetres(high)}, by at "
+            allowed += "least half of the longer of the two."
+            remedy = "Give the deviations on the active part of the flank."
+            yield Problem(f"{flank.key}.topography.{name}", shown, allowed, remedy)

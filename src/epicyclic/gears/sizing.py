@@ -139,10 +139,8 @@ def _with_named_rack(gearing: Gearing) -> tuple[Gearing, tuple[Found, ...]]:
         "basic_rack": None,
     }
     found = f"h_aP = 1, h_fP = {dedendum:g}, rounding {rounding:g}"
-    return (
-        gearing.changed(tables, shared.model_copy(update=coefficients), {}),
-        (Found("gears.basic_rack", found, f"{name}, in normal modules."),),
-    )
+    named = gearing.changed(tables, shared.model_copy(update=coefficients), {})
+    return named, (Found("gears.basic_rack", found, f"{name}, in normal modules."),)
 
 
 def _sized(gearing: Gearing) -> Iterator[_Sized]:
@@ -348,15 +346,9 @@ class _Solver:
         name = mesh.gives_way
         shift = self.shifts[name] - over
         self._set(name, shift, mesh)
-        self.found.append(
-            Found(
-                self._shift_key(name),
-                f"{shift:.6f}",
-                f"adjusted, because the teeth of the {mesh.drawn.title} are "
-                f"{-1e9 * backlash:.3g} nm too thick for the centre distance, which is less "
-                "than the printed digits show.",
-            )
-        )
+        how = f"adjusted, because the teeth of the {mesh.drawn.title} are {-1e9 * backlash:.3g} nm "
+        how += "too thick for the centre distance, which is less than the printed digits show."
+        self.found.append(Found(self._shift_key(name), f"{shift:.6f}", how))
 
     def _printed(self, mesh: _Sized) -> float:
         """How far x1 + x2 may be from the centre distance by the digits of both. [1]"""

@@ -197,9 +197,8 @@ def half_angle(table: StatedGear, rack: BasicRack, *, internal: bool) -> float:
             rack, teeth, internal, table.tooth_thickness, table.thickness_diameter / 2
         )
     excess = 2 * allowance_shift(table, rack) * rack.normal_module
-    return half + excess * math.tan(rack.transverse_pressure_angle) / (
-        teeth * rack.transverse_module
-    )
+    excess *= math.tan(rack.transverse_pressure_angle)
+    return half + excess / (teeth * rack.transverse_module)
 
 
 def allowances(table: StatedGear, rack: BasicRack) -> tuple[float, float] | None:
@@ -216,11 +215,9 @@ def allowances(table: StatedGear, rack: BasicRack) -> tuple[float, float] | None
 def allowance_shift(table: StatedGear, rack: BasicRack) -> float:
     """Profile shift of the mean tooth-thickness allowance. DIN 3960. Theory (G52). [1]"""
     stated = allowances(table, rack)
-    return (
-        0.0
-        if stated is None
-        else sum(stated) / (4 * rack.normal_module * math.tan(rack.normal_pressure_angle))
-    )
+    if stated is None:
+        return 0.0
+    return sum(stated) / (4 * rack.normal_module * math.tan(rack.normal_pressure_angle))
 
 
 def thickness_key(key: str, table: StatedGear) -> str:

@@ -221,10 +221,9 @@ class Oil(_Data):
                 continue
             slope = (warm.value - cold.value) / (warm.temperature - cold.temperature)
             if not STEEPEST_DENSITY <= slope <= 0:
+                place, shown = ("density", second, "value"), f"{warm.value:g} kg/m^3"
                 what = "must fall with rising temperature, by at most 2 kg/(m^3 K)"
-                faults.append(
-                    _fault(("density", second, "value"), f"{warm.value:g} kg/m^3", what, remedy)
-                )
+                faults.append(_fault(place, shown, what, remedy))
         low, high = self.temperature_range
         if low >= high:
             shown = f"{CELSIUS.text(low)} to {CELSIUS.text(high)}"
@@ -243,12 +242,8 @@ def _neighbours(points: Sequence[ViscosityPoint | DensityPoint]) -> Iterator[tup
 
 
 def _repeated(name: str, first: int, second: int, temperature: float) -> InitErrorDetails:
-    return _fault(
-        (name, second, "temperature"),
-        CELSIUS.text(temperature),
-        f"repeats the temperature {name}[{first}]",
-        "give one value for each temperature",
-    )
+    what, remedy = f"repeats the temperature {name}[{first}]", "give one value for each temperature"
+    return _fault((name, second, "temperature"), CELSIUS.text(temperature), what, remedy)
 
 
 def _fault(place: tuple[str | int, ...], given: str, what: str, remedy: str) -> InitErrorDetails:
@@ -338,6 +333,7 @@ def oil_state(oil: Oil, temperature: float) -> OilState:
     alpha, exponent = _pressure_viscosity(oil, temperature, nu, rho * nu)
     colder = _kinematic_viscosity(oil, temperature - SLOPE_STEP)
     warmer = _kinematic_viscosity(oil, temperature + SLOPE_STEP)
+    conductivity = oil.thermal_conductivity
     return OilState(
         temperature=temperature,
         kinematic_viscosity=nu,
@@ -345,11 +341,7 @@ def oil_state(oil: Oil, temperature: float) -> OilState:
         dynamic_viscosity=rho * nu,
         pressure_viscosity=alpha,
         thermoviscosity=math.log(colder / warmer) / (2 * SLOPE_STEP),  # (L6)
-        thermal_conductivity=(
-            DEFAULT_CONDUCTIVITY
-            if oil.thermal_conductivity is None
-            else oil.thermal_conductivity.value
-        ),
+        thermal_conductivity=DEFAULT_CONDUCTIVITY if conductivity is None else conductivity.value,
         lubricant_factor=oil.lubricant_factor.value,
         pressure_viscosity_exponent=exponent,
         limiting_traction=(oil.limiting_traction or LIMITING_TRACTION[oil.kind]).value,
@@ -366,10 +358,9 @@ def mixture_state(oil: OilState, oil_fraction: float, pressure: float) -> Mixtur
     """
     air_density = pressure / (AIR_GAS_CONSTANT * oil.temperature)
     density = oil_fraction * oil.density + (1 - oil_fraction) * air_density
-    oil_mass_fraction = oil_fraction * oil.density / density
-    viscosity = oil_mass_fraction * oil.dynamic_viscosity + (1 - oil_mass_fraction) * air_viscosity(
-        oil.temperature
-    )
+    oil_mass = oil_fraction * oil.density / density
+    air = air_viscosity(oil.temperature)
+    viscosity = oil_mass * oil.dynamic_viscosity + (1 - oil_mass) * air
     return MixtureState(oil_fraction, density, viscosity)
 
 
