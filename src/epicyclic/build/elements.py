@@ -21,9 +21,8 @@ from epicyclic.case.tables.elements import (
 from epicyclic.losses.designations import DesignatedBearing, designated, with_elements
 from epicyclic.losses.houpert import CONFORMITIES, THRUST_CONFORMITIES, THRUST_SHARES, BallModel
 from epicyclic.losses.shaft_bearing import (
-    DEFAULT_COEFFICIENTS,
     DEFAULT_FLANGE_COEFFICIENTS,
-    DEFAULT_VISCOUS_FACTORS,
+    TYPE_CONSTANTS,
     AxialSpring,
     BearingLoad,
     CatalogueBearing,
@@ -115,11 +114,9 @@ def _spring(table: ShaftBearingTable) -> AxialSpring:
     if table.type == "angular-contact":
         fits = with_elements(DesignatedBearing("", table.type, *size, angle))
         return AxialSpring(fits.elements, fits.element_diameter, 0.0, angle)
-    diameter, count = _rollers(table)
-    length = _roller_length(table) or ROLLER_SHARES["tapered"][2] * (
-        0.8 * (table.outside_diameter - table.bore) / 2
-    )
-    return AxialSpring(count, diameter, length, angle)
+    count, diameter, length = _rollers(table)
+    usual = ROLLER_SHARES["tapered"][2] * (0.8 * (table.outside_diameter - table.bore) / 2)
+    return AxialSpring(count, diameter, length or usual, angle)
 
 
 def _known(value: float | None) -> float:
@@ -134,18 +131,15 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
     if table.model == "skf-2018":
         constants = skf_constants(table.type, table.series or "", table.cage)
         return _skf_model(table, oil, constants)
-    kind = (table.type, table.cage)
-    by_film = (
-        _film_model(table, oil) if table.model in ("auto", "zhou-hoeprich", "houpert") else None
-    )
+    by_film = _film_model(table, oil)
     if by_film is not None:
         return by_film
-    constant = None
+    known, constant = TYPE_CONSTANTS[table.type, table.cage], None
     if table.model != "harris":
-        constant = table.palmgren_coefficient or DEFAULT_COEFFICIENTS[kind]
+        constant = table.palmgren_coefficient or known.coefficient
     factor, flange = table.viscous_factor, table.flange_coefficient
     return PalmgrenModel(
-        viscous_factor=DEFAULT_VISCOUS_FACTORS[kind] if factor is None else factor,
+        viscous_factor=known.viscous_factor if factor is None else factor,
         constant=constant,
         flange_coefficient=DEFAULT_FLANGE_COEFFICIENTS[table.cage] if flange is None else flange,
     )
@@ -191,21 +185,16 @@ def _balls(table: ShaftBearingTable, oil: Oil) -> BallModel:
 
 
 def _thrust_model(table: ShaftBearingTable, oil: Oil) -> ThrustRollerModel:
-    diameter, count = _rollers(table)
-    return ThrustRollerModel(
-        rollers=count,
-        roller_diameter=diameter,
-        roller_length=_roller_length(table),
-        skf=_skf_model(table, oil, skf_supply(table.type)),
-    )
+    return ThrustRollerModel(*_rollers(table), skf=_skf_model(table, oil, skf_supply(table.type)))
 
 
-def _rollers(table: ShaftBearingTable) -> tuple[float, int]:
-    """Diameter and number of the rollers."""
+def _rollers(table: ShaftBearingTable) -> tuple[int, float, float]:
+    """Number, diameter and length of the rollers."""
     share, fill, _ = ROLLER_SHARES[table.type]
     diameter = table.roller_diameter or share * (table.outside_diameter - table.bore)
     pitch_circle = math.pi * (table.outside_diameter + table.bore) / 2
-    return diameter, table.rollers or max(4, int(fill * pitch_circle / diameter))
+    count = table.rollers or max(4, int(fill * pitch_circle / diameter))
+    return count, diameter, _roller_length(table)
 
 
 def _roller_length(table: ShaftBearingTable) -> float:
@@ -220,11 +209,8 @@ def _roller_length(table: ShaftBearingTable) -> float:
 
 def _tapered_model(table: ShaftBearingTable, oil: Oil) -> TaperedModel:
     height = table.outside_diameter - table.bore
-    diameter, count = _rollers(table)
     return TaperedModel(
-        rollers=count,
-        roller_diameter=diameter,
-        roller_length=_roller_length(table),
+        *_rollers(table),
         rib_height=table.rib_height or RIB_HEIGHT * height,
         rib_roughness=table.rib_roughness or RIB_ROUGHNESS,
         skf=_skf_model(table, oil, skf_supply(table.type, table.cage)),
@@ -232,42 +218,36 @@ def _tapered_model(table: ShaftBearingTable, oil: Oil) -> TaperedModel:
 
 
 def _cylindrical_model(table: ShaftBearingTable, oil: Oil) -> CylindricalModel:
-    diameter, count = _rollers(table)
-    factor = table.viscous_factor
+    known, factor = TYPE_CONSTANTS[table.type, "caged"], table.viscous_factor
     return CylindricalModel(
-        rollers=count,
-        roller_diameter=diameter,
-        roller_length=_roller_length(table),
-        viscous_factor=DEFAULT_VISCOUS_FACTORS[table.type, "caged"] if factor is None else factor,
+        *_rollers(table),
+        viscous_factor=known.viscous_factor if factor is None else factor,
         # all series slide alike
         skf=_skf_model(table, oil, skf_constants(table.type, skf_series(table.type)[0])),
     )
 
 
 def _skf_model(table: ShaftBearingTable, oil: Oil, constants: SkfConstants) -> SkfModel:
-    seal = table.seal
-    friction = table.sliding_friction
+    friction, sealed = table.sliding_friction, 0.0
+    if friction is None:
+        friction = full_film_friction(table.type, oil.kind)
+    if (seal := table.seal) is not None:
+        sealed = seal_moment(seal.counterface_diameter, seal.factor, seal.exponent, seal.constant)
     return SkfModel(
         constants=constants,
-        full_film_friction=full_film_friction(table.type, oil.kind)
-        if friction is None
-        else friction,
+        full_film_friction=friction,
         starvation=STARVATION[table.lubrication],
         oil_level=table.oil_level,
         drag_variable=table.drag_variable,
-        seal_moment=0.0
-        if seal is None
-        else seal_moment(seal.counterface_diameter, seal.factor, seal.exponent, seal.constant),
+        seal_moment=sealed,
     )
 
 
 def _seal(name: str, table: SealTable, bodies: tuple[str, str], oil: Oil, folder: Path) -> Seal:
     viscosity = oil_state(oil, _FORTY_CELSIUS).kinematic_viscosity
-    if table.model != "table":
-        return Seal(name, bodies, table.diameter, table.model, viscosity)
-    points = table.points(folder)
-    assert points is not None
-    return Seal(name, bodies, table.diameter, points, viscosity)
+    model = table.model if table.model != "table" else table.points(folder)
+    assert model is not None
+    return Seal(name, bodies, table.diameter, model, viscosity)
 
 
 def _clutch(

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -116,11 +116,12 @@ def designated(text: str) -> DesignatedBearing:
     """
     name = re.sub(r"[\s\-]2(?=RS|Z)|[\s.\-]", "", text.upper())  # 2RS and 2Z are seals and shields
     by_size, cage = _BY_SIZE.match(name), _CAGE.match(name)
-    if by_size and by_size["bore"] not in (bores := _tables()["needle"][by_size["kind"]]):
-        raise KeyError(f"{by_size['kind']} has the bores {', '.join(bores)}")
     if by_size:
+        bores = bearing_tables("dimensions")["needle"][by_size["kind"]]
+        if by_size["bore"] not in bores:
+            raise KeyError(f"{by_size['kind']} has the bores {', '.join(bores)}")
         bore, width = int(by_size["bore"]), int(by_size["width"])
-        outside = _tables()["needle"]["NKI"][by_size["bore"]]
+        outside = bores[by_size["bore"]]
         return with_elements(DesignatedBearing(text, "needle", bore, outside, width))
     if cage and int(cage["bore"]) < int(cage["outside"]):
         bore, outside, width = (int(cage[key]) for key in ("bore", "outside", "width"))
@@ -157,8 +158,9 @@ def radial_clearance(bore: float) -> float:
 
 
 @cache
-def _tables() -> Mapping[str, Any]:
-    file = resources.files("epicyclic.library").joinpath("bearings", "dimensions.toml")
+def bearing_tables(name: Literal["dimensions", "skf-2018"]) -> Mapping[str, Any]:
+    """What the library has of rolling bearings: sizes of the ISO plans, or constants of SKF."""
+    file = resources.files("epicyclic.library").joinpath("bearings", f"{name}.toml")
     return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
@@ -169,7 +171,7 @@ def _known() -> Mapping[str, DesignatedBearing]:
 
 
 def _listed() -> Iterator[DesignatedBearing]:
-    tables = _tables()
+    tables = bearing_tables("dimensions")
     angles = tables["tapered"]
     for kind in tables["kinds"]:
         for number, prefix in enumerate(kind["names"]):
@@ -244,7 +246,6 @@ PLANET_BEARINGS = ("needle", "cylindrical", "spherical")
 
 
 def _shaft_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of a shaft bearing that its designation gives."""
     found = designated_or_any(raw["designation"])
     sizes = {"bore": found.bore, "outside_diameter": found.outside_diameter, "width": found.width}
     keys: dict[str, Any] = {key: f"{1e3 * size:g} mm" for key, size in sizes.items()}
@@ -257,7 +258,6 @@ def _shaft_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _planet_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of a planet bearing that its designation gives."""
     found = designated_or_any(raw["designation"], "NU 2210")
     if found.type not in PLANET_BEARINGS:  # its key has that problem
         found = designated_or_any("NU 2210")
@@ -272,7 +272,6 @@ def _planet_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _thrust_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of a thrust bearing that its designation gives."""
     try:
         bore, outside, _ = thrust_bearing(str(raw["designation"]))
     except KeyError:  # its key has that problem

@@ -127,14 +127,10 @@ def disc_drag_flags(
     use = ModelUse("drag", "seetharaman-kahraman", where)
     reynolds = reynolds_number(radius, speed, mixture)
     values = {"reynolds_number": reynolds}
-    return check_ranges(
-        use,
-        (_RIM,),
-        values,
-        part=drag.rim / total,
-        watts=drag.rim,
-        could_be=drag.rim * reynolds / 4 * rim_coefficient(reynolds),
-    ) + check_ranges(use, (_FACES, _CREEPING), values, part=drag.faces / total, watts=drag.faces)
+    rim, faces = drag
+    law = rim * reynolds / 4 * rim_coefficient(reynolds)
+    found = check_ranges(use, (_RIM,), values, part=rim / total, watts=rim, could_be=law)
+    return found + check_ranges(use, (_FACES, _CREEPING), values, part=faces / total, watts=faces)
 
 
 def reynolds_number(radius: float, speed: float, mixture: MixtureState) -> float:

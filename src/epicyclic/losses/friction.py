@@ -522,6 +522,9 @@ _VISCOSITY = Range(
 _REGRESSION_ROUGHNESS = Range(
     "composite_roughness", "composite rms roughness", None, 1.0, MICROMETRE, OF_THIS_PACKAGE
 )
+_FULL_FILMS = Range(
+    "film_ratio", "film ratio", 1.0, None, NUMBER, "the regression is for full films"
+)
 
 
 XU_COEFFICIENTS = (
@@ -583,18 +586,13 @@ class FrictionMap:
     @property
     def ranges(self) -> tuple[Range, ...]:
         """From the first to the last point of every axis."""
-        return tuple(
-            Range(
-                name,
-                label,
-                _shown(points[0], unit),
-                _shown(points[-1], unit),
-                unit,
-                "[friction_table] of the case",
-            )
-            for name, points in self.axes
-            for label, unit in (_AXES[name],)
-        )
+        ranges, source = [], "[friction_table] of the case"
+        for name, points in self.axes:
+            label, unit = _AXES[name]
+            ends = points[0], points[-1]
+            low, high = (unit.to_display(it) if unit.si else it for it in ends)
+            ranges.append(Range(name, label, low, high, unit, source))
+        return tuple(ranges)
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
@@ -605,10 +603,6 @@ class FrictionMap:
         where = [np.clip(getattr(contact, name), axis[0], axis[-1]) for name, axis in self.axes]
         mu: FloatArray = table(np.column_stack(where))
         return mu
-
-
-def _shown(value: float, unit: Quantity) -> float:
-    return unit.to_display(value) if unit.si else value
 
 
 def _table_of(settings: FrictionSettings) -> FrictionMap:
@@ -672,14 +666,7 @@ FRICTION_MODELS = {
                 _FORMULA_RADIUS,
                 _VISCOSITY,
                 _REGRESSION_ROUGHNESS,
-                Range(
-                    "film_ratio",
-                    "film ratio",
-                    1.0,
-                    None,
-                    NUMBER,
-                    "the regression is for full films",
-                ),
+                _FULL_FILMS,
             ),
             made_for=RegressionFluid("xu-2007", "a 75W-90 gear oil"),
         ),

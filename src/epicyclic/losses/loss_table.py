@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -94,17 +94,11 @@ class LossTable:
         if speed == 0:
             return ()
         at = {"speed": abs(speed), "temperature": temperature, "radial_force": radial_force}
-        ranges = [
-            Range(
-                name,
-                AXES[name][0],
-                AXES[name][1].to_display(float(points[0])),
-                AXES[name][1].to_display(float(points[-1])),
-                AXES[name][1],
-                self.source,
-            )
-            for name, points in self.axes.items()
-        ]
+        ranges = []
+        for name, points in self.axes.items():
+            label, unit = AXES[name]
+            low, high = (unit.to_display(float(end)) for end in (points[0], points[-1]))
+            ranges.append(Range(name, label, low, high, unit, self.source))
         return check_ranges(use, ranges, at)
 
 
@@ -121,19 +115,13 @@ def table_problems(
         return [Problem(quantity, f"{len(axes)} axes", allowed, remedy)]
     problems = rising_problems(axes)
     if "speed" in axes and len(axes["speed"]) > 0 and axes["speed"][0] < 0:
-        problems.append(
-            Problem(
-                "speed",
-                RPM.text(float(axes["speed"][0])),
-                "must not be negative, because a loss is the same in both senses of rotation.",
-                "Give magnitudes of the speed difference.",
-            )
-        )
+        shown = RPM.text(float(axes["speed"][0]))
+        allowed = "must not be negative, because a loss is the same in both senses of rotation."
+        remedy = "Give magnitudes of the speed difference."
+        problems.append(Problem("speed", shown, allowed, remedy))
     if quantity == "power" and "speed" not in axes:
-        remedy = "Add speed, or give torque."
-        problems.append(
-            Problem("power", "", "needs the axis speed, because it is zero at rest.", remedy)
-        )
+        allowed = "needs the axis speed, because it is zero at rest."
+        problems.append(Problem("power", "", allowed, "Add speed, or give torque."))
     return problems + _value_problems(quantity, axes, values)
 
 
@@ -222,34 +210,30 @@ def _columns(header: Sequence[str]) -> tuple[dict[int, tuple[str, str]], list[Pr
             allowed, remedy = "has no unit.", f"Write it as {name} [{unit}]."
             problems.append(Problem(_shown(text), "", allowed, remedy))
         elif name in (seen for seen, _ in columns.values()):
-            problems.append(
-                Problem(_shown(text), "", "is a second column of the same name.", "Delete one.")
-            )
+            allowed = "is a second column of the same name."
+            problems.append(Problem(_shown(text), "", allowed, "Delete one."))
         else:
-            columns[number] = (name, match["unit"].strip())
+            unit, quantity = match["unit"].strip(), _COLUMNS[name][1]
+            columns[number] = (name, unit)
             try:
-                _COLUMNS[name][1].scale_from(columns[number][1])
+                quantity.scale_from(unit)
             except PydanticCustomError as error:
-                meant = _COLUMNS[name][1].meant_unit(columns[number][1])
+                meant = quantity.meant_unit(unit)
                 remedy = (
                     f"Write it as {name} [{meant}]." if meant else "Convert it to another unit."
                 )
                 problems.append(Problem(_shown(text), "", f"{error.message()}.", remedy))
-    return columns, problems or _missing([name for name, _ in columns.values()])
+    return columns, problems or list(_missing([name for name, _ in columns.values()]))
 
 
-def _missing(names: Sequence[str]) -> list[Problem]:
+def _missing(names: Sequence[str]) -> Iterator[Problem]:
     quantities = [name for name in names if name in QUANTITIES]
-    problems = []
     if len(quantities) != 1:
         allowed = "the header must have either torque or power."
-        problems.append(
-            Problem("", "", allowed, "Add torque [N*m] or power [W], and delete the other.")
-        )
+        yield Problem("", "", allowed, "Add torque [N*m] or power [W], and delete the other.")
     if not 1 <= len(names) - len(quantities) <= 2:
         allowed = f"the header must have one or two of the columns {', '.join(AXES)}."
-        problems.append(Problem("", "", allowed, "Add a column such as speed [rpm]."))
-    return problems
+        yield Problem("", "", allowed, "Add a column such as speed [rpm].")
 
 
 def _numbers(

@@ -101,13 +101,10 @@ def central_film(contact: LineContacts) -> FloatArray:
         contact.hertz_pressure / contact.flanks.equivalent_modulus,
         contact.slide_to_roll_ratio,
     )
-    elastic = (
-        contact.radius
-        * heating
-        * pan_hamrock_central_film(
-            contact.speed_number, contact.material_number, contact.load_number
-        )
+    smooth = pan_hamrock_central_film(
+        contact.speed_number, contact.material_number, contact.load_number
     )
+    elastic = contact.radius * heating * smooth
     squeezed = contact.dynamic_viscosity * contact.rolling_speed * contact.radius
     rigid = MARTIN_FILM * squeezed / np.maximum(contact.line_load, LEAST_LOAD)
     film: FloatArray = np.maximum(elastic, rigid)

@@ -258,7 +258,7 @@ def _loaded(
 ) -> RollerLoads:
     """The bearing under forces and moments over its half-width, from the displacements `start`."""
     half_width = bearing.half_width
-    azimuth, intensity, state, iterations = _solved(bearing, load, start, near=near)
+    intensity, state, iterations = _solved(bearing, load, start, near=near)
     if iterations < 0:
         raise ConvergenceError(
             "the load distribution of the planet bearing was not found under "
@@ -267,10 +267,9 @@ def _loaded(
             "check roller length and clearance, or use the bearing model 'palmgren'."
         )
     state[2:] /= half_width
-    azimuth = azimuth.copy()
-    for array in (azimuth, intensity, state):
+    for array in (intensity, state):
         array.flags.writeable = False
-    return RollerLoads(azimuth, intensity, state, iterations)
+    return RollerLoads(bearing.azimuth, intensity, state, iterations)
 
 
 def _solved(
@@ -280,9 +279,9 @@ def _solved(
     *,
     held: bool = False,
     near: bool = False,
-) -> tuple[FloatArray, FloatArray, FloatArray, int]:
-    """Azimuth of each roller, and what `solve_roller_loads` finds."""
-    found = solve_roller_loads(
+) -> tuple[FloatArray, FloatArray, int]:
+    """What `solve_roller_loads` finds."""
+    return solve_roller_loads(
         load,
         start,
         bearing.azimuth,
@@ -295,7 +294,6 @@ def _solved(
         held=held,
         near=near,
     )
-    return bearing.azimuth, *found
 
 
 def tilting_moments(
@@ -312,14 +310,14 @@ def tilting_moments(
     load = np.array([force, 0.0, 0.0, 0.0])
     start = _start(bearing, load)
     start[2:] = tilt_x * half_width, tilt_y * half_width
-    azimuth, intensity, _, iterations = _solved(bearing, load, start, held=True)
+    intensity, _, iterations = _solved(bearing, load, start, held=True)
     if iterations < 0:
         raise ConvergenceError(
             "the load distribution of the planet bearing was not found under "
             f"{NEWTON.text(force, 4)} with tilts of {tilt_x:.4g} and {tilt_y:.4g} rad; "
             "check roller length and clearance."
         )
-    positions = bearing.slice_positions
+    positions, azimuth = bearing.slice_positions, bearing.azimuth
     turning = (intensity * bearing.slice_width * positions[:, None, :]).sum(axis=(0, 2))
     return float(turning @ np.cos(azimuth)), float(turning @ np.sin(azimuth))
 
@@ -418,9 +416,8 @@ def fitted_rolling_loss(
     total = float(local.sum())
     if beyond is None:
         use = ModelUse("bearing", model.name, "planet bearing")
-        return BearingLoss(
-            total, Flags(partial(check_contacts, use, model.ranges, contacts, local))
-        )
+        flags = Flags(partial(check_contacts, use, model.ranges, contacts, local))
+        return BearingLoss(total, flags)
     domain = model.model.fits[model.quantity].domain
     weighed = contacts.held({"hertz_pressure": domain["hertz_pressure"]}) if alone else contacts
     within = float((weight_of_fit(model.model, model.quantity, weighed) * local).sum())

@@ -18,7 +18,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from epicyclic.arrays import Alone, BoolArray, FloatArray, Points, larger, sqrt
-from epicyclic.errors import ConvergenceError, InputError, Problem
+from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.files import sealed, unsealed
 from epicyclic.gears.cutting import Tool
 from epicyclic.gears.mesh import Mesh
@@ -130,16 +130,10 @@ class FlowFamily:
 
     def scaled(self, number: float) -> FloatArray:
         """Scaled figures of the flow at a number; NaN if it does not repeat or is not found."""
-        try:
-            # not kept: only its figures are needed again
-            flow = pocket_flow.__wrapped__(
-                self.geometry,
-                number,
-                MixtureState(self.oil_fraction, 1.0, 0.0),
-                1.0,
-                self.model,
-                *(self.slices, self.steps, self.end_length),
-            )
+        unit, solve = MixtureState(self.oil_fraction, 1.0, 0.0), pocket_flow.__wrapped__
+        resolution = (self.slices, self.steps, self.end_length)
+        try:  # not kept: only its figures are needed again
+            flow = solve(self.geometry, number, unit, 1.0, self.model, *resolution)
         except ConvergenceError:
             return np.full(5, math.nan)
         if not flow.periodic:
@@ -275,13 +269,8 @@ def make_tables(
                 _ = family.geometry  # once, before threads ask for it at the same time
             solved = list(pool.map(kept_figures, *zip(*wanted, strict=True)))
             for family, table in growing.items():
-                table.take(
-                    {
-                        n: flow
-                        for (one, n), flow in zip(wanted, solved, strict=True)
-                        if one == family
-                    }
-                )
+                flows = zip(wanted, solved, strict=True)
+                table.take({number: flow for (one, number), flow in flows if one == family})
 
 
 @lru_cache(maxsize=KEPT_MOST)
@@ -431,9 +420,8 @@ class KnownFlows:
     ) -> KnownFlows:
         """These flows and another one."""
         number = FlowFamily.number(speed, mixture, pressure)
-        if (
-            isinstance(number, Points) or number == LEAST_NUMBER
-        ):  # it is scaled, and its speed may be too small to divide by
+        # at the least one it is scaled, and its speed may be too small to divide by
+        if isinstance(number, Points) or number == LEAST_NUMBER:
             return self
         place, scaled = math.log(number), scaled_figures(figures, speed, mixture.density)
         return KnownFlows({**self.flows, (family, place): (scaled, figures)})
@@ -558,19 +546,14 @@ def _table(path: Path, state: tuple[int, ...], family: FlowFamily) -> FlowTable:
     if not alike:
         raise _error(path, f"has no table for a {family.mesh.name}.")
     stored = alike[0]
-    differing = [
-        Problem(
-            _KEY,
-            str(path),
-            f"was made for a {family.mesh.name} with {name} = {_shown(stored.family, name)}, "
-            f"not {_shown(wanted, name)}.",
-            "Make it again with 'epicyclic pockets table', or leave the key out.",
-        )
-        for name in dict.fromkeys([*wanted, *stored.family])
-        if not _same(wanted.get(name), stored.family.get(name))
-    ]
-    if differing:
-        raise InputError(differing, str(path))
+    differing = []
+    for name in dict.fromkeys([*wanted, *stored.family]):
+        if not _same(wanted.get(name), stored.family.get(name)):
+            made = f"was made for a {family.mesh.name} with {name} = {_shown(stored.family, name)}"
+            remedy = "Make it again with 'epicyclic pockets table', or leave the key out."
+            allowed = f"{made}, not {_shown(wanted, name)}."
+            differing.append(Problem(_KEY, str(path), allowed, remedy))
+    raise_any(differing, str(path))
     return FlowTable(
         number=np.array(stored.number),
         scaled=np.array(stored.scaled),

@@ -245,16 +245,10 @@ def tabulated(
         return along_path(
             contacts.path, pressure, *_path_table(*fit, motion, contacts.flanks, contacts.oil)
         )
-    return np.concatenate(
-        [
-            over_pressure(
-                own, *_race_table(*fit, race, contacts.speed, contacts.flanks, contacts.oil)
-            )
-            for race, own in zip(
-                contacts.races, np.split(pressure, len(contacts.races)), strict=True
-            )
-        ]
-    )
+    alike = contacts.speed, contacts.flanks, contacts.oil
+    races = zip(contacts.races, np.split(pressure, len(contacts.races)), strict=True)
+    found = [over_pressure(own, *_race_table(*fit, race, *alike)) for race, own in races]
+    return np.concatenate(found)
 
 
 @lru_cache(maxsize=64)

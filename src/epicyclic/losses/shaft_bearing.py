@@ -7,7 +7,7 @@ from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar, Literal, get_args
+from typing import ClassVar, Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -41,33 +41,35 @@ Cage = Literal["caged", "full-complement"]
 BEARING_TYPES: tuple[BearingType, ...] = get_args(BearingType)
 THRUST_TYPES = ("thrust-ball", "thrust-roller")
 """Bearings that carry no radial force."""
-DEFAULT_VISCOUS_FACTORS: Mapping[tuple[BearingType, Cage], float] = {
-    ("deep-groove", "caged"): 2.0,
-    ("cylindrical", "caged"): 3.0,
-    ("cylindrical", "full-complement"): 7.5,
-    ("tapered", "caged"): 6.0,
-    ("needle", "caged"): 12.0,
-    ("needle", "full-complement"): 12.0,
-    ("angular-contact", "caged"): 3.3,
-    ("spherical", "caged"): 4.0,
-    ("thrust-ball", "caged"): 1.5,
-    ("thrust-roller", "caged"): 3.5,
+
+
+class TypeConstants(NamedTuple):
+    """What formulas have of all bearings of a type."""
+
+    viscous_factor: float  # f0 in an oil bath, Harris (1991); general knowledge. [1]
+    # f1, Harris (1991); second hand. Balls: at a seventh of the static rating. Caged needle
+    # rollers: an estimate, printed values run up to 0.002. [1]
+    coefficient: float
+    # f0r and f1r of ISO 15312, of light and medium series; second hand, general knowledge. Seats of
+    # thrust bearings have another area than that of `thermal_excess`. [1]
+    thermal: tuple[float, float] = (math.nan, math.nan)
+    # n d_m of the limiting speed, in mm/min: medians of SKF's tables. Theory (J37).
+    limit: float = math.inf
+
+
+TYPE_CONSTANTS: Mapping[tuple[BearingType, Cage], TypeConstants] = {
+    ("deep-groove", "caged"): TypeConstants(2.0, 0.0003, (2.0, 0.0002), 660e3),
+    ("cylindrical", "caged"): TypeConstants(3.0, 0.0003, (2.5, 0.0003), 640e3),
+    ("cylindrical", "full-complement"): TypeConstants(7.5, 0.00055, (5.0, 0.00055), 320e3),
+    ("tapered", "caged"): TypeConstants(6.0, 0.0004, (3.0, 0.0004), 510e3),
+    ("needle", "caged"): TypeConstants(12.0, 0.0005, (5.0, 0.0005), 490e3),
+    ("needle", "full-complement"): TypeConstants(12.0, 0.00055, (5.0, 0.0005), 320e3),
+    ("angular-contact", "caged"): TypeConstants(3.3, 0.0005, (2.0, 0.00025), 610e3),
+    ("spherical", "caged"): TypeConstants(4.0, 0.00025, (4.0, 0.0002), 500e3),
+    ("thrust-ball", "caged"): TypeConstants(1.5, 0.0004),
+    ("thrust-roller", "caged"): TypeConstants(3.5, 0.0015),
 }
-"""f0 in an oil bath, Harris (1991); general knowledge. The keys are the bearings there are. [1]"""
-DEFAULT_COEFFICIENTS: Mapping[tuple[BearingType, Cage], float] = {
-    ("deep-groove", "caged"): 0.0003,
-    ("cylindrical", "caged"): 0.0003,
-    ("cylindrical", "full-complement"): 0.00055,
-    ("tapered", "caged"): 0.0004,
-    ("needle", "caged"): 0.0005,
-    ("needle", "full-complement"): 0.00055,
-    ("angular-contact", "caged"): 0.0005,
-    ("spherical", "caged"): 0.00025,
-    ("thrust-ball", "caged"): 0.0004,
-    ("thrust-roller", "caged"): 0.0015,
-}
-"""f1, Harris (1991); second hand. Balls: at a seventh of the static rating. Caged needle
-rollers: an estimate, printed values run up to 0.002. [1]"""
+"""By type and cage. The keys are the bearings there are."""
 _OF_BALLS: Mapping[BearingType, tuple[float, float]] = {
     "deep-groove": (0.0009, 0.55),
     "angular-contact": (0.001, 0.33),
@@ -251,13 +253,13 @@ def harris_coefficient(bearing: CatalogueBearing, load: BearingLoad) -> float:
     """Coefficient f1 after Harris. Theory (J3). [1]
 
     Deep groove: 0.0009 (P0/C0)^0.55; angular contact: 0.001 (P0/C0)^0.33; thrust balls:
-    0.0008 (P0/C0)^0.33; rollers: constant, `DEFAULT_COEFFICIENTS`. Harris (1991), second hand.
+    0.0008 (P0/C0)^0.33; rollers: constant, `TYPE_CONSTANTS`. Harris (1991), second hand.
     Raises `ValueError` for needle roller bearings, which Harris's table does not have.
     """
     if bearing.type not in bearing_types("harris"):
         raise ValueError(f"Harris gives no coefficient for {bearing.type} bearings")
     if bearing.type not in _OF_BALLS:
-        return DEFAULT_COEFFICIENTS[bearing.type, bearing.cage]
+        return TYPE_CONSTANTS[bearing.type, bearing.cage].coefficient
     factor, exponent = _OF_BALLS[bearing.type]
     ratio = static_load(bearing, load) / bearing.static_load_rating
     return factor * math.pow(ratio, exponent)
@@ -326,9 +328,19 @@ class WithoutCoefficient:
 
     __slots__ = ()
 
+    name: ClassVar[str]
+    axial_range: ClassVar = AXIAL_RATIO  # Of the forces on a cylindrical roller bearing.
+
     def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
         """NaN: the model has no f1."""
         return math.nan
+
+    def flags(
+        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
+    ) -> tuple[ValidityFlag, ...]:
+        """Flags on speed, static load and, of cylindrical rollers, axial force."""
+        use = ModelUse("bearing", self.name, where)
+        return load_flags(use, self.axial_range, bearing, load, speed)
 
 
 # --- table of the user ----------------------------------------------------------------------------
@@ -401,14 +413,13 @@ def preload_of(displacement: float, springs: tuple[AxialSpring, AxialSpring]) ->
     """
     from scipy.optimize import brentq
 
+    def excess(force: float) -> float:
+        return sum(spring.approach(force) for spring in springs) - displacement
+
     high = 1.0
-    while sum(spring.approach(high) for spring in springs) < displacement:
+    while excess(high) < 0:
         high *= 2
-    return float(
-        brentq(
-            lambda force: sum(spring.approach(force) for spring in springs) - displacement, 0, high
-        )
-    )
+    return float(brentq(excess, 0, high))
 
 
 # --- load and range -------------------------------------------------------------------------------
@@ -443,35 +454,10 @@ def minimum_load(
     return size * (6 + (4 * abs(speed) / reference_speed if reference_speed else 0.0))
 
 
-THERMAL_FACTORS: Mapping[tuple[BearingType, Cage], tuple[float, float]] = {
-    ("deep-groove", "caged"): (2.0, 0.0002),
-    ("cylindrical", "caged"): (2.5, 0.0003),
-    ("cylindrical", "full-complement"): (5.0, 0.00055),
-    ("tapered", "caged"): (3.0, 0.0004),
-    ("needle", "caged"): (5.0, 0.0005),
-    ("needle", "full-complement"): (5.0, 0.0005),
-    ("angular-contact", "caged"): (2.0, 0.00025),
-    ("spherical", "caged"): (4.0, 0.0002),
-    ("thrust-ball", "caged"): (math.nan, math.nan),
-    ("thrust-roller", "caged"): (math.nan, math.nan),
-}
-"""f0r and f1r of ISO 15312, of light and medium series; second hand, general knowledge. Seats of
-thrust bearings have another area than that below. [1]"""
 THERMAL_VISCOSITY = 12e-6  # Reference viscosity at 70 degC. [m^2/s]
 THERMAL_LOAD = 0.05  # Reference load over the static load rating. [1]
 THERMAL_DENSITY, THERMAL_AREA, THERMAL_EXPONENT = 0.016e6, 0.05, -0.34
 """Heat that a seat takes up for its area [W/m^2], and how that falls beyond an area [m^2]."""
-LIMITING_SPEEDS: Mapping[tuple[BearingType, Cage], float] = {
-    ("deep-groove", "caged"): 660e3,
-    ("cylindrical", "caged"): 640e3,
-    ("tapered", "caged"): 510e3,
-    ("angular-contact", "caged"): 610e3,
-    ("needle", "caged"): 490e3,
-    ("needle", "full-complement"): 320e3,
-    ("cylindrical", "full-complement"): 320e3,
-    ("spherical", "caged"): 500e3,
-}
-"""n d_m of the limiting speed, in mm/min: medians of SKF's tables. Theory (J37)."""
 RATING_STEP = 1e-6  # To which the rating is found. [rad/s]
 RATING_STEPS = 10**18  # Steps, beyond the rating of any bearing, however small.
 
@@ -484,7 +470,7 @@ def thermal_excess(bearing: CatalogueBearing, speed: float) -> float:
     diameter = bearing.pitch_diameter
     area = math.pi * 2 * diameter * bearing.width
     heat = THERMAL_DENSITY * area * max(1.0, area / THERMAL_AREA) ** THERMAL_EXPONENT
-    viscous, mechanical = THERMAL_FACTORS[bearing.type, bearing.cage]
+    viscous, mechanical = TYPE_CONSTANTS[bearing.type, bearing.cage].thermal
     own = bearing_viscous_loss(viscous, THERMAL_VISCOSITY, speed, diameter)
     load = THERMAL_LOAD * bearing.static_load_rating
     return float(own + mechanical * load * diameter * speed - heat)
@@ -500,8 +486,8 @@ def limiting_speed(bearing: CatalogueBearing) -> float:
     >>> round(limiting_speed(CatalogueBearing("tapered", 0.03, 0.055, 0.017)) / RPM)
     12000
     """
-    known = LIMITING_SPEEDS.get((bearing.type, bearing.cage), math.inf)
-    return 1e-3 * known * RPM / bearing.pitch_diameter
+    limit = TYPE_CONSTANTS[bearing.type, bearing.cage].limit
+    return 1e-3 * limit * RPM / bearing.pitch_diameter
 
 
 def limit_text(

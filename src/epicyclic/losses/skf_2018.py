@@ -8,15 +8,12 @@ conversion is done once, in `_printed`. The constants of the series are in the l
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache
-from importlib import resources
-from typing import Any, ClassVar
+from typing import ClassVar
 
+from epicyclic.losses.designations import bearing_tables
 from epicyclic.losses.drag import RPM
-from epicyclic.losses.ranges import ModelUse, ValidityFlag
 from epicyclic.losses.shaft_bearing import (
     AXIAL_RATIO,
     BearingLoad,
@@ -25,7 +22,6 @@ from epicyclic.losses.shaft_bearing import (
     CatalogueBearing,
     FrictionPart,
     WithoutCoefficient,
-    load_flags,
 )
 from epicyclic.oil.oil import OilState
 
@@ -38,7 +34,7 @@ BOUNDARY_FRICTION = 0.12
 STARTING_FRICTION = 0.15  # mu_bl in motion and at the start (SKF 2018). [1]
 
 SKF_SOURCE = "SKF, Rolling bearings, catalogue (2018)"
-_AXIAL_RATIO = replace(
+SKF_AXIAL_RATIO = replace(
     AXIAL_RATIO, high=0.5, source="axial load of cylindrical roller bearings, SKF"
 )
 
@@ -78,22 +74,8 @@ class SkfMoments:
     drag: float  # M_drag. [N m]
 
 
-class SlidesAsSkf(WithoutCoefficient):
-    """A model whose sliding friction is SKF's."""
-
-    __slots__ = ()
-
-    name: ClassVar[str]
-
-    def flags(
-        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
-    ) -> tuple[ValidityFlag, ...]:
-        """Flags on speed, static load and, of cylindrical rollers, axial force."""
-        return load_flags(ModelUse("bearing", self.name, where), _AXIAL_RATIO, bearing, load, speed)
-
-
 @dataclass(frozen=True, slots=True)
-class SkfModel(SlidesAsSkf):
+class SkfModel(WithoutCoefficient):
     """SKF's friction model of 2018."""
 
     constants: SkfConstants
@@ -108,6 +90,7 @@ class SkfModel(SlidesAsSkf):
     name: ClassVar = "skf-2018"
     terms: ClassVar = ("mechanical", "drag")
     depends_on_load: ClassVar = True
+    axial_range: ClassVar = SKF_AXIAL_RATIO
 
     def reduction_factors(
         self, bearing: CatalogueBearing, speed: float, viscosity: float
@@ -148,17 +131,11 @@ class SkfModel(SlidesAsSkf):
         )
 
 
-@cache
-def _skf_tables() -> Mapping[str, Any]:
-    file = resources.files("epicyclic.library").joinpath("bearings", "skf-2018.toml")
-    return tomllib.loads(file.read_text(encoding="utf-8"))
-
-
 def skf_series(kind: BearingType) -> tuple[str, ...]:
     """The series of a bearing type with a cage in SKF's table; empty for needle rollers."""
     return tuple(
         name
-        for row in _skf_tables()["rows"]
+        for row in bearing_tables("skf-2018")["rows"]
         if row["type"] == kind
         for name in row["series"]
         if name != "full-complement"
@@ -171,7 +148,7 @@ def skf_constants(kind: BearingType, series: str, cage: Cage = "caged") -> SkfCo
     Raises `KeyError` if SKF's table has no such bearing.
     """
     wanted = series if cage == "caged" else cage
-    tables = _skf_tables()
+    tables = bearing_tables("skf-2018")
     rows = (row for row in tables["rows"] if row["type"] == kind and wanted in row["series"])
     row = next(rows, None)
     if row is None:
@@ -191,7 +168,7 @@ def skf_constants(kind: BearingType, series: str, cage: Cage = "caged") -> SkfCo
 
 def skf_supply(kind: BearingType, cage: Cage = "caged") -> SkfConstants:
     """What SKF's starvation and drag take of a bearing whose series is not known."""
-    geometry = _skf_tables()["types"][kind][cage]
+    geometry = bearing_tables("skf-2018")["types"][kind][cage]
     rows = int(not geometry["K_L"])  # of balls
     return SkfConstants(0.0, 0.0, 0.0, 0.0, geometry["K_Z"], geometry["K_L"], rows, is_read=False)
 
@@ -202,7 +179,7 @@ def full_film_friction(kind: BearingType, oil_kind: str) -> float:
     0.02 for cylindrical and 0.002 for tapered rollers; for balls 0.05 with mineral oil, 0.10 with
     transmission fluid (``"atf"``), 0.04 with other synthetic oils.
     """
-    tables = _skf_tables()
+    tables = bearing_tables("skf-2018")
     given = tables["types"][kind].get("full_film")
     if given is not None:
         return float(given)

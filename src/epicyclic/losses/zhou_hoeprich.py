@@ -39,7 +39,7 @@ from epicyclic.losses.shaft_bearing import (
     WithoutCoefficient,
     load_flags,
 )
-from epicyclic.losses.skf_2018 import SkfModel, SlidesAsSkf, skf_drag_moment, skf_moments
+from epicyclic.losses.skf_2018 import SKF_AXIAL_RATIO, SkfModel, skf_drag_moment, skf_moments
 from epicyclic.oil.oil import OilState
 from epicyclic.units import MILLIMETRE, MILLIPASCAL_SECOND, NUMBER
 
@@ -131,13 +131,14 @@ class TaperedModel(Rollers):
 
 
 @dataclass(frozen=True, slots=True)
-class CylindricalModel(Rollers, SlidesAsSkf):
+class CylindricalModel(Rollers):
     """Rolling of cylindrical rollers after Zhou and Hoeprich, their sliding after SKF."""
 
     viscous_factor: float  # f0 of the idle bearing. [1]
     skf: SkfModel  # What sliding, starvation, drag and seals are taken from.
 
     terms: ClassVar = ("mechanical", "viscous")
+    axial_range: ClassVar = SKF_AXIAL_RATIO
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -181,12 +182,6 @@ class ThrustRollerModel(Rollers):
             moment += rolling_moment(self, bearing, math.pi / 2, own, speed, oil)
         method = "rolling after Zhou and Hoeprich, sliding by mixed friction"
         return film_parts(self.skf, bearing, speed, oil, moment, method, ZHOU_HOEPRICH_SOURCE)
-
-    def flags(
-        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
-    ) -> tuple[ValidityFlag, ...]:
-        """Flags on speed and static load."""
-        return load_flags(ModelUse("bearing", self.name, where), AXIAL_RATIO, bearing, load, speed)
 
 
 RollerModel = TaperedModel | CylindricalModel | ThrustRollerModel

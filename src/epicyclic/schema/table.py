@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
 from epicyclic.schema.fields import to_inputs
 
@@ -69,4 +69,10 @@ def _values_or_rows(value: object) -> str:
     return "rows" if rows else "values"
 
 
-VALUES_OR_ROWS = Discriminator(_values_or_rows)
+Item = TypeVar("Item")
+ValuesOrRows = Annotated[
+    Annotated[tuple[Item, ...], Tag("values")]
+    | Annotated[tuple[tuple[Item, ...], ...], Tag("rows")],
+    Discriminator(_values_or_rows),
+]
+"""A value, or a row of them, for each point of the first axis of a table."""

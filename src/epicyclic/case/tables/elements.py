@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, Field, Tag, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from epicyclic.case.tables.base import (
@@ -23,7 +23,7 @@ from epicyclic.case.tables.base import (
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import did_you_mean, millimetres, written
-from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
+from epicyclic.schema.table import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import Length, Number, Play, Quantity, SmallLength, Temperature, VolumeFlow
 
 if TYPE_CHECKING:
@@ -42,8 +42,10 @@ def _known(kind: str, text: str) -> str:
     return text
 
 
-def _filled(kind: str, raw: dict[str, Any]) -> dict[str, Any]:
+def _filled(kind: str, raw: Any) -> Any:
     """A table with the keys that its designation gives; those of the user go first."""
+    if not isinstance(raw, dict) or not raw.get("designation"):
+        return raw
     from epicyclic.losses import designations
 
     return designations.KEYS[kind](raw) | raw
@@ -104,11 +106,7 @@ class PlanetBearing(Table):
     limiting_speed: ReferenceSpeed | None = option("Of the catalogue. Default: that of its type.")
     material: NamedMaterial = option("Material of rollers and races.", "steel")
 
-    _fill = model_validator(mode="before")(
-        lambda raw: (
-            _filled("planet", raw) if isinstance(raw, dict) and raw.get("designation") else raw
-        )
-    )
+    _fill = model_validator(mode="before")(lambda raw: _filled("planet", raw))
 
 
 class PlanetPin(Table):
@@ -150,11 +148,7 @@ class ThrustBearing(Table):
     viscous_factor: Number = option("f0 (Harris).", 3.5, ge=0, le=100)
     count: int = Field(default=1, ge=1, le=10)
 
-    _fill = model_validator(mode="before")(
-        lambda raw: (
-            _filled("thrust", raw) if isinstance(raw, dict) and raw.get("designation") else raw
-        )
-    )
+    _fill = model_validator(mode="before")(lambda raw: _filled("thrust", raw))
 
 
 Force = Annotated[float, Quantity("a force", "N", "N", low=0.0, high=1e9)]
@@ -168,17 +162,6 @@ SpeedDifference = Annotated[
 ]
 DragTorque = Annotated[float, Quantity("a drag torque", "N*m", "N*m", low=0.0, high=1e9)]
 LostPower = Annotated[float, Quantity("a power loss", "W", "W", low=0.0, high=1e9)]
-
-Torques = Annotated[
-    Annotated[tuple[DragTorque, ...], Tag("values")]
-    | Annotated[tuple[tuple[DragTorque, ...], ...], Tag("rows")],
-    VALUES_OR_ROWS,
-]
-Powers = Annotated[
-    Annotated[tuple[LostPower, ...], Tag("values")]
-    | Annotated[tuple[tuple[LostPower, ...], ...], Tag("rows")],
-    VALUES_OR_ROWS,
-]
 
 
 class LossTableTable(PointsTable):
@@ -194,10 +177,12 @@ class LossTableTable(PointsTable):
     )
     temperature: tuple[Temperature, ...] | None = option("Temperatures of the oil, increasing.")
     radial_force: tuple[Force, ...] | None = option("On a bearing, increasing.")
-    torque: Torques | None = option(
+    torque: ValuesOrRows[DragTorque] | None = option(
         "Friction torque, with one value or one row for each value of the first axis."
     )
-    power: Powers | None = option("Power loss instead of the torque; it needs the axis speed.")
+    power: ValuesOrRows[LostPower] | None = option(
+        "Power loss instead of the torque; it needs the axis speed."
+    )
     file: str | None = option(
         "CSV file in the folder of the case, with units in the header: speed [rpm],torque [N*m].",
         max_length=1000,
@@ -406,11 +391,7 @@ class ShaftBearingTable(ElementTable):
     limiting_speed: ReferenceSpeed | None = option("Of the catalogue. Default: that of its type.")
     table: LossTableTable | None = option("Loss table for model = table.")
 
-    _fill = model_validator(mode="before")(
-        lambda raw: (
-            _filled("shaft", raw) if isinstance(raw, dict) and raw.get("designation") else raw
-        )
-    )
+    _fill = model_validator(mode="before")(lambda raw: _filled("shaft", raw))
 
     @property
     def is_angular(self) -> bool:
@@ -420,7 +401,7 @@ class ShaftBearingTable(ElementTable):
     def problems(self) -> Iterator[Problem]:
         # cases without bearings need it not
         from epicyclic.losses.designations import designated_or_any
-        from epicyclic.losses.shaft_bearing import DEFAULT_VISCOUS_FACTORS, bearing_types
+        from epicyclic.losses.shaft_bearing import TYPE_CONSTANTS, bearing_types
 
         kind, model = self.type, self.model
         if self.designation and (own := designated_or_any(self.designation).type) != kind:
@@ -430,7 +411,7 @@ class ShaftBearingTable(ElementTable):
         if self.bore >= self.outside_diameter:
             reason = f"must be less than outside_diameter, {millimetres(self.outside_diameter)}."
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
-        if (kind, self.cage) not in DEFAULT_VISCOUS_FACTORS:
+        if (kind, self.cage) not in TYPE_CONSTANTS:
             remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
             yield Problem("cage", written(self.cage), f"is not made for {kind} bearings.", remedy)
         yield from _angle_problems(self)
@@ -598,14 +579,12 @@ def loss_table_problems(table: LossTableTable, axes: Collection[str]) -> Iterato
         yield Problem(key, " and ".join(contents), reason, "Give one of them.")
         return
     for name in foreign:
-        yield Problem(
-            name, "", "is not a valid axis here: only bearings carry a load.", "Delete it."
-        )
+        reason = "is not a valid axis here: only bearings carry a load."
+        yield Problem(name, "", reason, "Delete it.")
     if contents == ["file"]:
         for name in given:
-            yield Problem(
-                name, "", "is given together with file, which has its own axes.", "Delete it."
-            )
+            reason = "is given together with file, which has its own axes."
+            yield Problem(name, "", reason, "Delete it.")
     elif not foreign:
         yield from table_problems(table.quantity, given, getattr(table, table.quantity))
 
@@ -629,13 +608,9 @@ def between(
     """The bodies that a part is between; raises `InputError` for unknown ones."""
     names = table.bodies
     known = {**shafts, HOUSING: HOUSING}
+    reason = f"is not a shaft; the shafts are {', '.join(dict.fromkeys(known.values()))}."
     raise_any(
-        Problem(
-            key,
-            written(body),
-            f"is not a shaft; the shafts are {', '.join(dict.fromkeys(known.values()))}.",
-            did_you_mean(body, known) or "Check the name.",
-        )
+        Problem(key, written(body), reason, did_you_mean(body, known) or "Check the name.")
         for key, body in names.items()
         if body not in known
     )

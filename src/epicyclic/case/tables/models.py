@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, Tag, model_validator
+from pydantic import Field, model_validator
 
 from epicyclic.case.tables.base import Stress
 from epicyclic.errors import Problem
@@ -25,7 +25,7 @@ from epicyclic.oil.rheology import (
     ReeEyring,
     ShearLaw,
 )
-from epicyclic.schema.table import VALUES_OR_ROWS, PointsTable, Table, option
+from epicyclic.schema.table import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import (
     Deviation,
     HertzPressure,
@@ -210,12 +210,6 @@ FrictionName = Literal[
 Coefficient = Annotated[Number, Field(ge=0, le=1)]
 LoadFactor = Annotated[Number, Field(ge=1, le=10)]
 
-Coefficients = Annotated[
-    Annotated[tuple[Coefficient, ...], Tag("values")]
-    | Annotated[tuple[tuple[Coefficient, ...], ...], Tag("rows")],
-    VALUES_OR_ROWS,
-]
-
 
 class FrictionTable(PointsTable):
     """A user's coefficients of friction against one or two quantities of the contact.
@@ -229,7 +223,7 @@ class FrictionTable(PointsTable):
     film_ratio: tuple[Number, ...] | None = None
     hertz_pressure: tuple[HertzPressure, ...] | None = None
     rolling_speed: tuple[Speed, ...] | None = None
-    friction: Coefficients = Field(
+    friction: ValuesOrRows[Coefficient] = Field(
         description="One value or one row for each value of the first axis."
     )
 
