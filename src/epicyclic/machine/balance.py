@@ -58,7 +58,7 @@ def freedom(
     """What stays open with the speed of `driven`, and of the bodies `given`, known."""
     bodies = machine.bodies
     others = _matrix(machine, [body for body in given if body != driven])
-    whole = np.vstack([others, _unit(bodies, driven)])
+    whole = np.vstack([others, np.eye(len(bodies))[bodies.index(driven)]])
     free = _null_space(whole)
     moves = _null_space(others)
     blocked = bool(np.abs(moves[bodies.index(driven)]).max(initial=0.0) < SINGULAR)
@@ -163,16 +163,8 @@ def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
                 row[place[body]] += coefficient
         length = math.hypot(*row)
         rows.append(row / length if length else row)
-    for body in given:
-        rows.append(np.zeros(len(place)))
-        rows[-1][place[body]] = 1.0
+    rows += [np.eye(len(place))[place[body]] for body in given]
     return np.array(rows).reshape(len(rows), len(place))
-
-
-def _unit(bodies: Sequence[str], body: str) -> FloatArray:
-    row = np.zeros(len(bodies))
-    row[bodies.index(body)] = 1.0
-    return row
 
 
 def _null_space(matrix: FloatArray) -> FloatArray:

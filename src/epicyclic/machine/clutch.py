@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -17,6 +16,7 @@ from epicyclic.machine.element import (
     State,
     figure,
 )
+from epicyclic.machine.shaft_parts import Unloaded
 from epicyclic.units import NEWTON_METRE, NUMBER, RPM
 
 METHOD = "shear of the oil film in the gaps, as far as the oil supply fills them"
@@ -80,10 +80,9 @@ def film_drag(
 
 
 @dataclass(frozen=True, slots=True)
-class Clutch:
-    """An open clutch or synchronizer between two bodies."""
+class Clutch(Unloaded):
+    """An open clutch or synchronizer between two bodies, which transmits no torque but its drag."""
 
-    several: ClassVar = False
     key: str  # First part of the key of its loss.
     between: tuple[str, str]  # The two bodies, one of which may be `HOUSING`.
     gaps: int
@@ -95,10 +94,6 @@ class Clutch:
 
     terms: ClassVar = ("shear",)
     figure_types: ClassVar = (("clutch", ClutchFigures),)
-
-    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
-        """Nothing: an open clutch transmits no torque but its drag."""
-        return {}
 
     def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
         """Loss, figures and flags in a state."""

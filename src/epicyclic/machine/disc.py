@@ -212,13 +212,6 @@ def thrust_loss(bearing: ThrustBearing, state: State) -> Outcome:
     loss = bearing_viscous_loss(
         bearing.viscous_factor, state.fluids.oil.kinematic_viscosity, speed, bearing.mean_diameter
     )
-    return (
-        Loss(
-            LOAD_INDEPENDENT,
-            bearing.count * loss,
-            VISCOUS_METHOD,
-            VISCOUS_SOURCE,
-            brakes=((*bearing.between, 1.0),),
-        ),
-        Flags(partial(viscous_flags, "thrust bearing", speed, bearing.mean_diameter)),
-    )
+    watts, brakes = bearing.count * loss, ((*bearing.between, 1.0),)
+    flags = Flags(partial(viscous_flags, "thrust bearing", speed, bearing.mean_diameter))
+    return Loss(LOAD_INDEPENDENT, watts, VISCOUS_METHOD, VISCOUS_SOURCE, brakes=brakes), flags

@@ -242,14 +242,9 @@ def elastic_loads(duty: MeshDuty) -> LoadedMesh:
     """The mesh under the torque of its duty with elastic teeth, whatever distributes the load."""
     if isinstance(duty.force, Points):
         raise Alone
-    return load_mesh_elastically(
-        duty.gears.mesh,
-        *duty.gears.solids,
-        duty.gears.models.positions,
-        duty.gears.models.segments,
-        duty.force,
-        duty.deviations,
-    )
+    mesh, solids, models = duty.gears.mesh, duty.gears.solids, duty.gears.models
+    size = models.positions, models.segments
+    return load_mesh_elastically(mesh, *solids, *size, duty.force, duty.deviations)
 
 
 def load_mesh(duty: MeshDuty, oil: OilState, around: OilState | None = None) -> MeshContact | None:
@@ -290,8 +285,9 @@ def solve_mesh(
 
     `last`, the result under nearly this torque, saves work.
     """
-    friction = duty.gears.models.friction if last is None else last.friction
-    rolling = duty.gears.models.rolling
+    key, models = duty.gears.key, duty.gears.models
+    friction = models.friction if last is None else last.friction
+    rolling = models.rolling
     loads = None
     if duty.torque1 != 0 and duty.speed1 != 0:
         loads = distribute_load(duty, None if last is None else last.elastic)
@@ -299,7 +295,7 @@ def solve_mesh(
     loss = MeshLoss(0.0, 0.0)
     if contact is not None:
         friction = friction.solved_for(contact)
-        if duty.gears.models.by_loss_factor:
+        if models.by_loss_factor:
             loss = loss_factor_loss(contact, friction)
         else:
             loss = local_loss(contact, friction, rolling)
@@ -307,14 +303,9 @@ def solve_mesh(
     share1 = 0.5 if contact is None else heat_share1(contact, loss.heat, materials)
     method, source = friction.title, friction.source
     node1, node2 = duty.gears.nodes
-    rolling_loss = Loss(
-        LOAD_DEPENDENT,
-        count * loss.rolling,
-        rolling.title,
-        rolling.source,
-        heat=((node1, 0.5), (node2, 0.5)),
-    )
-    if duty.gears.models.by_loss_factor:
+    watts, halves = count * loss.rolling, ((node1, 0.5), (node2, 0.5))
+    rolling_loss = Loss(LOAD_DEPENDENT, watts, rolling.title, rolling.source, heat=halves)
+    if models.by_loss_factor:
         method, source = f"{method} times the loss factor", f"{source}; {OHLENDORF_SOURCE}"
         rolling_loss = Loss(LOAD_DEPENDENT, left_out="the loss-factor method has no rolling loss")
     elif rolling is CONTAINED:
@@ -326,24 +317,19 @@ def solve_mesh(
     pocketing = Loss(LOAD_INDEPENDENT, left_out=flow.left_out)
     if not flow.left_out:
         watts = 0.0 if flow.figures is None else count * flow.figures.power
-        model = one_by_one(pocketing_method, duty.gears.models.pockets.model, flow.figures)
+        model = one_by_one(pocketing_method, models.pockets.model, flow.figures)
         pocketing = Loss(LOAD_INDEPENDENT, watts, model, POCKETING_SOURCE)
+    watts, heat = count * loss.sliding, ((node1, share1), (node2, 1 - share1))
     losses = {
-        f"{duty.gears.key}_sliding": Loss(
-            LOAD_DEPENDENT,
-            count * loss.sliding,
-            method,
-            source,
-            heat=((node1, share1), (node2, 1 - share1)),
-        ),
-        f"{duty.gears.key}_rolling": rolling_loss,
-        f"{duty.gears.key}_pocketing": pocketing,
+        f"{key}_sliding": Loss(LOAD_DEPENDENT, watts, method, source, heat=heat),
+        f"{key}_rolling": rolling_loss,
+        f"{key}_pocketing": pocketing,
     }
     elastic = None if loads is None else loads.elastic
     figures = AtOnce(_mesh_figures, duty, contact, loss, elastic, flow.figures)
     return MeshResult(
         losses=losses,
-        figures=Figures({duty.gears.key: figures}),
+        figures=Figures({key: figures}),
         flags=loss.flags,
         notes=Sought(partial(_mesh_notes, duty, flow, fluids, count, losses, friction)),
         elastic=elastic,

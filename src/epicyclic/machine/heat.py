@@ -16,7 +16,7 @@ from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem,
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine import convection as shell
 from epicyclic.machine.convection import Fluid
-from epicyclic.machine.element import OIL, Fluids, Loss
+from epicyclic.machine.element import OIL, Fluids
 from epicyclic.machine.gear_mesh import GearMesh, MeshFigures
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.heat_flow import Link, Network
@@ -95,15 +95,10 @@ class Settled:
 def heat_of(solution: Solution) -> dict[str, float]:
     """Heat that the losses bring to each thermal node. [W]"""
     heat: dict[str, float] = {}
-    for loss in _losses(solution):
+    for loss in solution.losses.values():
         for node, share in loss.heat:
             heat[node] = heat.get(node, 0.0) + share * loss.watts
     return heat
-
-
-def _losses(solution: Solution) -> list[Loss]:
-    own = [loss for result in solution.results.values() for loss in result.losses.values()]
-    return [*own, *solution.given.values()]
 
 
 _Pass = tuple[Mapping[str, float], Solution, Answer]  # Temperatures [K], losses there, and so on.
@@ -334,12 +329,8 @@ def _rise_of_loss(sides: list[_Side], solution: Solution, lubrication_factor: fl
     for side in sides:
         losses = solution.results[side.element].losses
         watts = losses[f"{side.mesh.key}_sliding"].watts / side.parallel
-        geometry = side.mesh.mesh
-        rises.append(
-            bulk_rise_of_loss(
-                watts, geometry.center_distance, geometry.face_width, lubrication_factor
-            )
-        )
+        sizes = side.mesh.mesh.center_distance, side.mesh.mesh.face_width
+        rises.append(bulk_rise_of_loss(watts, *sizes, lubrication_factor))
     return sum(rises) / len(rises)
 
 
@@ -595,9 +586,8 @@ class NetworkModel:
         if any(node == OIL or heat.get(node) for node in left):
             lost, power = sum(heat.values()) + own.cooler_power, own.cooler_power
             if own.outlet is not None and 0 < power >= lost:
-                allowed = (
-                    f"leaves no heat to the oil that flows out: the losses are {known_text(lost)}."
-                )
+                allowed = "leaves no heat to the oil that flows out: the losses are "
+                allowed += f"{known_text(lost)}."
                 remedy = "Give less, or thermal.oil_flow instead of thermal.oil_outlet_temperature."
                 raise one_problem("thermal.cooler_power", known_text(power), allowed, remedy)
             allowed = f"the heat of {', '.join(left)} has no path out of the gearbox."
@@ -655,16 +645,11 @@ class NetworkModel:
             change, computed = own.capacity_changes[node], known[node]
             if change.value is not None or computed is not None:
                 known[node] = change(computed or 0.0)
-        problems += [
-            Problem(
-                key,
-                "",
-                f"is not given, but the warm-up rate of the {node} depends on it.",
-                f'Give it, as "{example}", or thermal.capacities.{node}.value.',
-            )
-            for node, (key, example) in _STATED_CAPACITIES.items()
-            if node in known and known[node] is None
-        ]
+        for node, (key, example) in _STATED_CAPACITIES.items():
+            if node in known and known[node] is None:
+                allowed = f"is not given, but the warm-up rate of the {node} depends on it."
+                remedy = f'Give it, as "{example}", or thermal.capacities.{node}.value.'
+                problems.append(Problem(key, "", allowed, remedy))
         raise_any(problems)
         return {node: value for node, value in known.items() if value is not None}
 
@@ -702,11 +687,9 @@ class NetworkModel:
             yield from (link for link in found if housing or link.cold != HOUSING)
 
     def _of_shafts(self) -> Iterator[Link]:
+        how = self.settings.shaft, "along the shaft", "given"
         for shaft, nodes in self.shafts.items():
-            for node in nodes:
-                yield Link(
-                    f"{node}-{shaft}", node, shaft, self.settings.shaft, "along the shaft", "given"
-                )
+            yield from (Link(f"{node}-{shaft}", node, shaft, *how) for node in nodes)
 
     def _of_oil(self, carried: float) -> Iterator[Link]:
         if carried:

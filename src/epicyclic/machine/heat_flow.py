@@ -163,20 +163,13 @@ class Course:
 class _PathMatrices(NamedTuple):
     """Where heat comes from and goes to, as matrices."""
 
-    into: FloatArray
-    """From sources to nodes."""
-    drives: FloatArray
-    """From temperatures of nodes to differences along links, ..."""
-    known: FloatArray
-    """... and the part of given temperatures. [K]"""
-    moves: FloatArray
-    """From flows to nodes."""
-    leaves: FloatArray
-    """From flows to all nodes of given temperature."""
-    taken: FloatArray
-    """From nodes by a cooler. [W]"""
-    inertia: FloatArray
-    """[J/K]"""
+    into: FloatArray  # From sources to nodes.
+    drives: FloatArray  # From temperatures of nodes to differences along links, ...
+    known: FloatArray  # ... and the part of given temperatures. [K]
+    moves: FloatArray  # From flows to nodes.
+    leaves: FloatArray  # From flows to all nodes of given temperature.
+    taken: FloatArray  # From nodes by a cooler. [W]
+    inertia: FloatArray  # [J/K]
 
 
 @dataclass(frozen=True)

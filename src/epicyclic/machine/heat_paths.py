@@ -10,6 +10,7 @@ from epicyclic.contact.temperatures import Solid
 from epicyclic.gears.gear import HOUSING, Gear
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.machine.convection import SPLASHED_WALL, Fluid, dipped_disc, disc_coefficient
+from epicyclic.machine.disc import Disc
 from epicyclic.machine.element import OIL, ElementResult, State, joined_key
 from epicyclic.machine.gear_set import GearSet, Planet
 from epicyclic.machine.heat_flow import Link
@@ -123,14 +124,17 @@ def _jet(node: str, wetting: Wetting) -> Iterator[Link]:
         yield Link(f"{node}-jet", node, INLET, share * wetting.jet, JET, ESTIMATE, OIL)
 
 
+def _discs(own: GearSet) -> list[Disc]:
+    return [disc for discs in own.discs.values() for disc in discs]
+
+
 def _ring_to_housing(own: GearSet, one: OneGear, wetting: Wetting) -> Iterator[Link]:
     """A ring gear that stands still is pressed into the housing."""
-    for discs in own.discs.values():
-        for disc in discs:
-            if disc.body == one.body:
-                area = 2 * math.pi * disc.turning.radius * disc.turning.width
-                key = f"{one.node}-housing"
-                yield Link(key, one.node, HOUSING, wetting.press_fit * area, SEAT, ESTIMATE)
+    for disc in _discs(own):
+        if disc.body == one.body:
+            area = 2 * math.pi * disc.turning.radius * disc.turning.width
+            key = f"{one.node}-housing"
+            yield Link(key, one.node, HOUSING, wetting.press_fit * area, SEAT, ESTIMATE)
 
 
 def _planet_to_carrier(
@@ -158,7 +162,7 @@ def carrier_node(own: GearSet) -> str:
 def _carrier_to_oil(own: GearSet, state: State, wetting: Wetting) -> Iterator[Link]:
     if not any(planet.bearing for planet in own.planets):
         return
-    known = [disc for discs in own.discs.values() for disc in discs if disc.where == "carrier"]
+    known = [disc for disc in _discs(own) if disc.where == "carrier"]
     radius = known[0].turning.radius if known else max(planet.pin_radius for planet in own.planets)
     speed = abs(state.speeds[own.carrier])
     node = carrier_node(own)
@@ -216,12 +220,11 @@ def gear_set_capacities(own: GearSet) -> dict[str, float]:
         if planet.bearing is not None:
             bearing = planet.bearing.bearing
             diameter = bearing.inner_diameter
-            rows = (
-                bearing.rows * bearing.roller_length
-                if isinstance(bearing, RollerBearing)
-                else bearing.length
-            )
-            length = rows + SEAT_LENGTH * diameter
+            length = SEAT_LENGTH * diameter
+            if isinstance(bearing, RollerBearing):
+                length += bearing.rows * bearing.roller_length
+            else:
+                length += bearing.length
             pin = _stored(STEEL, math.pi / 4 * diameter**2 * length)
             found[planet.nodes[1]] = own.count * pin
             found[carrier_node(own)] = _stored(STEEL, CARRIER_FILL * _carrier_volume(own))
@@ -241,17 +244,12 @@ def _stored(solid: Solid, volume: float) -> float:
 
 def _outside(own: GearSet, one: OneGear) -> float:
     """Radius of the outside of a ring gear, which its disc has. [m]"""
-    return max(
-        disc.turning.radius
-        for discs in own.discs.values()
-        for disc in discs
-        if disc.body == one.body
-    )
+    return max(disc.turning.radius for disc in _discs(own) if disc.body == one.body)
 
 
 def _carrier_volume(own: GearSet) -> float:
     """Volume of the disc of the carrier, or of one that reaches around the pins. [m^3]"""
-    discs = [disc for discs in own.discs.values() for disc in discs if disc.where == "carrier"]
+    discs = [disc for disc in _discs(own) if disc.where == "carrier"]
     if discs:
         return math.pi * discs[0].turning.radius ** 2 * discs[0].turning.width
     pins = [planet.bearing.bearing.inner_diameter for planet in own.planets if planet.bearing]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Any
@@ -161,9 +161,7 @@ def planet_shares(
             sun_mesh.gears.mesh.operating_pressure_angle,
             ring_mesh.gears.mesh.operating_pressure_angle,
         )
-        supports: dict[str, float] = (
-            {sharing.floating_member: sharing.support_stiffness} if floats else {}
-        )
+        supports = {sharing.floating_member: sharing.support_stiffness} if floats else {}
         forces = solve_branch_forces(force, branches, directions, supports)
     return tuple(float(share) for share in np.round(forces / forces.sum(), SHARE_DIGITS))
 
@@ -325,9 +323,7 @@ def tilt_planet(
     excess = _excess(contacts, bearing, centrifugal)
     reach = (bearing.diametral_clearance + bearing.crown_drop) / bearing.half_width + SMALL_TILT
     tilts = _tilt_by_newton(excess, reach)
-    if tilts is None:
-        tilts = _tilt_one_by_one(excess, reach)
-    tilt = tilts @ axes
+    tilt = (_tilt_one_by_one(excess, reach) if tilts is None else tilts) @ axes
     return _misaligned(contacts, tilt), _load_at(tilt, contacts, centrifugal)
 
 
@@ -515,10 +511,8 @@ class PlanetBearing:
         if isinstance(self.model, FittedRolling):
             title, source = self.model.title, self.model.source
             if self.palmgren_beyond:
-                return (
-                    f"{title}; outside their range {PALMGREN_METHOD}",
-                    f"{source}; {PALMGREN_SOURCE}",
-                )
+                title += f"; outside their range {PALMGREN_METHOD}"
+                source += f"; {PALMGREN_SOURCE}"
             return title, source
         if self.model == "mixed-ehl":
             return BEARING_METHOD, BEARING_SOURCE
@@ -701,8 +695,8 @@ def _limit_notes(
     force: float,
     speed: float,  # Not negative. [rad/s]
     watts: float,
-) -> tuple[Note, ...]:
-    notes, share = [], "0.01 C0" if known.type == "spherical" else "0.02 C"
+) -> Iterator[Note]:
+    share = "0.01 C0" if known.type == "spherical" else "0.02 C"
     least = minimum_load(known, 0.0, 0.0)
     if speed and force < least:
         text = (
@@ -710,7 +704,7 @@ def _limit_notes(
             f"{NEWTON.text(least, 3)}, {share} by its rollers (SKF, second hand). They may slip; "
             "the loss is that of the actual load without slip."
         )
-        notes.append(Note(text, watts))
+        yield Note(text, watts)
     if thermal_excess(known, speed) > 0:
         rating = thermal_speed_rating(known)
         text = (
@@ -718,12 +712,11 @@ def _limit_notes(
             f"speed of {RPM.text(rating, 2)}, an estimate after ISO 15312 by its rollers. Above it "
             "the bearing needs oil that cools it."
         )
-        notes.append(Note(text, watts))
+        yield Note(text, watts)
     limit = stated or limiting_speed(known)
     if speed > limit:
         told = limit_text(speed, limit, stated is not None)
-        notes.append(Note(f"{where}, against the carrier: {told}", watts))
-    return tuple(notes)
+        yield Note(f"{where}, against the carrier: {told}", watts)
 
 
 def _by_load(
@@ -894,39 +887,34 @@ def solve_pin(
         losses,
         {key: figures, f"{key}_film": film},
         journal_flags(where, found, speed),
-        _pin_notes(where, own, load, found, count * found.watts, speed),
+        tuple(_pin_notes(where, own, load, found, count * found.watts, speed)),
         found,
     )
 
 
 def _pin_notes(
     where: str, own: PlanetPin, load: PlanetLoad, found: JournalState, watts: float, speed: float
-) -> tuple[str, ...]:
+) -> Iterator[Note]:
     """Mixed friction, and what of the couple of helical meshes the film cannot hold."""
-    notes, rubbing = [], watts * found.contact_watts / found.watts if found.watts else 0.0
     if speed and found.contact_force > MIXED * load.force:
-        notes.append(
-            Note(
-                f"{where}: asperities carry {percent(found.contact_force / load.force, 0)} of the "
-                f"load, because the film of {MICROMETRE.text(found.film, 3)} is "
-                f"{format_number(found.film_ratio, 2)} times the roughness. Of "
-                f"{WATT.text(watts, 3)} of the pins {WATT.text(rubbing, 3)} are due to "
-                "boundary_friction, which is known within a factor of 2 at best.",
-                rubbing,
-            )
+        rubbing = watts * found.contact_watts / found.watts if found.watts else 0.0
+        text = (
+            f"{where}: asperities carry {percent(found.contact_force / load.force, 0)} of the "
+            f"load, because the film of {MICROMETRE.text(found.film, 3)} is "
+            f"{format_number(found.film_ratio, 2)} times the roughness. Of "
+            f"{WATT.text(watts, 3)} of the pins {WATT.text(rubbing, 3)} are due to "
+            "boundary_friction, which is known within a factor of 2 at best."
         )
+        yield Note(text, rubbing)
     if speed and found.moment_share < 1:
         held, moment = found.moment_share, math.hypot(load.moment_x, load.moment_y)
         force = 2 * (1 - held) * moment / own.bearing.length
         edges = watts / found.watts * own.bearing.rubbing(force, speed)
-        notes.append(
-            Note(
-                f"{where}: the film holds {percent(held, 0)} of the couple of "
-                f"{NEWTON_METRE.text(moment, 3)} that tilts the planet on its pin; then an edge "
-                f"of the bore is {MICROMETRE.text(found.film, 2)} from it. The rest counts as held "
-                "by the teeth, whose load moves along the face, which is not computed. Edges that "
-                f"held it would rub with {WATT.text(edges, 3)} more.",
-                edges,
-            )
+        text = (
+            f"{where}: the film holds {percent(held, 0)} of the couple of "
+            f"{NEWTON_METRE.text(moment, 3)} that tilts the planet on its pin; then an edge "
+            f"of the bore is {MICROMETRE.text(found.film, 2)} from it. The rest counts as held "
+            "by the teeth, whose load moves along the face, which is not computed. Edges that "
+            f"held it would rub with {WATT.text(edges, 3)} more."
         )
-    return tuple(notes)
+        yield Note(text, edges)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
 
@@ -48,6 +48,19 @@ from epicyclic.units import (
     percent,
 )
 
+
+class Unloaded:
+    """An element on which torques and forces do not matter."""
+
+    __slots__ = ()
+
+    several: ClassVar = False
+
+    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
+        """Nothing."""
+        return {}
+
+
 # A loss between two bodies that the user gives as a table: clutch, brake, pump or other drag.
 
 
@@ -60,10 +73,9 @@ class TableLossFigures(PartFigures):
 
 
 @dataclass(frozen=True, slots=True)
-class TableLoss:
+class TableLoss(Unloaded):
     """Drag between two bodies over their speed difference and the oil temperature."""
 
-    several: ClassVar = False
     key: str  # First part of the key of its loss.
     between: tuple[str, str]  # The two bodies, one of which may be `HOUSING`.
     table: LossTable  # Over speed and temperature.
@@ -71,26 +83,17 @@ class TableLoss:
     terms: ClassVar = ("drag",)
     figure_types: ClassVar = (("drag", TableLossFigures),)
 
-    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
-        """Nothing: torques and forces do not matter."""
-        return {}
-
     def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
         """Loss, figures and flags in a state."""
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
-        temperature = state.fluids.oil.temperature
-        watts = self.table.loss(speed=speed, temperature=temperature)
-        loss = Loss(
-            LOAD_INDEPENDENT, watts, "loss table", self.table.source, brakes=((*self.between, 1.0),)
-        )
-        figures = TableLossFigures(
-            speed=abs(speed), friction_torque=watts / abs(speed) if speed != 0 else math.nan
-        )
-        use = ModelUse("drag", "table", self.key)
+        at = {"speed": speed, "temperature": state.fluids.oil.temperature}
+        watts, source = self.table.loss(**at), self.table.source
+        brakes = ((*self.between, 1.0),)
+        torque = watts / abs(speed) if speed != 0 else math.nan
         return ElementResult(
-            losses={"drag": loss},
-            figures={"drag": figures},
-            flags=self.table.flags(use, speed=speed, temperature=temperature),
+            losses={"drag": Loss(LOAD_INDEPENDENT, watts, "loss table", source, brakes=brakes)},
+            figures={"drag": TableLossFigures(speed=abs(speed), friction_torque=torque)},
+            flags=self.table.flags(ModelUse("drag", "table", self.key), **at),
         )
 
 
@@ -98,18 +101,13 @@ class TableLoss:
 
 SealFormula = Literal["iso-14179-1-viton", "iso-14179-1-buna-n", "iso-14179-2", "linke"]
 
-SEAL_METHODS: Mapping[SealFormula, str] = {
-    "iso-14179-1-viton": "lip seal of Viton after ISO/TR 14179-1",
-    "iso-14179-1-buna-n": "lip seal of Buna N after ISO/TR 14179-1",
-    "iso-14179-2": "lip seal after ISO/TR 14179-2",
-    "linke": "lip seal after Linke",
+SEAL_METHODS: Mapping[SealFormula, tuple[str, str]] = {
+    "iso-14179-1-viton": ("lip seal of Viton after ISO/TR 14179-1", "ISO/TR 14179-1:2001"),
+    "iso-14179-1-buna-n": ("lip seal of Buna N after ISO/TR 14179-1", "ISO/TR 14179-1:2001"),
+    "iso-14179-2": ("lip seal after ISO/TR 14179-2", "ISO/TR 14179-2:2001"),
+    "linke": ("lip seal after Linke", "H. Linke, Stirnradverzahnung, second hand"),
 }
-SEAL_SOURCES: Mapping[SealFormula, str] = {
-    "iso-14179-1-viton": "ISO/TR 14179-1:2001",
-    "iso-14179-1-buna-n": "ISO/TR 14179-1:2001",
-    "iso-14179-2": "ISO/TR 14179-2:2001",
-    "linke": "H. Linke, Stirnradverzahnung, second hand",
-}
+"""What each formula is, and its source."""
 
 TORQUE_PER_DIAMETER: Mapping[str, float] = {"iso-14179-1-viton": 3.736, "iso-14179-1-buna-n": 2.429}
 """Friction torque over shaft diameter, ISO/TR 14179-1. [N]"""
@@ -216,10 +214,9 @@ class SealFigures(PartFigures):
 
 
 @dataclass(frozen=True, slots=True)
-class Seal:
+class Seal(Unloaded):
     """A radial lip seal between a shaft and the housing, or between two shafts."""
 
-    several: ClassVar = False
     key: str  # First part of the key of its loss.
     between: tuple[str, str]  # The shaft that runs under the lip, and the body that holds the seal.
     diameter: float  # Diameter of the shaft under the lip. [m]
@@ -229,10 +226,6 @@ class Seal:
     terms: ClassVar = ("friction",)
     figure_types: ClassVar = (("seal", SealFigures),)
 
-    def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
-        """Nothing: torques and forces do not matter."""
-        return {}
-
     def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
         """Loss, figures and flags in a state."""
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
@@ -240,13 +233,12 @@ class Seal:
         if isinstance(self.model, LossTable):
             watts = self.model.loss(speed=speed, temperature=temperature)
             method, source = "loss table", self.model.source
-            flags = self.model.flags(
-                ModelUse("seal", "table", self.key), speed=speed, temperature=temperature
-            )
+            use = ModelUse("seal", "table", self.key)
+            flags = self.model.flags(use, speed=speed, temperature=temperature)
         else:
             at = (self.diameter, speed, temperature, self.viscosity_40)
             watts = seal_loss(self.model, *at)
-            method, source = SEAL_METHODS[self.model], SEAL_SOURCES[self.model]
+            method, source = SEAL_METHODS[self.model]
             flags = seal_flags(self.model, self.key, *at)
         loss = Loss(LOAD_INDEPENDENT, watts, method, source, brakes=((*self.between, 1.0),))
         return ElementResult(
@@ -322,13 +314,8 @@ class ShaftBearing:
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
         oil = state.fluids.at(self.key)
         parts = self.model.parts(self.bearing, load, speed, oil)
-        least = minimum_load(
-            self.bearing,
-            speed,
-            oil.kinematic_viscosity,
-            self.minimum_load_factor,
-            self.reference_speed,
-        )
+        stated = self.minimum_load_factor, self.reference_speed
+        least = minimum_load(self.bearing, speed, oil.kinematic_viscosity, *stated)
         watts = sum(part.watts for part in parts)
         figures = ShaftBearingFigures(
             radial_force=load.radial,
@@ -353,15 +340,12 @@ class ShaftBearing:
             },
             figures={"bearing": figures},
             flags=self.model.flags(self.key, self.bearing, load, speed, oil),
-            notes=self._notes(load, least, speed, watts),
+            notes=tuple(self._notes(load, least, speed, watts)),
         )
 
-    def _notes(
-        self, load: BearingLoad, least: float, speed: float, watts: float
-    ) -> tuple[str, ...]:
+    def _notes(self, load: BearingLoad, least: float, speed: float, watts: float) -> Iterator[Note]:
         if speed == 0:
-            return ()
-        notes = []
+            return
         # what holds the rolling elements to the races [N]
         both = self.bearing.type in ("deep-groove", "tapered", "spherical")
         carried = math.hypot(load.radial, load.axial) if both else load.radial
@@ -371,7 +355,7 @@ class ShaftBearing:
                 f"of {format_number(least, 3)} N (SKF, second hand). The rolling elements may "
                 "slip; the loss is that of the actual load without slip."
             )
-            notes.append(Note(text, watts))
+            yield Note(text, watts)
         stated = self.reference_speed
         if abs(speed) > stated if stated else thermal_excess(self.bearing, abs(speed)) > 0:
             rating = stated or thermal_speed_rating(self.bearing)
@@ -382,17 +366,17 @@ class ShaftBearing:
                 "without cooling; give the reference_speed of the catalogue, and check the "
                 "limiting speed."
             )
-            notes.append(Note(text, watts))
+            yield Note(text, watts)
         limit = self.limiting_speed or limiting_speed(self.bearing)
         if abs(speed) > limit:
             told = limit_text(speed, limit, self.limiting_speed is not None)
-            notes.append(Note(f"{self.key}: {told}", watts))
+            yield Note(f"{self.key}: {told}", watts)
         if self.arrangement_assumed and load.axial > 0:
             text = (
                 f"{self.key}: the bearing arrangement is not given; X is assumed, as is usual for "
                 'gear shafts. Write arrangement = "X" or "O".'
             )
-            notes.append(Note(text, watts))
+            yield Note(text, watts)
         if self.bearing.estimated:
             own = self.bearing
             text = (
@@ -403,7 +387,7 @@ class ShaftBearing:
                 "with harris and skf-2018. Give those of the catalogue."
             )
             rated = self.model.name in ("harris", "skf-2018") and self.bearing.type != "tapered"
-            notes.append(Note(text, watts if rated else 0.0))
+            yield Note(text, watts if rated else 0.0)
         best, error = TAPERED_ERRORS["zhou-hoeprich"], TAPERED_ERRORS.get(self.model.name, 0.0)
         if self.bearing.type == "tapered" and error > best:
             text = (
@@ -411,12 +395,11 @@ class ShaftBearing:
                 f"a set of measured tapered bearings reaches {percent(error, 0)}; give the width "
                 f"of the bearing to use zhou-hoeprich, with at most {percent(best, 0)}."
             )
-            notes.append(Note(text, watts))
+            yield Note(text, watts)
         skf = getattr(self.model, "skf", self.model)
         if isinstance(skf, SkfModel) and skf.drag_is_estimated:
             text = (
                 f"{self.key}: the drag variable V_M is an estimate, because SKF's diagram was "
                 "not available; give drag_variable."
             )
-            notes.append(Note(text))
-        return tuple(notes)
+            yield Note(text)

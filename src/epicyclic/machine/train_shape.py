@@ -255,50 +255,45 @@ def motion_problems(train: Train, complete: bool) -> list[Problem]:
     return list(_ends_problems(train, complete)) or _freedom_problems(train, complete)
 
 
-def state_problems(key: str, state: Joined, shape: TrainShape) -> list[Problem]:
+def state_problems(key: str, state: Joined, shape: TrainShape) -> Iterator[Problem]:
     """Brakes and clutches on shafts that are not there, or on one shaft."""
-    problems = []
     for number, name in enumerate(state.fixed):
-        problems += _shaft_problems(f"{key}.fixed[{number}]", name, shape)
+        yield from _shaft_problems(f"{key}.fixed[{number}]", name, shape)
     for number, group in enumerate(state.joined):
         where, shown = f"{key}.joined[{number}]", written(list(group))
         found = [problem for name in group for problem in _shaft_problems(where, name, shape)]
-        problems += found
+        yield from found
+        shafts = [shape.shaft_of(name) for name in group]
         if len(group) < 2:
             allowed = "must name two or more shafts."
-            problems.append(Problem(where, shown, allowed, "Name the shafts that a clutch joins."))
-        elif not found:
-            shafts = [shape.shaft_of(name) for name in group]
-            if len(set(shafts)) < len(shafts):
-                twice = next(one for one in shafts if shafts.count(one) > 1)
-                allowed = f"joins the shaft {twice} to itself."
-                problems.append(Problem(where, shown, allowed, "Name two different shafts."))
-    return problems
+            yield Problem(where, shown, allowed, "Name the shafts that a clutch joins.")
+        elif not found and len(set(shafts)) < len(shafts):
+            twice = next(one for one in shafts if shafts.count(one) > 1)
+            allowed = f"joins the shaft {twice} to itself."
+            yield Problem(where, shown, allowed, "Name two different shafts.")
 
 
-def _shaft_problems(key: str, name: str, shape: TrainShape) -> list[Problem]:
-    if shape.shaft_of(name) is not None:
-        return []
-    known = [shaft for shaft in shape.shafts if shaft != HOUSING]
-    members = [member for names in shape.shafts.values() for member in names]
-    remedy = did_you_mean(name, dict.fromkeys([*known, *members]))
-    remedy = remedy or f"Choose one of {', '.join(known)}."
-    return [Problem(key, written(name), "is neither a shaft nor a member of a set.", remedy)]
+def _shaft_problems(key: str, name: str, shape: TrainShape) -> Iterator[Problem]:
+    if shape.shaft_of(name) is None:
+        known = [shaft for shaft in shape.shafts if shaft != HOUSING]
+        members = [member for names in shape.shafts.values() for member in names]
+        remedy = did_you_mean(name, dict.fromkeys([*known, *members]))
+        remedy = remedy or f"Choose one of {', '.join(known)}."
+        yield Problem(key, written(name), "is neither a shaft nor a member of a set.", remedy)
 
 
-def _state_choice(train: Train) -> list[Problem]:
+def _state_choice(train: Train) -> Iterator[Problem]:
     name, known = train.operation.state, list(train.states)
     key = "operation.state"
     if name is None and known:
         allowed = f"is missing; it must be one of {', '.join(known)}."
-        return [Problem(key, "", allowed, f'Write state = "{known[0]}".')]
-    if name is not None and name not in known:
-        if not known:
-            allowed = "is not a state: the train has no states."
-            return [Problem(key, written(name), allowed, "Leave it out, or add [states.NAME].")]
+        yield Problem(key, "", allowed, f'Write state = "{known[0]}".')
+    elif name is not None and not known:
+        allowed = "is not a state: the train has no states."
+        yield Problem(key, written(name), allowed, "Leave it out, or add [states.NAME].")
+    elif name is not None and name not in known:
         remedy = did_you_mean(name, known) or f"Choose one of {', '.join(known)}."
-        return [Problem(key, written(name), "is not a state of the train.", remedy)]
-    return []
+        yield Problem(key, written(name), "is not a state of the train.", remedy)
 
 
 def _ends_problems(train: Train, complete: bool) -> Iterator[Problem]:
@@ -373,34 +368,27 @@ def _freedom_problems(train: Train, complete: bool) -> list[Problem]:
         if driven not in machine.bodies:
             return []
     found = freedom(machine, driven, others)
-    if (found.blocked or found.loose) and (slow := _far_apart(train, machine, driven, others)):
+    if (found.blocked or found.loose) and (slow := _far_apart(machine, driven, others)):
         return slow
     key = "operation.state" if train.states else "shafts"
     shown = written(train.operation.state) if train.states else ""
     problems = []
     if found.blocked:
         means = _means(train.state, held, train.operation.speeds)
-        reason = f"blocks the train, so the input shaft {driven} cannot turn" + (
-            f" with {means}." if means else "."
-        )
-        remedy = "Release one of these." if means else ("Check the shafts.")
+        reason = f"blocks the train, so the input shaft {driven} cannot turn"
+        reason += f" with {means}." if means else "."
+        remedy = "Release one of these." if means else "Check the shafts."
         problems.append(Problem(key, shown, reason, remedy))
     if not complete:
         return problems
     if found.loose:
         names = ", ".join(body for body in found.loose if body in shape.shafts)
-        freedoms = found.freedoms
-        word = "one" if freedoms == 1 else str(freedoms)
-        problems.append(
-            Problem(
-                key,
-                shown,
-                f"leaves {word} degree{'s' if freedoms > 1 else ''} of freedom open: the speed of "
-                f"{names} is not determined.",
-                f"Hold or join {word} more of these shafts (fixed, joined), or give the speed "
-                f"of {word} of them in [operation.speeds].",
-            )
-        )
+        word, plural = ("one", "") if found.freedoms == 1 else (str(found.freedoms), "s")
+        allowed = f"leaves {word} degree{plural} of freedom open: the speed of {names} is not "
+        allowed += "determined."
+        remedy = f"Hold or join {word} more of these shafts (fixed, joined), or give the speed of "
+        remedy += f"{word} of them in [operation.speeds]."
+        problems.append(Problem(key, shown, allowed, remedy))
     further = {shape.shaft_of(name) or "": name for name in train.operation.speeds}
     if not found.loose:
         for shaft in implied(machine, [driven, *held], list(further)):
@@ -423,21 +411,20 @@ def _standing_output(
     speeds = speeds_of(machine, dict.fromkeys(others, 0.0) | {driven: 1.0})
     if speeds[shape.shaft_of(output) or ""] != 0:
         return []
-    if slow := _far_apart(train, machine, driven, others):
+    if slow := _far_apart(machine, driven, others):
         return slow
     allowed = f"stands still at any speed of the input shaft {driven} in {_state_words(train)}, so "
     allowed += "no power reaches it."
     turning = [shaft for shaft in shape.shafts if speeds[shaft] != 0 and shaft != driven]
     remedy = f"Name a shaft that turns with the input: {', '.join(turning)}."
-    if not turning:
-        remedy = "Join it to the input."
+    remedy = remedy if turning else "Join it to the input."
     return [Problem("operation.output", written(output), allowed, remedy)]
 
 
 FAR_APART = 1e8  # Ratio of two speeds from which singular values may be nothing but rounding. [1]
 
 
-def _far_apart(train: Train, machine: Machine, driven: str, others: Sequence[str]) -> list[Problem]:
+def _far_apart(machine: Machine, driven: str, others: Sequence[str]) -> list[Problem]:
     """Why shafts that turn look as if they stood still: the slowest is too slow beside others."""
     from epicyclic.machine.balance import exact_speeds
 
