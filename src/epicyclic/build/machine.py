@@ -80,17 +80,13 @@ def thermal_model(case: Case, sets: Mapping[str, SetCase], machine: Machine) -> 
     inlet = fluids_of(case).oil.temperature
     tables = {key: own.lubrication for key, own in sets.items()}
     if kind == "flank":
-        factors = {key: _lubrication_factor(case.thermal, table) for key, table in tables.items()}
+        wetted = {key: with_lubrication(case.thermal, own, None) for key, own in tables.items()}
+        factors = {key: LUBRICATION_FACTORS[own.lubrication] for key, own in wetted.items()}
         return FlankModel(machine, inlet, case.thermal.bulk, factors, fluids)
     flows = [table.oil_flow for table in tables.values() if table is not None and table.oil_flow]
     settings = _settings(case, machine, tables, sum(flows) if flows else None, inlet)
     pressure, share = case.surroundings.pressure, oil_share(case).share
     return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
-
-
-def _lubrication_factor(thermal: ThermalTable, table: LubricationTable | None) -> float:
-    """X_S of a set. [1]"""
-    return LUBRICATION_FACTORS[with_lubrication(thermal, table, None).lubrication]
 
 
 def contact_nodes(machine: Machine) -> dict[str, tuple[str, ...]]:
@@ -208,6 +204,9 @@ def _settings(
     inlet: float,
 ) -> HeatSettings:
     table = with_lubrication(case.thermal, case.lubrication, to_gears)
+    housing, steel = table.housing, None
+    if housing is not None and housing.mass is not None:
+        steel = housing.mass * housing.heat_capacity_ratio  # that stores as much heat
     gear_sets = [own for own in machine.elements if isinstance(own, GearSet)]
     return HeatSettings(
         inlet=inlet,
@@ -227,14 +226,12 @@ def _settings(
         coolant=table.coolant_temperature,
         cooler_power=table.cooler_power,
         cooler=table.cooler_conductance,
-        housing=None if table.housing is None else _housing(table.housing),
-        changes={
-            name: Change(change.value, change.scale) for name, change in table.conductances.items()
-        },
+        housing=None if housing is None else _housing(housing),
+        changes={name: Change(it.value, it.scale) for name, it in table.conductances.items()},
         oil_volume=table.oil_volume,
-        housing_mass=None if table.housing is None else _steel_mass(table.housing),
+        housing_mass=steel,
         capacity_changes={
-            name: Change(change.value, change.scale) for name, change in table.capacities.items()
+            name: Change(it.value, it.scale) for name, it in table.capacities.items()
         },
     )
 
@@ -270,11 +267,6 @@ def _effectiveness(table: ThermalTable, to_gears: float | None) -> float:
     if to_gears is None or not table.oil_flow or table.jet_shares:
         return table.jet_effectiveness
     return table.jet_effectiveness * min(1.0, to_gears / table.oil_flow)
-
-
-def _steel_mass(table: HousingTable) -> float | None:
-    """Steel that stores as much heat as the housing. [kg]"""
-    return None if table.mass is None else table.mass * table.heat_capacity_ratio
 
 
 def _housing(table: HousingTable) -> Housing:
@@ -388,13 +380,6 @@ def solve_all(points: Sequence[Built]) -> list[Settled | Exception]:
 # Gears and bearings along the shafts of a train, for the forces on its bearings.
 
 
-def shaft_layouts(case: TrainCase, sets: Mapping[str, GearSet]) -> Iterator[ShaftLayout]:
-    """What stands along each shaft with a bearing whose force is computed."""
-    for shaft, tables in _borne(case).items():
-        own = {name: _support(tables, name) for name in tables}
-        yield ShaftLayout(own, tuple(_seats(case, shaft, sets)))
-
-
 Tables = Mapping[str, ShaftBearingTable]
 
 
@@ -445,20 +430,14 @@ def _seats(case: TrainCase, shaft: str, sets: Mapping[str, GearSet]) -> Iterator
         shape = case.shape.sets[name]
         bodies, directions, hands = case.shape.bodies_of(name), shape.directions, shape.hands
         for drawn, mesh in zip(shape.meshes, own.meshes, strict=True):
-            internal = mesh.mesh.internal
+            internal, side = mesh.mesh.internal, mesh.mesh.side
             toward = directions[drawn.key]
             hand = hands[drawn.first]
             radii = (mesh.mesh.operating_radius1, mesh.mesh.operating_radius2)
-            ratio = drawn.teeth[1] / drawn.teeth[0]
+            lever = -side * drawn.teeth[1] / drawn.teeth[0]
             ends = (
                 (drawn.first, -1.0, toward + math.pi if internal else toward, hand, False),
-                (
-                    drawn.second,
-                    ratio if internal else -ratio,
-                    toward + math.pi,
-                    hand if internal else -hand,
-                    internal,
-                ),
+                (drawn.second, lever, toward + math.pi, -side * hand, internal),
             )
             for (gear, lever, direction, own_hand, ring), radius in zip(ends, radii, strict=True):
                 body = shape.bodies[gear]
@@ -502,14 +481,12 @@ def _train_parts(design: _Design) -> _Consists:
     cases = set_cases(case)
     elements = [*_sets(case, cases, flow_tables), *_parts(case, case.shape.names)]
     sets = {element.key: element for element in elements if isinstance(element, GearSet)}
-    layouts = tuple(shaft_layouts(case, sets))
+    layouts = tuple(
+        ShaftLayout({name: _support(own, name) for name in own}, tuple(_seats(case, shaft, sets)))
+        for shaft, own in _borne(case).items()
+    )
     machine = replace(case.shape.machine(case.state), elements=tuple(elements), layouts=layouts)
     return machine, cases, _layout(case, elements)
-
-
-def train_layout(case: TrainCase) -> Layout:
-    """What the result of a train consists of."""
-    return _layout(case, [*_sets(case, set_cases(case), {}), *_parts(case, case.shape.names)])
 
 
 def _train_operation(case: TrainCase) -> Operation:
@@ -630,9 +607,7 @@ def build(
     )
 
 
-@lru_cache(maxsize=MOST_DESIGNS)
-def _fluids(design: _Design) -> Fluids:
-    return fluids_of(design.case)
+_fluids = lru_cache(maxsize=MOST_DESIGNS)(lambda design: fluids_of(design.case))
 
 
 @lru_cache(maxsize=MOST_DESIGNS)
@@ -686,5 +661,6 @@ def operation_of(case: Case) -> Operation:
 def layout_of(case: Case) -> Layout:
     """What the result of a case consists of."""
     if isinstance(case, TrainCase) and case.models.temperatures == "inlet":
-        return train_layout(case)
+        elements = [*_sets(case, set_cases(case), {}), *_parts(case, case.shape.names)]
+        return _layout(case, elements)
     return build(case).layout

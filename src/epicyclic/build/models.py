@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Protocol, cast
+from typing import cast
 
 from epicyclic import library
 from epicyclic.case.case import Case, GearPairCase, PlanetaryCase, TrainCase
+from epicyclic.case.rules import oil_model_of
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, PlanetPin, ThrustBearing
 from epicyclic.case.tables.models import (
     ContactSolver,
@@ -29,7 +30,7 @@ from epicyclic.case.tables.operation import (
     ThermalTable,
 )
 from epicyclic.case.train_tables import ComputedSet, ListedSet
-from epicyclic.contact.fitted_models import OilModel, builtin_model, read_oil_model
+from epicyclic.contact.fitted_models import OilModel
 from epicyclic.contact.temperatures import Solid
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.gearing import Gearing
@@ -104,9 +105,7 @@ class SetCase:
     @cached_property
     def oil_model(self) -> OilModel | None:
         """The fitted models that it names, or those built in for its oil; None without either."""
-        if self.models.oil_model is not None:
-            return read_oil_model(self.folder / self.models.oil_model)
-        return builtin_model(self.lubricant.oil)
+        return oil_model_of(self.models, self.folder, self.lubricant.oil)
 
     @cached_property
     def chosen(self) -> dict[str, str]:
@@ -260,18 +259,6 @@ _BAND = 1.96
 """Half the width of a band of 95 %, in standard deviations of a normal distribution. [1]"""
 
 
-class Lubricated(Protocol):
-    """A case, or a set of a train."""
-
-    @property
-    def lubrication(self) -> LubricationTable | None:
-        """How oil gets to its gears, if it says so."""
-
-    @property
-    def surroundings(self) -> Surroundings:
-        """What surrounds them."""
-
-
 @dataclass(frozen=True, slots=True)
 class OilShare:
     """The share of oil by volume around gears."""
@@ -289,7 +276,7 @@ class OilShare:
         return self.share / width, min(1.0, self.share * width)
 
 
-def oil_share(case: Lubricated) -> OilShare:
+def oil_share(case: Case | SetCase) -> OilShare:
     """The share of oil around the gears of a case. Theory (N1)."""
     table = case.lubrication
     if table is None:

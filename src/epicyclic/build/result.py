@@ -88,36 +88,29 @@ def case_notes(
     case: SetCase,
     found: GearSetResult,
     turning: Collection[str],  # Central gears that turn.
-) -> tuple[str, ...]:
+) -> Iterator[str]:
     """What a user must know about a set: its oil, its load, its flows, its planets."""
     before, behind = _notes_of_tables(case)
-    notes = (
-        *before,
-        *(
-            f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
-            f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed the "
-            "deflection of the teeth. Contact that begins or ends beyond the path of contact is "
-            "not modelled."
-            for name, mesh in found.figures.items()
-            if isinstance(mesh, MeshFigures) and mesh.contact_share < LEAST_CONTACT
-        ),
-        *pressure_notes(found.figures),
-        *found.notes,
-    )
-    sharing = case.sharing if found.shares else None
-    return (
-        *notes,
-        *behind,
-        *(() if sharing is None else _share_notes(sharing, found.shares)),
-        *(
-            Note(
+    yield from before
+    for name, mesh in found.figures.items():
+        if isinstance(mesh, MeshFigures) and mesh.contact_share < LEAST_CONTACT:
+            yield (
+                f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
+                f"{name.replace('_', ' ')} carry load: the deviations of the flanks exceed the "
+                "deflection of the teeth. Contact that begins or ends beyond the path of contact "
+                "is not modelled."
+            )
+    yield from pressure_notes(found.figures)
+    yield from found.notes
+    yield from behind
+    if case.sharing is not None and found.shares:
+        yield from _share_notes(case.sharing, found.shares)
+    for name, table, _ in case.gearing.rings():
+        if name in turning and rim_thickness(table) is None:
+            yield Note(
                 f"{case.gearing.key(name)}.rim_thickness is not given, so the drag of the turning "
                 f"ring is computed for a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
             )
-            for name, table, _ in case.gearing.rings()
-            if name in turning and rim_thickness(table) is None
-        ),
-    )
 
 
 @lru_cache(maxsize=16)
@@ -128,7 +121,7 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(before), (*map(Note, case.found), *map(Note, _arrangement_notes(case)))
 
 
-def fluid_notes(case: SetCase) -> tuple[str, ...]:
+def fluid_notes(case: SetCase) -> Iterator[str]:
     """What was made for another oil than that of the case, and what the case changes in it."""
     oil, models = case.lubricant.oil, case.chosen
     bearing = any(name in models.get("bearing", "") for name in ("mixed-ehl", "full-complement"))
@@ -137,24 +130,23 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
         "rolling": (models["rolling"], case.rolling.made_for),
         "bearing": ("mixed-ehl", TALBOT_FLUID if bearing else None),
     }
-    notes = [
-        f"models.{key}: the regression {name} was made for {fluid.title}, not for {oil.name}."
-        for key, (name, fluid) in fluids.items()
-        if fluid is not None and fluid.key != oil.friction_regression
-    ]
+    for key, (name, fluid) in fluids.items():
+        if fluid is not None and fluid.key != oil.friction_regression:
+            made = f"the regression {name} was made for {fluid.title}"
+            yield f"models.{key}: {made}, not for {oil.name}."
     given = case.models.oil_model is not None
     if given and any("fitted" in name for name in models.values()):
         model = case.oil_model
         if model is not None and model.oil != oil:
-            notes.append(f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}.")
+            yield f"models.oil_model was fitted for {model.oil.name}, not for {oil.name}."
     changed = changed_properties(oil)
     if not given and changed and "auto" in (getattr(case.models, key, "") for key in RELIABILITY):
-        notes.append(
+        yield (
             f"The models built in for {oil.name} are not used, because this oil differs from it in "
             f"{', '.join(changed)}; 'epicyclic oil characterise' fits models for it."
         )
     if case.models.temperatures != "inlet" and case.friction.takes_oil_temperature:
-        notes.append(
+        yield (
             f"models.friction: {models['friction']} was fitted to tests by their oil "
             "temperature, so it uses the temperature of the oil around the gears and not of "
             "the flanks."
@@ -164,11 +156,10 @@ def fluid_notes(case: SetCase) -> tuple[str, ...]:
     ):
         found = oil.lubricant_factor
         source = f" ({found.source})" if found.source else ""
-        notes.append(f"models.friction: the oil has X_L = {found.value:g}{source}.")
+        yield f"models.friction: the oil has X_L = {found.value:g}{source}."
     factor = case.lubricant.pressure_viscosity_factor
     if factor != 1:
-        notes.append(f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}.")
-    return tuple(notes)
+        yield f"The pressure-viscosity coefficient of the oil is multiplied by {factor:g}."
 
 
 def lubrication_notes(case: SetCase) -> Iterator[str]:
@@ -273,39 +264,33 @@ def load_notes(case: SetCase) -> Iterator[str]:
 
 def general_notes(
     terms: Iterable[LossTerm], input_power: float, efficiency: float | None
-) -> tuple[str, ...]:
+) -> Iterator[str]:
     """Notes on what is missing, what is scaled, and on efficiency near zero load."""
-    notes: list[str] = []
     missing: dict[str, list[str]] = {}
     for term in terms:
         if term.left_out:
             missing.setdefault(term.left_out, []).append(term.name)
         elif term.factor != 1.0:
-            notes.append(Note(f"{term.name} is multiplied by {term.factor:g}."))
-    notes += [
-        f"{NOT_INCLUDED}: {', '.join(names)} ({reason})." for reason, names in missing.items()
-    ]
+            yield Note(f"{term.name} is multiplied by {term.factor:g}.")
+    for reason, names in missing.items():
+        yield f"{NOT_INCLUDED}: {', '.join(names)} ({reason})."
     if efficiency == 0.0 and input_power > 0:
-        notes.append(
+        yield (
             "No power reaches the output: the losses consume all input power, so the output "
             "must be driven."
         )
-    return tuple(notes)
 
 
-def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, ...]:
-    notes: list[str] = []
+def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> Iterator[str]:
     if len(set(shares)) > 1:
         most = shares.index(max(shares)) + 1
-        notes.append(Note(f"Meshes and bearing are those of planet {most}, the most loaded one."))
+        yield Note(f"Meshes and bearing are those of planet {most}, the most loaded one.")
     idle = [str(number) for number, share in enumerate(shares, 1) if share == 0]
     if idle and sharing.method in ("closed-form", "direct"):
-        beyond = (
-            ", and load_sharing.method = closed-form is replaced by direct"
-            if sharing.method == "closed-form"
-            else ""
-        )
-        notes.append(
+        beyond = ""
+        if sharing.method == "closed-form":
+            beyond = ", and load_sharing.method = closed-form is replaced by direct"
+        yield (
             f"No load reaches {'planet' if len(idle) == 1 else 'planets'} {', '.join(idle)} of "
             f"{len(shares)}: the position errors exceed the deflection of the others{beyond}."
         )
@@ -315,12 +300,10 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> tuple[str, 
         idle_keys |= {"position_errors", "floating_member", "support_stiffness", "pin_stiffness"}
     elif sharing.floating_member == "none":
         idle_keys.add("support_stiffness")
-    notes += [
-        Note(f"load_sharing.{key} has no effect with load_sharing.method = {sharing.method}.")
-        for key in LoadSharing.model_fields
-        if key in idle_keys and getattr(sharing, key) != getattr(usual, key)
-    ]
-    return tuple(notes)
+    for key in LoadSharing.model_fields:
+        if key in idle_keys and getattr(sharing, key) != getattr(usual, key):
+            idle_key = f"load_sharing.{key}"
+            yield Note(f"{idle_key} has no effect with load_sharing.method = {sharing.method}.")
 
 
 def _arrangement_notes(case: SetCase) -> Iterator[str]:
@@ -391,6 +374,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
     fluids = None if built.known_fluids is None else solution.state.fluids
     flags: SomeFlags = () if fluids is None else fluids.flags
     sharing = built.sets[""].sharing if "" in built.sets else None
+    alone = solution.results.get("")  # of a set by itself
     return Result(
         title=case.title,
         kind=case.kind,
@@ -422,14 +406,7 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         sources=tuple(dict.fromkeys(filter(None, sources))),
         case=case,
         planet_angles=() if sharing is None else sharing.angles,
-        planet_shares=next(
-            (
-                item.shares
-                for key, item in solution.results.items()
-                if isinstance(item, GearSetResult) and not key
-            ),
-            (),
-        ),
+        planet_shares=alone.shares if isinstance(alone, GearSetResult) else (),
         train=_train(case, built, solution),
         heat=_heat(case, built, settled),
         lubrication=supplies,
@@ -603,9 +580,8 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
 def _train(case: Case, built: Built, solution: Solution) -> Train | None:
     if not isinstance(case, TrainCase):
         return None
-    ends = [
-        case.shape.shaft_of(name) or "" for name in (case.operation.input, case.operation.output)
-    ]
+    ends = case.operation.input, case.operation.output
+    driven, output = (case.shape.shaft_of(name) or "" for name in ends)
     shafts = {*built.layout.members, HOUSING}
     return Train(
         state=case.operation.state or "",
@@ -619,6 +595,6 @@ def _train(case: Case, built: Built, solution: Solution) -> Train | None:
         },
         self_locking=solution.self_locking,
         jammed=solution.jammed,
-        input=ends[0],
-        output=ends[1],
+        input=driven,
+        output=output,
     )

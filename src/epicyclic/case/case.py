@@ -35,6 +35,7 @@ from epicyclic.case.tables.elements import (
     ElementTables,
     PlanetBearing,
     PlanetPin,
+    Position,
     SealTable,
     ThrustBearing,
     between,
@@ -69,7 +70,6 @@ from epicyclic.case.train_tables import (
     ListedMesh,
     ListedSet,
     PairSet,
-    Position,
     SetTable,
     StateTable,
     TrainOperation,
@@ -98,10 +98,6 @@ from epicyclic.schema.read import flattened, plain, read_file, split_key
 from epicyclic.schema.table import Table
 from epicyclic.schema.validation import AnyCase, Validation, tables_of, validate
 from epicyclic.units import unit_text
-
-if TYPE_CHECKING:
-    from epicyclic.case.tables.operation import LubricationTable, Surroundings
-
 
 # What all kinds of cases share: how they are made from tables, changed and compared.
 
@@ -243,16 +239,12 @@ class CaseTable(Table):
             kept = before._gearings[""], before._found
         validation, told, gearing = with_sizes(valid, tables, kept)
         folder = Path(source).parent
-        known = {problem.key for problem in problems}
+        known, checked = {problem.key for problem in problems}, kept is not None
+        crossed = cross_check(validation.sections, tables, folder, gearing, checked=checked)
         found = [
             *problems,
             *(problem for problem in validation.problems if problem.key not in known),
-            *(
-                as_given(problem, tables)
-                for problem in cross_check(
-                    validation.sections, tables, folder, gearing, checked=kept is not None
-                )
-            ),
+            *(as_given(problem, tables) for problem in crossed),
         ]
         if validation.case is not None and getattr(validation.case, "seals", None):
             validation.case._source = source
@@ -607,16 +599,14 @@ class TrainCase(_TrainHead):
             train._found, train._sound, train._shape = before._found, whole.sections, before._shape
             wrong = [*operation_problems(train, True), *bearing_force_problems(train, True)]
             return cls._made(cast(Self, train), tables, source, wrong, before._design)
-        found = [*problems]
         known = {problem.key for problem in problems}
-        found += [problem for problem in whole.problems if problem.key not in known]
-        found += [
-            as_given(problem, tables)
-            for problem in cross_check(
-                {k: v for k, v in whole.sections.items() if k != "operation"},
-                {*tables, "planet_bearing"},  # whether the sets have one is checked with them
-                folder,
-            )
+        own_tables = {k: v for k, v in whole.sections.items() if k != "operation"}
+        # whether the sets have a bearing is checked with them
+        crossed = cross_check(own_tables, {*tables, "planet_bearing"}, folder)
+        found = [
+            *problems,
+            *(problem for problem in whole.problems if problem.key not in known),
+            *(as_given(problem, tables) for problem in crossed),
         ]
         if not named:
             shown, allowed = "" if given is None else written(given), "must hold at least one set."
@@ -819,20 +809,19 @@ _SHAFTS = ("sun", "ring", "carrier")
 
 def _part_problems(
     case: CaseTable, shafts: Mapping[str, str] | None, taken: Mapping[str, str]
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """What is wrong with the names and tables of parts; `taken` has names and their tables.
 
     Without shafts only what needs none of them.
     """
-    problems = []
     for kind, name, table in case.elements:
         key = f"{kind}.{name}"
         if not PART_NAME.fullmatch(name):
             allowed = f"is not a valid name for a part: {PART_NAME_RULE}."
-            problems.append(Problem(key, "", allowed, "Choose another name."))
+            yield Problem(key, "", allowed, "Choose another name.")
         if name in taken:
             allowed = f"has the same name as another part, {taken[name]}.{name}."
-            problems.append(Problem(key, "", allowed, "Choose another name."))
+            yield Problem(key, "", allowed, "Choose another name.")
         taken = {**taken, name: kind}
         found = list(table.problems())
         if not found and shafts is not None and getattr(case, "lubricant", None) is not None:
@@ -841,27 +830,25 @@ def _part_problems(
                 table.points(case.folder)
             except InputError as error:
                 found = list(error.problems)
-        problems += [_below(key, problem) for problem in found]
-    return problems
+        yield from (_below(key, problem) for problem in found)
 
 
 def _element_problems(
     head: _TrainHead, sets: Sequence[str], train: TrainCase | None
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Problems of bearings, seals and drags; without a train only what needs no shafts."""
     shafts = None if train is None else train.shape.names
-    problems = _part_problems(head if train is None else train, shafts, dict.fromkeys(sets, "sets"))
+    yield from _part_problems(train or head, shafts, dict.fromkeys(sets, "sets"))
     if train is None or not train.computed:
-        return problems
+        return
     if train.lubricant is None:
         remedy = "Add it; 'epicyclic oils' lists the built-in ones."
         allowed = "the table [lubricant] is missing, which computed losses need."
-        problems.append(Problem("lubricant", "", allowed, remedy))
+        yield Problem("lubricant", "", allowed, remedy)
     if train.operation.oil_inlet_temperature is None:
         reason = "is missing, and computed losses need it."
         advice = 'Add oil_inlet_temperature = "... degC" to [operation].'
-        problems.append(Problem("operation.oil_inlet_temperature", "", reason, advice))
-    return problems
+        yield Problem("operation.oil_inlet_temperature", "", reason, advice)
 
 
 class _SetTables(CaseTable):

@@ -127,22 +127,20 @@ def _given_planetary_problems(parts: Parts) -> Iterator[Problem]:
     if ring <= sun:
         allowed = f"must exceed the {sun} teeth of the sun, which it surrounds."
         yield Problem("ring.teeth", str(ring), allowed, "Check both tooth numbers.")
-        return
-    if planet is not None and planet >= ring:
+    elif planet is not None and planet >= ring:
         allowed = f"must be less than the {ring} teeth of the ring, in which the planet turns."
         yield Problem("planet.teeth", str(planet), allowed, "Check it, or leave it out.")
-        return
-    if planet is not None and abs(ring - sun - 2 * planet) > MOST_SHIFTED:
+    elif planet is not None and abs(ring - sun - 2 * planet) > MOST_SHIFTED:
         allowed = f"does not fit between a sun of {sun} and a ring of {ring} teeth, which leave "
         allowed += f"room for {(ring - sun) / 2:g}."
         yield Problem("planet.teeth", str(planet), allowed, "Correct it, or leave it out.")
-        return
-    teeth, count = planet or (ring - sun) / 2, parts["planet"].count
-    most = math.floor(math.pi / math.asin((teeth + 2) / (sun + teeth))) if sun > 2 else 1
-    if "count" in parts["planet"].model_fields_set and count > most:
+    elif "count" in parts["planet"].model_fields_set:
+        teeth, count = planet or (ring - sun) / 2, parts["planet"].count
+        most = math.floor(math.pi / math.asin((teeth + 2) / (sun + teeth))) if sun > 2 else 1
         allowed = f"is too many: planets of {teeth:g} teeth and standard addendum touch each other."
         remedy = f"Use at most {most}, or leave it out: it does not change the losses."
-        yield Problem("planet.count", str(count), allowed, remedy)
+        if count > most:
+            yield Problem("planet.count", str(count), allowed, remedy)
 
 
 def _given_pair_problems(parts: Parts) -> Iterator[Problem]:
@@ -155,7 +153,7 @@ def _given_pair_problems(parts: Parts) -> Iterator[Problem]:
 def _listed(parts: Parts, joined: set[str]) -> tuple[Gearing, list[Problem]]:
     gears, listed = parts["members"], parts["meshes"]
     bodies = {name: gear.body or name for name, gear in gears.items()}
-    problems = _name_problems(parts, bodies)
+    problems = list(_name_problems(parts, bodies))
     pairs = [
         pair
         for pair in listed
@@ -204,9 +202,8 @@ def _listed_pairing(parts: Parts, one: str, two: str) -> GearPairing:
     )
 
 
-def _name_problems(parts: Parts, bodies: Mapping[str, str]) -> list[Problem]:
+def _name_problems(parts: Parts, bodies: Mapping[str, str]) -> Iterator[Problem]:
     """Meshes between gears that are not there, twice, or on one body; gears without a mesh."""
-    problems = []
     listed = parts["meshes"]
     seen: set[frozenset[str]] = set()
     for number, (one, two) in enumerate(listed):
@@ -214,33 +211,29 @@ def _name_problems(parts: Parts, bodies: Mapping[str, str]) -> list[Problem]:
         for gear in dict.fromkeys((one, two)):
             if gear not in bodies:
                 remedy = did_you_mean(gear, bodies) or f"The gears are {', '.join(bodies)}."
-                problems.append(Problem(key, written(gear), "is not a gear of this set.", remedy))
+                yield Problem(key, written(gear), "is not a gear of this set.", remedy)
         if one == two:
-            problems.append(
-                Problem(key, shown, "is a gear in mesh with itself.", "Name two gears.")
-            )
+            yield Problem(key, shown, "is a gear in mesh with itself.", "Name two gears.")
         elif bodies.get(one, one) == bodies.get(two, two):
             allowed = f"cannot mesh: both gears turn with the body {bodies.get(one, one)}."
-            problems.append(Problem(key, shown, allowed, "Give one of them another body."))
+            yield Problem(key, shown, allowed, "Give one of them another body.")
         if frozenset((one, two)) in seen:
-            problems.append(Problem(key, shown, "is listed already.", "List each mesh once."))
+            yield Problem(key, shown, "is listed already.", "List each mesh once.")
         seen.add(frozenset((one, two)))
     used = {gear for pair in listed for gear in pair}
-    problems += [
-        Problem(f"gears.{gear}", "", "has no mesh.", "Add its mesh to meshes, or remove it.")
-        for gear in bodies
-        if gear not in used
-    ]
+    for gear in bodies:
+        if gear not in used:
+            remedy = "Add its mesh to meshes, or remove it."
+            yield Problem(f"gears.{gear}", "", "has no mesh.", remedy)
     known = {f"{one}-{two}" for pair in listed for one, two in (pair, pair[::-1])}
     for one, two in listed:
         if {f"{one}-{two}", f"{two}-{one}"} <= {*parts["mesh"]}:
             allowed = f"repeats the mesh {one}-{two}."
-            problems.append(Problem(f"mesh.{two}-{one}", "", allowed, "Keep one of the two."))
+            yield Problem(f"mesh.{two}-{one}", "", allowed, "Keep one of the two.")
     for name in parts["mesh"]:
         if name not in known:
             remedy = f"The meshes are {', '.join('-'.join(pair) for pair in listed)}."
-            problems.append(Problem(f"mesh.{name}", "", "is not a mesh of this set.", remedy))
-    return problems
+            yield Problem(f"mesh.{name}", "", "is not a mesh of this set.", remedy)
 
 
 def _mesh_problem(

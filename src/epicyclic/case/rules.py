@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,7 +20,6 @@ from epicyclic.case.tables.models import (
     law_problems,
 )
 from epicyclic.case.tables.operation import (
-    LEVEL_REMEDY,
     Lubricant,
     LubricationTable,
     PlanetaryOperation,
@@ -46,6 +45,7 @@ from epicyclic.gears.rules import gears_by_name
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.machine.train_shape import motion_problems, named_problems
 from epicyclic.messages import PART_NAME, PART_NAME_RULE, did_you_mean, millimetres, written
+from epicyclic.oil.oil import Oil
 from epicyclic.schema.table import Table
 from epicyclic.units import BAR
 
@@ -71,42 +71,40 @@ def cross_check(
     gearing: Gearing | None = None,  # Of a planetary set or a pair whose gears are sound.
     *,
     checked: bool = False,  # It was checked before, with bearings and load sharing.
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """Problems between keys and tables of a case."""
-    problems: list[Problem] = []
     models = sections.get("models")
     if isinstance(models, GearPairModels):
-        problems += _check_models(models, sections, {*given, *sections}, folder)
+        yield from _check_models(models, sections, {*given, *sections}, folder)
     operation = sections.get("operation")
     if isinstance(operation, PlanetaryOperation):
         allowed = f'must be a different member from operation.input, "{operation.input}".'
         for key in ("fixed", "second_input"):
             if getattr(operation, key) == operation.input:
                 remedy = "Name one of the other two."
-                problems.append(Problem(f"operation.{key}", "", allowed, remedy))
+                yield Problem(f"operation.{key}", "", allowed, remedy)
     solver = sections.get("contact_solver")
     if isinstance(solver, ContactSolver):
-        problems += law_problems("contact_solver", solver)
+        yield from law_problems("contact_solver", solver)
     thermal, oil = sections.get("thermal"), sections.get("lubrication")
     if isinstance(models, GearPairModels) and isinstance(thermal, ThermalTable):
         own = oil if isinstance(oil, LubricationTable) else None
-        problems += check_ways_out(thermal, models.temperatures, own)
+        yield from check_ways_out(thermal, models.temperatures, own)
     if gearing is not None and not checked:
-        problems += set_problems(gearing)
+        yield from set_problems(gearing)
         for key in ("planet_bearing", "planet_pin"):
             bearing = sections.get(key)
             if isinstance(bearing, PlanetBearing | PlanetPin) and gearing.planets:
-                problems += check_bores(gearing, {key: (bearing, gearing.planets)})
+                yield from check_bores(gearing, key, bearing, gearing.planets)
     sharing = sections.get("load_sharing")
     toothed = {"sun", "planet", "ring"} <= sections.keys()
     if isinstance(sharing, LoadSharing) and toothed and not checked:
         # tooth numbers are enough, whether the gears fit or not
         whole = gearing or expand({"gears": None, **sections})[0]
-        problems += _check_load_sharing(sharing, whole)
+        yield from _check_load_sharing(sharing, whole)
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
-            problems += check(*(sections[name] for name in needed))
-    return problems
+            yield from check(*(sections[name] for name in needed))
 
 
 def check_rollers(bearing: PlanetBearing, key: str = "planet_bearing") -> Iterator[Problem]:
@@ -127,22 +125,22 @@ def _too_open(carrier: Carrier) -> list[Problem]:
 
 def check_bores(
     gearing: Gearing,
-    # By the key of a bearing: its table, and the planets that it carries.
-    bearings: Mapping[str, tuple[PlanetBearing | PlanetPin, Sequence[str]]],
+    key: str,
+    bearing: PlanetBearing | PlanetPin,  # The table at this key.
+    planets: Iterable[str],  # That it carries.
 ) -> Iterator[Problem]:
-    """Bearings must fit into the root circles of their planets."""
+    """A bearing must fit into the root circles of its planets."""
     sound, _ = gears_by_name(gearing)  # others are reported with the gears
-    for key, (bearing, planets) in bearings.items():
-        bore = bearing.pin_diameter + bearing.diametral_clearance
-        if isinstance(bearing, PlanetBearing):
-            bore += 2 * bearing.roller_diameter
-        for body in planets:
-            roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
-            if roots and bore >= 2 * min(roots):
-                allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
-                allowed += f"{millimetres(2 * min(roots))}."
-                remedy = "Use a thinner pin or thinner rollers."
-                yield Problem(f"{key}.pin_diameter", "", allowed, remedy)
+    bore = bearing.pin_diameter + bearing.diametral_clearance
+    if isinstance(bearing, PlanetBearing):
+        bore += 2 * bearing.roller_diameter
+    for body in planets:
+        roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
+        if roots and bore >= 2 * min(roots):
+            allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
+            allowed += f"{millimetres(2 * min(roots))}."
+            remedy = "Use a thinner pin or thinner rollers."
+            yield Problem(f"{key}.pin_diameter", "", allowed, remedy)
 
 
 def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
@@ -151,13 +149,13 @@ def check_listed_bearings(table: ListedSet, gearing: Gearing) -> Iterator[Proble
     for name, bearing in own.items():
         yield from check_rollers(bearing, f"planet_bearings.{name}")
         yield from check_cage(bearing, table.models)
-    found: dict[str, tuple[PlanetBearing | PlanetPin, Sequence[str]]] = {
-        f"planet_bearings.{body}": (own[body], [body]) for body in gearing.planets if body in own
-    }
+    for body in gearing.planets:
+        if body in own:
+            yield from check_bores(gearing, f"planet_bearings.{body}", own[body], [body])
     others = [body for body in gearing.planets if body not in own]
-    pairs = ((key, getattr(table, key)) for key in ("planet_bearing", "planet_pin"))
-    found |= {key: (bearing, others) for key, bearing in pairs if bearing is not None}
-    yield from check_bores(gearing, found)
+    for key in ("planet_bearing", "planet_pin"):
+        if (bearing := getattr(table, key)) is not None:
+            yield from check_bores(gearing, key, bearing, others)
 
 
 def _both_bearings(_: PlanetBearing, __: PlanetPin) -> Iterator[Problem]:
@@ -167,17 +165,15 @@ def _both_bearings(_: PlanetBearing, __: PlanetPin) -> Iterator[Problem]:
 
 def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
     """Problems of the tables that a listed set has beside its gears."""
-    known = gearing.terms
-    losses = [
-        Problem(f"losses.{name}", "", "is not a loss of this set.", remedy)
-        for name in table.losses
-        if name not in known
-        for remedy in [did_you_mean(name, known) or f"The losses are {', '.join(known)}."]
-    ]
-    planets, carrier = [*_planet_problems(table, gearing)], table.carrier
-    if carrier is not None and carrier.open_width > carrier.width:
-        planets += _too_open(carrier)
-    return [*name_problems(gearing), *losses, *planets, *_sharing_problems(table)]
+    problems, known = list(name_problems(gearing)), gearing.terms
+    for name in table.losses:
+        if name not in known:
+            remedy = did_you_mean(name, known) or f"The losses are {', '.join(known)}."
+            problems.append(Problem(f"losses.{name}", "", "is not a loss of this set.", remedy))
+    problems += _planet_problems(table, gearing)
+    if table.carrier is not None and table.carrier.open_width > table.carrier.width:
+        problems += _too_open(table.carrier)
+    return [*problems, *_sharing_problems(table)]
 
 
 def name_problems(gearing: Gearing) -> Iterator[Problem]:
@@ -237,33 +233,31 @@ def _sharing_problems(table: ListedSet) -> Iterator[Problem]:
         yield _most_loaded(sharing, "planets", planets)
 
 
-def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> list[Problem]:
+def check_cage(bearing: PlanetBearing, models: PlanetaryModels) -> Iterator[Problem]:
     """The model of the bearing loss must be for bearings of this kind."""
-    if bearing.type == "spherical" and (models.bearing not in ("auto", "palmgren")):
+    spherical, caged = bearing.type == "spherical", bearing.cage == "caged"
+    if spherical and models.bearing not in ("auto", "palmgren"):
         allowed = "has no spherical rollers."
         remedy = 'Write bearing = "palmgren" or "auto".'
-        return [Problem("models.bearing", f'"{models.bearing}"', allowed, remedy)]
-    if bearing.type == "spherical" and models.planet_tilt == "coupled":
+        yield Problem("models.bearing", f'"{models.bearing}"', allowed, remedy)
+    elif spherical and models.planet_tilt == "coupled":
         allowed = "does not apply to spherical roller bearings, which align themselves."
-        return [Problem("models.planet_tilt", '"coupled"', allowed, 'Write "left-out".')]
-    if bearing.cage == "caged" and models.bearing == "full-complement":
+        yield Problem("models.planet_tilt", '"coupled"', allowed, 'Write "left-out".')
+    elif caged and models.bearing == "full-complement":
         allowed = "applies to rollers without a cage."
-        return [Problem("models.bearing", '"full-complement"', allowed, 'Write "mixed-ehl".')]
-    if models.bearing == "full-complement":
-        full = bearing.rollers_per_row
+        yield Problem("models.bearing", '"full-complement"', allowed, 'Write "mixed-ehl".')
+    elif models.bearing == "full-complement":
+        given = full = bearing.rollers_per_row
         while not any(check_rollers(bearing.model_copy(update={"rollers_per_row": full + 1}))):
             full += 1
-        if full == bearing.rollers_per_row:
-            return []
-        allowed, remedy = f"is not full; {full} fit.", f"Write rollers_per_row = {full}."
-        given = f"{bearing.rollers_per_row}"
-        return [Problem("planet_bearing.rollers_per_row", given, allowed, remedy)]
-    if bearing.cage == "caged" or models.bearing != "mixed-ehl":
-        return []
-    allowed = "applies to caged bearings; rollers of a full-complement bearing rub on each other, "
-    allowed += "and this friction is not included."
-    remedy = 'Write bearing = "full-complement" or "palmgren".'
-    return [Problem("models.bearing", '"mixed-ehl"', allowed, remedy)]
+        if full > given:
+            allowed, remedy = f"is not full; {full} fit.", f"Write rollers_per_row = {full}."
+            yield Problem("planet_bearing.rollers_per_row", f"{given}", allowed, remedy)
+    elif not caged and models.bearing == "mixed-ehl":
+        allowed = "applies to caged bearings; rollers of a full-complement bearing rub on each "
+        allowed += "other, and this friction is not included."
+        remedy = 'Write bearing = "full-complement" or "palmgren".'
+        yield Problem("models.bearing", '"mixed-ehl"', allowed, remedy)
 
 
 def _check_load_sharing(sharing: LoadSharing, gearing: Gearing) -> Iterator[Problem]:
@@ -331,9 +325,8 @@ def _check_models(
     if isinstance(models, PlanetaryModels) and models.planet_tilt == "coupled":
         key, remedy = "models.planet_tilt", 'Or write planet_tilt = "left-out".'
         if "planet_bearing" not in given:
-            yield Problem(
-                key, "", "needs [planet_bearing], because the planet tilts in it.", remedy
-            )
+            allowed = "needs [planet_bearing], because the planet tilts in it."
+            yield Problem(key, "", allowed, remedy)
         if models.load_distribution != "compliance":
             yield Problem(key, "", 'needs load_distribution = "compliance".', remedy)
 
@@ -367,7 +360,8 @@ def check_oil_model(
     if not asked and models.oil_model is None:
         return
     try:
-        model = _oil_model(models, folder, lubricant)
+        oil = lubricant.oil if isinstance(lubricant, Lubricant) else None
+        model = oil_model_of(models, folder, oil)
     except InputError as error:
         yield from error.problems
         return
@@ -385,15 +379,14 @@ def check_oil_model(
             yield Problem("models.oil_model", given, allowed, remedy)
 
 
-def _oil_model(models: GearPairModels, folder: Path, lubricant: Table | None) -> OilModel | None:
+def oil_model_of(models: GearPairModels, folder: Path, oil: Oil | None) -> OilModel | None:
+    """The fitted models of a file that a case names, or those built in for its oil, if any."""
     # cases without fitted models need no kernel
     from epicyclic.contact.fitted_models import builtin_model, read_oil_model
 
     if models.oil_model is not None:
         return read_oil_model(folder / models.oil_model)
-    if not isinstance(lubricant, Lubricant):
-        return None
-    return builtin_model(lubricant.oil)
+    return None if oil is None else builtin_model(oil)
 
 
 _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = (
@@ -405,7 +398,7 @@ _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = 
     (check_thermal, ("thermal",)),
     (lambda it, run: check_outlet(it, run.oil_inlet_temperature), ("thermal", "operation")),
     (check_lubrication, ("lubrication",)),
-    (lambda it, _: check_level(it, LEVEL_REMEDY), ("lubrication", "operation")),
+    (lambda it, _: check_level(it), ("lubrication", "operation")),
     (check_sump, ("lubrication", "thermal")),
     (check_wetting, ("lubrication", "thermal")),
     (lambda it, _: check_immersion(it, ("sun", "ring", "carrier")), ("lubrication", "sun")),
@@ -589,29 +582,22 @@ def operation_problems(train: TrainCase, complete: bool) -> list[Problem]:
     return problems if named else [*problems, *motion_problems(train, complete)]
 
 
-def _temperature_problems(train: TrainCase) -> list[Problem]:
+def _temperature_problems(train: TrainCase) -> Iterator[Problem]:
     """Temperatures follow from losses that are computed, of the whole train."""
-    found = [
-        Problem(
-            f"sets.{name}.models.temperatures",
-            written(table.models.temperatures),
-            f"applies to the whole train, which has {written(train.models.temperatures)}.",
-            "Leave it out here, and set models.temperatures of the train.",
-        )
-        for name, table in train.computed_sets
-        if table.models.temperatures not in ("inlet", train.models.temperatures)
-    ]
     kind, shown = train.models.temperatures, written(train.models.temperatures)
+    for name, table in train.computed_sets:
+        if (own := table.models.temperatures) not in ("inlet", kind):
+            allowed = f"applies to the whole train, which has {shown}."
+            remedy = "Leave it out here, and set models.temperatures of the train."
+            yield Problem(f"sets.{name}.models.temperatures", written(own), allowed, remedy)
     oil = train.lubricant, train.operation.oil_inlet_temperature
     if kind == "flank" and not train.computed:
         allowed = "needs computed losses, but all sets have given efficiencies."
         remedy = 'Use "inlet" or "network", or give gears instead of efficiencies for the sets.'
-        found.append(Problem("models.temperatures", shown, allowed, remedy))
+        yield Problem("models.temperatures", shown, allowed, remedy)
     elif kind == "network" and not train.computed and None in oil:
         allowed = "needs [lubricant] and operation.oil_inlet_temperature."
-        remedy = 'Give both, or use "inlet".'
-        found.append(Problem("models.temperatures", shown, allowed, remedy))
-    return found
+        yield Problem("models.temperatures", shown, allowed, 'Give both, or use "inlet".')
 
 
 def _position_problems(train: TrainCase) -> Iterator[Problem]:

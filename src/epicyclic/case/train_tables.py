@@ -21,7 +21,13 @@ from epicyclic.case.gear_tables import (
     internal_if_negative,
     with_positive_teeth,
 )
-from epicyclic.case.tables.elements import Carrier, PlanetBearing, PlanetPin, ThrustBearing
+from epicyclic.case.tables.elements import (
+    Carrier,
+    PlanetBearing,
+    PlanetPin,
+    Position,
+    ThrustBearing,
+)
 from epicyclic.case.tables.models import (
     GearPairLosses,
     GearPairModels,
@@ -39,14 +45,12 @@ from epicyclic.units import (
     Length,
     Mass,
     Number,
-    Quantity,
     RotationalSpeed,
     Temperature,
     Torque,
 )
 
 Efficiency = Annotated[Number, Field(gt=0, le=1)]
-Position = Annotated[float, Quantity("a position", "m", "mm", low=-1e5, high=1e5)]
 _BODY: Any = option("Gears with the same body turn together. Default: its own.")
 _PLANET: Any = option(
     "true: the gear is on the carrier. Default: as the meshes and shafts suggest."

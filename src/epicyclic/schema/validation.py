@@ -101,9 +101,8 @@ def unknown_key(
 def _missing(place: Place, shown_by: str) -> Problem:
     key, name = dotted(place.path), place.path[-1]
     if table_of(place.annotation) is not None and len(place.path) == 1:
-        return Problem(
-            key, "", f"the table [{key}] is missing.", f"Add it; {shown_by} shows its keys."
-        )
+        remedy = f"Add it; {shown_by} shows its keys."
+        return Problem(key, "", f"the table [{key}] is missing.", remedy)
     allowed = describe(place.annotation, place.metadata)
     owner = dotted(place.path[:-1])
     if isinstance(name, int):
@@ -326,16 +325,11 @@ def _check_group(
         allowed = f"is missing; {choice} is needed."
         return [Problem(f"{name}.{missing}", "", allowed, f"Add {choice} to [{name}].")]
     if len(started) == 1:
+        known = f"is missing; it belongs to {next(key for key in started[0] if key in given)}."
         return [
-            Problem(
-                f"{name}.{key}",
-                "",
-                f"is missing; it belongs to {other}.",
-                f"Add {key} to [{name}].",
-            )
+            Problem(f"{name}.{key}", "", known, f"Add {key} to [{name}].")
             for key in started[0]
             if key not in given
-            for other in [next(other for other in started[0] if other in given)]
         ]
     both = [key for keys in started for key in keys if key in given]
     extra = next(key for key in started[1] if key in given)

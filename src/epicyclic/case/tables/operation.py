@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from collections.abc import Collection, Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -215,29 +215,27 @@ def check_thermal(thermal: ThermalTable) -> list[Problem]:
     return problems
 
 
-def check_outlet(thermal: ThermalTable, inlet: float | None) -> list[Problem]:
+def check_outlet(thermal: ThermalTable, inlet: float | None) -> Iterator[Problem]:
     """The oil must leave warmer than it comes."""
     outlet = thermal.oil_outlet_temperature
-    if outlet is None or inlet is None or outlet > inlet:
-        return []
-    allowed = f"must be above operation.oil_inlet_temperature, {CELSIUS.text(inlet)}: the oil "
-    allowed += "carries the heat of the losses away."
-    remedy = "Correct one of them, or give thermal.oil_flow."
-    return [Problem("thermal.oil_outlet_temperature", CELSIUS.text(outlet), allowed, remedy)]
+    if outlet is not None and inlet is not None and outlet <= inlet:
+        allowed = f"must be above operation.oil_inlet_temperature, {CELSIUS.text(inlet)}: the oil "
+        allowed += "carries the heat of the losses away."
+        remedy = "Correct one of them, or give thermal.oil_flow."
+        yield Problem("thermal.oil_outlet_temperature", CELSIUS.text(outlet), allowed, remedy)
 
 
 def check_ways_out(
     thermal: ThermalTable, temperatures: str, oil: LubricationTable | None
-) -> list[Problem]:
+) -> Iterator[Problem]:
     """A network needs a way for the heat to leave."""
     flow = oil.oil_flow if thermal.oil_flow is None and oil else thermal.oil_flow
     ways = (thermal.oil_outlet_temperature, thermal.housing, thermal.cooler_conductance)
-    if temperatures != "network" or flow or any(ways):
-        return []
-    allowed = 'leaves no path out for the heat, which models.temperatures = "network" needs.'
-    remedy = "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] with its "
-    remedy += "area, or thermal.cooler_conductance."
-    return [Problem("thermal", "", allowed, remedy)]
+    if temperatures == "network" and not flow and not any(ways):
+        allowed = 'leaves no path out for the heat, which models.temperatures = "network" needs.'
+        remedy = "Give thermal.oil_flow or thermal.oil_outlet_temperature, [thermal.housing] with "
+        remedy += "its area, or thermal.cooler_conductance."
+        yield Problem("thermal", "", allowed, remedy)
 
 
 Method = Literal["jet", "spray", "flow", "drained", "dip", "submerged", "grease"]
@@ -341,56 +339,28 @@ _KEYS: Mapping[Method, Collection[str]] = {
 """Keys that have an effect with each method."""
 
 
-class _Condition(NamedTuple):
-    """What [lubrication] must not state."""
-
-    key: str  # The keys that it is about, whole, joined by ``", "``.
-    broken: Callable[[LubricationTable], bool]  # Whether the table breaks it.
-    allowed: str
-    remedy: str
-
-
-_JETS = ("jet_speed", "nozzle_side")
-_CONDITIONS = (
-    _Condition(
-        "lubrication.oil_flow",
-        lambda table: table.method == "flow" and table.oil_flow is None,
-        'is missing, but method = "flow" needs it.',
-        'Give it, as "2 l/min".',
-    ),
-    _Condition(
-        "lubrication.oil_share, lubrication.oil_share_factor",
-        lambda table: table.oil_share is not None and "oil_share_factor" in _stated(table),
-        "exclude each other, because the factor applies to the estimate of the method.",
-        "Give one of them.",
-    ),
-    _Condition(
-        "lubrication.oil_level, lubrication.immersion",
-        lambda table: table.oil_level is not None and bool(table.immersion),
-        "state the same thing twice.",
-        "Give one of them.",
-    ),
-)
-
-
-def check_lubrication(table: LubricationTable) -> list[Problem]:
+def check_lubrication(table: LubricationTable) -> Iterator[Problem]:
     """Keys that another method needs, and those that its own one lacks."""
     method, given = table.method, _stated(table)
-    problems = []
     for key in sorted(given - _EVERY - set(_KEYS[method])):
         users = [f'"{name}"' for name, keys in _KEYS.items() if key in keys]
         allowed = f'has no effect with method = "{method}"; it belongs to {" or ".join(users)}.'
-        problems.append(Problem(f"lubrication.{key}", "", allowed, "Remove it, or change method."))
-    reason = "has no effect without oil_flow, the flow of the jets."
-    remedy = 'Give that, as oil_flow = "2 l/min", or remove this key.'
-    problems += [
-        Problem(f"lubrication.{key}", "", reason, remedy)
-        for key in sorted(given.intersection(_JETS))
-        if method == "jet" and table.oil_flow is None
-    ]
-    return problems + [
-        Problem(it.key, "", it.allowed, it.remedy) for it in _CONDITIONS if it.broken(table)
-    ]
+        yield Problem(f"lubrication.{key}", "", allowed, "Remove it, or change method.")
+    if method == "jet" and table.oil_flow is None:
+        for key in sorted(given & {"jet_speed", "nozzle_side"}):
+            allowed = "has no effect without oil_flow, the flow of the jets."
+            remedy = 'Give that, as oil_flow = "2 l/min", or remove this key.'
+            yield Problem(f"lubrication.{key}", "", allowed, remedy)
+    if method == "flow" and table.oil_flow is None:
+        allowed = 'is missing, but method = "flow" needs it.'
+        yield Problem("lubrication.oil_flow", "", allowed, 'Give it, as "2 l/min".')
+    if table.oil_share is not None and "oil_share_factor" in given:
+        key = "lubrication.oil_share, lubrication.oil_share_factor"
+        allowed = "exclude each other, because the factor applies to the estimate of the method."
+        yield Problem(key, "", allowed, "Give one of them.")
+    if table.oil_level is not None and table.immersion:
+        key = "lubrication.oil_level, lubrication.immersion"
+        yield Problem(key, "", "state the same thing twice.", "Give one of them.")
 
 
 def needs_level(table: LubricationTable) -> bool:
@@ -398,13 +368,12 @@ def needs_level(table: LubricationTable) -> bool:
     return table.method == "dip" and table.oil_level is None and not table.immersion
 
 
-def check_level(table: LubricationTable, remedy: str) -> list[Problem]:
+def check_level(table: LubricationTable) -> Iterator[Problem]:
     """Dipping needs to know how deep."""
-    allowed = 'is missing, but method = "dip" needs it, or immersion.'
-    return [Problem("lubrication.oil_level", "", allowed, remedy)] if needs_level(table) else []
-
-
-LEVEL_REMEDY = 'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.'
+    if needs_level(table):
+        allowed = 'is missing, but method = "dip" needs it, or immersion.'
+        remedy = 'Give it from the axis of the set, as "-30 mm", or immersion = { sun = "5 mm" }.'
+        yield Problem("lubrication.oil_level", "", allowed, remedy)
 
 
 def _stated(table: LubricationTable) -> set[str]:
@@ -413,42 +382,34 @@ def _stated(table: LubricationTable) -> set[str]:
     return {key for key in table.model_fields_set if getattr(table, key) != getattr(usual, key)}
 
 
-def check_sump(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:
+def check_sump(table: LubricationTable, thermal: ThermalTable) -> Iterator[Problem]:
     """Dipping needs the volume of the oil, once."""
     own, other = table.oil_volume, thermal.oil_volume or None
     if table.method != "dip":
-        return []
+        return
     if own is None and other is None:
         allowed = 'is missing, but method = "dip" needs it.'
-        return [Problem("lubrication.oil_volume", "", allowed, 'Give it, as "1.5 l".')]
-    if own is None or other is None or own == other:
-        return []
-    key = "lubrication.oil_volume, thermal.oil_volume"
-    reason = "are the same volume, but differ."
-    return [Problem(key, f"{LITRE.text(own)}, {LITRE.text(other)}", reason, "Give one of them.")]
+        yield Problem("lubrication.oil_volume", "", allowed, 'Give it, as "1.5 l".')
+    elif own is not None and other is not None and own != other:
+        key, shown = "lubrication.oil_volume, thermal.oil_volume", map(LITRE.text, (own, other))
+        reason = "are the same volume, but differ."
+        yield Problem(key, ", ".join(shown), reason, "Give one of them.")
 
 
-def check_wetting(table: LubricationTable, thermal: ThermalTable) -> list[Problem]:
+def check_wetting(table: LubricationTable, thermal: ThermalTable) -> Iterator[Problem]:
     """The temperatures must see the oil as the losses do."""
     wetting = WETTING[table.method]
-    if "lubrication" not in thermal.model_fields_set or thermal.lubrication in wetting:
-        return []
-    fitting = " or ".join(f'"{name}"' for name in wetting)
-    allowed = f'contradicts lubrication.method = "{table.method}", which implies {fitting}.'
-    remedy = "Remove it, because it follows from the method."
-    return [Problem("thermal.lubrication", f'"{thermal.lubrication}"', allowed, remedy)]
+    if "lubrication" in thermal.model_fields_set and thermal.lubrication not in wetting:
+        fitting = " or ".join(f'"{name}"' for name in wetting)
+        allowed = f'contradicts lubrication.method = "{table.method}", which implies {fitting}.'
+        remedy = "Remove it, because it follows from the method."
+        yield Problem("thermal.lubrication", f'"{thermal.lubrication}"', allowed, remedy)
 
 
-def check_immersion(table: LubricationTable, parts: Collection[str]) -> list[Problem]:
+def check_immersion(table: LubricationTable, parts: Collection[str]) -> Iterator[Problem]:
     """Depths of parts that can churn."""
-    known = ", ".join(parts)
-    return [
-        Problem(
-            f"lubrication.immersion.{name}",
-            "",
-            f"is not a part whose churning is computed; these are {known}.",
-            did_you_mean(name, parts) or "Name one of these; planets are left out.",
-        )
-        for name in table.immersion
-        if name not in parts
-    ]
+    for name in table.immersion:
+        if name not in parts:
+            allowed = f"is not a part whose churning is computed; these are {', '.join(parts)}."
+            remedy = did_you_mean(name, parts) or "Name one of these; planets are left out."
+            yield Problem(f"lubrication.immersion.{name}", "", allowed, remedy)
