@@ -607,7 +607,9 @@ def build(
     )
 
 
-_fluids = lru_cache(maxsize=MOST_DESIGNS)(lambda design: fluids_of(design.case))
+@lru_cache(maxsize=MOST_DESIGNS)
+def _fluids(design: _Design) -> Fluids:
+    return fluids_of(design.case)
 
 
 @lru_cache(maxsize=MOST_DESIGNS)

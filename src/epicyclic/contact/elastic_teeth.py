@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -29,18 +29,15 @@ from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width
 # differently, so that a sweep in many processes would not give the bits of one process.
 
 
+_BLAS = ThreadpoolController().select(user_api="blas")  # That of numpy.
+
+
 def one_thread() -> AbstractContextManager[object]:
     """A context in which matrix products and decompositions use one thread."""
-    blas = _blas()
-    if all(library.num_threads == 1 for library in blas.lib_controllers):
+    if all(library.num_threads == 1 for library in _BLAS.lib_controllers):
         return nullcontext()  # as in workers: to set limits takes a tenth of a solution
-    context: AbstractContextManager[object] = blas.limit(limits=1)
+    context: AbstractContextManager[object] = _BLAS.limit(limits=1)
     return context
-
-
-@cache
-def _blas() -> ThreadpoolController:
-    return ThreadpoolController().select(user_api="blas")
 
 
 # A gear tooth as a tapered plate on an elastic foundation (Rayleigh-Ritz).

@@ -265,18 +265,12 @@ class _Listener(event.Listener):
 event.register("numba:compile", _Listener())
 
 
-def _leave_out_scipy() -> None:
-    """Load numba's sums and products without scipy.linalg, which takes a tenth of a `run`.
-
-    They only ask whether it is there. A kernel that calls it, as none of this package does, loads
-    it all the same.
-    """
-    ask, linalg.ensure_blas = linalg.ensure_blas, lambda: None
-    import_module("numba.np.arraymath")
-    linalg.ensure_blas = ask
-
-
-_leave_out_scipy()
+# numba asks whether scipy.linalg is there when it loads sums and products of arrays, and so would
+# import it, a tenth of a `run`, for kernels that do not call it. One that does imports it all the
+# same.
+_ask, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+import_module("numba.np.arraymath")
+linalg.ensure_blas = _ask
 
 
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
