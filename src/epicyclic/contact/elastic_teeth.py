@@ -29,14 +29,12 @@ from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width
 # differently, so that a sweep in many processes would not give the bits of one process.
 
 
-_BLAS = ThreadpoolController().select(user_api="blas")  # That of numpy.
-
-
 def one_thread() -> AbstractContextManager[object]:
     """A context in which matrix products and decompositions use one thread."""
-    if all(library.num_threads == 1 for library in _BLAS.lib_controllers):
+    blas = ThreadpoolController().select(user_api="blas")  # of those that are loaded by now
+    if all(library.num_threads == 1 for library in blas.lib_controllers):
         return nullcontext()  # as in workers: to set limits takes a tenth of a solution
-    context: AbstractContextManager[object] = _BLAS.limit(limits=1)
+    context: AbstractContextManager[object] = blas.limit(limits=1)
     return context
 
 

@@ -9,6 +9,7 @@ the set of such nodes is found in the same iteration.
 from __future__ import annotations
 
 import math
+from importlib import import_module
 
 import numpy as np
 
@@ -22,6 +23,8 @@ from epicyclic.plugins.contact_solver.kernels_fluid import (
     mean_shear,
     thinning_factor,
 )
+
+import_module("scipy.linalg")  # numba calls its library, which `one_thread` must find
 
 SMALLEST_FILM_SHARE = 0.2  # Share of its film that every node keeps in one Newton step. [1]
 LARGEST_PRESSURE_SHARE = 0.5
