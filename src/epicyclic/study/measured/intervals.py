@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
@@ -158,9 +158,9 @@ def profile_ends(residuals: Residuals, found: Linearised) -> FloatArray:
     growth = (found.quantile * found.spread) ** 2
     if not (found.is_separable and growth > 0):
         return ends
-    valley = _Valley(found, residuals(found.solution), residuals.bounds, growth)
+    at_solution, bounds = residuals(found.solution), residuals.bounds
     walks = {
-        (parameter, side): valley.walk(parameter, side)
+        (parameter, side): _Way(found, at_solution, bounds, growth, parameter).walk(side)
         for parameter in range(found.solution.size)
         for side in (0, 1)
         if not found.is_idle[parameter]
@@ -177,38 +177,46 @@ def profile_ends(residuals: Residuals, found: Linearised) -> FloatArray:
     return ends
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Valley:
-    """The neighbourhood of a solution."""
+@dataclass(slots=True, eq=False)
+class _Way:
+    """The bottom of the valley around a solution, from there to one side of a parameter."""
 
     found: Linearised
-    deviations: FloatArray  # At the solution.
+    at_solution: FloatArray  # Deviations there.
     bounds: FloatArray
-    growth: float  # Growth of the sum of squares at the ends.
+    growth: float  # Growth of the sum of squares at the end.
+    parameter: int  # The one that is held.
+    others: IntArray = field(init=False)  # Free parameters beside it.
+    # Derivatives of the deviations; of the solution at first, then kept up to date after Broyden.
+    derivatives: FloatArray = field(init=False)
+    # From the solution to the bottom at the last place, for each unit of the parameter.
+    direction: FloatArray = field(init=False)
 
-    def walk(self, parameter: int, side: int) -> Walk:
-        """Where the sum of squares has grown enough on one side of a parameter."""
-        solution = self.found.solution
-        room = abs(float(self.bounds[parameter, side] - solution[parameter]))
+    def __post_init__(self) -> None:
+        self.others = self.found.free[self.found.free != self.parameter]
+        self.derivatives = self.found.derivatives.copy()
+        self.direction = np.eye(self.found.solution.size)[self.parameter]
+
+    def walk(self, side: int) -> Walk:
+        """Where the sum of squares has grown enough on one side."""
+        start = float(self.found.solution[self.parameter])
+        room = abs(float(self.bounds[self.parameter, side]) - start)
         sign = 2.0 * side - 1.0
         if room == 0:
-            return float(solution[parameter])
-        valley = _Way(
-            self, parameter, self.found.derivatives.copy(), np.eye(solution.size)[parameter]
-        )
+            return start
         inner, outer = (0.0, -1.0), (math.inf, math.nan)
-        distance = self._guess(parameter, sign)
+        distance = self._guess(sign)
         if math.isnan(distance):
             return math.nan
         for _ in range(MOST_PLACES):
             distance = min(distance, room)
-            squares = yield from valley.lowest(sign * distance)
-            grown = (squares - float(self.deviations @ self.deviations)) / self.growth
+            squares = yield from self._lowest(sign * distance)
+            grown = (squares - float(self.at_solution @ self.at_solution)) / self.growth
             excess = math.sqrt(max(grown, 0.0)) - 1
             if math.isnan(excess):
                 return math.nan
             if abs(excess) <= CLOSE or (excess < 0 and distance == room):
-                return float(solution[parameter] + sign * distance)
+                return start + sign * distance
             if excess < 0:
                 inner = (distance, excess)
             else:
@@ -216,46 +224,28 @@ class _Valley:
             distance = _between(inner, outer)
         return math.nan
 
-    def others(self, parameter: int) -> IntArray:
-        """Free parameters beside one."""
-        free = self.found.free
-        others: IntArray = free[free != parameter]
-        return others
-
-    def _guess(self, parameter: int, sign: float) -> float:
+    def _guess(self, sign: float) -> float:
         """Distance of the end if the model were linear; NaN without influence."""
-        column = self.found.derivatives[:, parameter]
-        others = self.found.derivatives[:, self.others(parameter)]
+        column = self.found.derivatives[:, self.parameter]
+        others = self.found.derivatives[:, self.others]
         alone = column - others @ np.linalg.lstsq(others, column)[0]
         curvature = float(alone @ alone)
-        slope = max(0.0, sign * float(column @ self.deviations))  # not 0 at a bound
+        slope = max(0.0, sign * float(column @ self.at_solution))  # not 0 at a bound
         if curvature == 0:
             return math.nan
         return float((math.sqrt(slope**2 + curvature * self.growth) - slope) / curvature)
 
-
-@dataclass(slots=True, eq=False)
-class _Way:
-    """The bottom of a valley on one side of a parameter."""
-
-    valley: _Valley
-    parameter: int  # The one that is held.
-    # Derivatives of the deviations; of the solution at first, then kept up to date after Broyden.
-    derivatives: FloatArray
-    # From the solution to the bottom at the last place, for each unit of the parameter.
-    direction: FloatArray
-
-    def lowest(self, offset: float) -> Walk:
+    def _lowest(self, offset: float) -> Walk:
         """Least sum of squares with the parameter held at an offset, after Gauss and Newton."""
-        solution, others = self.valley.found.solution, self.valley.others(self.parameter)
+        solution, others = self.found.solution, self.others
         here = solution + offset * self.direction
         if self.direction[others].any():  # from where the last place led to
-            here = np.clip(here, self.valley.bounds[:, 0], self.valley.bounds[:, 1])
+            here = np.clip(here, self.bounds[:, 0], self.bounds[:, 1])
         else:
-            here = self._moved(here, self.valley.deviations + self.derivatives @ (here - solution))
+            here = self._moved(here, self.at_solution + self.derivatives @ (here - solution))
         deviations = yield here
-        linear = self.valley.deviations + self.valley.found.derivatives @ (here - solution)
-        if float(np.sum((deviations - linear) ** 2)) > CURVED * self.valley.growth:
+        linear = self.at_solution + self.found.derivatives @ (here - solution)
+        if float(np.sum((deviations - linear) ** 2)) > CURVED * self.growth:
             yield from self._derive(here, deviations)
         for _ in range(MOST_ROUNDS if others.size else 0):
             if not np.isfinite(deviations).all():
@@ -263,7 +253,7 @@ class _Way:
             there = self._moved(here, deviations)
             step = there - here
             expected = self.derivatives @ step
-            if float(expected @ expected) <= GAIN * self.valley.growth:
+            if float(expected @ expected) <= GAIN * self.growth:
                 break
             changed = yield there
             if not np.isfinite(changed).all():
@@ -278,10 +268,9 @@ class _Way:
         self, here: FloatArray, deviations: FloatArray
     ) -> Generator[FloatArray, FloatArray, None]:
         """Derivatives over the other parameters by differences."""
-        for other in self.valley.others(self.parameter):
-            high = self.valley.bounds[other, 1]
+        for other in self.others:
             moved = here.copy()
-            moved[other] += STEP if here[other] + STEP <= high else -STEP
+            moved[other] += STEP if here[other] + STEP <= self.bounds[other, 1] else -STEP
             changed = yield moved
             if np.isfinite(changed).all():
                 self.derivatives[:, other] = (changed - deviations) / (moved[other] - here[other])
@@ -291,13 +280,12 @@ class _Way:
 
         At most as far from `here` as `FARTHER` times half their intervals, and within the bounds.
         """
-        found, others = self.valley.found, self.valley.others(self.parameter)
-        variance = np.diag(found.covariance)[np.searchsorted(found.free, others)]
-        most = FARTHER * np.sqrt(self.valley.growth * variance)
-        step = -np.linalg.lstsq(self.derivatives[:, others], deviations)[0]
+        places = np.searchsorted(self.found.free, self.others)
+        most = FARTHER * np.sqrt(self.growth * np.diag(self.found.covariance)[places])
+        step = -np.linalg.lstsq(self.derivatives[:, self.others], deviations)[0]
         there = here.copy()
-        there[others] += np.clip(step, -most, most)
-        return np.clip(there, self.valley.bounds[:, 0], self.valley.bounds[:, 1])
+        there[self.others] += np.clip(step, -most, most)
+        return np.clip(there, self.bounds[:, 0], self.bounds[:, 1])
 
 
 def _between(inner: tuple[float, float], outer: tuple[float, float]) -> float:
