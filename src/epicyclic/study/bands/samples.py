@@ -206,23 +206,16 @@ def shortest_interval(samples: FloatArray) -> tuple[float, float]:
     return float(ordered[first]), float(ordered[first + inside])
 
 
-@dataclass(frozen=True, slots=True)
-class Indices:
-    """Shares of the variance of results, of each group of inputs."""
-
-    first: FloatArray  # Shares for `s` results: alone, and with all interactions.
-    total: FloatArray  # Shares for `s` results: alone, and with all interactions.
-    first_ends: FloatArray  # Ends of their 95 % intervals.
-    total_ends: FloatArray  # Ends of their 95 % intervals.
-
-
 def sobol_indices(
     a: FloatArray,  # Results at the points of A and of B.
     b: FloatArray,  # Results at the points of A and of B.
     mixed: FloatArray,  # At those of A with a group from B.
     seed: int,  # Seed of the resampling of points that the intervals are found by.
-) -> Indices:
-    """First and total indices with their intervals. Theory (U5), (U6)."""
+) -> tuple[FloatArray, FloatArray]:
+    """First and total indices, each with both ends of its interval. Theory (U5), (U6).
+
+    Returns two ndarray, shape (3, s, g), of `s` results and `g` groups of inputs.
+    """
     count = a.shape[1]
     found = index_values(a, b, mixed)
     rng = np.random.default_rng(seed)
@@ -230,9 +223,10 @@ def sobol_indices(
     others = [index_values(a[:, it], b[:, it], mixed[:, :, it]) for it in drawn]
     tail = (1 - COVERAGE) / 2
     first, total = (
-        np.quantile([one[part] for one in others], [tail, 1 - tail], axis=0) for part in (0, 1)
+        np.stack([found[i], *np.quantile([one[i] for one in others], [tail, 1 - tail], axis=0)])
+        for i in (0, 1)
     )
-    return Indices(*found, first, total)
+    return first, total
 
 
 def index_values(a: FloatArray, b: FloatArray, mixed: FloatArray) -> tuple[FloatArray, FloatArray]:

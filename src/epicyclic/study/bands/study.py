@@ -239,20 +239,18 @@ def indices_of(
     # scipy takes powers of 2 only: sound points stand in for those without a result
     chosen = np.resize(np.flatnonzero(sound), sound.size)
     kept = sets[:, :, chosen]
-    found = sobol_indices(kept[0], kept[1], kept[2:][moving], seed)
+    first, total = sobol_indices(kept[0], kept[1], kept[2:][moving], seed)
     variables: dict[str, Any] = {"sum": list(SUMS[:-1])}
-    for name, label, values, (low, high) in (
-        ("first_order", "share of the variance alone", found.first, found.first_ends),
-        ("total_order", "share with interactions", found.total, found.total_ends),
+    for name, label, found in (
+        ("first_order", "share of the variance alone", first),
+        ("total_order", "share with interactions", total),
     ):
-        for key, text, part in (
-            (name, label, values),
-            (f"{name}_low", "low end of its interval", low),
-            (f"{name}_high", "high end of its interval", high),
-        ):
+        labels = (label, "low end of its interval", "high end of its interval")
+        for end, text, part in zip(("", "_low", "_high"), labels, found, strict=True):
             whole = np.zeros((sets.shape[1], len(samples.groups)))
             whole[:, moving] = part
-            variables[key] = (("sum", "driver"), whole, {"long_name": text, "units": "1"})
+            about = {"long_name": text, "units": "1"}
+            variables[f"{name}{end}"] = (("sum", "driver"), whole, about)
     return variables
 
 
