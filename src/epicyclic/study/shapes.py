@@ -54,17 +54,13 @@ class SetPlaces:
     def relative_speeds(self, meshes: Sequence[Mesh]) -> dict[str, float]:
         """Speed of each gear over that of the first one, seen from the carrier; 0 if unrelated."""
         known = {next(iter(self.bodies.values())): 1.0}
-        grows = True
-        while grows:
-            before = len(known)
-            for mesh in meshes:
-                one, two = self.bodies[mesh.gear1.name], self.bodies[mesh.gear2.name]
-                ratio = -mesh.side * mesh.gear1.teeth / mesh.gear2.teeth
-                if one in known:
-                    known.setdefault(two, known[one] * ratio)
-                elif two in known:
-                    known[one] = known[two] / ratio
-            grows = len(known) > before
+        for mesh in (*meshes,) * len(meshes):  # one may be related by the last of the others
+            one, two = self.bodies[mesh.gear1.name], self.bodies[mesh.gear2.name]
+            ratio = -mesh.side * mesh.gear1.teeth / mesh.gear2.teeth
+            if one in known:
+                known.setdefault(two, known[one] * ratio)
+            elif two in known:
+                known[one] = known[two] / ratio
         return {name: known.get(body, 0.0) for name, body in self.bodies.items()}
 
 
