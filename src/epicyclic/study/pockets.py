@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,7 +30,7 @@ from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.pocket_flow import flow_family, oil_in_mesh, pocket_notes, solve_pockets
 from epicyclic.result.result import of_gear
 from epicyclic.study.load import CaseSource, as_case
-from epicyclic.study.meshes import Variable, mesh_words, variable
+from epicyclic.study.meshes import Array, Variable, mesh_words, variable
 from epicyclic.study.solve import build_computed
 from epicyclic.units import (
     BAR,
@@ -42,13 +43,10 @@ from epicyclic.units import (
     RPM,
     SQUARE_MILLIMETRE,
     WATT,
-    Quantity,
 )
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Array = FloatArray | BoolArray
 
 _LIFE = ("tooth", "roll")
 _AXIS = "axis"
@@ -377,27 +375,27 @@ def _numbers(duty: MeshDuty, flow: PocketFlow, fluids: Fluids) -> dict[str, Vari
     origins = ("from the work at the boundaries", "from the energy balance")
     if model == "talbot-2012":
         origins = ("after Eq. 4.16 of the source", origins[0])
-    numbers: dict[str, tuple[float, str, Quantity]] = {
-        "power": (flow.power, f"power, {origins[0]}", WATT),
-        "power_from_flow": (flow.power_from_flow, f"power, {origins[1]}", WATT),
-        "power_other_end": (end.power, f"power, other end of the band ({other})", WATT),
-        "power_difference": (flow.difference, *FLOW_NUMBERS["difference"]),
-        "mass_error": (flow.mass_error, "mass lost in a period over the mass that entered", NUMBER),
-        "periods": (flow.periods, "mesh periods until the flow repeated", NUMBER),
-        "sound_speed": (
+    number = partial(variable, ())
+    return {
+        "power": number(flow.power, f"power, {origins[0]}", WATT),
+        "power_from_flow": number(flow.power_from_flow, f"power, {origins[1]}", WATT),
+        "power_other_end": number(end.power, f"power, other end of the band ({other})", WATT),
+        "power_difference": number(flow.difference, *FLOW_NUMBERS["difference"]),
+        "mass_error": number(
+            flow.mass_error, "mass lost in a period over the mass that entered", NUMBER
+        ),
+        "periods": number(flow.periods, "mesh periods until the flow repeated", NUMBER),
+        "sound_speed": number(
             sound_speed(fluids.mixed(oil_in_mesh(duty)), fluids.pressure),
             "speed of sound of a homogeneous mixture",
             METRE_PER_SECOND,
         ),
-        "speed_max": (flow.speed_max, *FLOW_NUMBERS["speed_max"]),
-        "ambient_pressure": (fluids.pressure, "ambient pressure", BAR),
-        "speed": (
+        "speed_max": number(flow.speed_max, *FLOW_NUMBERS["speed_max"]),
+        "ambient_pressure": number(fluids.pressure, "ambient pressure", BAR),
+        "speed": number(
             abs(duty.speed1),
             f"speed {of_gear(duty.gears.mesh.gear1.name)} against the line of centres",
             RPM,
         ),
-        "oil_fraction": (oil_in_mesh(duty), "share of oil in the mixture, by volume", NUMBER),
-    }
-    return {
-        name: variable((), value, label, unit) for name, (value, label, unit) in numbers.items()
+        "oil_fraction": number(oil_in_mesh(duty), "share of oil in the mixture, by volume", NUMBER),
     }
