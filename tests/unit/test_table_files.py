@@ -276,6 +276,16 @@ def test_a_table_may_be_long(tmp_path):
     assert values(cycle)[2] == rows - 1
 
 
+def test_a_cycle_may_begin_behind_rows_that_are_read_together(tmp_path, monkeypatch):
+    monkeypatch.setattr("epicyclic.study.table_file._BATCH_ROWS", 4)
+    rows = [f"{second},100,5" for second in range(12)]
+    path = tmp_path / "late.csv"
+    path.write_text("\n".join(["time [s],speed [rpm],torque [N*m]", *rows]))
+    cycle = open_cycle(path, form=TableForm(rows=(8, 12)))
+    assert sum(piece.duration.sum() for piece in cycle.pieces()) == 4
+    assert all(piece.duration.size == piece.speed.size for piece in cycle.pieces())
+
+
 MOMENTS = pd.to_datetime(["2024-05-02 10:00:01.5", "2024-05-02 10:00:08.75"])
 KINDS = {
     "ns": pa.array(MOMENTS, pa.timestamp("ns")),

@@ -12,7 +12,7 @@ import io
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import compress, islice
 from pathlib import Path
@@ -145,11 +145,25 @@ class Source:
 
     name: str  # For messages.
     headers: tuple[str, ...]
-    # Pieces of the columns of some headers.
-    batches: Callable[[Sequence[str]], Iterator[Piece]]
+    pieces: Callable[[Sequence[str]], Iterator[Piece]]  # Of the columns of some headers.
     place: str  # What a row is called in messages.
     decimal: str = "."  # The decimal mark of its text.
     moments: str = ""  # The form of its dates, as `pandas.to_datetime` has it.
+    rows: tuple[int, int] | None = None  # First and last to be read, of all `pieces`.
+
+    def batches(self, chosen: Sequence[str]) -> Iterator[Piece]:
+        """The rows that are asked for, in columns of some headers."""
+        try:
+            for piece in self.pieces(chosen):
+                if self.rows is not None:
+                    first, last = self.rows
+                    kept = (piece.lines >= first) & (piece.lines <= last)
+                    columns = {name: column.filter(kept) for name, column in piece.columns.items()}
+                    piece = Piece(piece.lines[kept], columns)
+                if piece.lines.size:
+                    yield piece
+        except InputError as error:
+            raise InputError(error.problems, self.name) from None
 
 
 def open_table(table: Any, form: TableForm = AS_IT_IS) -> Source:
@@ -363,13 +377,7 @@ def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
                 columns[header] = pc.utf8_trim_whitespace(texts)
             yield Piece(numbers, columns)
 
-    def batches(chosen: Sequence[str]) -> Iterator[Piece]:
-        try:
-            yield from pieces(chosen)
-        except InputError as error:
-            raise InputError(error.problems, name) from None
-
-    return Source(name, tuple(headers), batches, "line", mark, moments)
+    return Source(name, tuple(headers), pieces, "line", mark, moments)
 
 
 def _is_row(cells: Sequence[str]) -> bool:
@@ -685,7 +693,7 @@ def _of_parquet(path: Path, name: str, form: TableForm) -> Source:
     headers = headers_of(names, form)
     own = dict(zip(headers, names, strict=True))
 
-    def batches(chosen: Sequence[str]) -> Iterator[Piece]:
+    def pieces(chosen: Sequence[str]) -> Iterator[Piece]:
         try:
             with opened() as file:
                 done = 0
@@ -697,10 +705,9 @@ def _of_parquet(path: Path, name: str, form: TableForm) -> Source:
                     yield Piece(np.arange(done, done + batch.num_rows) + 1, columns)
                     done += batch.num_rows
         except (pa.ArrowException, OSError) as error:
-            allowed = f"the file cannot be read: {one_line(str(error), 200)}."
-            raise one_problem("", "", allowed, "Write it again.", name) from None
+            refuse(f"cannot be read: {one_line(str(error), 200)}.", "Write it again.")
 
-    return _within(Source(name, tuple(headers), batches, "row"), form)
+    return Source(name, tuple(headers), pieces, "row", rows=form.rows)
 
 
 _PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
@@ -746,27 +753,11 @@ def _of_frame(table: Any, form: TableForm) -> Source:
             columns.append(pa.array(values.astype(str)))
     headers = headers_of([str(header) for header in frame.columns], form)
 
-    def batches(chosen: Sequence[str]) -> Iterator[Piece]:
+    def pieces(chosen: Sequence[str]) -> Iterator[Piece]:
         for start in range(0, len(frame), _BATCH_ROWS):
             lines = np.arange(start, min(start + _BATCH_ROWS, len(frame))) + 1
             own = {header: columns[headers.index(header)] for header in chosen}
             cells = {it: _cells(it, column.slice(start, _BATCH_ROWS)) for it, column in own.items()}
             yield Piece(lines, cells)
 
-    return _within(Source("the table", tuple(headers), batches, "row"), form)
-
-
-def _within(source: Source, form: TableForm) -> Source:
-    """The rows that are asked for."""
-    if form.rows is None:
-        return source
-    first, last = form.rows
-
-    def batches(chosen: Sequence[str]) -> Iterator[Piece]:
-        for piece in source.batches(chosen):
-            kept = (piece.lines >= first) & (piece.lines <= last)
-            if kept.any():
-                columns = {name: column.filter(kept) for name, column in piece.columns.items()}
-                yield Piece(piece.lines[kept], columns)
-
-    return replace(source, batches=batches)
+    return Source("the table", tuple(headers), pieces, "row", rows=form.rows)
