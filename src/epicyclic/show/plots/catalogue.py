@@ -6,7 +6,7 @@ import io
 import itertools
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -56,13 +56,15 @@ class Panel:
     draw: Callable[[Axes], Axes]  # Draws on Axes.
 
 
+Panels = Callable[[Stored], list[Panel]]  # The panels that a stored result or map has.
+
+
 @dataclass(frozen=True, slots=True)
 class Plot:
     """One plot."""
 
     question: str  # Which it answers.
-    # The panels that a stored result or map has; none if it lacks what the plot shows.
-    panels: Callable[[Stored], list[Panel]]
+    panels: Panels  # None if what is stored lacks what the plot shows.
     projection: str | None = None  # Projection of its Axes.
     size: tuple[float, float] = PANEL  # Width and height of one of its Axes. [inch]
 
@@ -72,28 +74,30 @@ class Plot:
         return self.size != PANEL
 
 
-def _of_result(draw: Callable[..., Axes]) -> Callable[[Stored], list[Panel]]:
-    def panels(stored: Stored) -> list[Panel]:
-        return [Panel("", partial(draw, stored.result))] if isinstance(stored, ResultRecord) else []
-
-    return panels
+def _of_record(panels: Callable[[ResultRecord], Iterable[Panel]]) -> Panels:
+    """The panels of a result; maps and the like have none."""
+    return lambda stored: list(panels(stored)) if isinstance(stored, ResultRecord) else []
 
 
-def _of_group(
-    group: str, draw: Callable[..., Axes], *more: object
-) -> Callable[[Stored], list[Panel]]:
+def _of_result(draw: Callable[..., Axes]) -> Panels:
+    return _of_record(lambda record: [Panel("", partial(draw, record.result))])
+
+
+def _of_group(group: str, draw: Callable[..., Axes], *more: object) -> Panels:
     """One panel for each field of a group."""
 
-    def panels(stored: Stored) -> list[Panel]:
-        if not isinstance(stored, ResultRecord):
-            return []
-        found = stored.group(group)
-        return [
-            Panel(in_words(name) if len(found) > 1 else "", partial(draw, data, *more))
-            for name, data in found.items()
-        ]
+    @_of_record
+    def panels(record: ResultRecord) -> Iterator[Panel]:
+        for subject, _, data in _named(record.group(group)):
+            yield Panel(subject, partial(draw, data, *more))
 
     return panels
+
+
+def _named(fields: Mapping[str, xr.Dataset]) -> Iterator[tuple[str, str, xr.Dataset]]:
+    """The subject of a panel for each field, none of an only one; its key and itself."""
+    for key, data in fields.items():
+        yield in_words(key) if len(fields) > 1 else "", key, data
 
 
 def _gears_of(stored: Stored) -> Mapping[str, xr.Dataset]:
@@ -112,16 +116,13 @@ def _gear_set(stored: Stored) -> list[Panel]:
     ]
 
 
-def _arrangement(stored: Stored) -> list[Panel]:
+@_of_record
+def _arrangement(record: ResultRecord) -> Iterator[Panel]:
     """A train from the end and from the side, if all dimensions are known."""
-    if not isinstance(stored, ResultRecord) or stored.result.train is None:
-        return []
-    inputs = stored.result.inputs
-    found = arrangement_of(inputs, stored.group("gears"))
-    if found is None:
-        return []
-    side = partial(plot_from_the_side, found, inputs)
-    return [Panel("", partial(plot_from_the_end, found)), Panel("", side)]
+    inputs = record.result.inputs
+    if record.result.train and (found := arrangement_of(inputs, record.group("gears"))):
+        yield Panel("", partial(plot_from_the_end, found))
+        yield Panel("", partial(plot_from_the_side, found, inputs))
 
 
 def _oil(stored: Stored) -> list[Panel]:
@@ -130,56 +131,48 @@ def _oil(stored: Stored) -> list[Panel]:
     return [Panel("", partial(plot_oil, gears))] if gears else []
 
 
-def _teeth(stored: Stored) -> list[Panel]:
-    if not isinstance(stored, ResultRecord):
-        return []
-    gears, views = sets_of(stored.group("gears")), stored.group("views")
-    return [
-        Panel(in_words(key) if len(views) > 1 else "", partial(plot_teeth, view, gears[name]))
-        for key, view in views.items()
-        for name in (set_of(key),)
-    ]
+@_of_record
+def _teeth(record: ResultRecord) -> Iterator[Panel]:
+    gears = sets_of(record.group("gears"))
+    for subject, key, view in _named(record.group("views")):
+        yield Panel(subject, partial(plot_teeth, view, gears[set_of(key)]))
 
 
-def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Callable[[Stored], list[Panel]]:
+def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Panels:
     """The panels of a map, all with one scale for `name`."""
-
-    def panels(stored: Stored) -> list[Panel]:
-        if isinstance(stored, ResultRecord) or "torque_loss" not in stored:
-            return []
-        limits = loss_map.limits_of(stored, name)
-        return _over_plane(stored, lambda data: partial(draw, data, name, *more, limits=limits))
-
-    return panels
+    limits = partial(loss_map.limits_of, name=name)
+    return _over_plane({"torque_loss"}, limits, draw, name, *more)
 
 
 def _of_band(
     draw: Callable[..., Axes], limits: Callable[[xr.Dataset], loss_map.Limits], *more: object
-) -> Callable[[Stored], list[Panel]]:
+) -> Panels:
     """The panels of a map with its uncertainty, all with one scale."""
-
-    def panels(stored: Stored) -> list[Panel]:
-        if isinstance(stored, ResultRecord) or not {"torque_loss", "explained"} <= set(stored):
-            return []
-        scale = limits(stored)
-        return _over_plane(stored, lambda data: partial(draw, data, *more, limits=scale))
-
-    return panels
+    return _over_plane({"torque_loss", "explained"}, limits, draw, *more)
 
 
 def _over_plane(
-    data: xr.Dataset, draw: Callable[[xr.Dataset], Callable[[Axes], Axes]]
-) -> list[Panel]:
+    needed: Collection[str],
+    limits: Callable[[xr.Dataset], loss_map.Limits],
+    draw: Callable[..., Axes],
+    *more: object,
+) -> Panels:
     """One panel for each shown state and temperature, at the first value of further keys."""
     titles = {"state": "state {}", "temperature": "{:g} °C"}
-    shown = {
-        name: data[name].values[places] for name, places in loss_map.shown_panels(data).items()
-    }
-    panels = []
-    for point in itertools.product(*(values.tolist() for values in shown.values())):
-        at = dict(zip(shown, point, strict=True))
-        subject = ", ".join(titles[name].format(value) for name, value in at.items())
-        panels.append(Panel(subject, draw(loss_map.map_at(data, **at))))
+
+    def panels(stored: Stored) -> list[Panel]:
+        if isinstance(stored, ResultRecord) or not set(needed) <= set(stored):
+            return []
+        scale, shown = limits(stored), loss_map.shown_panels(stored)
+        values = (stored[name].values[places].tolist() for name, places in shown.items())
+        found = []
+        for point in itertools.product(*values):
+            at = dict(zip(shown, point, strict=True))
+            subject = ", ".join(titles[name].format(value) for name, value in at.items())
+            panel = partial(draw, loss_map.map_at(stored, **at), *more, limits=scale)
+            found.append(Panel(subject, panel))
+        return found
+
     return panels
 
 
@@ -208,7 +201,7 @@ def _band(stored: Stored) -> list[Panel]:
 
 def _of_sweep(
     draw: Callable[..., Axes], dimensions: Callable[[xr.Dataset], list[str]], least: int
-) -> Callable[[Stored], list[Panel]]:
+) -> Panels:
     """One panel for each result of a sweep that has enough dimensions."""
 
     def panels(stored: Stored) -> list[Panel]:
@@ -228,27 +221,25 @@ def _sweep_points(stored: Stored) -> list[Panel]:
     return [Panel("", partial(sweep.plot_sweep_parallel, stored))] if enough else []
 
 
-def _pocket_pressure(stored: Stored) -> list[Panel]:
+@_of_record
+def _pocket_pressure(record: ResultRecord) -> Iterator[Panel]:
     """Both kinds of pocket of each mesh."""
-    found = stored.group("pockets") if isinstance(stored, ResultRecord) else {}
-    return [
-        Panel(
-            in_words(name) if len(found) > 1 else "",
-            partial(plot_life_with_scale, data, "pressure", kind),
-        )
-        for name, data in found.items()
-        for kind in range(data.sizes["tooth"])
-    ]
+    for subject, _, data in _named(record.group("pockets")):
+        for kind in range(data.sizes["tooth"]):
+            yield Panel(subject, partial(plot_life_with_scale, data, "pressure", kind))
 
 
-def _power_flow(stored: Stored) -> list[Panel]:
-    has_power = isinstance(stored, ResultRecord) and stored.result.input_power
-    return _of_result(plot_power_flow)(stored) if has_power else []
+@_of_record
+def _power_flow(record: ResultRecord) -> Iterator[Panel]:
+    if record.result.input_power:
+        yield Panel("", partial(plot_power_flow, record.result))
 
 
-def _heat(stored: Stored) -> list[Panel]:
-    heat = stored.result.heat if isinstance(stored, ResultRecord) else None
-    return [Panel("", partial(plot_heat_network, heat))] if heat and heat.ways else []
+@_of_record
+def _heat(record: ResultRecord) -> Iterator[Panel]:
+    heat = record.result.heat
+    if heat and heat.ways:
+        yield Panel("", partial(plot_heat_network, heat))
 
 
 PLOTS: dict[str, Plot] = {

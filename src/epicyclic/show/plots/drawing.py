@@ -20,7 +20,14 @@ from matplotlib.path import Path
 from epicyclic.arrays import FloatArray
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.mesh import scale_of
-from epicyclic.show.plots.style import COLOUR_MAP, COLOURS, label_of, legend_below, styled_figure
+from epicyclic.show.plots.style import (
+    COLOUR_MAP,
+    COLOURS,
+    label_of,
+    labelled,
+    legend_below,
+    styled_figure,
+)
 
 FILLS = {
     "sun": ("#F6D58A", "#E3B24C", "#FBEBC8", "#C08F2F"),
@@ -61,25 +68,13 @@ def plot_gear_set(
             if inside:
                 rim = _circle(_scalar(gear, "outside_diameter") / 2) + center
                 shape = Path.make_compound_path(_path(rim[::-1]), shape)
-            ax.add_patch(
-                PathPatch(
-                    shape,
-                    facecolor=fills[name],
-                    edgecolor="black",
-                    linewidth=0.5,
-                    label=label if number == 0 else None,
-                    gid=layer_of(name, number),
-                )
-            )
+            style = {"fc": fills[name], "ec": "black", "lw": 0.5, "gid": layer_of(name, number)}
+            ax.add_patch(PathPatch(shape, label=label if number == 0 else None, **style))
             ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
             radius = _scalar(gear, "outside_diameter") / 2
             low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
-    _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
-    ax.set_adjustable("box")
-    ax.set_anchor("N")
-    legend_below(ax, ncols=3)
-    ax.set_title("Gear pair to scale" if "pinion" in gears else "Gear set to scale")
-    return ax
+    title = "Gear pair to scale" if "pinion" in gears else "Gear set to scale"
+    return _finish(ax, low, high, title)
 
 
 def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
@@ -91,18 +86,10 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     half = SHOWN_MODULES * module
     fills = fills_of(gears)
     for number, name in enumerate(names):
-        gear, center = gears[name], np.array([view["center_x"][number], view["center_y"][number]])
-        turn = math.radians(float(view["direction"][number])) - math.pi / 2
-        ax.add_patch(
-            PathPatch(
-                _path(_some_teeth(gear, turn, half) + center),
-                facecolor=fills[name],
-                edgecolor="black",
-                linewidth=0.8,
-                label=in_words(name),
-                gid=layer_of(name, 0),
-            )
-        )
+        gear, (center, turn) = gears[name], _place(view, number)
+        shape = _path(_some_teeth(gear, turn, half) + center)
+        style = {"fc": fills[name], "ec": "black", "lw": 0.8, "gid": layer_of(name, 0)}
+        ax.add_patch(PathPatch(shape, label=in_words(name), **style))
         pitch = _circle(float(view["operating_radius"][number])) + center
         base = _circle(_scalar(gear, "base_diameter") / 2) + center
         label = number == 0
@@ -149,12 +136,7 @@ def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
         box = Rectangle((left, base), right - left, level - base, label=label, color=OIL_COLOUR)
         ax.add_patch(box)
         ax.plot([left, right], [level, level], color=OIL_EDGE, lw=1.2)
-    _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
-    ax.set_adjustable("box")
-    ax.set_anchor("N")
-    legend_below(ax, ncols=3)
-    ax.set_title("Gears in the oil")
-    return ax
+    return _finish(ax, low, high, "Gears in the oil")
 
 
 def _stands(gear: xr.Dataset) -> FloatArray:
@@ -192,6 +174,14 @@ def fills_of(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
         for kind, names in kinds.items()
         for name, shade in zip(names, itertools.cycle(FILLS[kind]), strict=False)
     }
+
+
+def _finish(ax: Axes, low: FloatArray, high: FloatArray, title: str) -> Axes:
+    """Whole gears between two corners, and their legend."""
+    _frame(ax, (low + high) / 2, MARGIN * (high - low) / 2)
+    ax.set(adjustable="box", anchor="N", title=title)
+    legend_below(ax, ncols=3)
+    return ax
 
 
 def _frame(ax: Axes, middle: FloatArray, half: FloatArray) -> None:
@@ -458,11 +448,7 @@ def _draw_plane(mesh: xr.Dataset, ax: Axes) -> None:
     ax.margins(0.04)
     ax.autoscale_view()
     ax.grid(visible=False)
-    ax.set(
-        title="Contact lines and line load",
-        xlabel=label_of(mesh["path_position"]),
-        ylabel=label_of(mesh["face_position"]),
-    )
+    labelled(ax, mesh["path_position"], mesh["face_position"], "Contact lines and line load")
     colours = ScalarMappable(_scale(mesh), COLOUR_MAP)
     ax.figure.colorbar(colours, ax=ax, label=label_of(mesh["line_load"]))
 

@@ -22,8 +22,10 @@ from epicyclic.show.plots.style import (
     LINE_STYLES,
     closed_period,
     label_of,
+    labelled,
     legend_below,
     styled_figure,
+    title_of,
     write_beside,
 )
 from epicyclic.study.friction import FrictionComparison, recommended
@@ -91,14 +93,10 @@ def plot_roller_profile(bearing: xr.Dataset, ax: Axes) -> Axes:
             marker=".",
             label=f"row {row['row'].item()}, roller {most + 1}",
         )
-    ax.set(
-        title="Pressure along the most loaded rollers",
-        xlabel=label_of(bearing["axial_position"]),
-        ylabel=label_of(bearing["pressure"]),
-    )
     ax.set_ylim(bottom=0.0)
     legend_below(ax, ncols=2)
-    return ax
+    title = "Pressure along the most loaded rollers"
+    return labelled(ax, bearing["axial_position"], bearing["pressure"], title)
 
 
 # A loaded mesh: where the teeth carry, how they share, how they slide.
@@ -146,13 +144,8 @@ def plot_plane_of_action(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
         _draw_map(ax, path[known], face[known], values[known], label_of(mesh[name]))
     else:
         _say(ax, "no motion")
-    ax.set(
-        title=str(mesh[name].attrs["long_name"]).capitalize(),
-        xlabel=label_of(mesh["path_position"]),
-        ylabel=label_of(mesh["face_position"]),
-    )
     ax.axvline(0.0, color="black", lw=0.8, ls="--")
-    return ax
+    return labelled(ax, mesh["path_position"], mesh["face_position"], title_of(mesh[name]))
 
 
 def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, label: str) -> None:
@@ -189,12 +182,8 @@ def plot_pair_loads(mesh: xr.Dataset, ax: Axes) -> Axes:
     shown = slice(None) if not carrying.size else slice(max(0, carrying[0] - 1), carrying[-1] + 2)
     ax.plot(angles[shown], loads[shown], marker=".", ms=3)
     ax.set_ylim(bottom=0.0)
-    ax.set(
-        title="Load of one tooth pair through its engagement",
-        xlabel=label_of(mesh["roll_angle"]),
-        ylabel=label_of(mesh["pair_load"]),
-    )
-    return ax
+    title = "Load of one tooth pair through its engagement"
+    return labelled(ax, mesh["roll_angle"], mesh["pair_load"], title)
 
 
 def plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
@@ -206,12 +195,7 @@ def plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
         ax.plot(*closed_period(angles, values, pitch), marker=".", ms=3)
     else:
         _say(ax, "not available with this load distribution")
-    ax.set(
-        title=str(mesh[name].attrs["long_name"]).capitalize(),
-        xlabel=label_of(mesh["roll_angle"]),
-        ylabel=label_of(mesh[name]),
-    )
-    return ax
+    return labelled(ax, mesh["roll_angle"], mesh[name])
 
 
 def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
@@ -243,12 +227,8 @@ def plot_along_path(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
         ax.set_ylim(bottom and bottom - margin, top + margin)
     else:
         _say(ax, "no motion")
-    ax.set(
-        title=f"{str(mesh[name].attrs['long_name']).capitalize()} along the path of contact",
-        xlabel=label_of(mesh["path_position"]),
-        ylabel=label_of(mesh[name]),
-    )
-    return ax
+    title = f"{title_of(mesh[name])} along the path of contact"
+    return labelled(ax, mesh["path_position"], mesh[name], title)
 
 
 ROW_HEIGHT = 0.3  # Height of one bar. [inch]

@@ -27,8 +27,10 @@ from epicyclic.show.plots.style import (
     closed_period,
     gif_bytes,
     label_of,
+    labelled,
     legend_below,
     styled_figure,
+    title_of,
 )
 from epicyclic.units import known_text
 
@@ -84,7 +86,7 @@ def _plot_kinds(mesh: xr.Dataset, values: xr.DataArray, ax: Axes, title: str) ->
         ax.plot(mesh["roll_angle"][kind], values[kind], style, label=_name(mesh, kind))
     ax.set_ylim(bottom=0)
     legend_below(ax, ncols=2)
-    return _over_roll(mesh, ax, title, label_of(values))
+    return _over_roll(mesh, values, ax, title)
 
 
 def plot_gaps(mesh: xr.Dataset, ax: Axes) -> Axes:
@@ -98,7 +100,9 @@ def plot_gaps(mesh: xr.Dataset, ax: Axes) -> Axes:
     gap = first["backlash_gap"]
     ax.set_ylim(0, max(GAP_HEIGHT * float(gap.min()), GAP_SHARE * float(gap.max())))
     legend_below(ax, ncols=2)
-    return _over_roll(mesh, ax, "Gaps at the first end", "gap, µm")
+    _over_roll(mesh, gap, ax, "Gaps at the first end")
+    ax.set_ylabel("gap, µm")  # of both sides
+    return ax
 
 
 def plot_over_life(
@@ -118,8 +122,7 @@ def plot_over_life(
     colours = _face_colours(mesh).to_rgba(place.to_numpy())
     for number in np.unique(np.linspace(0, place.size - 1, DRAWN_SLICES).round()).astype(int):
         ax.plot(mesh["roll_angle"][kind], values[:, number], color=colours[number], lw=1.0)
-    title = f"{str(mesh[name].attrs['long_name']).capitalize()}: {_name(mesh, kind)}"
-    return _over_roll(mesh, ax, title, label_of(mesh[name]))
+    return _over_roll(mesh, values, ax, f"{title_of(values)}: {_name(mesh, kind)}")
 
 
 def _face_colours(mesh: xr.Dataset) -> ScalarMappable:
@@ -135,27 +138,18 @@ def plot_power(mesh: xr.Dataset, ax: Axes) -> Axes:
     mean = float(mesh["power"])
     ax.axhline(mean, color="black", ls="--", lw=0.8, label=f"mean {known_text(mean)}")
     legend_below(ax)
-    ax.set(
-        title="Power of the pockets over one mesh period",
-        xlabel=label_of(mesh["period_angle"]),
-        ylabel=label_of(mesh["instant_power"]),
-    )
-    return ax
+    title = "Power of the pockets over one mesh period"
+    return labelled(ax, mesh["period_angle"], mesh["instant_power"], title)
 
 
 def _name(mesh: xr.Dataset, kind: int) -> str:
     return f"tooth {of_gear(mesh['tooth'].to_numpy()[kind])}"
 
 
-def _over_roll(mesh: xr.Dataset, ax: Axes, title: str, label: str) -> Axes:
+def _over_roll(mesh: xr.Dataset, values: xr.DataArray, ax: Axes, title: str) -> Axes:
     angles = mesh["roll_angle"].where(mesh["live"].any("slice"))
-    ax.set(
-        xlim=(float(angles.min()), float(angles.max())),
-        title=title,
-        xlabel=label_of(mesh["roll_angle"]),
-        ylabel=label,
-    )
-    return ax
+    ax.set_xlim(float(angles.min()), float(angles.max()))
+    return labelled(ax, mesh["roll_angle"], values, title)
 
 
 # The transverse section through a mesh: teeth as they are cut, and the pockets between them.

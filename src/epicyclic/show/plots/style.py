@@ -220,6 +220,12 @@ def label_of(variable: xr.DataArray) -> str:
     return f"{name}, {unit}" if unit else name
 
 
+def labelled(ax: Axes, x: xr.DataArray, y: xr.DataArray, title: str = "") -> Axes:
+    """Axes with names and units of both variables, and a title: by default the name of `y`."""
+    ax.set(title=title or title_of(y), xlabel=label_of(x), ylabel=label_of(y))
+    return ax
+
+
 def span_text(values: xr.DataArray) -> str:
     """Least and greatest of some numbers with their unit, ``"0 to 4000 rpm"``."""
     ends = dict.fromkeys((float(values.min()), float(values.max())))
