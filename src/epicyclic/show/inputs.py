@@ -56,7 +56,7 @@ def input_tables(
     """
     source = _Source(KINDS[inputs["kind"]], given, _used(inputs, models))
     if inputs["kind"] != "train":
-        return [table for table in _set_tables(source, (), inputs) if table.rows]
+        return [table for table in _set_tables(source, inputs) if table.rows]
     tables = []
     computed = any("numerics" in own for own in inputs["sets"].values())
     for name, table in inputs.items():
@@ -70,7 +70,7 @@ def input_tables(
                 kept = {k: v for k, v in own.items() if k not in _SHARED or k in stated}
                 schema, _ = form_of_set(own)
                 of_set = _Source(schema, stated, source.used)
-                tables += _set_tables(of_set, (), kept, key)
+                tables += _set_tables(of_set, kept, key)
         elif name in ElementTables.model_fields:
             title = _TITLES_OF_PARTS.get(name, _title(name))
             tables += _side_by_side(source, title, (name,), table)
@@ -126,9 +126,7 @@ def _title(name: str) -> str:
     return name.replace("_", " ").capitalize()
 
 
-def _set_tables(
-    source: _Source, place: Path, inputs: Mapping[str, Any], name: str = ""
-) -> list[Table]:
+def _set_tables(source: _Source, inputs: Mapping[str, Any], name: str = "") -> list[Table]:
     """The tables of a single set, or of one of a train with its name."""
     members = [name for name in MEMBERS if name in inputs and isinstance(inputs[name], Mapping)]
     before = f"{name}: " if name else ""
@@ -140,15 +138,15 @@ def _set_tables(
         title = before + TITLES.get(key, _title(key))
         if key in members:
             chosen = {member: inputs[member] for member in members}
-            tables += _side_by_side(source, title, place, chosen)
+            tables += _side_by_side(source, title, (), chosen)
         elif key == "losses":
             tables += _changed_losses(title, table)
         elif isinstance(table, Mapping) and not _is_datum(table):
-            tables += _tables(source, (*place, key), table, title)
+            tables += _tables(source, (key,), table, title)
         else:
             single[key] = table
     if single and name:
-        tables.insert(0, _plain_table(source, place, single, name))
+        tables.insert(0, _plain_table(source, (), single, name))
     return tables
 
 

@@ -35,7 +35,7 @@ from epicyclic.show.page import (
 from epicyclic.show.plots.loss_map import at_temperatures, left_out_line, map_at
 from epicyclic.show.plots.sweep import LEFT_OUT, shown_results
 from epicyclic.show.record import ResultRecord, sets_of
-from epicyclic.show.summary import all_warnings, first_remarks, first_warnings
+from epicyclic.show.summary import all_warnings, first_lists
 from epicyclic.show.uncertainty_tables import grid_table, uncertainty_items
 from epicyclic.study.friction import methods_of
 from epicyclic.study.maps.tables import map_case, map_inputs, statements
@@ -51,7 +51,7 @@ def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
 
 def result_section(record: ResultRecord, drawings: Drawings, name: str) -> Section:
     """One chapter, without content if the record has none for it."""
-    return _CHAPTERS[name](record, drawings)
+    return Section(name, *_CHAPTERS[name](record, drawings))
 
 
 _DIAMETERS = ("reference_diameter", "base_diameter", "tip_diameter", "root_diameter")
@@ -104,21 +104,15 @@ def _uncertainty(record: ResultRecord, drawings: Drawings) -> tuple[Item, ...]:
     return tuple(items)
 
 
-def _first(result: Result) -> Iterator[Item]:
-    """What is missing or outside every model, and what weighs most, as on the first screen."""
-    remarks, warnings = tuple(first_remarks(result, None)), first_warnings(result)
-    if remarks:
-        yield Listing(remarks)
-    if warnings.items:
-        yield warnings
-
-
 def _losses(result: Result, drawings: Drawings) -> tuple[Item, ...]:
+    if result.train is not None:
+        return _train_losses(result, result.train, drawings)
     return (
         Row((tables.losses_table(result), *gallery(drawings, "losses"))),
-        *_first(result),
+        *first_lists(result, None),
         Row((tables.members_table(result), *gallery(drawings, "loss-sum"))),
         *gallery(drawings, "power-flow", wide=True),
+        *tables.standing_items(result),
     )
 
 
@@ -126,12 +120,13 @@ def _train_losses(result: Result, train: Train, drawings: Drawings) -> tuple[Ite
     """Sums, what is missing, power flow, shafts, rolling powers, every single loss."""
     return (
         tables.sums_table(result, train),
-        *_first(result),
+        *first_lists(result, None),
         *gallery(drawings, "power-flow", wide=True),
         Row((*gallery(drawings, "losses"), *gallery(drawings, "loss-sum"))),
         tables.shafts_table(result),
         Row((tables.rolling_table(result, train), *tables.clutches_table(train))),
         *tables.terms_table(result, train),
+        *tables.standing_items(result),
     )
 
 
@@ -259,19 +254,11 @@ def versions_line(versions: Mapping[str, str]) -> Listing:
     return Listing((", ".join(f"{name} {version}" for name, version in versions.items()),))
 
 
-def _losses_chapter(record: ResultRecord, drawings: Drawings) -> Section:
-    result = record.result
-    train = result.train
-    losses = _losses(result, drawings) if train is None else _train_losses(result, train, drawings)
-    return Section("losses", "Losses", (*losses, *tables.standing_items(result)))
-
-
-def _load_chapter(record: ResultRecord, drawings: Drawings) -> Section:
-    items: tuple[Item, ...] = (
-        *tables.mesh_tables(record.result),
+def _load(result: Result, drawings: Drawings) -> tuple[Item, ...]:
+    return (
+        *tables.mesh_tables(result),
         *gallery(drawings, "line-load", "pressure", "pair-load", "transmission-error", "stiffness"),
     )
-    return Section("load", "Load on the teeth", items)
 
 
 def _details(record: ResultRecord) -> tuple[Item, ...]:
@@ -281,19 +268,22 @@ def _details(record: ResultRecord) -> tuple[Item, ...]:
     return tuple(tables.details(read_case(record.given), record.result))
 
 
-_CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
-    "losses": _losses_chapter,
-    "uncertainty": lambda record, drawings: Section(
-        "uncertainty", "Uncertainty of this result", _uncertainty(record, drawings), BAND_LEAD
+_Chapter = tuple[str, tuple[Item, ...]] | tuple[str, tuple[Item, ...], str]
+"""Title and content, and what stands before this."""
+_CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], _Chapter]] = {
+    "losses": lambda record, drawings: ("Losses", _losses(record.result, drawings)),
+    "uncertainty": lambda record, drawings: (
+        "Uncertainty of this result",
+        _uncertainty(record, drawings),
+        BAND_LEAD,
     ),
-    "validity": lambda record, drawings: Section(
-        "validity", "Validity", _validity(record.result), _validity_lead(record.result)
+    "validity": lambda record, drawings: (
+        "Validity",
+        _validity(record.result),
+        _validity_lead(record.result),
     ),
-    "temperatures": lambda record, drawings: Section(
-        "temperatures", "Temperatures", _heat(record.result, drawings)
-    ),
-    "gears": lambda record, drawings: Section(
-        "gears",
+    "temperatures": lambda record, drawings: ("Temperatures", _heat(record.result, drawings)),
+    "gears": lambda record, drawings: (
         "Gears",
         (
             *gallery(drawings, "arrangement"),
@@ -302,26 +292,21 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
             *tables.planets_table(record.result),
         ),
     ),
-    "load": _load_chapter,
-    "details": lambda record, drawings: Section("details", "Strength", _details(record)),
-    "friction": lambda record, drawings: Section(
-        "friction",
+    "load": lambda record, drawings: ("Load on the teeth", _load(record.result, drawings)),
+    "details": lambda record, drawings: ("Strength", _details(record)),
+    "friction": lambda record, drawings: (
         "Friction in the meshes",
         gallery(drawings, "friction", "sliding", "film", "friction-power"),
     ),
-    "bearing": lambda record, drawings: Section("bearing", *_bearings(record, drawings)),
-    "pockets": lambda record, drawings: Section(
-        "pockets",
+    "bearing": _bearings,
+    "pockets": lambda record, drawings: (
         "Pockets",
         gallery(drawings, "pocket-pressure", "pocket-volume", "pocket-power"),
         _POCKET_LEAD,
     ),
-    "oil": lambda record, drawings: Section("oil", "Oil", tuple(tables.oil_table(record.result))),
-    "methods": lambda record, drawings: Section(
-        "methods", "Methods and assumptions", _methods(record.result)
-    ),
-    "inputs": lambda record, drawings: Section(
-        "inputs",
+    "oil": lambda record, drawings: ("Oil", tuple(tables.oil_table(record.result))),
+    "methods": lambda record, drawings: ("Methods and assumptions", _methods(record.result)),
+    "inputs": lambda record, drawings: (
         "Inputs",
         (
             *input_tables(record.result.inputs, record.given, record.result.models),
@@ -329,9 +314,7 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], Section]] = {
         ),
         _INPUT_LEAD,
     ),
-    "versions": lambda record, drawings: Section(
-        "versions", "Versions", (versions_line(record.result.versions),)
-    ),
+    "versions": lambda record, drawings: ("Versions", (versions_line(record.result.versions),)),
 }
 """By name; each computes nothing of a growing record that it does not show."""
 

@@ -8,9 +8,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.constrain import Constrain
-from rich.text import Text
 
 from epicyclic.build.result import NOT_INCLUDED, UNCOVERED
 from epicyclic.losses.ranges import concern_text, found_text, limits_text, weight_of
@@ -20,7 +19,7 @@ from epicyclic.messages import sentence
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import Drawings, KeyFigure, Listing, Row, Section, Table, gallery
 from epicyclic.show.result_tables import key_figures, locking_text, losses_table, sums_table
-from epicyclic.show.terminal import Sentence, as_on_page, spaced
+from epicyclic.show.terminal import as_on_page, spaced
 from epicyclic.study.bands.advice import Known, is_on_first_screen, main_causes
 from epicyclic.study.operating import operating_line
 from epicyclic.units import celsius_text, efficiency_text, known_text, percent
@@ -40,15 +39,9 @@ _END_OF_SENTENCE = re.compile(r"(?<=\w[\w)])\. (?=[A-Z])")
 def first_screen(result: Result, known: Known | None) -> RenderableType:
     """What is read first, in at most 40 lines of 80 columns, of a train 55."""
     head = (result.title or result.kind, operating_line(result.inputs["operation"]))
-    remarks, warnings = tuple(first_remarks(result, known)), first_warnings(result)
-    parts: list[RenderableType] = [
-        Text("\n".join(head)),
-        Text("\n".join(headline(result, known))),
-        as_on_page(loss_summary(result)),
-        *([Group(*map(Sentence, remarks))] if remarks else []),
-        *([as_on_page(warnings)] if warnings.items else []),
-    ]
-    return Constrain(spaced(*parts, _NEXT), WIDTH)
+    lines = "\n".join(headline(result, known))
+    items: tuple[Table | Listing, ...] = (loss_summary(result), *first_lists(result, known))
+    return Constrain(spaced("\n".join(head), lines, *map(as_on_page, items), _NEXT), WIDTH)
 
 
 def head_figures(result: Result, known: Known | None) -> Iterator[KeyFigure]:
@@ -88,6 +81,13 @@ def loss_summary(result: Result) -> Table:
     if result.train is None:
         return losses_table(result, most=MOST_OF_SET)
     return sums_table(result, result.train, most=MOST_ROWS)
+
+
+def first_lists(result: Result, known: Known | None) -> Iterator[Listing]:
+    """What is missing or outside every model, and what weighs most; nothing if nothing is."""
+    for found in (Listing(tuple(first_remarks(result, known))), first_warnings(result)):
+        if found.items:
+            yield found
 
 
 def first_remarks(result: Result, known: Known | None) -> Iterator[str]:
@@ -177,7 +177,5 @@ def all_warnings(result: Result) -> tuple[str, ...]:
 
 def summary_section(result: Result, known: Known | None, drawings: Drawings) -> Section:
     """What is read first, as on the first screen of the command."""
-    remarks = Listing(tuple(first_remarks(result, known)))
-    lists = [it for it in (remarks, first_warnings(result)) if it.items]
     row = Row((loss_summary(result), *gallery(drawings, "losses")))
-    return Section("summary", "Summary", (row, *lists))
+    return Section("summary", "Summary", (row, *first_lists(result, known)))

@@ -288,14 +288,7 @@ class _TrainWriter(_Writer):
     def entries(self, key: str) -> list[str]:
         """A table of the user's names, one line each."""
         lines = ["", f"[{key}]".ljust(COMMENT_COLUMN) + f"# {self.about.get(key, _LISTS[key])}"]
-        for name, value in self.tables.get(key, {}).items():
-            lines.append(
-                self._line(f"{toml_key(name)} = {toml_value(value)}", toml_keys([key, name]))
-            )
-        for name in self._told(key):
-            if name not in self.tables.get(key, {}):
-                lines.append(self._line(f"# {toml_key(name)} = ...", toml_keys([key, name])))
-        return lines
+        return [*lines, *self._keys(key, self.tables.get(key, {}))]
 
     def states(self) -> list[str]:
         """What brakes and clutches do, state by state."""
@@ -345,12 +338,15 @@ class _TrainWriter(_Writer):
             mark = "" if name in given else "# "
             yield ""
             yield self._line(f"{mark}[{key}]", key)
-            for inner, value in given.get(name, {}).items():
-                text = f"{toml_key(inner)} = {toml_value(value)}"
-                yield self._line(text, f"{key}.{inner}")
-            for inner in self._told(key):
-                if inner not in given.get(name, {}):
-                    yield self._line(f"# {toml_key(inner)} = ...", f"{key}.{inner}")
+            yield from self._keys(key, given.get(name, {}))
+
+    def _keys(self, place: str, given: Mapping[str, Any]) -> Iterator[str]:
+        """The keys of a table that are given, then those of which something is told."""
+        for name, value in given.items():
+            key = toml_key(name)
+            yield self._line(f"{key} = {toml_value(value)}", f"{place}.{key}")
+        for key in (toml_key(name) for name in self._told(place) if name not in given):
+            yield self._line(f"# {key} = ...", f"{place}.{key}")
 
     def _told(self, place: str) -> Iterator[str]:
         """Names below a table of which something is told, each once."""

@@ -185,7 +185,8 @@ def listed(title: str, items: Sequence[str]) -> Group:
     """Sentences below a title."""
     if not items:
         return Group(Text(f"{title}: none"))
-    return Group(Text(title, style="bold"), *map(Sentence, items))
+    head = [Text(title, style="bold")] if title else []
+    return Group(*head, *map(Sentence, items))
 
 
 @dataclass(frozen=True, slots=True)

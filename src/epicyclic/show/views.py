@@ -122,17 +122,14 @@ class Result(plain.Result):
     def _repr_html_(self) -> str:
         """Operating point, key figures, losses, warnings."""
         from epicyclic.show.html import items_html
-        from epicyclic.show.page import Listing
         from epicyclic.show.result_tables import key_figures
-        from epicyclic.show.summary import first_remarks, first_warnings, loss_summary
+        from epicyclic.show.summary import first_lists, loss_summary
 
         figures = (f"{it.label} {it.cell.text} {it.unit}".rstrip() for it in key_figures(self))
         lines = (operating_line(self.inputs["operation"]), ", ".join(figures))
         title = escape(self.title or self.kind.replace("_", " "))
-        lists = [Listing(tuple(first_remarks(self, None))), first_warnings(self)]
         head = f"<p><strong>{title}</strong><br>{'<br>'.join(map(escape, lines))}</p>"
-        items = [it for it in lists if it.items]
-        return f"<div>{head}{items_html(loss_summary(self), *items)}</div>"
+        return f"<div>{head}{items_html(loss_summary(self), *first_lists(self, None))}</div>"
 
 
 def save(result: plain.Result, path: Path) -> None:
