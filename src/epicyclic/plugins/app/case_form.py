@@ -414,7 +414,7 @@ class Desk:
         """The command that does the same."""
         words = ["epicyclic", verb, self.source]
         for key, value in self.changes.items():
-            words += ["--set", f"{key}={_text(value)}"]
+            words += ["--set", f"{key}={_shown(value, None)}"]
         return shlex.join([*words, *arguments])
 
     def text(self) -> str:
@@ -425,13 +425,6 @@ class Desk:
 def owner_of(key: str) -> str:
     """The table that holds a key."""
     return ".".join(map(toml_key, key_parts(key)[:-1]))
-
-
-def _text(value: Any) -> str:
-    """A value as ``--set`` reads it."""
-    if value is None:
-        return ""
-    return value if isinstance(value, str) else toml_value(value)
 
 
 def _elsewhere(

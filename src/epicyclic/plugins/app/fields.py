@@ -202,8 +202,9 @@ class Form:
         self._fields[entry.key] = field
         if entry.is_own:
             with field.add_slot("append"):
-                _icon("edit", "Rename", partial(self._ask_rename, entry.key, entry.name))
-                _icon("close", "Remove", partial(self._remove, entry.key))
+                rename = partial(self._ask_rename, entry.key, entry.name)
+                _icon("edit", rename).tooltip("Rename")
+                _icon("close", partial(self._remove, entry.key)).tooltip("Remove")
             return
         if not (entry.choices or entry.is_text) and number_in(entry.text) is not None:
             self._movable(entry, field)
@@ -213,9 +214,7 @@ class Form:
         assert field.parent_slot is not None
         holder = field.parent_slot.parent
         with field.add_slot("append"):
-            ui.button(icon="tune", on_click=partial(self._slider, entry, holder)).props(
-                "flat dense round size=sm tabindex=-1"
-            ).mark(f"tune-{entry.key}")
+            _icon("tune", partial(self._slider, entry, holder)).mark(f"tune-{entry.key}")
 
     def _slider(self, entry: Entry, holder: Element) -> None:
         """Show the slider of an input, or take it away."""
@@ -275,7 +274,6 @@ def _small(label: str, then: Callable[[], object]) -> None:
     ui.button(label, on_click=then).props("flat dense no-caps size=sm")
 
 
-def _icon(icon: str, label: str, then: Callable[[], object]) -> None:
+def _icon(icon: str, then: Callable[[], object]) -> ui.button:
     """A button in a field."""
-    button = ui.button(icon=icon, on_click=then).props("flat dense round size=sm tabindex=-1")
-    button.tooltip(label)
+    return ui.button(icon=icon, on_click=then).props("flat dense round size=sm tabindex=-1")

@@ -10,6 +10,7 @@ import socket
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
+from functools import partial
 from http.cookies import CookieError, SimpleCookie
 from importlib import resources
 from pathlib import Path
@@ -302,7 +303,8 @@ class Page:
             ui.space()
             show = ui.button("Inputs", icon="edit").props("flat no-caps").classes("narrow")
             show.on("click", js_handler=_TURN_OVER)
-            ui.button("Open", icon="folder_open", on_click=self._ask).props("flat no-caps")
+            ask = partial(self._choose, self._open)
+            ui.button("Open", icon="folder_open", on_click=ask).props("flat no-caps")
             case_menu(lambda: self.desk, self._do)
             ui.button("Command", icon="terminal", on_click=self._show_command).props("flat no-caps")
         with ui.element("div").classes("desk"):
@@ -328,9 +330,6 @@ class Page:
         self._form_place.clear()
         with self._form_place:
             self._form = Form(self.desk, self._changed, self._moved)
-
-    def _ask(self) -> None:
-        self._choose(self._open)
 
     def _choose(self, then: Any) -> None:
         ask_for_case(self._shelf.folder, then)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from nicegui import background_tasks, events, ui
 from nicegui.element import Element
@@ -379,17 +379,39 @@ _NAMES = ("kept", "now")  # Of two cases beside each other.
 _TOLD = "Keep the current case, then change it: both are shown here side by side."
 
 
-class MapView:
+class View:
+    """What a tab shows that is no chapter of the result."""
+
+    title: str
+
+    def __init__(self) -> None:
+        self._latest = Latest(self._work)
+
+    async def show(self) -> None:
+        """Make its elements."""
+
+    def age(self) -> None:
+        """Mark what is of another case than that of the form, if anything is."""
+
+    async def follow(self) -> None:
+        """After a change of the case, while it is shown; the last change counts."""
+        await self._latest.want()
+
+    async def _work(self) -> None:
+        """Show what follows from the case as it is now, if anything does."""
+
+
+class MapView(View):
     """Loss and efficiency over speed and torque, by a worker beside those of the page."""
 
     title = "Map"
 
     def __init__(self, desk: Callable[[], Desk], worker: Worker) -> None:
+        super().__init__()
         self._desk, self._worker = desk, worker
         self._texts: dict[str, str] = {}
         self._known: tuple[Study, Answer] | None = None
         self._sheet: Sheet | None = None
-        self._latest = Latest(self._work)
         self._is_asked = False
 
     async def show(self) -> None:
@@ -417,10 +439,6 @@ class MapView:
             if now is not None:
                 self._sheet.age(replace(self._known[0], case=now))
 
-    async def follow(self) -> None:
-        """Show the map, computed again if it is of another case; the last change counts."""
-        await self._latest.want()
-
     async def _save(self, name: str) -> None:
         if self._known is None:
             ui.notify("There is no map yet. Compute one first.")
@@ -438,6 +456,7 @@ class MapView:
         await self.follow()
 
     async def _work(self) -> None:
+        """Show the map, computed again if it is of another case."""
         case = self._desk().case
         is_old = self._known is not None and case not in (None, self._known[0].case)
         try:
@@ -493,7 +512,7 @@ def _values(axis: str, part: OperatingValue, text: str) -> str:
     return f"{start:g}:{end:g}:{MAP_STEPS[axis]} {part.unit}"
 
 
-class CompareView:
+class CompareView(View):
     """The case beside another one, which `choose` asks for: it calls what it is given with it."""
 
     title = "Compare"
@@ -501,10 +520,10 @@ class CompareView:
     def __init__(
         self, desk: Callable[[], Desk], do: Do, choose: Callable[[Callable[[Desk], None]], None]
     ) -> None:
+        super().__init__()
         self._desk, self._do, self._choose = desk, do, choose
         self._other: Desk | None = None
         self._sheet: Sheet | None = None
-        self._latest = Latest(self._work)
 
     async def show(self) -> None:
         """Buttons that set the other case, and both side by side."""
@@ -530,11 +549,8 @@ class CompareView:
         self._other, self._sheet = other, None
         background_tasks.create(self.follow())
 
-    async def follow(self) -> None:
-        """Both cases as they are now; the last change counts."""
-        await self._latest.want()
-
     async def _work(self) -> None:
+        """Show both cases."""
         now, other = self._desk(), self._other
         if self._body.is_deleted or now.case is None:
             return
@@ -582,13 +598,14 @@ class CompareView:
                 sheet.item(table)
 
 
-class DesignView:
+class DesignView(View):
     """The front of a search for designs; a click on a point opens that design."""
 
     title = "Designs"
     _failed: Failure
 
     def __init__(self, folder: Path, worker: Worker, then: Callable[[Desk], None]) -> None:
+        super().__init__()
         self._folder, self._worker, self._then = folder, worker, then
         self._front: Front | None = None
 
@@ -606,12 +623,6 @@ class DesignView:
         self._failed = Failure()
         self._body = ui.element("div")
         self._fill()
-
-    def age(self) -> None:
-        """Nothing here is of the case of the form."""
-
-    async def follow(self) -> None:
-        """Nothing here is of the case of the form."""
 
     async def _take(self, event: events.UploadEventArguments) -> None:
         self._failed.tell("")
@@ -652,21 +663,6 @@ _DESIGNS = (
     "search begins at once, or the candidates.nc that it has written. A click on a point opens "
     "that design."
 )
-
-
-class View(Protocol):
-    """What a tab shows that is no chapter of the result."""
-
-    title: str
-
-    async def show(self) -> None:
-        """Make its elements."""
-
-    def age(self) -> None:
-        """Mark what is of another case than that of the form."""
-
-    async def follow(self) -> None:
-        """After a change of the case, while it is shown."""
 
 
 GROUPS = {

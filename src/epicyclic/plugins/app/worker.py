@@ -27,7 +27,7 @@ from epicyclic.kernels import listeners
 from epicyclic.losses.friction import contact_progress
 from epicyclic.plugins.rexs.exporting import rexs_bytes
 from epicyclic.plugins.rexs.files import is_rexs
-from epicyclic.result.result import Result, in_words, set_of
+from epicyclic.result.result import in_words, set_of
 from epicyclic.show.page import Drawing, KeyFigure, Section, Table
 from epicyclic.show.plots.catalogue import PLOTS, Panel, Stored, draw, drawing, figure_of, svg_text
 from epicyclic.show.plots.drawing import POSITION, Turning, turning_mesh, turning_set
@@ -366,14 +366,16 @@ def moved(case: Case, progress: Progress) -> list[KeyFigure]:
 
 def compared(first: Case, second: Case, names: tuple[str, str], progress: Progress) -> list[Table]:
     """Two cases side by side."""
-    return list(side_by_side(_result(first, progress), _result(second, progress), names))
+    one, two = (_record(case, progress).result for case in (first, second))
+    return list(side_by_side(one, two, names))
 
 
 def beside(
     first: Case, second: Case, names: tuple[str, str], ending: str, progress: Progress
 ) -> list[Drawing] | bytes:
     """The losses of two cases in one picture, for a page or as a file of this type holds it."""
-    results = dict(zip(names, (_result(case, progress) for case in (first, second)), strict=True))
+    cases = dict(zip(names, (first, second), strict=True))
+    results = {name: _record(case, progress).result for name, case in cases.items()}
     if ending == IN_PAGE:
         panel = Panel("", partial(plot_losses_beside, results))
         return [drawing(panel, "losses-beside", WIDE, is_live=True)]
@@ -382,10 +384,10 @@ def beside(
     return figure_bytes(figure, ending)
 
 
-def _result(case: Case, progress: Progress) -> Result:
+def _record(case: Case, progress: Progress) -> ResultRecord:
     found = _stored(Study(case), progress)
     assert isinstance(found, ResultRecord)
-    return found.result
+    return found
 
 
 def picture(study: Study, name: str, ending: str, progress: Progress) -> list[Drawing] | bytes:
@@ -400,8 +402,7 @@ def turning(
     case: Case, what: str, ending: str, phase: float, progress: Progress
 ) -> tuple[bytes, dict[str, Any]]:
     """Gears that turn, as a file at one phase, or for a page with what its script needs."""
-    found = _stored(Study(case), progress)
-    assert isinstance(found, ResultRecord)
+    found = _record(case, progress)
     point = operating_line(found.result.inputs["operation"])
     if ending != IN_PAGE:
         drawn = _turning(found, what, (found.title, point), phase)
@@ -444,7 +445,9 @@ def saved(study: Study, name: str, original: str | None, progress: Progress) -> 
         suffix = name if name.startswith(".") else formats()[name].suffix
         path = Path(folder) / f"result{suffix}"
         if is_rexs(path):
-            return path.suffix, rexs_bytes(path, _result(study.case, progress), original, None)
+            return path.suffix, rexs_bytes(
+                path, _record(study.case, progress).result, original, None
+            )
         if path.suffix in PAGES:
             from epicyclic.show.html import page_bytes, report_html  # only what is saved needs it
 
