@@ -55,10 +55,10 @@ ADDED_TO_CASE = {
 }
 """Lines of what was added since the house was built, which the changelog counts apart."""
 CEILINGS = {
-    "lines": 71_660 + sum(ADDED.values()),
-    "lines of the core": 55_375 + sum(ADDED_TO_THE_CORE.values()),
-    "lines of case": 4_500 + sum(ADDED_TO_CASE.values()),
-    "files": 280,
+    "lines": 70_120 + sum(ADDED.values()),
+    "lines of the core": 54_260 + sum(ADDED_TO_THE_CORE.values()),
+    "lines of case": 4_390 + sum(ADDED_TO_CASE.values()),
+    "files": 260,
     "longest chain of imports": 25,
     "modules loaded by epicyclic.case.case": 45,
     "kernels loaded by epicyclic.case.case": 0,
