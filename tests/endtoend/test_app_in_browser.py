@@ -88,7 +88,7 @@ def _tab(page, name: str) -> None:
 
 
 def _watts(page) -> float:
-    figure = page.locator("main > div > .key-figures .key-figure", has_text="total loss")
+    figure = page.locator(".results > div > .key-figures .key-figure", has_text="total loss")
     return float(figure.locator(".value > *").first.inner_text())
 
 
@@ -304,7 +304,7 @@ def _processes(page) -> int:
 def test_names_are_added_renamed_and_removed_in_the_form(open_app):
     page = open_app("train-eaxle")
     _solved(page)
-    page.locator("aside").get_by_text("bearings", exact=True).click()
+    page.locator("aside").get_by_text("Bearings", exact=True).click()
     page.get_by_role("button", name="Add to bearings").click()
     page.locator(".q-dialog").get_by_label("name").fill("N1")
     page.locator(".q-dialog").get_by_role("button", name="OK").click()
@@ -334,7 +334,7 @@ def test_a_map_is_computed_cancelled_and_saved(open_app):
     torque.fill("0:2000:900 N*m")
     page.get_by_role("button", name="Compute").click()
     page.get_by_text(re.compile(r"points of the map: \d+ of \d\d\d\d")).wait_for(timeout=SOLVED)
-    page.locator("main .chapter").get_by_role("button", name="Cancel").click()
+    page.locator(".results .chapter").get_by_role("button", name="Cancel").click()
     page.get_by_text("Stopped before it was finished.").wait_for()
     torque.fill("100:2000:3 N*m")
     page.get_by_role("button", name="Compute").click()
@@ -375,7 +375,7 @@ def test_two_cases_stand_side_by_side(open_app):
     page = open_app("talbot-2012")
     _solved(page)
     _tab(page, "Compare")
-    page.get_by_role("button", name="Keep the case").click()
+    page.get_by_role("button", name="Keep the current case").click()
     field = page.get_by_label("speed", exact=True)
     field.fill("5000")
     field.press("Enter")
@@ -397,7 +397,7 @@ def test_on_a_phone_results_come_first_and_the_form_takes_their_place(open_app):
     assert not page.locator("aside").is_visible()
     page.get_by_role("button", name="Inputs").click()
     page.get_by_label("torque", exact=True).wait_for()
-    assert not page.locator("main").is_visible()
+    assert not page.locator(".results").is_visible()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     assert not page.wrong
 
@@ -429,7 +429,7 @@ def test_what_is_shown_at_the_end_belongs_to_the_last_of_many_quick_inputs(open_
     _solved(page)
     page.wait_for_selector(".state.idle", state="attached", timeout=SOLVED)
     field = page.get_by_label("torque", exact=True)
-    cancel = page.locator("main .state", has_text="Cancel").get_by_role("button").first
+    cancel = page.locator(".results .state", has_text="Cancel").get_by_role("button").first
 
     def type_quickly(*values):
         for value in values:
@@ -439,13 +439,13 @@ def test_what_is_shown_at_the_end_belongs_to_the_last_of_many_quick_inputs(open_
 
     def at_rest():
         return (
-            page.locator("main > div > .state.idle").count() == 1
+            page.locator(".results > div > .state.idle").count() == 1
             and page.locator(".behind").count() == 0
             and abs(_watts(page) / wanted - 1) < 5e-3  # three digits are shown
         )
 
     def told():
-        return page.locator("main > .problem").locator("visible=true")
+        return page.locator(".results > .problem").locator("visible=true")
 
     case = ep.load_case("talbot-2012")
     for values in ((311, 977, 613), (431,)):
@@ -462,7 +462,7 @@ def test_what_is_shown_at_the_end_belongs_to_the_last_of_many_quick_inputs(open_
     cancel.click(timeout=SOLVED)
     wanted = ep.solve(case.updated({"operation.torque": "719 N*m"})).total
     _until(lambda: abs(_watts(page) / wanted - 1) < 5e-3)
-    page.wait_for_selector("main > div > .state.idle", state="attached", timeout=SOLVED)
+    page.wait_for_selector(".results > div > .state.idle", state="attached", timeout=SOLVED)
     assert (page.locator(".behind").count() > 0) == (told().count() > 0)
     assert not page.wrong
 
@@ -491,8 +491,8 @@ def test_a_click_on_the_front_opens_the_design(open_app, tmp_path):
     page = open_app("talbot-2012")
     _solved(page)
     _tab(page, "Designs")
-    page.locator("main input[type=file]").set_input_files(tmp_path / "task.toml")
-    points = page.locator("main .js-plotly-plot .points path.point")
+    page.locator(".results input[type=file]").set_input_files(tmp_path / "task.toml")
+    points = page.locator(".results .js-plotly-plot .points path.point")
     points.last.wait_for(timeout=SOLVED)
     box = points.last.bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
@@ -511,5 +511,5 @@ def test_a_task_of_designs_that_names_files_is_refused(open_app, tmp_path):
     _tab(page, "Designs")
     text = 'ratio = 3\n[case.models]\noil_model = "measured.toml"\n'
     (tmp_path / "task.toml").write_text(text)
-    page.locator("main input[type=file]").set_input_files(tmp_path / "task.toml")
+    page.locator(".results input[type=file]").set_input_files(tmp_path / "task.toml")
     page.get_by_text("names a file, which the app does not open").wait_for()

@@ -309,7 +309,7 @@ class Page:
             ui.button("Command", icon="terminal", on_click=self._show_command).props("flat no-caps")
         with ui.element("div").classes("desk"):
             self._form_place = ui.element("aside")
-            with ui.element("main"):
+            with ui.element("section").classes("results"):
                 self._problems = ui.element("div").classes("problems")
                 self._failed = Failure()
                 with ui.element("div") as self._results:
