@@ -267,8 +267,9 @@ event.register("numba:compile", _Listener())
 
 # numba asks whether scipy.linalg is there when it loads sums and products of arrays, and so would
 # import it, a tenth of a `run`, for kernels that do not call it. One that does imports it all the
-# same.
-_ask, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+# same. A numba that asks by another name goes on asking.
+_ask: Any = getattr(linalg, "ensure_blas", None)
+linalg.ensure_blas = lambda: None
 import_module("numba.np.arraymath")
 linalg.ensure_blas = _ask
 

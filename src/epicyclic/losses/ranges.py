@@ -377,6 +377,7 @@ def check_contacts(
         values = getattr(contacts, item.name) if item.of is None else item.of(contacts)
         local = np.shape(values)[-1:] == loaded.shape[-1:]
         flags = _flags(use, item, values, weight if local else 1.0, part, loaded if local else True)
+        # one flag may be that of all points; there is none where all keep the range
         for own, flag in zip(found, flags * (len(found) if len(flags) == 1 else 1), strict=False):
             own += [flag] if flag else []
     each = map(tuple, found)
