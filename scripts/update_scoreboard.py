@@ -102,7 +102,7 @@ def _changed(own: MeasuredSet, name: str, value: float) -> dict[str, Any]:
     return {"lubricant.oil": {**plain(oil), "limiting_traction": changed}}
 
 
-def factors(scores: Sequence[Score], kind: str) -> Iterator[Sequence[str]]:
+def factors(scores: Sequence[Score], kind: str) -> Iterator[tuple[int, Sequence[str]]]:
     """For each set the factor of its model that the other sets give, and what lies inside it."""
     for score in scores:
         own, others = score.set, [it for it in scores if it is not score]
@@ -110,7 +110,8 @@ def factors(scores: Sequence[Score], kind: str) -> Iterator[Sequence[str]]:
         given = plain(own.case.given()).get("uncertainty", {})
         uncertain = given | {f"model_form.{kind}": {"lognormal_factor": factor}}
         again = scored(own, "", {"uncertainty": uncertain}, banded=True)
-        yield (
+        assert again.inside is not None
+        yield again.inside, (
             own.name, kind, f"{model_factor([score]):.2f}", f"{factor:.2f}",
             f"{again.inside} of {len(own.points)}",
         )  # fmt: skip
@@ -121,9 +122,12 @@ def of_defaults(scores: Sequence[Score]) -> tuple[str, str]:
     bearings = [it for it in scores if hasattr(it.set.case, "bearings")]
     gears = [it for it in scores if it not in bearings]
     rows: list[Sequence[str]] = []
+    count, inside = sum(len(it.set.points) for it in scores), 0
     for kind, own in (("sliding", gears), ("shaft-bearings", bearings)):
-        rows += factors(own, kind)
-        rows.append(("none", kind, "", f"{model_factor(own):.2f}", ""))
+        counts, found = zip(*factors(own, kind), strict=True)
+        inside += sum(counts)
+        rows += [*found, ("none", kind, "", f"{model_factor(own):.2f}", "")]
+    rows.append(("each in turn", "", "", "", f"{inside} of {count}, {percent(inside / count, 0)}"))
     head = ("set left out", "model", "its own factor", "factor of the others", "inside with it")
     return sensitivity(gears), table(head, rows)
 

@@ -316,8 +316,8 @@ def _locked(folder: Path, *, wait: bool) -> int | None:
 
 # How often Python looks through memory for what nothing refers to any more.
 
-NEW_OBJECTS = 100_000
-"""So many make Python look for garbage. Imports make several times as many, all of them to stay."""
+NEW_OBJECTS = 300_000
+"""So many make Python look for garbage. A start makes 250,000, all of them to stay."""
 
 
 def look_seldom() -> None:

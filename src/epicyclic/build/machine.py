@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Any
@@ -23,6 +22,7 @@ from epicyclic.case.tables.operation import (
     ThermalTable,
 )
 from epicyclic.contact.temperatures import LUBRICATION_FACTORS
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.losses.pocket_tables import FlowTables

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import cast
@@ -32,6 +31,7 @@ from epicyclic.case.tables.operation import (
 from epicyclic.case.train_tables import ComputedSet, ListedSet
 from epicyclic.contact.fitted_models import OilModel
 from epicyclic.contact.temperatures import Solid
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.stated import StatedMaterial

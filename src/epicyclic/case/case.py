@@ -5,7 +5,6 @@ from __future__ import annotations
 import cmath
 import re
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from html import escape
 from pathlib import Path
@@ -75,6 +74,7 @@ from epicyclic.case.train_tables import (
     TrainOperation,
     form_of_set,
 )
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.assembly import place_problems, rack_problems, set_problems
 from epicyclic.gears.gearing import Gearing
@@ -93,9 +93,8 @@ from epicyclic.messages import (
     written,
 )
 from epicyclic.oil.grades import short_oil_told
-from epicyclic.schema.fields import quantity_of, to_inputs
+from epicyclic.schema.fields import Table, quantity_of, to_inputs
 from epicyclic.schema.read import flattened, plain, read_file, split_key
-from epicyclic.schema.table import Table
 from epicyclic.schema.validation import AnyCase, Validation, tables_of, validate
 from epicyclic.units import unit_text
 

@@ -17,7 +17,7 @@ from epicyclic.case.tables.base import (
 )
 from epicyclic.gears.flanks import ReliefShape
 from epicyclic.gears.stated import THICKNESS
-from epicyclic.schema.table import Table, option
+from epicyclic.schema.fields import Table, option
 from epicyclic.units import (
     Angle,
     Deviation,

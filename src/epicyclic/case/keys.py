@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.sizing import Found
 from epicyclic.messages import did_you_mean, dotted, key_parts, value_at, written
 from epicyclic.schema.fields import (
+    Table,
     all_keys,
     bounds_of,
     dict_value,
@@ -23,7 +24,6 @@ from epicyclic.schema.fields import (
     quantity_of,
 )
 from epicyclic.schema.read import flattened, plain, split_key, with_unit_of_key, with_value, without
-from epicyclic.schema.table import Table
 from epicyclic.schema.validation import tables_of, unknown_key
 
 _UNCERTAINTY = "uncertainty."

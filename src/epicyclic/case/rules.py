@@ -46,7 +46,7 @@ from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.machine.train_shape import motion_problems, named_problems
 from epicyclic.messages import PART_NAME, PART_NAME_RULE, did_you_mean, millimetres, written
 from epicyclic.oil.oil import Oil
-from epicyclic.schema.table import Table
+from epicyclic.schema.fields import Table
 from epicyclic.units import BAR
 
 if TYPE_CHECKING:

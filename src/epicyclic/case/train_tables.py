@@ -38,7 +38,7 @@ from epicyclic.case.tables.models import (
     PlanetaryModels,
 )
 from epicyclic.case.tables.operation import ANY_OPERATION, LUBRICATION, LubricationTable
-from epicyclic.schema.table import Table, option
+from epicyclic.schema.fields import Table, option
 from epicyclic.units import (
     Angle,
     HelixAngle,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
 from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import ConvergenceError
 from epicyclic.gears.cutting import Tool, default_tool, tooth_outline
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
@@ -572,14 +572,6 @@ def load_meshes_next_to(
     return _loaded(last[0].mesh, last[0].compliance, forces, deviations, before, start)
 
 
-@lru_cache(maxsize=64)
-def _separation(mesh: Mesh, deviations: FlankDeviations, lines: ContactLines) -> FloatArray:
-    """Gap of the unloaded flanks on all segments, shape (positions, lines, segments). [m]"""
-    separation = deviations.separation(mesh, lines)
-    separation.flags.writeable = False
-    return separation
-
-
 def _loaded(
     mesh: Mesh,
     compliance: MeshCompliance,
@@ -595,7 +587,7 @@ def _loaded(
         normal,
         compliance.influence,
         compliance.coupling,
-        _separation(mesh, deviations, lines),
+        deviations.separation(mesh, lines),
         lines.length,
         compliance.local_a,
         compliance.local_b,

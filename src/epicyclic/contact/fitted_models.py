@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from importlib import metadata
 from itertools import pairwise
@@ -19,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from epicyclic import library
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import CONDITIONS, LineContacts, contacts_at
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, sealed, unsealed
 from epicyclic.kernels.interpolation import covariance_sums, covariances

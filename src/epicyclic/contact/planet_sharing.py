@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import ConvergenceError
 
 ROUNDING = 1e-9

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.gear import Gear, half_angle_from_profile_shift, inverse_involute, involute
 from epicyclic.gears.mesh import Mesh
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from typing import Literal
@@ -11,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import Mesh
 
@@ -205,6 +205,7 @@ class FlankDeviations:
     # if gear 1 drives.
     mirrored: bool = False
 
+    @lru_cache(maxsize=64)  # noqa: B019 - the few deviations that it keeps are small
     def separation(self, mesh: Mesh, lines: ContactLines) -> FloatArray:
         """Gap of the unloaded flanks along the common normal on all segments of `lines`.
 
@@ -221,7 +222,9 @@ class FlankDeviations:
         ):
             overhang = (gear.face_width - mesh.face_width) / 2
             gap = gap + flank.deviation(gear, active_profile(mesh, member), rho, y + overhang)
-        return gap * math.cos(mesh.gear1.rack.base_helix_angle)
+        gap *= math.cos(mesh.gear1.rack.base_helix_angle)
+        gap.flags.writeable = False
+        return gap
 
 
 def active_profile(mesh: Mesh, member: int) -> tuple[float, float]:

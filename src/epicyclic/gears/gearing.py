@@ -9,9 +9,9 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.gears.gear import CARRIER, BasicRack, Gear
 from epicyclic.gears.mesh import Mesh, closing_number, nearest_places, pin_angle, tip_shortening
 from epicyclic.gears.stated import StatedGear, StatedMesh, StatedShared, allowance_shift, half_angle

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_left
-from dataclasses import dataclass
 
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import BasicRack, Gear, inverse_involute, involute
 
 # Span measurement and dimension over balls or pins, and the tooth thickness that they tell.

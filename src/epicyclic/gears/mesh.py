@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeVar
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.gears.gear import BasicRack, Gear, inverse_involute, involute
 
 # The mesh of two gears: operating pressure angle, path of contact, contact ratios, clearances.

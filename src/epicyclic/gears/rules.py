@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import Problem, rising_problems
 from epicyclic.gears import measures
 from epicyclic.gears.cutting import longest_involute

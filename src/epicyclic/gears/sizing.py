@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import InputError, Problem, one_problem
 from epicyclic.gears.assembly import rack_problems, set_problems
 from epicyclic.gears.gear import BasicRack, Gear

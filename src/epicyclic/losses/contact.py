@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,6 +18,7 @@ from epicyclic.contact.elastic_teeth import (
     load_meshes_next_to,
 )
 from epicyclic.contact.line_contact import Flanks, LineContacts
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.flanks import ContactLines, FlankDeviations, contact_lines
 from epicyclic.gears.mesh import Mesh
 from epicyclic.oil.oil import OilState

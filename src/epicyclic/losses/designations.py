@@ -6,13 +6,13 @@ import math
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from typing import Any, Literal
 
 import numpy as np
 
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.messages import did_you_mean
 
 RATING_BAND = 0.3

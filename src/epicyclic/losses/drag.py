@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from epicyclic.arrays import larger, pow, sqrt
+from epicyclic.dataclass import dataclass
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.windage import rim_coefficient
 from epicyclic.oil.oil import MixtureState

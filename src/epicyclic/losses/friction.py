@@ -25,7 +25,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar, Protocol, Self
 
@@ -35,6 +34,7 @@ from epicyclic import library
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.fitted_models import OilModel, read_oil_model, regression_groups
 from epicyclic.contact.line_contact import LEAST_SPEED, LineContacts
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
 from epicyclic.kernels.line_contact import (
     hertz_pressure,

@@ -8,7 +8,6 @@ read. Sliding is Coulomb's with the mixed friction of flanks; starvation, drag, 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
@@ -16,6 +15,7 @@ import numpy as np
 
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import Flanks, LineContacts
+from epicyclic.dataclass import dataclass
 from epicyclic.kernels.line_contact import inlet_film_factor, power
 from epicyclic.losses.mixed_lubrication import mixed_friction
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges

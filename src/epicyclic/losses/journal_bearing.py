@@ -6,11 +6,11 @@ import cmath
 import math
 from bisect import bisect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 
 import numpy as np
 
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.kernels.journal_bearing import FloatArray, journal_pressure
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState

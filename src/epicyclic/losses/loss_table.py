@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Literal
@@ -14,6 +13,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import InputError, Problem, first_of, raise_any, rising_problems
 from epicyclic.files import csv_rows, read_text, refuse
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges

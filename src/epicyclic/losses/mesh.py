@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 
 from epicyclic.arrays import TINY, AtOnce, FloatArray, either, larger, most, total
 from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
+from epicyclic.dataclass import dataclass, field
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction import FrictionModel

@@ -12,13 +12,13 @@ At each contact, in the order of docs/theory/mixed-lubrication.md:
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from epicyclic.arrays import FloatArray, log, sqrt
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.contact.temperatures import flash_temperature
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.flanks import (
     HURST_EXPONENT,
     MIDDLE_OF_CLASS,

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +15,7 @@ import numpy as np
 
 from epicyclic.arrays import AtOnce, BoolArray, FloatArray, Points, of_points, taken, total
 from epicyclic.contact.line_contact import Flanks, LineContacts
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.line_contact import hertz_pressure, line_load_at_pressure
 from epicyclic.kernels.mixed_ehl import needle_rolling_loss_at

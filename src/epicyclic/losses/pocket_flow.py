@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.pocket_flow import periodic_flow
 from epicyclic.kernels.pocket_network import periodic_network

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.cutting import Tool, tooth_outline
 from epicyclic.gears.gear import Gear, involute
 from epicyclic.gears.mesh import Mesh, with_faces

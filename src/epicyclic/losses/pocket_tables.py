@@ -7,7 +7,6 @@ import math
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from importlib import metadata
 from itertools import pairwise
@@ -18,6 +17,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from epicyclic.arrays import Alone, BoolArray, FloatArray, Points, larger, sqrt
+from epicyclic.dataclass import asdict, dataclass, field, replace
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.files import sealed, unsealed
 from epicyclic.gears.cutting import Tool

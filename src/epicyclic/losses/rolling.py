@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
@@ -13,6 +12,7 @@ import numpy as np
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.contact.fitted_models import OilModel, regression_groups, rolling_scale
 from epicyclic.contact.line_contact import CONDITIONS, Flanks, LineContacts
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.interpolation import along_path, over_pressure
 from epicyclic.kernels.line_contact import (

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar, Literal, NamedTuple, get_args
 
 import numpy as np
 
+from epicyclic.dataclass import dataclass
 from epicyclic.losses.designations import SPHERICAL_ANGLE
 from epicyclic.losses.drag import (
     RPM,

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from typing import ClassVar
 
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.losses.designations import bearing_tables
 from epicyclic.losses.drag import RPM
 from epicyclic.losses.shaft_bearing import (

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from epicyclic.arrays import exp, larger, log, norm, pow, sqrt
+from epicyclic.dataclass import dataclass
 from epicyclic.losses.ranges import Range
 from epicyclic.oil.oil import MixtureState
 from epicyclic.units import NUMBER

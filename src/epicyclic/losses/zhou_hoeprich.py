@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 
 from epicyclic.contact.line_contact import Flanks, LineContacts
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.kernels.line_contact import (
     asperity_share,
     equivalent_modulus,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, islice, pairwise
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from epicyclic.arrays import Apart, FloatArray, apart, hypot, largest, side_by_side
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.machine import Machine, Operation, Terms
 
@@ -242,8 +242,11 @@ class Statics:
             column, length = self._column(row.terms(1.0, lost) if first else row.terms(lost, 1.0))
             columns.append(column)
             scale.append(length)
-        scale += self._fixed[1]
-        known_of = {body: self._given[body] for body in self._place}  # with those of friction (T6)
+        fixed, lengths, unknown = self._fixed
+        scale += lengths
+        own, bodies = self.operation, self.machine.bodies
+        given = dict.fromkeys(bodies, 0.0) | dict(own.torques) | {own.input: own.torque}
+        known_of = {body: given[body] for body in bodies}  # with those of friction (T6)
         for friction in frictions:
             one, two = friction.between
             difference = speeds[one] - speeds[two]
@@ -254,7 +257,6 @@ class Statics:
                 if two in known_of:
                     known_of[two] = known_of[two] + torque
         known = side_by_side(known_of.values())
-        fixed = self._fixed[0]
         matrix = np.empty((*known.shape[:-1], *fixed.shape))
         matrix[...] = fixed
         for number, column in enumerate(columns):
@@ -265,7 +267,7 @@ class Statics:
         values = [value * (abs(value) > ROUNDING * size) + 0.0 for value in values]  # no -0.0
         left = (matrix @ side_by_side(values)[..., None])[..., 0] + known
         lambdas = [value / length for value, length in zip(values, scale, strict=False)]
-        outside = self._given | dict(zip(self._unknown, values[len(scale) :], strict=True))
+        outside = given | dict(zip(unknown, values[len(scale) :], strict=True))
         meshes = {row.key: -value * row.teeth[0] for row, value in zip(rows, lambdas, strict=False)}
         return Balance(
             torques=outside,
@@ -282,40 +284,30 @@ class Statics:
         )
 
     @cached_property
-    def _place(self) -> Mapping[str, int]:
-        return {body: index for index, body in enumerate(self.machine.bodies)}
+    def _fixed(self) -> tuple[FloatArray, list[float], list[str]]:
+        """Columns of clutches and unknown torques behind those of meshes; lengths of the former.
 
-    @cached_property
-    def _unknown(self) -> tuple[str, ...]:
-        """Torques that balance: of the output, and of bodies of given speed but the input."""
-        own = self.operation
+        Unknown are the torques of the output, and of bodies of given speed but the input.
+        """
+        own, bodies = self.operation, self.machine.bodies
         held = (body for body in own.speeds if body not in (own.input, own.output))
-        return tuple(body for body in (own.output, *held) if body in self._place)
-
-    @cached_property
-    def _given(self) -> dict[str, float]:
-        """Torques from outside, 0 where none is given. [N m]"""
-        own = self.operation
-        return dict.fromkeys(self._place, 0.0) | dict(own.torques) | {own.input: own.torque}
-
-    @cached_property
-    def _fixed(self) -> tuple[FloatArray, list[float]]:
-        """Columns of clutches and unknown torques behind those of meshes; lengths of the former."""
+        unknown = [body for body in (own.output, *held) if body in bodies]
         columns = [self._column(coupling.terms()) for coupling in self.machine.couplings]
         first = len(self.machine.rows)
-        matrix = np.zeros((len(self._place), first + len(columns) + len(self._unknown)))
+        matrix = np.zeros((len(bodies), first + len(columns) + len(unknown)))
         for number, (column, _) in enumerate(columns, first):
             matrix[:, number] = column
-        for number, body in enumerate(self._unknown, first + len(columns)):
-            matrix[self._place[body], number] = 1.0
-        return matrix, [length for _, length in columns]
+        for number, body in enumerate(unknown, first + len(columns)):
+            matrix[bodies.index(body), number] = 1.0
+        return matrix, [length for _, length in columns], unknown
 
     def _column(self, terms: Terms) -> tuple[list[float], float]:
         """A constraint as a column of length 1, and its length."""
-        column = [0.0] * len(self._place)
+        bodies = self.machine.bodies
+        column = [0.0] * len(bodies)
         for body, coefficient in terms:
             if body != HOUSING:
-                column[self._place[body]] += coefficient
+                column[bodies.index(body)] += coefficient
         length = hypot(*column) or 1.0
         return [coefficient / length for coefficient in column], length
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
+from epicyclic.dataclass import dataclass
 from epicyclic.losses.ranges import ModelUse, Range, check_ranges
 from epicyclic.machine.element import (
     LOAD_INDEPENDENT,

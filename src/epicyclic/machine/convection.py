@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.oil.oil import AIR_GAS_CONSTANT, MixtureState, air_viscosity
 
 # How oil, air and their mixture conduct and store heat.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, Sought, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.oil.oil import (

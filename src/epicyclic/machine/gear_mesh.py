@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any
 
@@ -30,6 +29,7 @@ from epicyclic.arrays import (
 from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.contact.temperatures import Solid
+from epicyclic.dataclass import dataclass, fields, replace
 from epicyclic.gears.cutting import Tool
 from epicyclic.gears.flanks import FlankDeviations
 from epicyclic.gears.mesh import Mesh

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
 
 from epicyclic.arrays import Each, one_by_one
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
 from epicyclic.losses.pocket_tables import KnownFlows

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal, Protocol
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.temperatures import bulk_rise_of_flash, bulk_rise_of_loss
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine import convection as shell

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from epicyclic.contact.temperatures import Solid
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING, Gear
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.machine.convection import SPLASHED_WALL, Fluid, dipped_disc, disc_coefficient

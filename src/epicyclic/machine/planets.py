@@ -5,7 +5,6 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Any
 
@@ -19,6 +18,7 @@ from epicyclic.contact.planet_sharing import (
     mesh_load_factor_shares,
     solve_branch_forces,
 )
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.losses.designations import DesignatedBearing
 from epicyclic.losses.drag import (

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epicyclic.arrays import Alone, Points, larger
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.gears.mesh import with_faces
 from epicyclic.losses.pocket_flow import (
     NETWORK_MODELS,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
 
+from epicyclic.dataclass import dataclass
 from epicyclic.losses.designations import RATING_BAND
 from epicyclic.losses.drag import RPM as ONE_RPM
 from epicyclic.losses.houpert import BallModel

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import cached_property, partial, reduce
 from operator import and_
 from typing import Any, NamedTuple, cast
@@ -27,6 +26,7 @@ from epicyclic.arrays import (
     part_of_each,
     taken,
 )
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError, EpicyclicError, is_interrupt
 from epicyclic.machine.balance import (
     Balance,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.gears.gearing import Gearing

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError
 
 from epicyclic.oil.oil import OilDensity
-from epicyclic.schema.table import option
+from epicyclic.schema.fields import option
 from epicyclic.units import KinematicViscosity
 
 GOLD: dict[str, tuple[float, float, str]] = {

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
+
+from epicyclic.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

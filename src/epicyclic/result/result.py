@@ -7,11 +7,11 @@ import json
 import math
 import platform
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cache, lru_cache, partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any, Protocol
 
+from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import Status
 from epicyclic.losses.ranges import ModelUse, ValidityFlag, describe_flags, flags_with_loss
 from epicyclic.machine.element import (

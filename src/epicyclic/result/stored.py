@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import Status
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.ranges import OUT_OF_RANGE, ValidityFlag

@@ -6,7 +6,6 @@ import math
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass
 from functools import cache, partial
 from types import MappingProxyType
 from typing import Any, Generic, TypeVar
@@ -14,11 +13,13 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import Problem
 from epicyclic.messages import did_you_mean, dotted, either, misspelt, sentence, value_at, written
 from epicyclic.schema.fields import (
     Named,
     Place,
+    Table,
     bounds_of,
     choices_of,
     describe,
@@ -30,7 +31,6 @@ from epicyclic.schema.fields import (
     tables_in,
 )
 from epicyclic.schema.read import changed_at, control_problems
-from epicyclic.schema.table import Table
 from epicyclic.units import format_number, range_remedy
 
 _PLAIN_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(%?)\s*")

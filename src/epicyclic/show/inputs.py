@@ -5,13 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
 from epicyclic.case.case import KINDS
 from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.train_tables import form_of_set
+from epicyclic.dataclass import dataclass
 from epicyclic.schema.fields import Place, dict_value, locate, quantity_of
 from epicyclic.show.page import Cell, Table
 from epicyclic.units import format_number, unit_text

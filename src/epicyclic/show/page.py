@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
+from epicyclic.dataclass import dataclass
 from epicyclic.units import format_number, percent
 
 # Numbers and units as tables show them.

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.gears.gear import HOUSING
 from epicyclic.result.result import Result
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from pydantic_core import from_json
 
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import check_place, refuse, whole_file
 from epicyclic.losses.planet_bearing import RollerBearing

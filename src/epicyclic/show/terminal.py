@@ -7,7 +7,6 @@ import re
 import sys
 import textwrap
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import TextIO, cast
 
 from rich import box
@@ -18,6 +17,7 @@ from rich.segment import Segment
 from rich.table import Column, Table
 from rich.text import Text
 
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import printable_lines
 from epicyclic.show import page
 

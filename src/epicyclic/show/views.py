@@ -7,13 +7,13 @@ Matplotlib.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Self, cast
 
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass, fields, replace
 from epicyclic.errors import one_problem
 from epicyclic.files import check_place, write_file
 from epicyclic.losses.pocket_tables import FlowTables

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass
 from epicyclic.gears import measures
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.gearing import Gearing

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import cast
 
 from epicyclic.build.machine import build
 from epicyclic.build.models import SetCase, set_cases, standing_of
 from epicyclic.case.case import Case, TrainCase
+from epicyclic.dataclass import dataclass
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.drag import VISCOUS_METHOD, VISCOUS_SOURCE
 from epicyclic.losses.friction import FRICTION_MODELS

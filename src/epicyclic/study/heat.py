@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 from pydantic_core import PydanticCustomError
 
 from epicyclic.build.machine import oil_medium
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import ConvergenceError, InputError, one_problem
 from epicyclic.machine.element import LOAD_DEPENDENT
 from epicyclic.machine.heat import COLDEST, HOTTEST

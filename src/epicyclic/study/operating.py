@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from epicyclic.dataclass import dataclass
 from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity, torque_text, unit_text
 
 if TYPE_CHECKING:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import Status, one_problem
 from epicyclic.losses.pocket_tables import (
     ATTRIBUTE,

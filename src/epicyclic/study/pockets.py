@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, one_problem
 from epicyclic.gears.cutting import Tool, tooth_outline
 from epicyclic.gears.gear import Gear

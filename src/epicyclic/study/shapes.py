@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from epicyclic.build.machine import build as build_machine
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.cutting import Tool, tooth_outline
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.gearing import Gearing, outside_radius

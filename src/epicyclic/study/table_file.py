@@ -12,7 +12,6 @@ import io
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import compress, islice
 from pathlib import Path
@@ -23,6 +22,7 @@ from numpy.typing import NDArray
 from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import InputError, Problem, first_of, one_problem, raise_any
 from epicyclic.files import check_archive, read_bytes, refuse
 from epicyclic.messages import one_line, sentence

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from typing import Any
 
 from epicyclic.case.case import TrainCase
 from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.train_tables import StateTable
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.balance import freedom, speeds_of
 

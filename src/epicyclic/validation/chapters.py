@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ import xarray as xr
 from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build
 from epicyclic.build.models import fluids_of
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.maps.warm_up import warm_up
 from epicyclic.study.meshes import bearing_details

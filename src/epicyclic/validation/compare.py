@@ -6,12 +6,12 @@ import itertools
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
 from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 
+from epicyclic.dataclass import dataclass, fields
 from epicyclic.errors import ConvergenceError
 from epicyclic.study.bands.plan import nearby_at
 from epicyclic.study.bands.samples import sample_summary

@@ -6,7 +6,6 @@ import itertools
 import json
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from epicyclic.dataclass import dataclass
 from epicyclic.show.page import shown
 from epicyclic.show.plots.style import (
     COLOUR_MAP,

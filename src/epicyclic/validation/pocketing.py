@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -15,6 +14,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.arrays import FloatArray
 from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, build_case, read_case
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import Problem, Status, one_problem, raise_any
 from epicyclic.gears.cutting import mated_tools
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_thickness

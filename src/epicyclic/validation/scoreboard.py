@@ -11,7 +11,6 @@ import json
 import math
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
 from typing import Any, Literal
@@ -25,6 +24,7 @@ from epicyclic.case.case import Case, TrainCase, read_case
 from epicyclic.case.keys import value_of
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.tables.models import GearPairModels
+from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.files import read_text
 from epicyclic.result.result import versions

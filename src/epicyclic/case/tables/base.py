@@ -20,9 +20,8 @@ from epicyclic.gears.measures import named_fit
 from epicyclic.messages import did_you_mean, titled, value_at
 from epicyclic.oil.grades import ShortOil, whole_oil
 from epicyclic.oil.oil import Conductivity, HeatCapacity, Oil
-from epicyclic.schema.fields import Named
+from epicyclic.schema.fields import Named, Table, option
 from epicyclic.schema.read import plain
-from epicyclic.schema.table import Table, option
 from epicyclic.units import MILLIMETRE, Density, Modulus, Number, Quantity
 
 

@@ -23,7 +23,7 @@ from epicyclic.case.tables.base import (
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import did_you_mean, millimetres, written
-from epicyclic.schema.table import PointsTable, Table, ValuesOrRows, option
+from epicyclic.schema.fields import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import Length, Number, Play, Quantity, SmallLength, Temperature, VolumeFlow
 
 if TYPE_CHECKING:

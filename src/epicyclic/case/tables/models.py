@@ -25,7 +25,7 @@ from epicyclic.oil.rheology import (
     ReeEyring,
     ShearLaw,
 )
-from epicyclic.schema.table import PointsTable, Table, ValuesOrRows, option
+from epicyclic.schema.fields import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import (
     Deviation,
     HertzPressure,

@@ -10,7 +10,7 @@ from pydantic import Field
 from epicyclic.case.tables.base import NamedOil
 from epicyclic.errors import Problem
 from epicyclic.messages import did_you_mean
-from epicyclic.schema.table import Table, option
+from epicyclic.schema.fields import Table, option
 from epicyclic.units import (
     CELSIUS,
     LITRE,

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from epicyclic.case.tables.base import Stress
-from epicyclic.schema.table import Table, option
+from epicyclic.schema.fields import Table, option
 from epicyclic.units import Number, Quantity, SmallLength
 
 Life = Annotated[float, Quantity("a time", "s", "h", low=0.0, high=1e7, open_low=True)]

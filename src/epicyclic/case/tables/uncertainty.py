@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -14,10 +13,10 @@ from epicyclic import library
 from epicyclic.case.keys import Parameter, field_at, owner_without_keys, parameter_of, value_of
 from epicyclic.case.tables.models import OF_ROUGH_FLANKS, has_rough_flanks
 from epicyclic.case.tables.operation import FACTOR_KEY, SHARE_KEY
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import Problem
 from epicyclic.messages import did_you_mean, dotted, path_of, refused, value_at, written
-from epicyclic.schema.fields import quantity_of
-from epicyclic.schema.table import Table, option
+from epicyclic.schema.fields import Table, option, quantity_of
 from epicyclic.units import CELSIUS, Number, Quantity, format_number, unit_text
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from pydantic.fields import FieldInfo
 from epicyclic import library
 from epicyclic.case.case import FILE_KEYS, KINDS, Case, build_case, changed_tables
 from epicyclic.case.train_tables import PlanetarySet, form_of_set
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import dotted, key_parts, value_at, written
 from epicyclic.plugins.app.worker import Worker

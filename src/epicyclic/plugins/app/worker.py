@@ -13,7 +13,6 @@ import zipfile
 from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, field
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -22,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 from nicegui import ui
 
 from epicyclic.case.case import Case
+from epicyclic.dataclass import asdict, dataclass, field
 from epicyclic.errors import EpicyclicError
 from epicyclic.kernels import listeners
 from epicyclic.losses.friction import contact_progress

@@ -7,7 +7,6 @@ import json
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
@@ -20,6 +19,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic import library
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.elastic_teeth import one_thread
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import make_folder, read_bytes, read_text, write_file
 from epicyclic.messages import did_you_mean, one_line

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import LineContacts
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import Problem, raise_any
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
 from epicyclic.oil.oil import ROELANDS_OFFSET, ROELANDS_PRESSURE, OilState

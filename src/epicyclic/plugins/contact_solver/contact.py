@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -28,6 +27,7 @@ from epicyclic.case.tables.models import (
     law_problems,
     oil_laws,
 )
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem, Status
 from epicyclic.kernels.line_contact import line_load_at_pressure
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges, range_left
@@ -65,8 +65,8 @@ from epicyclic.plugins.contact_solver.surfaces import (
     read_profile,
 )
 from epicyclic.result.result import versions
+from epicyclic.schema.fields import Table, option
 from epicyclic.schema.read import plain, read_file, with_value
-from epicyclic.schema.table import Table, option
 from epicyclic.schema.validation import validate
 from epicyclic.units import (
     MICROMETRE,

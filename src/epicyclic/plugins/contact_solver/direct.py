@@ -8,7 +8,6 @@ are drawn by the sliding power and take no part, tell the error. Theory (O10).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
 
@@ -19,6 +18,7 @@ from epicyclic.build.models import SetCase, solid_of
 from epicyclic.case.tables.models import oil_laws
 from epicyclic.contact.elastic_teeth import one_thread
 from epicyclic.contact.fitted_models import EYRING_STRESS, eyring_friction
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import ConvergenceError, Status
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction import CONTACT_PROGRESS

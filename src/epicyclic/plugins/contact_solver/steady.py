@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import Status
 from epicyclic.plugins.contact_solver.conditions import (
     Heating,

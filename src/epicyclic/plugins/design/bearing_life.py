@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
+from epicyclic.dataclass import dataclass
 from epicyclic.losses.designations import SPHERICAL_ANGLE
 from epicyclic.losses.shaft_bearing import (
     CONTACT_ANGLES,

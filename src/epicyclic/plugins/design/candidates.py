@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import islice
 from typing import Any, cast
 
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 
 from epicyclic.arrays import FloatArray
 from epicyclic.case.tables.strength import GearStrength, StrengthTable
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import one_problem
 from epicyclic.gears.gear import BasicRack
 from epicyclic.gears.mesh import closing_number, profile_shift_sum

@@ -12,13 +12,13 @@ SI units, but for empirical formulas that say so.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.cutting import RackTool, ShaperTool, Tool
 from epicyclic.gears.gear import Gear, involute
 from epicyclic.gears.mesh import Mesh

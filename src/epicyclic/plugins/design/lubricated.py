@@ -9,7 +9,6 @@ so that the fields of a computed contact serve as well as single points; SI unit
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 
@@ -23,6 +22,7 @@ from epicyclic.contact.temperatures import (
     iso_mean_friction,
     roughness_factor,
 )
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure

@@ -7,7 +7,6 @@ import io
 import json
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.build.models import set_cases
 from epicyclic.case.case import Case
 from epicyclic.contact.elastic_teeth import LoadedMesh
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import one_problem
 from epicyclic.gears.gear import CARRIER, Gear
 from epicyclic.gears.gearing import outside_radius

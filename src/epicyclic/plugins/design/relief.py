@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from itertools import product
 from typing import Any
 
@@ -12,6 +11,7 @@ import xarray as xr
 
 from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import MeshFigures

@@ -6,7 +6,6 @@ import io
 import json
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ from pydantic import TypeAdapter, ValidationError
 from rich.console import Console, RenderableType
 
 from epicyclic.cli.common import picture_bytes
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import one_problem
 from epicyclic.files import whole_file, write_file
 from epicyclic.netcdf_file import read_groups

@@ -12,7 +12,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -22,6 +21,7 @@ import pandas as pd
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case, read_case
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import EpicyclicError, InputError, Problem, Status, one_problem, raise_any
 from epicyclic.messages import did_you_mean
 from epicyclic.plugins.design.candidates import (

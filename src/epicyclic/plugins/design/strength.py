@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
@@ -21,6 +20,7 @@ from epicyclic.contact.temperatures import (
     bulk_rise_of_loss,
     mates_factor,
 )
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import Problem, raise_any
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
 from epicyclic.gears.gear import Gear

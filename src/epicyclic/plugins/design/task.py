@@ -11,8 +11,8 @@ from pydantic import Field
 from epicyclic.case.case import FILE_KEYS
 from epicyclic.case.tables.base import ShortLength
 from epicyclic.errors import Problem, one_problem, raise_any
+from epicyclic.schema.fields import Table, option
 from epicyclic.schema.read import plain, read_file
-from epicyclic.schema.table import Table, option
 from epicyclic.schema.validation import validate
 from epicyclic.units import (
     HelixAngle,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import Problem
 from epicyclic.messages import key_parts, path_of
 from epicyclic.plugins.rexs.model import Attribute, Component, Model, oil_kind, term

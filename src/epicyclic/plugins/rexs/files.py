@@ -7,13 +7,13 @@ import json
 import re
 import zipfile
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lxml import etree
 from pydantic_core import from_json
 
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import InputError
 from epicyclic.files import read_bytes
 from epicyclic.messages import one_line

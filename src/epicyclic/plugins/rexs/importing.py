@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks

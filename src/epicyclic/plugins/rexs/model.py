@@ -8,7 +8,6 @@ import math
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from typing import Any, Protocol
@@ -16,6 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.units import Quantity

@@ -7,7 +7,6 @@ import itertools
 import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -27,6 +26,7 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.text import Annotation
 from scipy.interpolate import LinearNDInterpolator
 
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import one_problem
 from epicyclic.result.result import in_words, set_of
 from epicyclic.show.page import Drawing

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -18,6 +17,7 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.mesh import scale_of
 from epicyclic.show.plots.style import (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
+from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import OIL
 from epicyclic.result.result import HeatBalance, in_words

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise, permutations
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
 
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.result.result import Result
 from epicyclic.show.plots.style import COLOURS
 from epicyclic.show.power_flow import Line, Link, TrainFlow, power_flow

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ from epicyclic import library
 from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.ranges import range_text
 from epicyclic.result.result import Result

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cache
 from typing import Any
@@ -21,6 +20,7 @@ from epicyclic.case.tables.uncertainty import (
     model_forms,
     stated_values,
 )
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import Problem
 from epicyclic.gears.stated import tolerances_of
 from epicyclic.messages import dotted, key_parts

@@ -6,7 +6,6 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from itertools import chain
 from typing import Any, ClassVar
@@ -16,6 +15,7 @@ import numpy as np
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import LOAD_DEPENDENT

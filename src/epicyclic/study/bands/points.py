@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import ConvergenceError, InputError, Problem
 from epicyclic.study.bands.plan import (
     Nearby,

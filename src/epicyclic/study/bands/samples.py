@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.tables.uncertainty import UncertainValue
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import one_problem
 
 # Distributions of uncertain values, cut off where a case has no such values.

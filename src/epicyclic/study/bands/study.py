@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ import numpy as np
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import UncertainValue
+from epicyclic.dataclass import astuple, dataclass, fields
 from epicyclic.errors import ConvergenceError
 from epicyclic.result.result import Result, origin
 from epicyclic.study.bands.advice import Known, model_remarks

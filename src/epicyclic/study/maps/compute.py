@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -14,6 +13,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, layout_of, operation_of
 from epicyclic.case.case import Case, TrainCase
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import OIL

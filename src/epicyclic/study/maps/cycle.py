@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import BoolArray, FloatArray, IntArray
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import Problem, first_of, raise_any
 from epicyclic.messages import one_line
 from epicyclic.study.operating import OPERATING, STATE

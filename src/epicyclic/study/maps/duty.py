@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -13,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import did_you_mean, refused, written
 from epicyclic.study.load import CaseSource, as_case

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from epicyclic.dataclass import dataclass
 from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.registry import load, offered

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.case.case import Case, read_case
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.study.operating import AXES, OPERATING, PLANE, STATE

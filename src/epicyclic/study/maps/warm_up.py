@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from scipy.interpolate import PchipInterpolator
 from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, term_nodes
 from epicyclic.case.case import Case
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
 from epicyclic.machine.element import OIL, joined_key

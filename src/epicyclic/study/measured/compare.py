@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -15,6 +14,7 @@ from epicyclic.arrays import BoolArray
 from epicyclic.case.case import Case, CaseTable, build_case
 from epicyclic.case.keys import OFF_OPEN_BOUND, Parameter, no_start, parameter_of
 from epicyclic.case.tables.uncertainty import MODEL_FORM, model_forms
+from epicyclic.dataclass import asdict, dataclass, field, replace
 from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.messages import did_you_mean
 from epicyclic.study.bands.inputs import factors_of_kind

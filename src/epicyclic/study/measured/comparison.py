@@ -7,7 +7,6 @@ import json
 import math
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.result import NOT_INCLUDED
 from epicyclic.case.case import Case
 from epicyclic.case.tables.uncertainty import MODEL_FORM
+from epicyclic.dataclass import asdict, dataclass
 from epicyclic.errors import first_of
 from epicyclic.losses.ranges import OUT_OF_RANGE
 from epicyclic.result.result import versions

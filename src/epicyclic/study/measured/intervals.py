@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
@@ -14,6 +13,7 @@ from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.case.case import Case
 from epicyclic.case.keys import Parameter
 from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
+from epicyclic.dataclass import dataclass, field
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.samples import standard_uncertainty
 from epicyclic.study.measured.residuals import STEP, Residuals

@@ -8,7 +8,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.case.case import Case
 from epicyclic.case.keys import Parameter
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError, InputError
 from epicyclic.losses.pocket_flow import NETWORK_MODELS
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTable, FlowTables

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from epicyclic.arrays import BoolArray
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import first_of, one_problem
 from epicyclic.messages import one_line
 from epicyclic.study.measured.comparison import near_values

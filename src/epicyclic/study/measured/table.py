@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.files import refuse
 from epicyclic.messages import did_you_mean, misspelt, one_line, sentence

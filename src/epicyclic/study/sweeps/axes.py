@@ -6,7 +6,6 @@ import ast
 import math
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from graphlib import CycleError, TopologicalSorter
 from itertools import islice
@@ -19,6 +18,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys, value_of
+from epicyclic.dataclass import asdict, dataclass, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import refuse
 from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written

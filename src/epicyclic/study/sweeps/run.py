@@ -10,7 +10,6 @@ from abc import abstractmethod
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import groupby
 from pathlib import Path
@@ -23,6 +22,7 @@ from epicyclic.arrays import FloatArray, IntArray
 from epicyclic.build.machine import layout_of
 from epicyclic.case.case import FILE_KEYS, Case, TrainCase, build_case
 from epicyclic.case.keys import field_at
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, Status, one_problem, printable, raise_any
 from epicyclic.files import check_place, whole_file
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTables, make_tables

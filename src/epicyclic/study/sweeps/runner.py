@@ -19,7 +19,6 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache, partial
 from importlib import metadata
 from itertools import groupby
@@ -32,6 +31,7 @@ import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from epicyclic.arrays import FloatArray
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import (
     EpicyclicError,
     InputError,
