@@ -14,7 +14,6 @@ import shutil
 import stat
 import sys
 import tempfile
-import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -106,6 +105,8 @@ def check_archive(content: bytes, noun: str, largest: int, remedy: str) -> None:
 
     `noun` with its article: ``"an X3P file"``.
     """
+    import zipfile
+
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             unpacked = sum(item.file_size for item in archive.infolist())

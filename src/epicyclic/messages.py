@@ -7,8 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic_core import PydanticCustomError
-from rapidfuzz import fuzz, process
-from rapidfuzz.distance import OSA
 
 from epicyclic.errors import InputError, Problem, printable
 
@@ -148,6 +146,8 @@ _LONGEST = 60  # No name is longer, and longer text is not compared. [characters
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """``"Did you mean 'sun'?"``, or nothing if no known name is near."""
+    from rapidfuzz import distance, process
+
     if len(name) > _LONGEST:
         return ""
     known = list(known)
@@ -157,7 +157,7 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
         return f"Did you mean {' or '.join(kinds)}?"
     slips = max(0, min(_MOST_SLIPS, (len(name) - 1) // 2))
     found = (
-        process.extractOne(name, known, scorer=OSA.distance, score_cutoff=slips),
+        process.extractOne(name, known, scorer=distance.OSA.distance, score_cutoff=slips),
         process.extractOne(name, known, scorer=_likeness, score_cutoff=_LIKENESS),
     )
     near = dict.fromkeys(repr(one[0]) for one in found if one)
@@ -178,6 +178,8 @@ def either(names: Sequence[str]) -> str:
 
 def misspelt(name: str, known: Iterable[str]) -> str:
     """The known name that `name` can only be a misspelling of; empty if there is none."""
+    from rapidfuzz.distance import OSA
+
     slips = {
         other: OSA.distance(name.casefold(), other.casefold(), score_cutoff=_MOST_SLIPS)
         for other in known
@@ -193,6 +195,8 @@ _SEPARATORS = re.compile(r"[-_. ]")
 
 def _likeness(name: str, known: str, *, score_cutoff: float | None = None) -> float:
     """In percent; a name that is part of another one is somewhat like it."""
+    from rapidfuzz import fuzz
+
     one, two = name.casefold(), known.casefold()
     score = fuzz.ratio(one, two, score_cutoff=score_cutoff)
     one, two = (_SEPARATORS.sub("", it) for it in (one, two))

@@ -273,9 +273,9 @@ def test_solution_does_not_depend_on_the_start(load):
     rng = np.random.default_rng(11)
     for _ in range(200):
         start = rng.uniform(-1, 1, 4) * 10 ** rng.uniform(-8, -2)
-        q, _, iterations = solve_roller_loads(
-            vector,
-            start,
+        (q,), _, (iterations,) = solve_roller_loads(
+            vector[None],
+            start[None],
             azimuth,
             TALBOT.slice_positions / half_width,
             TALBOT.crown,

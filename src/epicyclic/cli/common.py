@@ -18,14 +18,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 
 from epicyclic.errors import Problem, one_problem, printable_lines, raise_any
 from epicyclic.files import write_file
@@ -75,14 +67,16 @@ def progress_bar(noun: str) -> AbstractContextManager[Update]:
 
 @contextmanager
 def _bar(noun: str, console: Console) -> Iterator[Update]:
-    bar = Progress(
-        TextColumn(noun),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-        TextColumn("{task.fields[failures]}"),
+    from rich import progress
+
+    bar = progress.Progress(
+        progress.TextColumn(noun),
+        progress.BarColumn(),
+        progress.MofNCompleteColumn(),
+        progress.TimeElapsedColumn(),
+        progress.TextColumn("left"),
+        progress.TimeRemainingColumn(),
+        progress.TextColumn("{task.fields[failures]}"),
         console=console,
         transient=True,
     )
@@ -156,6 +150,8 @@ def working() -> Iterator[None]:
     if not console.is_terminal or _is_off():
         yield
         return
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
     columns = (TextColumn("solving"), BarColumn(), TimeElapsedColumn())
     bar = Progress(*columns, console=console, transient=True)
     bar.add_task("solving", total=None)

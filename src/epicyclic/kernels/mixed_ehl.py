@@ -243,10 +243,11 @@ def rolling_loss_number_at(
 
 @kernel
 def needle_rolling_loss_at(
-    p_h: FloatArray, u_r: float, mu_d: float, alpha_pv: float, r_eq: float, s_co: float, e_eq: float
-) -> FloatArray:
-    """`needle_rolling_loss` of every loaded slice; pressures of shape (n,). [W/m]"""
+    p_h: FloatArray, u_r: FloatArray, mu_d: FloatArray, alpha_pv: FloatArray,
+    r_eq: float, s_co: float, e_eq: float,
+) -> FloatArray:  # fmt: skip
+    """`needle_rolling_loss` of every slice; arrays of shape (n,). [W/m]"""
     loss = np.empty(p_h.size)
     for i in range(p_h.size):
-        loss[i] = needle_rolling_loss(p_h[i], u_r, mu_d, alpha_pv, r_eq, s_co, e_eq)
+        loss[i] = needle_rolling_loss(p_h[i], u_r[i], mu_d[i], alpha_pv[i], r_eq, s_co, e_eq)
     return loss

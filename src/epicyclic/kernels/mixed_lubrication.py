@@ -41,8 +41,9 @@ def eyring_stress(
     squeezed = alpha * pressure
     x = log_viscosity + log_alpha + log_rate + squeezed
     ratio = np.exp(np.minimum(x, LARGE))
-    arsinh = np.arcsinh(ratio) + np.maximum(x - LARGE, 0.0)
-    share = ratio / np.sqrt(1.0 + ratio * ratio)
+    root = np.sqrt(1.0 + ratio * ratio)
+    arsinh = np.log1p(ratio + ratio * ratio / (1.0 + root)) + np.maximum(x - LARGE, 0.0)
+    share = ratio / root
     rise = share * (1.0 + exponent + exponent * squeezed) - exponent * arsinh
     scale = limit / alpha
     return scale * arsinh, scale * fall * rise

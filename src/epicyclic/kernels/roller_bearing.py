@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, IntArray
 from epicyclic.kernels.compiling import kernel
 from epicyclic.kernels.contact_load import eliminate
 
@@ -289,35 +289,24 @@ def clearance_scale(clearance: float) -> float:
 
 
 @kernel
-def solve_roller_loads(
-    load: FloatArray,  # F_x, F_y [N] and M_x/L, M_y/L [N], moments conjugate to the tilts.
-    start: FloatArray,  # Where the iteration starts. [m]
-    psi: FloatArray,  # Azimuth of each roller. [rad]
-    y_over_l: FloatArray,  # Axial position of the slices over the half-width of the bearing. [1]
-    crown: FloatArray,  # Crown drop at each slice. [m]
-    width: float,  # Slice width. [m]
-    clearance: float,  # Diametral clearance. [m]
-    tolerance: float,  # Largest residual force over the largest load. [1]
-    max_iterations: int,  # For each of the two nested iterations.
-    held: bool = False,  # True to keep the tilts of `start`.
-    near: bool = False,  # True if `start` is so near that its loaded lengths serve.
-) -> tuple[FloatArray, FloatArray, int]:
-    """Load intensity of every slice of every roller.
-
-    Returns
-    -------
-    q : ndarray, shape (rows, rollers, slices)
-        Load intensity. [N/m]
-    d : ndarray, shape (4,)
-        State vector. [m]
-    iterations : int
-        Newton steps in all, or -1 without convergence.
-    """
+def solve_one(
+    load: FloatArray,
+    d: FloatArray,
+    psi: FloatArray,
+    y_over_l: FloatArray,
+    crown: FloatArray,
+    width: float,
+    clearance: float,
+    tolerance: float,
+    max_iterations: int,
+    held: bool,
+    near: bool,
+    q: FloatArray,
+) -> int:
+    """As `solve_roller_loads` under one load; moves the state `d`, fills the intensities `q`."""
     rows, slices = y_over_l.shape
-    q = np.zeros((rows, psi.size, slices))
-    d = start.copy()
     if largest(load) == 0.0:
-        return q, d, 0
+        return 0
     lengths = np.full((rows, psi.size), width * slices)
     if near:
         loaded_lengths(d, psi, y_over_l, crown, width, clearance, lengths)
@@ -333,14 +322,14 @@ def solve_roller_loads(
             held,
         )  # fmt: skip
         if steps < 0:
-            return q, d, -1
+            return -1
         total += steps
         if (outer > 0 and steps == 0) or outer == LENGTH_UPDATES:
             converged = True
             break
         loaded_lengths(d, psi, y_over_l, crown, width, clearance, lengths)
     if not converged:
-        return q, d, -1
+        return -1
     for z in range(psi.size):
         radial, tilt = approach_of_races(d, np.cos(psi[z]), np.sin(psi[z]))
         for row in range(rows):
@@ -348,4 +337,40 @@ def solve_roller_loads(
                 delta = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])
                 if delta > 0.0:
                     q[row, z, k] = stiffness[row, z] * delta**DEFLECTION_EXPONENT
-    return q, d, total
+    return total
+
+
+@kernel
+def solve_roller_loads(
+    load: FloatArray,  # F_x, F_y [N] and M_x/L, M_y/L [N], moments conjugate to the tilts.
+    start: FloatArray,  # Where the iteration starts. [m]
+    psi: FloatArray,  # Azimuth of each roller. [rad]
+    y_over_l: FloatArray,  # Axial position of the slices over the half-width of the bearing. [1]
+    crown: FloatArray,  # Crown drop at each slice. [m]
+    width: float,  # Slice width. [m]
+    clearance: float,  # Diametral clearance. [m]
+    tolerance: float,  # Largest residual force over the largest load. [1]
+    max_iterations: int,  # For each of the two nested iterations.
+    held: bool = False,  # True to keep the tilts of `start`.
+    near: bool = False,  # True if `start` is so near that its loaded lengths serve.
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Load intensity of every slice of every roller, under the load of each of n points, (n, 4).
+
+    Returns
+    -------
+    q : ndarray, shape (n, rows, rollers, slices)
+        Load intensity. [N/m]
+    d : ndarray, shape (n, 4)
+        State vector. [m]
+    iterations : ndarray, shape (n,)
+        Newton steps in all, or -1 without convergence.
+    """
+    points, (rows, slices) = len(load), y_over_l.shape
+    q, d = np.zeros((points, rows, psi.size, slices)), start.copy()
+    iterations = np.empty(points, np.intp)
+    for i in range(points):
+        iterations[i] = solve_one(
+            load[i], d[i], psi, y_over_l, crown, width, clearance, tolerance, max_iterations,
+            held, near, q[i],
+        )  # fmt: skip
+    return q, d, iterations

@@ -7,13 +7,24 @@ first roller stands under the load, as in Talbot (2012), Fig. 3.1.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from epicyclic.arrays import AtOnce, BoolArray, FloatArray, Points, of_points, taken, total
+from epicyclic.arrays import (
+    TINY,
+    AtOnce,
+    BoolArray,
+    FloatArray,
+    IntArray,
+    Points,
+    either,
+    larger,
+    of_points,
+    side_by_side,
+    total,
+)
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError
@@ -207,17 +218,6 @@ class BearingLoss:
     rolling: float = 1.0  # Share found as rolling in oil, of which (V1) is the least. [1]
 
 
-def each_roller_loads(find: Callable[..., RollerLoads], *loads: Any) -> RollerLoads:
-    """`find` of the loads of each of several points, put together."""
-    ones = [find(*own) for own in taken(loads, range(len(loads[-1])))]
-    return RollerLoads(
-        ones[0].azimuth,
-        of_points([one.intensity for one in ones]),
-        of_points([one.displacement for one in ones]),
-        0,
-    )
-
-
 @lru_cache(maxsize=1024)
 def roller_loads(
     bearing: RollerBearing,
@@ -232,8 +232,8 @@ def roller_loads(
 
     Raises `ConvergenceError` if the balance of forces is not found.
     """
-    load = np.array([force_x, force_y, moment_x, moment_y])
-    load[2:] /= bearing.half_width
+    half_width = bearing.half_width
+    load = side_by_side([force_x, force_y, moment_x / half_width, moment_y / half_width])
     return _loaded(bearing, load, _start(bearing, load), near=False)
 
 
@@ -248,8 +248,8 @@ def roller_loads_next_to(
 ) -> RollerLoads:
     """Load on every slice under nearly the load of `last`, which saves most of the work."""
     half_width = bearing.half_width
-    load = np.array([force, 0.0, moment_x / half_width, moment_y / half_width])
-    start = last.displacement * (1.0, 1.0, half_width, half_width)
+    load = side_by_side([force, 0.0, moment_x / half_width, moment_y / half_width])
+    start = np.asarray(last.displacement) * (1.0, 1.0, half_width, half_width)
     return _loaded(bearing, load, start, near=True)
 
 
@@ -259,17 +259,20 @@ def _loaded(
     """The bearing under forces and moments over its half-width, from the displacements `start`."""
     half_width = bearing.half_width
     intensity, state, iterations = _solved(bearing, load, start, near=near)
-    if iterations < 0:
+    if (iterations < 0).any():
+        force_x, force_y, *moments = load.reshape(-1, 4)[np.argmax(iterations < 0)].tolist()
         raise ConvergenceError(
             "the load distribution of the planet bearing was not found under "
-            f"{NEWTON.text(math.hypot(*load[:2]), 4)} and "
-            f"{torque_text(half_width * math.hypot(*load[2:]), 4)}; "
+            f"{NEWTON.text(math.hypot(force_x, force_y), 4)} and "
+            f"{torque_text(half_width * math.hypot(*moments), 4)}; "
             "check roller length and clearance, or use the bearing model 'palmgren'."
         )
-    state[2:] /= half_width
+    state[..., 2:] /= half_width
     for array in (intensity, state):
         array.flags.writeable = False
-    return RollerLoads(bearing.azimuth, intensity, state, iterations)
+    if load.ndim > 1:
+        return RollerLoads(bearing.azimuth, of_points(intensity), of_points(state), 0)
+    return RollerLoads(bearing.azimuth, intensity, state, int(iterations))
 
 
 def _solved(
@@ -279,11 +282,11 @@ def _solved(
     *,
     held: bool = False,
     near: bool = False,
-) -> tuple[FloatArray, FloatArray, int]:
-    """What `solve_roller_loads` finds."""
-    return solve_roller_loads(
-        load,
-        start,
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """What `solve_roller_loads` finds, of one point without its axis."""
+    intensity, state, iterations = solve_roller_loads(
+        np.atleast_2d(load),
+        np.atleast_2d(start),
         bearing.azimuth,
         bearing.slice_positions / bearing.half_width,
         bearing.crown,
@@ -291,8 +294,14 @@ def _solved(
         bearing.diametral_clearance,
         TOLERANCE,
         MAX_ITERATIONS,
-        held=held,
-        near=near,
+        held,
+        near,
+    )
+    points = load.shape[:-1]
+    return (
+        intensity.reshape(points + intensity.shape[1:]),
+        state.reshape(load.shape),
+        iterations.reshape(points),
     )
 
 
@@ -334,10 +343,10 @@ def radial_stiffness(bearing: RollerBearing, force: float) -> float:
 
 def _start(bearing: RollerBearing, load: FloatArray) -> FloatArray:
     """A displacement that closes the clearance in the direction of the force."""
-    start = np.zeros(4)
-    radial = math.hypot(load[0], load[1])
-    if radial > 0:
-        start[:2] = load[:2] / radial * (bearing.diametral_clearance / 2 + FIRST_APPROACH)
+    start = np.zeros_like(load)
+    radial = np.hypot(load[..., :1], load[..., 1:2])
+    closed = bearing.diametral_clearance / 2 + FIRST_APPROACH
+    start[..., :2] = load[..., :2] / np.where(radial > 0, radial, 1.0) * closed
     return start
 
 
@@ -356,9 +365,7 @@ def mixed_ehl_rolling_loss(
     outside Table 3.1 are held at its limits; the loss beyond them is that of `beyond_data`. Without
     `oil_held` the formula is continued beyond its oil.
     """
-    carried: FloatArray = loads.intensity[loads.intensity > 0]
-    if isinstance(loads.intensity, Points):  # of which all slices are looked at
-        carried = loads.intensity.reshape(len(loads.intensity), -1)
+    carried = _carried(loads)
     if carried.size == 0 or speed == 0:
         return BearingLoss(0.0)
     modulus, radius = bearing.equivalent_modulus, bearing.outer_radius
@@ -372,12 +379,10 @@ def mixed_ehl_rolling_loss(
     held_radius, held_speed = held_in_range(radius, _RADIUS), held_in_range(rolling, _SPEED)
     roughness = math.hypot(bearing.race_roughness, bearing.roller_roughness)
     rough = held_in_range(roughness, _COMPOSITE)
-    given = held_pressure, held_speed, viscosity, alpha, held_radius, rough, modulus
-    if isinstance(carried, Points):
-        each = taken(given, range(len(carried)))
-        density: FloatArray = of_points([needle_rolling_loss_at(*own) for own in each])
-    else:
-        density = needle_rolling_loss_at(*given)
+    several = np.broadcast_arrays(held_pressure, held_speed, viscosity, alpha)
+    p_h, u_r, mu_d, alpha_pv = (np.ravel(np.asarray(it)) for it in several)
+    density = needle_rolling_loss_at(p_h, u_r, mu_d, alpha_pv, held_radius, rough, modulus)
+    density = density.reshape(carried.shape).view(type(carried))
     held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
     beyond = beyond_data(carried, held_load, rolling, held_speed)
     local = bearing.slice_width * density * beyond
@@ -409,24 +414,37 @@ def fitted_rolling_loss(
     formula is evaluated once for a slice, as its source does.
     """
     radii = bearing.outer_radius, bearing.inner_radius
-    contacts = _contacts(bearing, loads.intensity[loads.intensity > 0], speed, oil, radii)
+    contacts = _contacts(bearing, _carried(loads), speed, oil, radii)
     if contacts is None:
         return BearingLoss(0.0)
     local = bearing.slice_width * model.loss_density(contacts)
-    total = float(local.sum())
+    whole = total(local)
     if beyond is None:
         use = ModelUse("bearing", model.name, "planet bearing")
-        flags = Flags(partial(check_contacts, use, model.ranges, contacts, local))
-        return BearingLoss(total, flags)
+        flags = Flags(AtOnce(check_contacts, use, model.ranges, contacts, local))
+        return BearingLoss(whole, flags)
     domain = model.model.fits[model.quantity].domain
     weighed = contacts.held({"hertz_pressure": domain["hertz_pressure"]}) if alone else contacts
-    within = float((weight_of_fit(model.model, model.quantity, weighed) * local).sum())
+    within = total(weight_of_fit(model.model, model.quantity, weighed) * local)
+    share = either(within == whole, 1.0, within / larger(whole, TINY))
     use = ModelUse("bearing", FITTED_OR_PALMGREN, "planet bearing", instead="palmgren")
-    flags = Flags(partial(check_contacts, use, model.ranges, contacts, local))
-    if within == total:
-        return BearingLoss(total, flags)
-    share = within / total
-    return BearingLoss(within + (1 - share) * beyond.loss, flags + beyond.flags, share)
+    flags = Flags(
+        AtOnce(check_contacts, use, model.ranges, contacts, local),
+        partial(_beyond_flags, share, beyond.flags),
+    )
+    return BearingLoss(within + (1 - share) * beyond.loss, flags, share)
+
+
+def _beyond_flags(share: float, flags: SomeFlags) -> SomeFlags:
+    """The flags of the loss that takes over, where it does."""
+    return flags if share < 1 else ()
+
+
+def _carried(loads: RollerLoads) -> FloatArray:
+    """Load of each loaded slice; of each slice at every point where there are several. [N/m]"""
+    if isinstance(loads.intensity, Points):
+        return loads.intensity.reshape(len(loads.intensity), -1)
+    return loads.intensity[loads.intensity > 0]
 
 
 def _contacts(
@@ -439,7 +457,7 @@ def _contacts(
     """The loaded slices with races of some equivalent radii; None without load or motion."""
     if carried.size == 0 or speed == 0:
         return None
-    load = np.concatenate([carried] * len(radii), axis=-1)
+    load = np.concatenate([carried] * len(radii), axis=-1).view(type(carried))
     rolling = bearing.rolling_speed(speed)
     return RaceContacts(
         line_load=load,

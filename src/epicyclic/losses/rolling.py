@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.arrays import TINY, BoolArray, FloatArray, Points, taken
 from epicyclic.contact.fitted_models import OilModel, regression_groups, rolling_scale
 from epicyclic.contact.line_contact import CONDITIONS, Flanks, LineContacts
 from epicyclic.dataclass import dataclass, replace
@@ -246,9 +246,14 @@ def tabulated(
             contacts.path, pressure, *_path_table(*fit, motion, contacts.flanks, contacts.oil)
         )
     alike = contacts.speed, contacts.flanks, contacts.oil
-    races = zip(contacts.races, np.split(pressure, len(contacts.races)), strict=True)
-    found = [over_pressure(own, *_race_table(*fit, race, *alike)) for race, own in races]
-    return np.concatenate(found)
+    each = taken(alike, range(len(pressure))) if isinstance(pressure, Points) else [alike]
+    found = np.empty_like(pressure)
+    shape = len(each), len(contacts.races), -1
+    pressures, places = (np.asarray(it).reshape(shape) for it in (pressure, found))
+    for own, given, into in zip(each, pressures, places, strict=True):
+        for race, of_race, place in zip(contacts.races, given, into, strict=True):
+            place[:] = over_pressure(of_race, *_race_table(*fit, race, *own))
+    return found
 
 
 @lru_cache(maxsize=64)
@@ -427,7 +432,7 @@ def weight_of_fit(
         if high > 0:
             beyond = np.maximum(beyond, value / high)
         if low > 0 and name != NO_LEAST:
-            beyond = np.maximum(beyond, low / value)
+            beyond = np.maximum(beyond, low / np.maximum(value, TINY))
     t = np.clip(np.log(beyond) / math.log(REACH), 0.0, 1.0)
     return 1 - t * t * (3 - 2 * t)
 

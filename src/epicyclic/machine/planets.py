@@ -6,11 +6,10 @@ import cmath
 import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache, partial
-from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import Alone, Each, FloatArray, Points, joined, larger, phase, taken, total
+from epicyclic.arrays import Alone, FloatArray, Points, larger, phase, total
 from epicyclic.contact.planet_sharing import (
     Branches,
     branch_directions,
@@ -40,7 +39,6 @@ from epicyclic.losses.planet_bearing import (
     RollerLoads,
     Rubbing,
     centrifugal_forces,
-    each_roller_loads,
     fitted_rolling_loss,
     mixed_ehl_rolling_loss,
     palmgren_flags,
@@ -608,11 +606,12 @@ def solve_bearing(
     bearing, where = own.bearing, key.replace("_", " ")
     if own.aligns_itself:
         load = PlanetLoad(load.force, 0.0, 0.0, load.outward)
-    find: Callable[..., RollerLoads] = partial(roller_loads, bearing)
-    asked: tuple[Any, ...] = (load.force, 0.0, load.moment_x, load.moment_y)
+    moments = load.moment_x, load.moment_y
     if isinstance(last, RollerLoads):
-        find, asked = partial(roller_loads_next_to, bearing), (last, load.force, *asked[2:])
-    loads = each_roller_loads(find, *asked) if isinstance(load.force, Points) else find(*asked)
+        loads = roller_loads_next_to(bearing, last, load.force, *moments)
+    else:  # those of several points are not kept
+        find = roller_loads.__wrapped__ if isinstance(load.force, Points) else roller_loads
+        loads = find(bearing, load.force, 0.0, *moments)
     loss = _by_load(own, loads, load.force, speed, oil)
     viscous_loss = bearing_viscous_loss(
         own.viscous_factor, oil.kinematic_viscosity, speed, bearing.pitch_diameter
@@ -729,12 +728,6 @@ def _by_load(
     alone: bool = False,  # As of `fitted_rolling_loss`.
 ) -> BearingLoss:
     """Loss that grows with the load, after the model of the bearing."""
-    if isinstance(force, Points) and isinstance(own.model, FittedRolling):
-        asked = taken((loads, force, speed, oil), range(len(force)))
-        ones = [_by_load(own, *point, alone=alone) for point in asked]
-        flags = Flags(partial(iter, Each(one.flags for one in ones)))
-        losses, shares = (joined([getattr(it, key) for it in ones]) for key in ("loss", "rolling"))
-        return BearingLoss(losses, flags, shares)
     if isinstance(own.model, FittedRolling):
         beyond = _palmgren(own, loads, force, speed) if own.palmgren_beyond else None
         return fitted_rolling_loss(own.bearing, loads, speed, oil, own.model, beyond, alone=alone)
