@@ -9,10 +9,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from epicyclic.arrays import of_points
 from epicyclic.errors import ConvergenceError
 from epicyclic.kernels.roller_bearing import solve_roller_loads
 from epicyclic.losses import planet_bearing
-from epicyclic.losses.planet_bearing import RollerBearing, roller_loads
+from epicyclic.losses.planet_bearing import RollerBearing, roller_loads, roller_loads_next_to
 from reference.roller_bearing import aligned_roller_loads, radial_load_integral
 
 STEEL = 227.47e9
@@ -421,3 +422,19 @@ def test_rolling_speed_is_that_of_the_source():
     # cage at omega/2 (1 - d_r/d_m) against a fixed pin; roller and pin roll on each other there
     cage = speed / 2 * (1 - 4.015 / 30.008)
     assert TALBOT.rolling_speed(speed) == pytest.approx(cage * (30.008 + 4.015) / 2e3, rel=1e-12)
+
+
+def test_points_that_are_solved_together_have_the_loads_of_each():
+    loads = [(9804.0, 55.3), (9701.0, 54.7), (0.0, 0.0), (12.5, 0.02), (25000.0, -141.0)]
+    force, moment = (of_points(column).reshape(-1, 1) for column in zip(*loads, strict=True))
+    together = roller_loads.__wrapped__(TALBOT, force, 0.0, 0.0, moment)
+    further = roller_loads_next_to(TALBOT, together, 1.001 * force, 0.0, 1.001 * moment)
+    for place, (one, tilting) in enumerate(loads):
+        for found, factor in ((together, 1.0), (further, 1.001)):
+            alone = roller_loads(TALBOT, factor * one, 0.0, 0.0, factor * tilting)
+            assert np.asarray(found.intensity)[place] == pytest.approx(
+                alone.intensity, rel=1e-6, abs=1e-7 * alone.intensity.max()
+            )
+            assert np.asarray(found.displacement)[place] == pytest.approx(
+                alone.displacement, rel=1e-6, abs=1e-12
+            )

@@ -369,8 +369,17 @@ def solve_roller_loads(
     q, d = np.zeros((points, rows, psi.size, slices)), start.copy()
     iterations = np.empty(points, np.intp)
     for i in range(points):
+        known = near
+        if not (near or held) and i > 0 and iterations[i - 1] > 0 and largest(load[i]) > 0.0:
+            d[i], known = d[i - 1], True  # that of the point before is nearer
         iterations[i] = solve_one(
             load[i], d[i], psi, y_over_l, crown, width, clearance, tolerance, max_iterations,
-            held, near, q[i],
+            held, known, q[i],
         )  # fmt: skip
+        if iterations[i] < 0 and known != near:
+            d[i] = start[i]
+            iterations[i] = solve_one(
+                load[i], d[i], psi, y_over_l, crown, width, clearance, tolerance, max_iterations,
+                held, near, q[i],
+            )  # fmt: skip
     return q, d, iterations
