@@ -17,6 +17,7 @@ from epicyclic.cli.common import (
     check_ending,
     draw,
     echo,
+    file_option,
     json_option,
     load_with,
     output_option,
@@ -45,11 +46,8 @@ if TYPE_CHECKING:
 @case_argument
 @set_option
 @json_option
-@click.option(
-    "--save",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Keep the result with all its fields in FILE.nc, for reports and plots.",
+@file_option(
+    "--save", help="Keep the result with all its fields in FILE.nc, for reports and plots."
 )
 @click.option("--details", is_flag=True, help="Print all figures, models, warnings and sources.")
 def run(

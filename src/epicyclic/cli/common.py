@@ -275,6 +275,11 @@ def write_page(path: Path, page: str) -> None:
 # Options that commands share, above all a case and changes of its keys.
 
 
+def file_option(*names: str, metavar: str | None = "FILE", **options: Any) -> Callable[[Any], Any]:
+    """An option that names a file."""
+    return click.option(*names, metavar=metavar, type=click.Path(path_type=Path), **options)
+
+
 case_argument = click.argument("case", metavar="CASE")
 json_option = click.option(
     "--json",
@@ -313,10 +318,9 @@ def runner_options(command: Callable[..., None]) -> Callable[..., None]:
     return call
 
 
-journal_option = click.option(
+journal_option = file_option(
     "--journal",
     metavar="DIR",
-    type=click.Path(path_type=Path),
     help="File or folder for finished points, from which the same command continues after an "
     "interruption.",
 )
@@ -383,16 +387,14 @@ def plot_option(text: str, endings: Sequence[str] = PICTURES) -> Callable[[Any],
             check_ending("--plot", path, endings)
         return path
 
-    kind = click.Path(path_type=Path)
-    return click.option("--plot", metavar="FILE", type=kind, callback=checked, help=text)
+    return file_option("--plot", callback=checked, help=text)
 
 
 def output_option(
     text: str, metavar: str | None = None, required: bool = False
 ) -> Callable[[Any], Any]:
     """The option -o, with its help."""
-    kind = click.Path(path_type=Path)
-    return click.option("-o", "--output", required=required, metavar=metavar, type=kind, help=text)
+    return file_option("-o", "--output", required=required, metavar=metavar, help=text)
 
 
 picture_option = click.option(

@@ -12,6 +12,7 @@ import click
 from epicyclic.cli.common import (
     check_ending,
     echo,
+    file_option,
     journal_option,
     json_option,
     load_with,
@@ -53,13 +54,7 @@ _JSON = ".json"
     help='Oil inlet temperature, as in "20 degC", if it is not a column of the cycle; repeatable.',
 )
 @click.option("--clamp", is_flag=True, help="Evaluate points outside the map at its boundary.")
-@click.option(
-    "--map",
-    "map_file",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Keep the map computed for a CASE in a .nc file.",
-)
+@file_option("--map", "map_file", help="Keep the map computed for a CASE in a .nc file.")
 @click.option("--distance", metavar="VALUE", help='Distance driven, as in "23.27 km"; adds Wh/km.')
 @table_options
 @output_option("Write .nc or .csv.", "FILE")

@@ -15,6 +15,7 @@ import click
 from epicyclic.cli.common import (
     case_argument,
     echo,
+    file_option,
     load_with,
     output_option,
     progress_bar,
@@ -79,10 +80,9 @@ SHOWN_FAILURES = 10
     multiple=True,
     help='Keys that vary together, as in "sun.teeth=30,33; ring.teeth=84,90".',
 )
-@click.option(
+@file_option(
     "--points",
     metavar="FILE.csv",
-    type=click.Path(path_type=Path),
     help='Table with one point per row and one key per column: "gears.normal_module [mm]".',
 )
 @click.option(

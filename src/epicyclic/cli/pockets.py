@@ -13,6 +13,7 @@ from epicyclic.cli.common import (
     check_ending,
     draw,
     echo,
+    file_option,
     load_with,
     output_option,
     plot_option,
@@ -41,12 +42,7 @@ ANIMATION = ".gif"
 @case_argument
 @set_option
 @plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf, and its section to FILE-MESH-section.")
-@click.option(
-    "--animate",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Animate each mesh in FILE-MESH.gif, with the pressure as colour.",
-)
+@file_option("--animate", help="Animate each mesh in FILE-MESH.gif, with the pressure as colour.")
 def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Path | None) -> None:
     """Show the pockets between the teeth: shape, pressure, speed of the flow, power.
 

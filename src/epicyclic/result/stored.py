@@ -64,6 +64,11 @@ _MORE: dict[str, tuple[Any, Any]] = {
     "model_shares": (Mapping[str, Numbers], {}),
 }
 """What only some state, and what it is for the others."""
+_AS_READ = (
+    *("title", "kind", "meshes", "parts", "fluid", "models", "standing", "sources", "versions"),
+    *("planet_angles", "planet_shares", "train", "heat", "lubrication"),
+)
+"""Keys of which a result has an attribute."""
 _Check = Callable[[Mapping[str, Any]], str]
 
 
@@ -165,8 +170,7 @@ def _made(found: dict[str, Any], data: Mapping[str, Any]) -> Result:
     notes = (text for text in found["warnings"] if not text.startswith(OUT_OF_RANGE))
     known = found["note_watts"]
     return Result(
-        title=found["title"],
-        kind=found["kind"],
+        **{name: found[name] for name in _AS_READ},
         layout=Layout(
             losses=tuple(losses),
             members=tuple(found["members"]),
@@ -196,26 +200,14 @@ def _made(found: dict[str, Any], data: Mapping[str, Any]) -> Result:
             found["input_power"],
             found["efficiency"],
         ),
-        meshes=found["meshes"],
         bearings=bearings,
-        parts=found["parts"],
-        fluid=found["fluid"],
-        models=found["models"],
-        standing=found["standing"],
         flags=found["validity"],
         notes=tuple(Note(text, known[text]) if text in known else text for text in notes),
         load_methods={key: text for key, text in methods.items() if key not in losses},
         load_sources={key: text for key, text in citations.items() if key not in losses},
-        sources=found["sources"],
         case=StatedCase(found["inputs"]),
-        planet_angles=found["planet_angles"],
-        planet_shares=found["planet_shares"],
-        train=train,
-        heat=heat,
-        lubrication=found["lubrication"],
         status=Status(found["status"]),
         unloaded=found["load_independent"] if tested else None,
-        versions=found["versions"],
     )
 
 

@@ -36,8 +36,8 @@ _GearRow = tuple[str, str, Callable[[GearSheet], str]]
 _MeshRow = tuple[str, str, Callable[[MeshSheet], str]]
 
 
-def _mm(value: float) -> str:
-    return f"{MM * value:.3f}"
+def _mm(value: float | None) -> str:
+    return MISSING if value is None else f"{MM * value:.3f}"
 
 
 def _allowance(one: GearSheet, which: int) -> str:
@@ -56,11 +56,7 @@ _GEAR_ROWS: tuple[_GearRow, ...] = (
     ("reference diameter d", "mm", lambda one: _mm(2 * one.gear.reference_radius)),
     ("base diameter d_b", "mm", lambda one: _mm(2 * one.gear.base_radius)),
     ("tip diameter d_a", "mm", lambda one: _mm(2 * one.gear.tip_radius)),
-    (
-        "tip alteration k m_n",
-        "mm",
-        lambda one: _mm(one.tip_alteration) if one.tip_alteration else MISSING,
-    ),
+    ("tip alteration k m_n", "mm", lambda one: _mm(one.tip_alteration or None)),
     ("root diameter d_f", "mm", lambda one: _mm(2 * one.gear.root_radius)),
     ("tip thickness s_a", "mm", lambda one: _mm(one.gear.thickness_at(one.gear.tip_radius))),
     ("face width b", "mm", lambda one: _mm(one.gear.face_width)),

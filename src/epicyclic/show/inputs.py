@@ -195,12 +195,8 @@ def _beside(
             _cell(source, (*place, part, *path), values[path]) if path in values else Cell("")
             for part, values in leaves.items()
         ]
-        abouts = [
-            _about(source, (*place, part, *path))
-            for part, values in leaves.items()
-            if path in values
-        ]
-        rows.append((Cell(_words(path)), *cells, abouts[0]))
+        first = next(part for part, values in leaves.items() if path in values)
+        rows.append((Cell(_words(path)), *cells, _about(source, (*place, first, *path))))
     heads = (part.replace("_", " ") for part in parts)
     return _with_meaning(("", *heads), tuple(rows), title)
 

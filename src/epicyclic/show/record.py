@@ -234,9 +234,8 @@ _LIMITS = {
 
 _MESH = ("mesh_position", "contact_line", "segment")
 _POCKET = ("tooth", "roll")
-_Needed = Mapping[tuple[str, ...], str]
 
-_NEEDED: dict[str, _Needed] = {
+_NEEDED: dict[str, Mapping[tuple[str, ...], str]] = {
     "meshes": {
         _MESH[:1]: "roll_angle weight transmission_error mesh_stiffness",
         _MESH[:2]: "pair_load",

@@ -163,13 +163,10 @@ def _validity(result: Result) -> tuple[Table | Listing, ...]:
 
 
 def _limits(low: float | None, high: float | None) -> str:
+    texts = ["" if value is None else format_number(value, 3) for value in (low, high)]
     if low is None or high is None:
-        return f"up to {_number(high)}" if low is None else f"from {_number(low)}"
-    return " to ".join(dict.fromkeys((_number(low), _number(high))))
-
-
-def _number(value: float | None) -> str:
-    return "" if value is None else format_number(value, 3)
+        return f"up to {texts[1]}" if low is None else f"from {texts[0]}"
+    return " to ".join(dict.fromkeys(texts))
 
 
 def _heat(result: Result, drawings: Drawings) -> tuple[Item, ...]:

@@ -8,12 +8,11 @@ from datetime import date, time
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from epicyclic import library
-from epicyclic.case.case import GearPairCase, PlanetaryCase, TrainCase, read_case
+from epicyclic.case.case import KINDS, TrainCase, read_case
 from epicyclic.case.gear_tables import SharedGears
 from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.tables.uncertainty import DistributionTable
@@ -21,10 +20,7 @@ from epicyclic.case.train_tables import ListedSet, PlanetarySet, form_of_set
 from epicyclic.messages import key_parts
 from epicyclic.schema.fields import choices_of, dict_value, entry_of, quantity_of, table_of
 
-_EXAMPLES: dict[str, tuple[str, type[BaseModel]]] = {
-    "planetary": ("talbot-2012", PlanetaryCase),
-    "gear_pair": ("talbot-2012-pair", GearPairCase),
-}
+_EXAMPLES = {"planetary": "talbot-2012", "gear_pair": "talbot-2012-pair"}
 _TRAIN = "train-eaxle"
 _TRAIN_HEAD = f"""\
 # A case file of epicyclic, kind train, filled in with the built-in case {_TRAIN}.
@@ -67,7 +63,7 @@ def case_template(kind: str) -> str:
     if kind == "train":
         _, mark, tables = library.case_source(_TRAIN).partition('kind = "train"')
         return f"{_TRAIN_HEAD}{mark}{tables}{_TRAIN_STATES}"
-    name, _ = _EXAMPLES[kind]
+    name = _EXAMPLES[kind]
     head = [
         f"A case file of epicyclic, kind {kind}, filled in with the built-in case {name}.",
         "Every dimensional value carries its unit. Commented-out keys have defaults.",
@@ -102,12 +98,12 @@ def case_text(
     """A case file: keys of `tables` with values, the others commented out."""
     if tables["kind"] == "train":
         return _train_text(tables, head, about or {})
-    _, schema = _EXAMPLES[tables["kind"]]
+    fields = KINDS[tables["kind"]].model_fields
     writer = _Writer(tables, about or {})
-    keys = [key for key, field in schema.model_fields.items() if _is_table(field)]
+    keys = [key for key, field in fields.items() if _is_table(field)]
     shown = [key for key in keys if about is None or writer.is_known(key)]
     lines = writer.head(head)
-    lines += [line for key in shown for line in writer.table(key, schema.model_fields[key])]
+    lines += [line for key in shown for line in writer.table(key, fields[key])]
     left_out = [f"[{key}]" for key in keys if key not in shown]
     if left_out:
         lines += ["", "# Defaults hold for these tables; 'epicyclic init' writes all their keys:"]
@@ -269,7 +265,7 @@ def _train_text(tables: Mapping[str, Any], head: list[str], about: Mapping[str, 
     writer = _TrainWriter(tables, about)
     fields = TrainCase.model_fields
     lines = [*writer.head(head), *writer.table("operation", fields["operation"])]
-    lines += [*writer.entries("shafts"), *writer.states(), *writer.entries("positions")]
+    lines += [*writer.entries("shafts"), *writer.parts("states"), *writer.entries("positions")]
     known = [key for key in _DEFAULTS if writer.is_known(key)]
     lines += [line for key in ("lubricant", *known) for line in writer.table(key, fields[key])]
     lines += [line for name in tables.get("sets", {}) for line in writer.one_set(name)]
@@ -289,15 +285,6 @@ class _TrainWriter(_Writer):
         """A table of the user's names, one line each."""
         lines = ["", f"[{key}]".ljust(COMMENT_COLUMN) + f"# {self.about.get(key, _LISTS[key])}"]
         return [*lines, *self._keys(key, self.tables.get(key, {}))]
-
-    def states(self) -> list[str]:
-        """What brakes and clutches do, state by state."""
-        lines = []
-        for name, state in self.tables.get("states", {}).items():
-            key = toml_keys(["states", name])
-            lines += ["", self._line(f"[{key}]", key)]
-            lines += [f"{toml_key(inner)} = {toml_value(value)}" for inner, value in state.items()]
-        return lines
 
     def one_set(self, name: str) -> list[str]:
         """The tables of a set."""
@@ -331,7 +318,7 @@ class _TrainWriter(_Writer):
         ]
 
     def parts(self, kind: str) -> Iterator[str]:
-        """Bearings and the like."""
+        """States, bearings and the like."""
         given = self.tables.get(kind, {})
         for name in dict.fromkeys([*given, *self._told(kind)]):
             key = toml_keys([kind, name])

@@ -187,9 +187,8 @@ def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) 
         bores[shaft] = min(2 * bore, bores.get(shaft, math.inf))
     ends_of_all = [end for own in spans.values() for end in own]
     length = max(ends_of_all) - min(ends_of_all)
+    spans = {it: own for it, own in spans.items() if it in heights and own and it != HOUSING}
     for shaft, own in spans.items():
-        if shaft not in heights or not own or shaft == HOUSING:
-            continue
         low, high = min(own) - ENDS * length, max(own) + ENDS * length
         radius = bores.get(shaft, SHAFT) / 2
         style: dict[str, Any] = {"facecolor": "0.75", "zorder": 0.5}
@@ -236,8 +235,6 @@ def _write_names(
     taken: dict[float, int] = {}
     ends = []
     for shaft, own in spans.items():
-        if shaft == HOUSING or shaft not in heights or not own:
-            continue
         height = round(heights[shaft], 3)
         is_left = taken.get(height, 0) % 2 == 0
         taken[height] = taken.get(height, 0) + 1

@@ -242,6 +242,9 @@ def _heat(record: ResultRecord) -> Iterator[Panel]:
         yield Panel("", partial(plot_heat_network, heat))
 
 
+_over_flanks = partial(_of_group, "meshes", mesh.plot_plane_of_action)
+_over_period = partial(_of_group, "meshes", mesh.plot_over_period)
+_along_path = partial(_of_group, "meshes", mesh.plot_along_path)
 PLOTS: dict[str, Plot] = {
     "gear-set": Plot("What does the gear set look like, to scale?", _gear_set),
     "arrangement": Plot("Where do the sets and shafts of the train lie?", _arrangement),
@@ -255,40 +258,24 @@ PLOTS: dict[str, Plot] = {
     "drivers": Plot("What causes the uncertainty of the total loss?", _drivers, size=losses.WIDE),
     "band": Plot("How uncertain are total loss and efficiency?", _band),
     "heat-network": Plot("How warm is each part, and where does its heat flow?", _heat, size=SLIDE),
-    "line-load": Plot(
-        "How is the load distributed over the flanks?",
-        _of_group("meshes", mesh.plot_plane_of_action, "line_load"),
-    ),
+    "line-load": Plot("How is the load distributed over the flanks?", _over_flanks("line_load")),
     "pressure": Plot(
-        "How high is the contact pressure, and where?",
-        _of_group("meshes", mesh.plot_plane_of_action, "hertz_pressure"),
+        "How high is the contact pressure, and where?", _over_flanks("hertz_pressure")
     ),
     "pair-load": Plot(
         "How does the load of one tooth pair change through its engagement?",
         _of_group("meshes", mesh.plot_pair_loads),
     ),
     "transmission-error": Plot(
-        "How large is the loaded transmission error?",
-        _of_group("meshes", mesh.plot_over_period, "transmission_error"),
+        "How large is the loaded transmission error?", _over_period("transmission_error")
     ),
-    "stiffness": Plot(
-        "How stiff is the mesh?", _of_group("meshes", mesh.plot_over_period, "mesh_stiffness")
-    ),
+    "stiffness": Plot("How stiff is the mesh?", _over_period("mesh_stiffness")),
     "friction": Plot(
-        "How does friction change along the path of contact?",
-        _of_group("meshes", mesh.plot_along_path, "friction_coefficient"),
+        "How does friction change along the path of contact?", _along_path("friction_coefficient")
     ),
-    "sliding": Plot(
-        "How fast do the flanks slide?", _of_group("meshes", mesh.plot_along_path, "sliding_speed")
-    ),
-    "film": Plot(
-        "Does the oil film separate the flanks?",
-        _of_group("meshes", mesh.plot_along_path, "film_ratio"),
-    ),
-    "friction-power": Plot(
-        "Where on the flanks is power lost?",
-        _of_group("meshes", mesh.plot_plane_of_action, "friction_power"),
-    ),
+    "sliding": Plot("How fast do the flanks slide?", _along_path("sliding_speed")),
+    "film": Plot("Does the oil film separate the flanks?", _along_path("film_ratio")),
+    "friction-power": Plot("Where on the flanks is power lost?", _over_flanks("friction_power")),
     "roller-loads": Plot(
         "Which rollers of the planet bearing carry load?",
         _of_group("bearings", mesh.plot_roller_loads),
@@ -480,9 +467,9 @@ def explorable(ax: Axes) -> dict[str, Any] | None:
     for trace in traces:
         trace["showlegend"] = bool(trace.get("name"))
     shapes = [shape for mark in marks if (shape := _shape(ax, mark))]
-    layout["shapes"] = shapes
     names = {one["name"] for one in (*traces, *shapes) if one.get("name")}
     layout |= {
+        "shapes": shapes,
         "title": {"text": _escaped(ax.get_title(loc="left") or ax.get_title())},
         "showlegend": len(names) > 1,
         "barmode": "overlay",
@@ -741,8 +728,7 @@ def _escaped(text: str) -> str:
 PAGE_PANEL = (4.3, 3.1)  # Width and height of a figure in a page. [inch]
 _PROLOGUE = re.compile(r".*?(?=<svg)", re.DOTALL)
 _METADATA = re.compile(r"\s*<metadata>.*?</metadata>", re.DOTALL)
-_SIZE = re.compile(r'(<svg[^>]*?) width="[^"]*"', re.DOTALL)
-_HEIGHT = re.compile(r'(<svg[^>]*?) height="[^"]*"', re.DOTALL)
+_SIZE = re.compile(r' (?:width|height)="[^"]*"')
 _COORDINATES = re.compile(r'(?<=\sd=")[^"]*')
 _LONG_NUMBER = re.compile(r"(\.\d\d)\d+")  # What is more precise than a hundredth of a point.
 _OWN_ID = re.compile(r'(?<=\sid=")|(?<=url\(#)|(?<=href="#)')
@@ -799,6 +785,6 @@ def svg_text(figure: Figure, key: str) -> str:
     with mpl.rc_context({**STYLE, "svg.hashsalt": key}):
         figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
     text = _METADATA.sub("", _PROLOGUE.sub("", file.getvalue(), count=1))
-    text = _HEIGHT.sub(r"\1", _SIZE.sub(r"\1", text, count=1), count=1)
+    text = _SIZE.sub("", text, count=2)  # those of the whole
     text = _COORDINATES.sub(lambda path: _LONG_NUMBER.sub(r"\1", path[0]), text)
     return _OWN_ID.sub(f"{key}-", text)

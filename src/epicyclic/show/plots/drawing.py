@@ -112,7 +112,7 @@ def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     levels: dict[str, float] = {}
     for name, gear in sorted(gears.items(), key=_is_behind):
         radius = _scalar(gear, "outside_diameter") / 2
-        for number, stand in enumerate(_stands(gear)):
+        for number, stand in enumerate(_points(gear, "stands")):
             shape = _path(_circle(radius) + stand)
             if gear.attrs["internal"]:
                 inside = _circle(_scalar(gear, "tip_diameter") / 2)[::-1] + stand
@@ -122,26 +122,20 @@ def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
             low, high = np.minimum(low, stand - radius), np.maximum(high, stand + radius)
             if "oil_depth" in gear and _scalar(gear, "oil_depth") > 0:
                 levels[name] = float(stand[1]) - radius + _scalar(gear, "oil_depth")
-    is_one = len({round(level, SAME_LEVEL) for level in levels.values()}) == 1
-    for number, (name, level) in enumerate(levels.items()):
+    pools = []
+    for name, level in levels.items():
+        radius = _scalar(gears[name], "outside_diameter") / 2
+        x, y = _points(gears[name], "stands")[0]
+        pools.append((x - radius, x + radius, y - radius, level))
+    # one level for all, unless depths were stated gear by gear
+    if len({round(level, SAME_LEVEL) for level in levels.values()}) == 1:
+        pools = [(low[0], high[0], low[1], pools[0][-1])]
+    for number, (left, right, base, level) in enumerate(pools):
         label = "oil at rest" if number == 0 else None
-        if not is_one:  # depths that were stated gear by gear: each has its own
-            radius, stand = _scalar(gears[name], "outside_diameter") / 2, _stands(gears[name])[0]
-            left, right = stand[0] - radius, stand[0] + radius
-        elif number == 0:
-            left, right = low[0], high[0]
-        else:
-            break
-        base = low[1] if is_one else stand[1] - radius
         box = Rectangle((left, base), right - left, level - base, label=label, color=OIL_COLOUR)
         ax.add_patch(box)
         ax.plot([left, right], [level, level], color=OIL_EDGE, lw=1.2)
     return _finish(ax, low, high, "Gears in the oil")
-
-
-def _stands(gear: xr.Dataset) -> FloatArray:
-    """Places in the housing, in rows. [mm]"""
-    return np.column_stack([gear["stands_x"], gear["stands_y"]])
 
 
 def layer_of(name: str, number: int) -> str:
@@ -159,7 +153,8 @@ def _hides(front: xr.Dataset, gear: xr.Dataset) -> bool:
     """True if a gear in front of another one leaves at most the teeth of this to be seen."""
     seen = _scalar(gear, "tip_diameter") - _scalar(front, "tip_diameter")
     height = _scalar(gear, "tip_diameter") - _scalar(gear, "root_diameter")
-    return not gear.attrs["internal"] and seen < height and _centers(front) == _centers(gear)
+    behind = np.array_equal(_points(front, "center"), _points(gear, "center"))
+    return not gear.attrs["internal"] and seen < height and behind
 
 
 def fills_of(gears: Mapping[str, xr.Dataset]) -> dict[str, str]:
@@ -197,9 +192,9 @@ def _scalar(gear: xr.Dataset, name: str) -> float:
     return float(gear[name])
 
 
-def _centers(gear: xr.Dataset) -> list[list[float]]:
-    centers: list[list[float]] = np.column_stack([gear["center_x"], gear["center_y"]]).tolist()
-    return centers
+def _points(gear: xr.Dataset, what: str) -> FloatArray:
+    """Points in rows: ``"center"`` of each place, ``"stands"`` in the housing. [mm]"""
+    return np.column_stack([gear[f"{what}_x"], gear[f"{what}_y"]])
 
 
 def _place(gear: xr.Dataset, number: int) -> tuple[FloatArray, float]:
@@ -421,10 +416,8 @@ def _values(mesh: xr.Dataset, name: str, number: int) -> FloatArray:
 def _draw_points(mesh: xr.Dataset, view: xr.Dataset, number: int, ax: Axes) -> None:
     """Where pairs touch amid the face, larger with more load."""
     alpha = math.radians(float(view["pressure_angle"]))
-    found = _in_the_middle(mesh, number)
+    along, loads = np.reshape(_in_the_middle(mesh, number), (-1, 2)).T
     most = float(mesh["pair_load"].max())
-    along = np.array([place for place, _ in found])
-    loads = np.array([load for _, load in found])
     ax.scatter(
         along * math.cos(alpha),
         along * math.sin(alpha),

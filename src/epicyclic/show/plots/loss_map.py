@@ -13,7 +13,6 @@ from matplotlib.colors import FuncNorm, Normalize
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import MaxNLocator
 
-from epicyclic.arrays import FloatArray
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
@@ -139,15 +138,14 @@ def plot_map(
         field, ax=ax, label=label_of(values), extend="min" if below else "neither"
     )
     levels: list[float] | int = LEVELS
-    if name == HALF_WIDTH:
-        whole = MaxNLocator(LEVELS, integer=True).tick_values(low, high)
-        levels = [one for one in whole if low <= one <= high]
+    if of_efficiency or name == HALF_WIDTH:
+        whole = MaxNLocator(LEVELS, integer=True)
+        ticks = EFFICIENCIES if of_efficiency else whole.tick_values(low, high)
+        levels = [float(one) for one in ticks if low <= one <= high]
         bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
-    if of_efficiency:
-        levels = [one for one in EFFICIENCIES if low <= one <= high]
-        bar.set_ticks(levels, labels=[f"{one:g}" for one in levels])
-        bar.ax.minorticks_off()
-        levels = [one for one in levels if one >= LEAST_LINE] or levels
+        if of_efficiency:
+            bar.ax.minorticks_off()
+            levels = [one for one in levels if one >= LEAST_LINE] or levels
     draw_lines(ax, (speed, torque, values.to_numpy()), levels)
     ax.grid(visible=False)
     ax.set(
@@ -191,17 +189,11 @@ def _efficiency_norm(low: float, high: float) -> FuncNorm:
     least = min(max(low, LEAST_EFFICIENCY), best)
     if least == best:
         least -= 100 - BEST_EFFICIENCY  # of the best there is no better
-    return FuncNorm((_log_of_loss, _from_log_of_loss), least, best)
-
-
-def _log_of_loss(efficiency: FloatArray) -> FloatArray:
-    found: FloatArray = -np.log10(100 - np.minimum(efficiency, BEST_EFFICIENCY))
-    return found
-
-
-def _from_log_of_loss(value: FloatArray) -> FloatArray:
-    found: FloatArray = 100 - np.power(10.0, -value)
-    return found
+    logarithm_and_back = (
+        lambda efficiency: -np.log10(100 - np.minimum(efficiency, BEST_EFFICIENCY)),
+        lambda logarithm: 100 - np.power(10.0, -logarithm),
+    )
+    return FuncNorm(logarithm_and_back, least, best)
 
 
 def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Limits = None) -> Axes:

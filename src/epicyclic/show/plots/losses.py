@@ -40,9 +40,7 @@ def plot_losses(result: Result, ax: Axes) -> Axes:
     for row, value in enumerate(sums):
         share = f" ({percent(value / total)})" if total else ""
         write_beside(ax, part_text(value, total, decimals_of(total)) + share, (value, row))
-    _finish(ax, [*parts], sums)
-    ax.set(title="Losses by component", xlabel=f"power loss, {unit}")
-    return ax
+    return _finish(ax, [*parts], sums, "Losses by component", unit)
 
 
 def plot_loss_sum(result: Result, ax: Axes) -> Axes:
@@ -60,9 +58,7 @@ def plot_loss_sum(result: Result, ax: Axes) -> Axes:
     ax.barh(len(parts), total, color=SUM_COLOUR, **EDGE)
     for row, (value, end) in enumerate(zip([*sums, total], [*ends, total], strict=True)):
         write_beside(ax, part_text(value, total, digits), (end, row))
-    _finish(ax, [*parts, "total"], [total])
-    ax.set(title="How the losses add up", xlabel=f"power loss, {unit}")
-    return ax
+    return _finish(ax, [*parts, "total"], [total], "How the losses add up", unit)
 
 
 def plot_losses_beside(results: Mapping[str, Result], ax: Axes) -> Axes:
@@ -80,9 +76,7 @@ def plot_losses_beside(results: Mapping[str, Result], ax: Axes) -> Axes:
         watts = [own.get(label, 0.0) for label in names]
         colour = COLOURS[0] if number else _light(COLOURS[0])
         ax.barh(places, watts, height=height, color=colour, label=name, **EDGE)
-    _finish(ax, names, [own["total"] for own in found])
-    ax.set(title="Losses by component", xlabel=f"power loss, {unit}")
-    return ax
+    return _finish(ax, names, [own["total"] for own in found], "Losses by component", unit)
 
 
 def _draw(ax: Axes, parts: Mapping[str, Mapping[str, float]], starts: FloatArray) -> None:
@@ -95,12 +89,15 @@ def _draw(ax: Axes, parts: Mapping[str, Mapping[str, float]], starts: FloatArray
         starts = starts + watts
 
 
-def _finish(ax: Axes, names: Sequence[str], watts: Iterable[float]) -> None:
+def _finish(ax: Axes, names: Sequence[str], watts: Iterable[float], title: str, unit: str) -> Axes:
+    """Names beside the bars, room for the longest of `watts`, legend and title."""
     ax.set_yticks(range(len(names)), names)
     ax.set_ylim(len(names) - 0.4, -0.6)  # with room for losses of nothing too
     ax.grid(visible=False, axis="y")
     ax.set_xlim(0, ROOM * max(watts, default=0.0) or 1.0)
     legend_below(ax, ncols=2)
+    ax.set(title=title, xlabel=f"power loss, {unit}")
+    return ax
 
 
 def _parts(result: Result, scale: float) -> dict[str, dict[str, float]]:

@@ -342,8 +342,6 @@ def _row_of_teeth(tooth: FloatArray, teeth: int, one: float, span: float) -> Flo
 # A mesh in motion, the pressure in its pockets as colour.
 
 
-Progress = Callable[[int, int], None]
-
 FRAMES = 32  # Frames of one mesh period, at most; the picture repeats after it.
 FRAMES_PER_SECOND = 12
 DPI = 90
@@ -357,7 +355,7 @@ PRESSURE_UNITS = ((1.0, "bar", 0.1), (1e2, "kPa", 1e-3), (1e5, "Pa", 0.0))
 def pocket_animation(
     mesh: xr.Dataset,  # As `epicyclic.pocket_details` returns it.
     # Called with the number of finished frames and of all frames.
-    progress: Progress = lambda done, total: None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> bytes:
     """One mesh period as an animated GIF."""
     scene = MeshScene(mesh)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from itertools import pairwise, permutations
 from typing import Any
@@ -13,9 +13,10 @@ from matplotlib.patches import FancyBboxPatch, Polygon, Rectangle
 
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.result.result import Result
+from epicyclic.show.page import shown
 from epicyclic.show.plots.style import COLOURS
 from epicyclic.show.power_flow import Line, Link, TrainFlow, power_flow
-from epicyclic.units import RPM, format_number, known_text, percent, torque_text, unit_text
+from epicyclic.units import RPM, known_text, percent, torque_text, unit_text
 
 # Shapes that the slides of power and of heat have in common. Every length is in inches.
 
@@ -147,20 +148,15 @@ def _headline(result: Result) -> str:
     train = result.train
     words = [f"state {train.state}"] if train and train.state else []
     if train and train.ratio is not None:
-        words.append(f"ratio {_shown(train.ratio)}")
+        words.append(f"ratio {shown(train.ratio)}")
     if result.efficiency is not None:
         words.append(f"efficiency {100 * result.efficiency:.2f} %")
     words.append(f"loss {_power(result.total)}")
     if train and train.power_ratio is not None:
-        words.append(f"rolling power {_shown(train.power_ratio, 3)} times the input power")
+        words.append(f"rolling power {shown(train.power_ratio, 3)} times the input power")
     if train and train.self_locking:
         words.append("self-locking")
     return ", ".join(words)
-
-
-def _shown(value: float, digits: int = 4) -> str:
-    # what rounding leaves over is nothing
-    return format_number(0.0 if abs(value) < NO_POWER else value, digits)
 
 
 def _power(watts: float) -> str:
@@ -204,8 +200,6 @@ def _layout(flow: TrainFlow) -> _Layout:
 
 def _ordered_stages(flow: TrainFlow, stages: list[str], lines: list[str]) -> list[str]:
     """Sets in the order of the power, with short lines between them."""
-    if len(stages) > MOST_ORDERED:
-        return stages
     ends = {key: line.power for key, line in flow.lines.items() if line.power}
     links = {key: [link for link in flow.of_line(key) if link.stage in stages] for key in lines}
 
@@ -225,15 +219,20 @@ def _ordered_stages(flow: TrainFlow, stages: list[str], lines: list[str]) -> lis
             )
         return total
 
-    orders: Iterator[tuple[str, ...]] = permutations(stages)
+    return _in_best_order(stages, effort)
+
+
+def _in_best_order(names: list[str], effort: Callable[[tuple[str, ...]], float]) -> list[str]:
+    """The order of least effort; of many names that which they have."""
+    if len(names) > MOST_ORDERED:
+        return names
+    orders: Iterator[tuple[str, ...]] = permutations(names)
     best: tuple[str, ...] = min(orders, key=effort)
     return list(best)
 
 
 def _ordered_lines(flow: TrainFlow, stages: list[str], lines: list[str]) -> list[str]:
     """Lines so that those of one set lie beside each other, the input on top."""
-    if len(lines) > MOST_ORDERED:
-        return lines
     joined = [
         [link.line for link in flow.of_stage(stage) if link.line in lines] for stage in stages
     ]
@@ -251,9 +250,7 @@ def _ordered_lines(flow: TrainFlow, stages: list[str], lines: list[str]) -> list
                 total -= 0.4 * place[key]
         return total
 
-    orders: Iterator[tuple[str, ...]] = permutations(lines)
-    best: tuple[str, ...] = min(orders, key=effort)
-    return list(best)
+    return _in_best_order(lines, effort)
 
 
 # --- lines ----------------------------------------------------------------------------------------
@@ -316,7 +313,7 @@ def _draw_lane(ax: Axes, layout: _Layout, line: Line, y: float, *, striped: bool
     if striped:
         low = y - layout.spacing / 2
         ax.add_patch(Rectangle((0, low), SLIDE[0], layout.spacing, color=STRIPE, lw=0, zorder=0))
-    words = [f"{_shown(RPM.to_display(line.speed))} {unit_text(RPM.display)}", _torque(line.passed)]
+    words = [f"{shown(RPM.to_display(line.speed))} {unit_text(RPM.display)}", _torque(line.passed)]
     lower = ", ".join(words)
     name = " + ".join(name.replace("_", " ") for name in line.shafts)
     size = 13.0 if len(name) <= 19 else 13.0 * 19 / len(name)
