@@ -77,7 +77,8 @@ def thermal_model(case: Case, sets: Mapping[str, SetCase], machine: Machine) -> 
     flows = [table.oil_flow for table in tables.values() if table is not None and table.oil_flow]
     settings = _settings(case, machine, tables, sum(flows) if flows else None, inlet)
     pressure, share = case.surroundings.pressure, oil_share(case).share
-    return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
+    media = partial(_media, case.lubricant.oil, pressure, share)
+    return NetworkModel(machine, settings, fluids, media)
 
 
 def contact_nodes(machine: Machine) -> dict[str, tuple[str, ...]]:
@@ -153,15 +154,11 @@ def _flags(oil: Oil, contacts: Mapping[str, float]) -> tuple[ValidityFlag, ...]:
     )
 
 
-def _media(oil: Oil, pressure: float, share: float) -> Callable[[float], tuple[Fluid, Fluid]]:
-    """The oil, and its mixture with air, as heat sees them."""
-
-    def at(temperature: float) -> tuple[Fluid, Fluid]:
-        own = oil_medium(oil, temperature)
-        state = mixture_state(oil_state(oil, temperature), share, pressure)
-        return own, mixture(own, air(temperature, pressure), state)
-
-    return at
+def _media(oil: Oil, pressure: float, share: float, temperature: float) -> tuple[Fluid, Fluid]:
+    """The oil, and its mixture with air, as heat sees them at a temperature."""
+    own = oil_medium(oil, temperature)
+    state = mixture_state(oil_state(oil, temperature), share, pressure)
+    return own, mixture(own, air(temperature, pressure), state)
 
 
 def oil_medium(oil: Oil, temperature: float) -> Fluid:
