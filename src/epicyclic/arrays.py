@@ -113,6 +113,24 @@ def larger(one: float, two: float) -> float:
     return np.maximum(one, two) if several else max(one, two)
 
 
+def between(value: Any, low: float | None, high: float | None) -> Any:
+    """`value`, an array or a number, held between limits."""
+    if isinstance(value, np.ndarray):
+        return np.clip(value, low, high)  # of a number it takes ten times as long as what follows
+    value = value if low is None else max(value, low)
+    return value if high is None else min(value, high)
+
+
+def on_grid(axes: Any, values: Any, at: Iterable[FloatArray]) -> FloatArray:
+    """A table over one or two rising axes: linear between its points, constant beyond them."""
+    from scipy.interpolate import RegularGridInterpolator
+
+    table = RegularGridInterpolator(axes, np.asarray(values))
+    places = [np.clip(place, axis[0], axis[-1]) for place, axis in zip(at, axes, strict=True)]
+    found: FloatArray = table(np.stack(places, axis=-1))
+    return found
+
+
 def largest(values: Iterable[float]) -> float:
     """Largest magnitude, point by point; 0 of none."""
     sizes = [*map(abs, values)]

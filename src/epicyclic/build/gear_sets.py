@@ -37,11 +37,13 @@ from epicyclic.oil.oil import oil_state
 # How the oil of a case meets the bodies that turn in it.
 
 
-def gear_disc(case: SetCase, body: str, gear: Gear, table: StatedGear) -> Disc:
-    """A central gear as it turns in the mixture, dips or meets jets.
+def gear_disc(case: SetCase, name: str, bodies: Mapping[str, str]) -> Disc:
+    """A gear as it turns in the mixture, dips or meets jets; `bodies` as for `gear_set`.
 
     A ring dips as a body without teeth: those of its inside are left out.
     """
+    gearing = case.gearing
+    gear, table, place = gearing.gear(name), gearing.tables[name], gearing.bodies[name]
     radius, oil = outside_radius(gear, table), case.lubrication
     part = Dipped(
         radius=radius if gear.internal else gear.reference_radius,
@@ -62,10 +64,9 @@ def gear_disc(case: SetCase, body: str, gear: Gear, table: StatedGear) -> Disc:
         space = 2 * (math.pi / gear.teeth - gear.half_angle_at(radius))
         teeth = Teeth(gear.teeth, gear.reference_radius, radius, gear.face_width, space)
     turning = Turning(radius, gear.face_width, teeth, table.shroud_gap, table.flange_gap)
-    place = case.gearing.bodies[gear.name]
-    share, sump = oil_share(case).share, _sump(case, gear.name, place, part)
+    share, sump = oil_share(case).share, _sump(case, name, place, part)
     model = cast(DragModel, case.chosen["drag"])
-    return Disc(gear.name, body, turning, share, model, sump, jets)
+    return Disc(name, bodies[place], turning, share, model, sump, jets)
 
 
 def _sump(case: SetCase, name: str, body: str, part: Dipped) -> Sump | None:
@@ -361,18 +362,12 @@ def _discs(case: SetCase, bodies: Mapping[str, str]) -> Iterator[tuple[str, tupl
     """Every central gear turns in the mixture or a sump, and the carrier."""
     gearing = case.gearing
     for name, gears in gearing.drags.items():
-        yield (
-            name,
-            tuple(
-                gear_disc(case, bodies[gearing.bodies[it]], gearing.gear(it), gearing.tables[it])
-                for it in gears
-            ),
-        )
+        yield name, tuple(gear_disc(case, it, bodies) for it in gears)
     carried, table, across = [], case.carrier, 0.0
     number, moves_planets = gearing.count or 1, case.chosen["drag"] != LAMINAR_RIMS
     for planet in gearing.planets if moves_planets else ():
         for name in gearing.gears_of(planet):
-            disc = gear_disc(case, bodies[planet], gearing.gear(name), gearing.tables[name])
+            disc = gear_disc(case, name, bodies)
             # it turns in what the carrier takes along
             disc = replace(disc, sump=None, jets=None, against=bodies[CARRIER], count=number)
             carried.append(disc)

@@ -13,7 +13,7 @@ from epicyclic.build.elements import axial_preload, build_element, catalogue_bea
 from epicyclic.build.gear_sets import gear_set
 from epicyclic.build.models import SetCase, fluids_of, oil_share, set_cases, with_lubrication
 from epicyclic.case.case import Case, PlanetaryCase, TrainCase
-from epicyclic.case.rules import needs_force
+from epicyclic.case.rules import borne_shafts
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.case.tables.operation import (
     HousingTable,
@@ -36,16 +36,7 @@ from epicyclic.machine.convection import (
     oil_conductivity,
     oil_heat_capacity,
 )
-from epicyclic.machine.element import (
-    OIL,
-    Element,
-    Fluids,
-    State,
-    fluids_at,
-    joined_key,
-    oil_at,
-    oil_flags,
-)
+from epicyclic.machine.element import OIL, Element, Fluids, State, joined_key, oil_at, oil_flags
 from epicyclic.machine.gear_mesh import GearMesh, MeshDuty
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.heat import (
@@ -86,7 +77,8 @@ def thermal_model(case: Case, sets: Mapping[str, SetCase], machine: Machine) -> 
     flows = [table.oil_flow for table in tables.values() if table is not None and table.oil_flow]
     settings = _settings(case, machine, tables, sum(flows) if flows else None, inlet)
     pressure, share = case.surroundings.pressure, oil_share(case).share
-    return NetworkModel(machine, settings, fluids, _media(case.lubricant.oil, pressure, share))
+    media = partial(_media, case.lubricant.oil, pressure, share)
+    return NetworkModel(machine, settings, fluids, media)
 
 
 def contact_nodes(machine: Machine) -> dict[str, tuple[str, ...]]:
@@ -143,13 +135,7 @@ def _fluids_at(
             key: sum(temperatures.get(node, around) for node in nodes) / len(nodes)
             for key, nodes in contacts.items()
         }
-        fluids = fluids_at(
-            oil,
-            around,
-            oil_air_ratio=oil_share(case).share,
-            pressure=case.surroundings.pressure,
-            pressure_viscosity_factor=factor,
-        )
+        fluids = fluids_of(case, around)
         return replace(
             fluids,
             flags=fluids.flags + Flags(partial(_flags, oil, found)),
@@ -168,15 +154,11 @@ def _flags(oil: Oil, contacts: Mapping[str, float]) -> tuple[ValidityFlag, ...]:
     )
 
 
-def _media(oil: Oil, pressure: float, share: float) -> Callable[[float], tuple[Fluid, Fluid]]:
-    """The oil, and its mixture with air, as heat sees them."""
-
-    def at(temperature: float) -> tuple[Fluid, Fluid]:
-        own = oil_medium(oil, temperature)
-        state = mixture_state(oil_state(oil, temperature), share, pressure)
-        return own, mixture(own, air(temperature, pressure), state)
-
-    return at
+def _media(oil: Oil, pressure: float, share: float, temperature: float) -> tuple[Fluid, Fluid]:
+    """The oil, and its mixture with air, as heat sees them at a temperature."""
+    own = oil_medium(oil, temperature)
+    state = mixture_state(oil_state(oil, temperature), share, pressure)
+    return own, mixture(own, air(temperature, pressure), state)
 
 
 def oil_medium(oil: Oil, temperature: float) -> Fluid:
@@ -383,15 +365,6 @@ def solve_all(points: Sequence[Built]) -> list[Settled | Exception]:
 Tables = Mapping[str, ShaftBearingTable]
 
 
-def _borne(case: TrainCase) -> Mapping[str, Tables]:
-    """The bearings whose forces are computed, by their shafts and names."""
-    found: dict[str, dict[str, ShaftBearingTable]] = {}
-    for kind, name, table in case.elements:
-        if kind == "bearings" and isinstance(table, ShaftBearingTable) and needs_force(table):
-            found.setdefault(case.shape.names[table.shaft], {})[name] = table
-    return found
-
-
 def _support(tables: Tables, name: str) -> Support:
     """A bearing of a shaft as a support, at its pressure centre. Theory (J30)."""
     table = tables[name]
@@ -416,7 +389,7 @@ def _assumed_pairs(case: TrainCase) -> set[str]:
     """Bearings of pairs whose arrangement nobody states."""
     return {
         name
-        for tables in _borne(case).values()
+        for tables in borne_shafts(case).values()
         if len(tables) == 2
         and all(one.is_angular and one.axial_sense == "both" for one in tables.values())
         and not any(one.arrangement for one in tables.values())
@@ -483,7 +456,7 @@ def _train_parts(design: _Design) -> _Consists:
     sets = {element.key: element for element in elements if isinstance(element, GearSet)}
     layouts = tuple(
         ShaftLayout({name: _support(own, name) for name in own}, tuple(_seats(case, shaft, sets)))
-        for shaft, own in _borne(case).items()
+        for shaft, own in borne_shafts(case).items()
     )
     machine = replace(case.shape.machine(case.state), elements=tuple(elements), layouts=layouts)
     return machine, cases, _layout(case, elements)

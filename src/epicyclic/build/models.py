@@ -345,13 +345,18 @@ def solid_of(
     )
 
 
-def fluids_of(case: Case) -> Fluids:
-    """Oil and mixture at the oil inlet temperature, which only given losses can do without."""
+def fluids_of(
+    case: Case,
+    temperature: float | None = None,  # Of the oil; by default that of the inlet. [K]
+) -> Fluids:
+    """Oil and mixture at a temperature, which only given losses can do without."""
+    if temperature is None:
+        temperature = case.operation.oil_inlet_temperature
     assert case.lubricant is not None
-    assert case.operation.oil_inlet_temperature is not None
+    assert temperature is not None
     return fluids_at(
         case.lubricant.oil,
-        case.operation.oil_inlet_temperature,
+        temperature,
         oil_air_ratio=oil_share(case).share,
         pressure=case.surroundings.pressure,
         pressure_viscosity_factor=case.lubricant.pressure_viscosity_factor,

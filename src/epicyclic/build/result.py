@@ -455,15 +455,8 @@ def _heat(case: Case, built: Built, settled: Settled) -> HeatBalance | None:
 def _heat_paths(case: Case, answer: Answer) -> Iterator[HeatPath]:
     flows = answer.flows or {}
     for link in answer.links:
-        yield HeatPath(
-            link.key,
-            link.hot,
-            link.target,
-            flows[link.key],
-            link.conductance,
-            link.method,
-            link.source,
-        )
+        how = link.conductance, link.method, link.source
+        yield HeatPath(link.key, link.hot, link.target, flows[link.key], *how)
     power = case.thermal.cooler_power
     if answer.links and power:
         yield HeatPath("oil-cooler", OIL, "cooler", power, math.nan, "given power", "given")

@@ -484,18 +484,23 @@ def needs_force(table: ShaftBearingTable) -> bool:
     return not stated and (table.model != "table" or by_load)
 
 
-def bearing_force_problems(train: TrainCase, complete: bool) -> Iterator[Problem]:
-    """What is missing for the forces on shaft bearings, shaft by shaft.
-
-    Nothing is said of the gears on shafts whose members are not `complete`.
-    """
+def borne_shafts(train: TrainCase) -> dict[str, dict[str, ShaftBearingTable]]:
+    """The bearings whose forces are computed, by the shafts that there are and their names."""
     bearings: dict[str, dict[str, ShaftBearingTable]] = {}
     for kind, name, table in train.elements:
         if kind == "bearings" and isinstance(table, ShaftBearingTable) and needs_force(table):
             shaft = train.shape.names.get(table.shaft)
             if shaft is not None:
                 bearings.setdefault(shaft, {})[name] = table
-    for shaft, own in bearings.items():
+    return bearings
+
+
+def bearing_force_problems(train: TrainCase, complete: bool) -> Iterator[Problem]:
+    """What is missing for the forces on shaft bearings, shaft by shaft.
+
+    Nothing is said of the gears on shafts whose members are not `complete`.
+    """
+    for shaft, own in borne_shafts(train).items():
         yield from _of_bearings(shaft, own)
         if complete:
             yield from _of_gears(train, shaft, own)

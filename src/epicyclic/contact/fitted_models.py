@@ -277,8 +277,8 @@ class Structured:
     start: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
     low: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
     high: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
-    # From conditions and coefficients to the quantity.
-    function: Callable[[LineContacts, FloatArray], FloatArray]
+    # From conditions and coefficients to the quantity at every contact, shape (n,).
+    value: Callable[[LineContacts, FloatArray], FloatArray]
 
     @property
     def size(self) -> int:
@@ -292,10 +292,6 @@ class Structured:
             for low, value, high in zip(self.low, coefficients, self.high, strict=True)
         )
 
-    def value(self, states: LineContacts, coefficients: FloatArray) -> FloatArray:
-        """The quantity at every contact, shape (n,)."""
-        return self.function(states, coefficients)
-
     def fit(self, states: LineContacts, target: FloatArray, weight: FloatArray) -> FloatArray:
         """Coefficients by least squares of the logarithm.
 
@@ -308,7 +304,7 @@ class Structured:
         logarithm, root = np.log(target), np.sqrt(weight)
 
         def lack(coefficients: FloatArray) -> FloatArray:
-            value = np.maximum(self.function(states, coefficients), np.finfo(float).tiny)
+            value = np.maximum(self.value(states, coefficients), np.finfo(float).tiny)
             residual: FloatArray = root * (np.log(value) - logarithm)
             return residual
 
@@ -428,7 +424,7 @@ STRUCTURED_FRICTION = Structured(
     start=(0.2, -0.8, -0.2, 0.4, 0.2, 0.0, 2.0, 1.0, 0.75, 0.0, 0.06, -0.2, -0.1),
     low=(-3.0, -3.0, -2.0, 0.0, 0.0, -1.0, -3.0, -2.0, 0.0, -6.0, 0.0, -2.0, -1.0),
     high=(3.0, 2.0, 2.0, 2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 8.0, 1.0, 2.0, 1.0),
-    function=_friction,
+    value=_friction,
 )  # fmt: skip
 STRUCTURED_ROLLING = Structured(
     name="structured",
@@ -443,7 +439,7 @@ STRUCTURED_ROLLING = Structured(
     start=(-10.0, 0.75, 1.2, 0.05, -1.0, 0.1, 1.0, 1.5, 0.8, 0.8, 1.5, 0.5),
     low=(-30.0, 0.2, -1.0, -1.0, -6.0, 0.0, -20.0, 0.0, 0.0, -3.0, -3.0, 0.0),
     high=(10.0, 1.5, 3.0, 1.0, 4.0, 3.0, 12.0, 6.0, 2.0, 3.0, 9.0, 1.0),
-    function=_rolling,
+    value=_rolling,
 )  # fmt: skip
 
 
@@ -463,10 +459,12 @@ LARGEST_EXCESS = 3.0
 DIGITS = 5  # Significant digits in a file.
 
 
-class NearbySimulations(BaseModel):
-    """Simulations that correct a form between them. Theory (O15)."""
-
+class _Data(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class NearbySimulations(_Data):
+    """Simulations that correct a form between them. Theory (O15)."""
 
     # Conditions of each simulation, SI, the slide-to-roll ratio with its sign.
     conditions: dict[str, tuple[float, ...]]
@@ -600,10 +598,6 @@ LARGEST_FILE = 5_000_000  # A file of coefficients is much smaller. [bytes]
 _OF_THE_FILM = {"rolling_speed": False, "roughness1": True, "roughness2": True}
 """Conditions that make films thick, and whether they do so by falling."""
 _MAY_BE_ZERO = ("slide_to_roll_ratio", "roughness1", "roughness2")
-
-
-class _Data(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 class FitError(_Data):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, between
 from epicyclic.dataclass import dataclass, field
 from epicyclic.kernels.line_contact import (
     hertz_half_width,
@@ -112,8 +112,7 @@ class LineContacts:
     @cached_property
     def slide_to_roll_ratio(self) -> FloatArray:
         """abs(u_s)/u_r. Theory (C4). [1]"""
-        ratio: FloatArray = np.abs(self.sliding_speed) / np.maximum(self.rolling_speed, LEAST_SPEED)
-        return ratio
+        return np.abs(self.sliding_speed) / np.maximum(self.rolling_speed, LEAST_SPEED)
 
     @cached_property
     def surface_speeds(self) -> tuple[FloatArray, FloatArray]:
@@ -160,20 +159,12 @@ class LineContacts:
 
     def held(self, limits: Mapping[str, tuple[float | None, float | None]]) -> LineContacts:
         """With the conditions that have `limits` held within them. Theory (F5), (O2)."""
-        held = {name: _between(getattr(self, name), *pair) for name, pair in limits.items()}
+        held = {name: between(getattr(self, name), *pair) for name, pair in limits.items()}
         if "slide_to_roll_ratio" in held:
             held["slide_to_roll_ratio"] = np.copysign(
                 held["slide_to_roll_ratio"], self.sliding_speed
             )
         return self.changed(**held)
-
-
-def _between(value: Any, low: float | None, high: float | None) -> Any:
-    """`value`, an array or a number, held between limits."""
-    if isinstance(value, np.ndarray):
-        return np.clip(value, low, high)  # of a number it takes ten times as long as what follows
-    value = value if low is None else max(value, low)
-    return value if high is None else min(value, high)
 
 
 def contacts_at(

@@ -598,7 +598,7 @@ def longest_involute(gear: Gear, rounding: float | None) -> float:
     circle; if they cut away the tips of a ring, the default shaper cutter. Raises `ValueError` if
     no tool generates the tooth.
     """
-    stated = stated_tool(gear, rounding)
+    stated = None if rounding is None else replace(default_tool(gear), tip_radius=rounding)
     if not gear.internal:
         kindest = _kindest_rack(gear)
         tool = kindest if stated is None else stated
@@ -614,14 +614,6 @@ def longest_involute(gear: Gear, rounding: float | None) -> float:
         return form_radius(gear, shaper)
 
 
-def stated_tool(gear: Gear, rounding: float | None) -> Tool | None:
-    """The tool that cuts `gear` with a stated tip `rounding`; None if none is stated.
-
-    Raises `ValueError` if no default shaper cutter generates a ring.
-    """
-    return None if rounding is None else replace(default_tool(gear), tip_radius=rounding)
-
-
 @lru_cache(maxsize=64)
 def cutting_tool(gear: Gear, rounding: float | None) -> Tool:
     """The tool that leaves the root fillet: as stated, or the default one if it cuts the tooth.
@@ -629,10 +621,9 @@ def cutting_tool(gear: Gear, rounding: float | None) -> Tool:
     If that one does not, it is the tool that leaves the longest involute. Raises `ValueError` if no
     tool generates the tooth.
     """
-    stated = stated_tool(gear, rounding)
-    if stated is not None:
-        return stated
     tool = default_tool(gear)
+    if rounding is not None:
+        return replace(tool, tip_radius=rounding)
     try:
         tooth_outline(gear, tool)
     except ValueError:

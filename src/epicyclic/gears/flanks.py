@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, on_grid
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.mesh import Mesh
@@ -135,14 +135,8 @@ class Topography:
 
     def at(self, curvature: FloatArray, face_position: FloatArray) -> FloatArray:
         """Deviation at points of the flank. [m]"""
-        from scipy.interpolate import RegularGridInterpolator
-
         axes = (self.curvature, self.face_position)
-        table = RegularGridInterpolator(axes, np.asarray(self.deviation))
-        at = zip((curvature, face_position), axes, strict=True)
-        points = [np.clip(place, axis[0], axis[-1]) for place, axis in at]
-        deviation: FloatArray = table(np.stack(points, axis=-1))
-        return deviation
+        return on_grid(axes, self.deviation, (curvature, face_position))
 
 
 @dataclass(frozen=True, slots=True)

@@ -501,8 +501,7 @@ _mesh = lru_cache(maxsize=512)(Mesh)
 
 def rim_thickness(table: StatedGear) -> float | None:
     """Rim of a ring gear from root to outside; None if the case states none. [m]"""
-    thickness: float | None = getattr(table, "rim_thickness", None)
-    return thickness
+    return getattr(table, "rim_thickness", None)
 
 
 def outside_radius(gear: Gear, table: StatedGear) -> float:

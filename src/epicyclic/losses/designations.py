@@ -152,11 +152,6 @@ def thrust_bearing(text: str) -> tuple[float, float, float]:
     return known[name].bore / 1e3, known[name].outside_diameter / 1e3, known[name].width / 1e3
 
 
-def radial_clearance(bore: float) -> float:
-    """Middle of the normal group of ISO 5753-1 for cylindrical rollers, by a straight line. [m]"""
-    return 20e-6 + 0.55e-3 * bore
-
-
 @cache
 def bearing_tables(name: Literal["dimensions", "skf-2018"]) -> Mapping[str, Any]:
     """What the library has of rolling bearings: sizes of the ISO plans, or constants of SKF."""
@@ -261,7 +256,8 @@ def _planet_keys(raw: Mapping[str, Any]) -> dict[str, Any]:
     found = designated_or_any(raw["designation"], "NU 2210")
     if found.type not in PLANET_BEARINGS:  # its key has that problem
         found = designated_or_any("NU 2210")
-    clearance = radial_clearance(found.bore)
+    # middle of the normal group of ISO 5753-1 for cylindrical rollers, by a straight line [m]
+    clearance = 20e-6 + 0.55e-3 * found.bore
     inner = found.pitch_diameter - found.element_diameter - clearance / 2
     sizes = {"roller_diameter": found.element_diameter, "roller_length": found.element_length}
     sizes |= {"pin_diameter": inner, "diametral_clearance": clearance}

@@ -31,7 +31,7 @@ from typing import ClassVar, Protocol, Self
 import numpy as np
 
 from epicyclic import library
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, on_grid
 from epicyclic.contact.fitted_models import OilModel, read_oil_model, regression_groups
 from epicyclic.contact.line_contact import LEAST_SPEED, LineContacts
 from epicyclic.dataclass import dataclass, replace
@@ -596,13 +596,8 @@ class FrictionMap:
 
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
-        from scipy.interpolate import RegularGridInterpolator
-
-        points = [np.asarray(axis) for _, axis in self.axes]
-        table = RegularGridInterpolator(points, np.asarray(self.values))
-        where = [np.clip(getattr(contact, name), axis[0], axis[-1]) for name, axis in self.axes]
-        mu: FloatArray = table(np.column_stack(where))
-        return mu
+        names, axes = zip(*self.axes, strict=True)
+        return on_grid(axes, self.values, [getattr(contact, name) for name in names])
 
 
 def _table_of(settings: FrictionSettings) -> FrictionMap:

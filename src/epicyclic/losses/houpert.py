@@ -116,8 +116,7 @@ def ball_loads(
     held = float((shares * around).mean()) * math.cos(alpha)
     along = load.axial / math.sin(alpha) if load.axial else 0.0
     mean = max(along, load.radial / held if load.radial else 0.0) / balls
-    loads: FloatArray = mean * shares
-    return loads
+    return mean * shares
 
 
 def point_rolling_force(

@@ -272,10 +272,9 @@ def _gridded(data: Mapping[str, FloatArray], lines: Sequence[int], source: str) 
     shape = tuple(len(points) for points in axes.values())
     gaps = [place for place in product(*map(range, shape)) if place not in seen]
     if gaps:
-        units = [AXES[name][1] for name in names]
         first = ", ".join(
-            unit.text(float(axes[name][index]))
-            for name, unit, index in zip(names, units, gaps[0], strict=True)
+            AXES[name][1].text(float(axes[name][index]))
+            for name, index in zip(names, gaps[0], strict=True)
         )
         count = f"{len(gaps)} points, the first at" if len(gaps) > 1 else "the point"
         allowed = f"the file has no row for {count} {first}."
@@ -283,8 +282,7 @@ def _gridded(data: Mapping[str, FloatArray], lines: Sequence[int], source: str) 
         problems.append(Problem("", "", allowed, remedy))
     raise_any(problems)
     values = np.zeros(shape)
-    for place, number in zip(where, data[quantity], strict=True):
-        values[place] = number
+    values[tuple(zip(*where, strict=True))] = data[quantity]
     raise_any(table_problems(quantity, axes, values))
     return LossTable(quantity, axes, values, source)
 

@@ -144,8 +144,7 @@ def mixed_friction(
         oil.limiting_traction,
         _oil_constants(oil),
     )
-    mu: FloatArray = share * boundary + (1 - share) * stress / pressure
-    return mu
+    return share * boundary + (1 - share) * stress / pressure
 
 
 def _oil_constants(oil: OilState) -> list[float]:

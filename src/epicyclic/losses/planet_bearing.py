@@ -487,8 +487,7 @@ def centrifugal_forces(
     mass = density * math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
     cage = carrier + speed / 2 * (1 + bearing.roller_diameter / bearing.pitch_diameter)
     orbit = pin_radius * carrier**2 * np.cos(outward - azimuth)
-    forces: FloatArray = mass * (orbit + bearing.pitch_diameter / 2 * cage**2)
-    return forces
+    return mass * (orbit + bearing.pitch_diameter / 2 * cage**2)
 
 
 def pressed_alone(loads: RollerLoads, forces: FloatArray, length: float) -> RollerLoads:

@@ -9,7 +9,7 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, Each, FloatArray, Points
+from epicyclic.arrays import BoolArray, Each, FloatArray, Points, between
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
 
@@ -220,14 +220,7 @@ SomeFlags = Flags | tuple[ValidityFlag, ...]
 
 def held_in_range(value: Real, item: Range) -> Real:
     """`value`, in SI, or the limit of `item` that it leaves. Theory (F5)."""
-    low, high = item.limits()
-    held: Any = value
-    if isinstance(value, np.ndarray):
-        held = np.clip(value, low, high)
-    else:  # of a number numpy takes ten times as long
-        held = held if low is None else max(held, low)
-        held = held if high is None else min(held, high)
-    return cast(Real, held)
+    return cast(Real, between(value, *item.limits()))
 
 
 def describe_flags(

@@ -26,10 +26,7 @@ def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
     except np.linalg.LinAlgError:
         return None
     found = (inverse @ right[..., None])[..., 0]
-    refined: FloatArray = (
-        found + (inverse @ (right - (matrix @ found[..., None])[..., 0])[..., None])[..., 0]
-    )
-    return refined
+    return found + (inverse @ (right - (matrix @ found[..., None])[..., 0])[..., None])[..., 0]
 
 
 # Speeds of all bodies from the constraints of meshes and clutches.
@@ -170,8 +167,7 @@ def _matrix(machine: Machine, given: Sequence[str]) -> FloatArray:
 def _null_space(matrix: FloatArray) -> FloatArray:
     """Columns that span what the rows of `matrix` leave open."""
     _, sizes, directions = np.linalg.svd(matrix)
-    space: FloatArray = directions[np.count_nonzero(sizes > SINGULAR * sizes.max(initial=0.0)) :].T
-    return space
+    return directions[np.count_nonzero(sizes > SINGULAR * sizes.max(initial=0.0)) :].T
 
 
 # Torques of all bodies and loads of all meshes in balance.

@@ -110,7 +110,8 @@ class Clutch(Unloaded):
             "reynolds": slip * self.outer * self.gap / oil.kinematic_viscosity,
             "inertia": slip * self.gap**2 / oil.kinematic_viscosity,
         }
-        turning = slip > 0
+        turning, key = slip > 0, f"clutches.{self.key}.oil_flow"
+        untold = f"{key} is not given: full gaps are taken, the most they drag."
         return ElementResult(
             losses={"shear": loss},
             figures={
@@ -121,13 +122,5 @@ class Clutch(Unloaded):
                 )
             },
             flags=check_ranges(ModelUse("drag", "film", self.key), _RANGES, values),
-            notes=self._notes(torque * slip),
+            notes=(Note(untold, loss.watts),) if self.flow is None and loss.watts else (),
         )
-
-    def _notes(self, watts: float) -> tuple[str, ...]:
-        if self.flow is not None or watts == 0:
-            return ()
-        text = (
-            f"clutches.{self.key}.oil_flow is not given: full gaps are taken, the most they drag."
-        )
-        return (Note(text, watts),)

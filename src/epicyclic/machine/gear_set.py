@@ -481,8 +481,7 @@ class GearSet:
                 bearing = before
             elif planet.bearing is None:
                 force = load.force / share if share else 0.0
-                reason, diameter = planet.no_bearing, planet.diameter
-                own = reason, force, diameter, speed
+                own = planet.no_bearing, force, planet.diameter, speed
                 bearing = one_by_one(missing_bearing, planet.key, *own)
             elif isinstance(planet.bearing, PlanetPin):
                 # in the axes of the load, in which the first mesh turns the planet from t to r

@@ -212,7 +212,9 @@ def gear_set_capacities(own: GearSet) -> dict[str, float]:
     found: dict[str, float] = {}
     for one in gears_of(own):
         radius = one.gear.reference_radius
-        other = _outside(own, one) if one.gear.internal else bores.get(one.node, 0.0)
+        other = bores.get(one.node, 0.0)
+        if one.gear.internal:  # the outside is that of its disc
+            other = max(disc.turning.radius for disc in _discs(own) if disc.body == one.body)
         area = math.pi * abs(radius**2 - other**2)
         stored = one.count * _stored(one.material, area * one.gear.face_width)
         found[one.node] = found.get(one.node, 0.0) + stored
@@ -240,11 +242,6 @@ def bearing_capacity(own: ShaftBearing) -> float:
 
 def _stored(solid: Solid, volume: float) -> float:
     return solid.density * solid.heat_capacity * volume
-
-
-def _outside(own: GearSet, one: OneGear) -> float:
-    """Radius of the outside of a ring gear, which its disc has. [m]"""
-    return max(disc.turning.radius for disc in _discs(own) if disc.body == one.body)
 
 
 def _carrier_volume(own: GearSet) -> float:

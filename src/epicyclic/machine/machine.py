@@ -99,7 +99,13 @@ def bearing_reactions(
             raise ValueError("both bearings of the shaft are at the same position")
         second = -about_first.sum(axis=0) / span
     else:
-        _check_single(forces, moments, arms, about_first)
+        largest = float(np.abs(forces[:, :2] * arms[:, None]).sum() + np.abs(moments).sum())
+        left = float(np.abs(about_first.sum(axis=0)).max())
+        if left > NEGLIGIBLE * largest:
+            raise ValueError(
+                f"a moment of {torque_text(left, 4)} remains on the only bearing of the shaft; "
+                "add a second bearing, or give radial_force"
+            )
     radial = (-second - total[:2], second)[: len(supports)]
     thrust = float(total[2])
     if abs(thrust) <= NEGLIGIBLE * float(np.abs(forces[:, 2]).sum()):
@@ -139,19 +145,6 @@ def _axial_reactions(
         return [found[0], found[1]]
     axial = _axial_bearing(supports, thrust)
     return [-thrust if number == axial else 0.0 for number in range(len(supports))]
-
-
-def _check_single(
-    forces: FloatArray, moments: FloatArray, arms: FloatArray, about: FloatArray
-) -> None:
-    """Raise `ValueError` if loads tilt a shaft on its only bearing."""
-    largest = float(np.abs(forces[:, :2] * arms[:, None]).sum() + np.abs(moments).sum())
-    left = float(np.abs(about.sum(axis=0)).max())
-    if left > NEGLIGIBLE * largest:
-        raise ValueError(
-            f"a moment of {torque_text(left, 4)} remains on the only bearing of the shaft; "
-            "add a second bearing, or give radial_force"
-        )
 
 
 def _axial_bearing(supports: Sequence[Support], thrust: float) -> int:

@@ -153,7 +153,12 @@ def shape_of_train(
 ) -> tuple[TrainShape, list[Problem]]:
     """Which members turn together, and what cannot be about it."""
     members = [f"{name}.{member}" for name, shape in sets.items() for member in shape.members]
-    aliases = _aliases(sets)
+    aliases = {  # members by the names of their gears
+        f"{name}.{gear}": f"{name}.{body}"
+        for name, shape in sets.items()
+        for gear, body in shape.bodies.items()
+        if body not in shape.planets and gear != body
+    }
     problems: list[Problem] = []
     owner: dict[str, str] = {}
     joined: dict[str, list[str]] = {}
@@ -181,16 +186,6 @@ def shape_of_train(
     alone = {member: (member,) for member in members if member not in owner}
     whole = {shaft: tuple(names) for shaft, names in joined.items()} | alone
     return TrainShape(sets, whole), problems
-
-
-def _aliases(sets: Mapping[str, Gearing]) -> dict[str, str]:
-    """Members by the names of their gears."""
-    return {
-        f"{name}.{gear}": f"{name}.{body}"
-        for name, shape in sets.items()
-        for gear, body in shape.bodies.items()
-        if body not in shape.planets and gear != body
-    }
 
 
 def _no_member(key: str, name: str, members: Sequence[str], sets: Mapping[str, Gearing]) -> Problem:
