@@ -109,15 +109,13 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
 
 def flows_asked(plan: CasePlan, indices: Iterable[int]) -> dict[tuple[Any, ...], dict[str, Any]]:
     """What points change of the pockets, once for all that need the same flows."""
-    return {_flow(changes): changes for changes in _changes(plan, indices)}
-
-
-def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
-    """What the points change of the pockets; those that cannot be made report it themselves."""
+    asked = {}
     for index in indices:
-        with suppress(InputError):
+        with suppress(InputError):  # a point that cannot be made reports it itself
             changes = plan.changes(index).items()
-            yield {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
+            own = {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
+            asked[_flow(own)] = own
+    return asked
 
 
 def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -380,13 +378,12 @@ class PointList(CasePlan):
         return {**CasePlan.describe(self), "points": plain(self.points)}
 
     def _place(self, index: int) -> tuple[list[str], list[str], str]:
-        torque = "operation.torque"
         changes = {key: str(value) for key, value in sorted(self.points[index].items())}
         inner = [key for key in changes if _is_operating(key)]
         return (
             [f"{key}={text}" for key, text in changes.items() if key not in inner],
-            [f"{key}={changes[key]}" for key in inner if key != torque],
-            changes.get(torque, ""),
+            [f"{key}={changes[key]}" for key in inner if key != _TORQUE],
+            changes.get(_TORQUE, ""),
         )
 
 
