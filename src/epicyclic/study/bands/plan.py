@@ -39,8 +39,7 @@ OF_SHAFT_POWER = ("operation.torque", "operation.speed")
 
 def entering(at_shaft: FloatArray, loss: FloatArray) -> FloatArray:
     """Power that enters at this shaft and the other one, of which this one's is stated. [W]"""
-    found: FloatArray = np.maximum(at_shaft, 0.0) + np.maximum(loss - at_shaft, 0.0)
-    return found
+    return np.maximum(at_shaft, 0.0) + np.maximum(loss - at_shaft, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -349,8 +349,7 @@ class CycleStudy(Study):
              for sign in (-1, 1)]
             for number in range(changes.shape[1])
         ]  # fmt: skip
-        found: FloatArray = np.array([(above - below) / 2 for below, above in ends])
-        return found
+        return np.array([(above - below) / 2 for below, above in ends])
 
 
 def uncertainty(

@@ -381,9 +381,8 @@ def quick_dataset(case: Case, result: Result) -> xr.Dataset | None:
         "driver": keys,
         "sum": ["total"],
     }
-    remarks = "\n".join(model_remarks(case, result))
-    about = about_study(case, outputs, DRAWN, SEED) | {"left_out": ", ".join(lost)}
-    about["remarks"] = remarks
+    about = about_study(case, outputs, DRAWN, SEED)
+    about |= {"left_out": ", ".join(lost), "remarks": "\n".join(model_remarks(case, result))}
     return xr.Dataset({**variables, **about_inputs(values)}, coords, about)
 
 

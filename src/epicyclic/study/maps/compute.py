@@ -270,8 +270,7 @@ def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
     inner = np.where(backwards, high[first], low[first])
     outer = np.where(backwards, low[first], high[first])
     closer = [inner + part * (outer - inner) for part in CLOSER_TO_ZERO]
-    found: FloatArray = np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
-    return found
+    return np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
 
 
 def _takes_minutes(case: Case) -> bool:
