@@ -299,11 +299,7 @@ class SweepPlan(CasePlan):
     @property
     def together(self) -> bool:
         """See `CasePlan`."""
-        alike = [
-            len(axis.values)
-            for axis in self.axes
-            if all(_is_operating(part.key) for part in axis.keys)
-        ]
+        alike = [len(axis.values) for axis in self.axes if _is_of_operation(axis)]
         return math.prod(alike) > 1 and all(map(_is_operating, self.links))
 
     def axes_behind(self, key: str) -> list[int]:
@@ -328,8 +324,7 @@ class SweepPlan(CasePlan):
             for number in self.axes_behind(key)
         }
         depth = [  # names are no numbers of one block
-            (number not in outer and all(_is_operating(part.key) for part in axis.keys))
-            * (2 if axis.unit else 1)
+            (number not in outer and _is_of_operation(axis)) * (2 if axis.unit else 1)
             for number, axis in enumerate(self.axes)
         ]
         powers = [_TORQUE, AXES["speed"]] if self.together else []
@@ -346,6 +341,10 @@ class SweepPlan(CasePlan):
 
 def _is_operating(key: str) -> bool:
     return key.split(".")[0] in _OPERATING_TABLES
+
+
+def _is_of_operation(axis: Axis) -> bool:
+    return all(_is_operating(part.key) for part in axis.keys)
 
 
 @dataclass(frozen=True, slots=True)
@@ -465,21 +464,14 @@ def parse_vary(
     vary: dict[str, list[Any]] = {}
     for option in options:
         key, equals, text = option.partition("=")
-        key = key.strip()
+        key, given = key.strip(), f'"{option}"'
         if not equals or not text.strip():
-            problems.append(
-                Problem(
-                    name,
-                    f'"{option}"',
-                    "must be key=a,b,c or key=start:stop:count.",
-                    f'For example {name} "{example}=1000:4000:4 rpm".',
-                )
-            )
+            allowed = "must be key=a,b,c or key=start:stop:count."
+            remedy = f'For example {name} "{example}=1000:4000:4 rpm".'
+            problems.append(Problem(name, given, allowed, remedy))
             continue
         if key in vary:
-            problems.append(
-                Problem(name, f'"{option}"', f"varies {key} again.", "Give each key once.")
-            )
+            problems.append(Problem(name, given, f"varies {key} again.", "Give each key once."))
             continue
         try:
             vary[key] = list(_values(case, key, text))
