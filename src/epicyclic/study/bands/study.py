@@ -125,7 +125,7 @@ def sample_variables(
     """What the results of the samples A and B say."""
     import xarray as xr
 
-    (samples, *_), names = sampled.samples, sampled.outputs.names
+    (samples, *_), names = sampled.samples, sampled.plan.outputs.names
     both = np.concatenate([sets[0], sets[1]], axis=1)
     status, message = sampled.ends(rows)
     sound = _sound(both[-2], message)
