@@ -678,13 +678,8 @@ def _about_pocketing(rows: Rows) -> str:
 def check_output(path: Path) -> None:
     """Raise `InputError` unless a sweep can be written to `path`."""
     if path.suffix not in FORMATS:
-        raise one_problem(
-            "-o",
-            str(path),
-            f"must end in {', '.join(FORMATS)}.",
-            "Choose one of these formats.",
-            "the command",
-        )
+        allowed, remedy = f"must end in {', '.join(FORMATS)}.", "Choose one of these formats."
+        raise one_problem("-o", str(path), allowed, remedy, "the command")
     check_place(path)
 
 
