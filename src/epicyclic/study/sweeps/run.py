@@ -648,20 +648,17 @@ def _about(label: str, unit: str) -> dict[str, str]:
 
 
 def _attributes(plan: SweepPlan, rows: Rows) -> dict[str, str]:
+    # which keys changed together, and which followed from others
+    groups = [[part.key for part in axis.keys] for axis in plan.axes if axis.together]
+    told = {"together": groups, "links": dict(plan.links)}
     return {
         "title": plan.case.title,
         **origin(plan.case),
         "conventions": "losses in W of the whole gear set, summed over planets; "
         "torque and speed of the input member",
         "pocketing": _about_pocketing(rows),
-    } | _about_links(plan)
-
-
-def _about_links(plan: SweepPlan) -> dict[str, str]:
-    """Which keys changed together, and which followed from others."""
-    groups = [[part.key for part in axis.keys] for axis in plan.axes if axis.together]
-    told = {"together": groups, "links": dict(plan.links)}
-    return {name: json.dumps(content) for name, content in told.items() if content}
+        **{name: json.dumps(content) for name, content in told.items() if content},
+    }
 
 
 def _about_pocketing(rows: Rows) -> str:
