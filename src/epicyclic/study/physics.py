@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from numbers import Real
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -168,14 +169,9 @@ def oil_properties(oil: OilName, temperature: Any) -> dict[str, FloatArray]:
         "pressure_viscosity",
         "thermal_conductivity",
     )
-
-    liquid = _oil(oil)
-
-    def at(kelvin: float) -> tuple[float, ...]:
-        state = oil_state(liquid, kelvin)
-        return tuple(getattr(state, name) for name in names)
-
-    return dict(zip(names, _each(at, temperature=temperature), strict=True))
+    liquid, stated = _oil(oil), attrgetter(*names)
+    columns = _each(lambda kelvin: stated(oil_state(liquid, kelvin)), temperature=temperature)
+    return dict(zip(names, columns, strict=True))
 
 
 class LineContact(NamedTuple):
@@ -256,9 +252,7 @@ def line_contact(**contact: Any) -> LineContact:
     [0.61, 0.53]
     """
     names = ("hertz_pressure", "hertz_half_width", "minimum_film", "film_ratio")
-    return LineContact(
-        *_at_contacts(lambda it: tuple(getattr(it, name) for name in names), **contact)
-    )
+    return LineContact(*_at_contacts(attrgetter(*names), **contact))
 
 
 def friction(model: str, **contact: Any) -> FloatArray:

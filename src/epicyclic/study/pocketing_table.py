@@ -34,8 +34,6 @@ from epicyclic.study.sweeps.runner import Plan, Progress, Row, Rows, Runner
 if TYPE_CHECKING:
     import xarray as xr
 
-SPEED, TEMPERATURE = AXES["speed"], AXES["temperature"]
-
 _PER_OCTAVE = 256
 """Numbers in each doubling at which a flow may be solved; few of them are. Fewer leave gaps."""
 _DRIVERS = (1, 2)
@@ -177,8 +175,8 @@ def make_table_plan(
 ) -> TablePlan:
     """Check what is to be tabulated. Parameters as for `pocketing_table`."""
     given = case.inputs()["operation"]["oil_inlet_temperature"]
-    axes = {SPEED: speeds, TEMPERATURE: [given] if temperatures is None else temperatures}
-    return _table_plan(make_plan(case, axes))
+    temperatures = [given] if temperatures is None else temperatures
+    return _table_plan(make_plan(case, {AXES["speed"]: speeds, AXES["temperature"]: temperatures}))
 
 
 def _table_plan(places: SweepPlan) -> TablePlan:

@@ -31,13 +31,11 @@ def build_computed(case: Case) -> Built:
     """
     built = build(case)
     if not built.sets or built.known_fluids is None:
-        raise one_problem(
-            "sets",
-            "",
-            "have given efficiencies only, so their teeth are unknown.",
-            "Give the gears of a set (module, face widths, roughness) instead of its efficiency.",
-            case.source,
+        allowed = "have given efficiencies only, so their teeth are unknown."
+        remedy = (
+            "Give the gears of a set (module, face widths, roughness) instead of its efficiency."
         )
+        raise one_problem("sets", "", allowed, remedy, case.source)
     return built
 
 

@@ -121,19 +121,15 @@ def uncertain_values(
 def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
     if not has_effect(case, key) or not _is_shared(case, key) or _is_inherited(case, key):
         return None
-    if key.endswith(FACTOR_KEY):
-        return _assumed_factor(case, key)
     limit = slope_limit(case, key)
     if limit is not None:
         return _assumed_slope(case, key, limit)
-    for assumption in _assumptions():
-        if assumption.holds_for(key):
-            parameter = parameter_of(case, key)
-            if isinstance(parameter, Problem):
-                return None
-            made = made_value(case, parameter, assumption.table, assumption.source)
-            return made if isinstance(made, UncertainValue) else None
-    return None
+    assumption = _assumption(case, key)
+    parameter = None if assumption is None else parameter_of(case, key)
+    if assumption is None or not isinstance(parameter, Parameter):
+        return None
+    made = made_value(case, parameter, assumption.table, assumption.source)
+    return made if isinstance(made, UncertainValue) else None
 
 
 def _is_shared(case: CaseTable, key: str) -> bool:
@@ -163,14 +159,13 @@ def _assumed_slope(case: CaseTable, key: str, limit: float) -> UncertainValue:
     )
 
 
-def _assumed_factor(case: CaseTable, key: str) -> UncertainValue | None:
-    """How well the share of oil is known that follows from a method."""
+def _assumption(case: CaseTable, key: str) -> Assumption | None:
+    """What is assumed of a key; of a share of oil by the method from which it follows."""
+    if not key.endswith(FACTOR_KEY):
+        return next((it for it in _assumptions() if it.holds_for(key)), None)
     method = library.named("lubrication")[value_of(case, key.rpartition(".")[0]).method]
-    factor, source = method["lognormal_factor"], method["source"]
-    parameter = parameter_of(case, key)
-    assert isinstance(parameter, Parameter)
-    made = made_value(case, parameter, DistributionTable(lognormal_factor=factor), source)
-    return made if isinstance(made, UncertainValue) else None
+    table = DistributionTable(lognormal_factor=method["lognormal_factor"])
+    return Assumption((key,), table, method["source"])
 
 
 SLOPES = {"profile_slope": "profile_slope", "lead_slope": "helix_slope"}

@@ -39,8 +39,7 @@ OF_SHAFT_POWER = ("operation.torque", "operation.speed")
 
 def entering(at_shaft: FloatArray, loss: FloatArray) -> FloatArray:
     """Power that enters at this shaft and the other one, of which this one's is stated. [W]"""
-    found: FloatArray = np.maximum(at_shaft, 0.0) + np.maximum(loss - at_shaft, 0.0)
-    return found
+    return np.maximum(at_shaft, 0.0) + np.maximum(loss - at_shaft, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -388,7 +387,6 @@ def check_samples(samples: int, seed: int = 0) -> None:
 class SampledCase:
     """Samples A and B of a case at operating points, and A with some groups of inputs from B."""
 
-    outputs: Outputs
     # Samples of each operating point: of equal probabilities, about the values of that point.
     samples: tuple[Samples, ...]
     groups: tuple[int, ...]  # Numbers of the groups that are solved for with values from B.
@@ -405,16 +403,17 @@ class SampledCase:
 
         In the order of `Outputs.names`.
         """
+        outputs = self.plan.outputs
         power, shaft, *every = (
             rows.numbers(name).reshape(len(self.samples), -1, self.plan.count)
-            for name in (INPUT_POWER, SHAFT_POWER, *self.outputs.numbers)
+            for name in (INPUT_POWER, SHAFT_POWER, *outputs.numbers)
         )
         losses = np.array(every).reshape(len(every), *power.shape)
-        lost = losses[: len(self.outputs.losses)].sum(axis=0)
+        lost = losses[: len(outputs.losses)].sum(axis=0)
         return np.array(
             [
                 [
-                    self.outputs.of(
+                    outputs.of(
                         losses[:, point, solved],
                         Powers(power[point, solved], shaft[point, solved], lost[point, solved]),
                         factors_of(own.values, drawn),
@@ -476,16 +475,15 @@ def sampled_case(
         return found, np.concatenate(sets, axis=1)[inputs]
 
     samples, own = zip(*map(drawn, values), strict=True)
-    outputs = outputs_of(case, result)
     plan = SamplePlan(
         without_table(case),
-        outputs,
+        outputs_of(case, result),
         inputs=tuple(first[number] for number in inputs),
         count=count,
         drawn=own,
         points=tuple(points),
     )
-    return SampledCase(outputs, samples, groups, plan)
+    return SampledCase(samples, groups, plan)
 
 
 def nearby_at(

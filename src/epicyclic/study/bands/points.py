@@ -92,7 +92,7 @@ class MapStudy(Study):
         whole = self._with_torque_loss(points)
         total = whole[:, -3]
         values = self.sampled.samples[0].values
-        names = (*self.sampled.outputs.names, TORQUE_LOSS)
+        names = (*self.plan.outputs.names, TORQUE_LOSS)
         parts = [summaries(own) for own in whole]
         variables = {
             name: self._over("result", np.array([part[name] for part in parts]), label)
@@ -122,7 +122,7 @@ class MapStudy(Study):
 
     def _indices(self, results: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Indices of the total loss by curves, shape (p, 2, g), and the share they explain."""
-        outputs, own = self.sampled.outputs, self.sampled.samples
+        outputs, own = self.plan.outputs, self.sampled.samples
         drawn = cache(lambda values: make_samples(values, DRAWN, self.seed))
         shares, explained = np.zeros((len(own), 2, len(own[0].groups))), np.zeros(len(own))
         for number, (samples, losses) in enumerate(zip(own, results, strict=True)):
@@ -349,8 +349,7 @@ class CycleStudy(Study):
              for sign in (-1, 1)]
             for number in range(changes.shape[1])
         ]  # fmt: skip
-        found: FloatArray = np.array([(above - below) / 2 for below, above in ends])
-        return found
+        return np.array([(above - below) / 2 for below, above in ends])
 
 
 def uncertainty(

@@ -125,7 +125,7 @@ def sample_variables(
     """What the results of the samples A and B say."""
     import xarray as xr
 
-    (samples, *_), names = sampled.samples, sampled.outputs.names
+    (samples, *_), names = sampled.samples, sampled.plan.outputs.names
     both = np.concatenate([sets[0], sets[1]], axis=1)
     status, message = sampled.ends(rows)
     sound = _sound(both[-2], message)
@@ -381,9 +381,8 @@ def quick_dataset(case: Case, result: Result) -> xr.Dataset | None:
         "driver": keys,
         "sum": ["total"],
     }
-    remarks = "\n".join(model_remarks(case, result))
-    about = about_study(case, outputs, DRAWN, SEED) | {"left_out": ", ".join(lost)}
-    about["remarks"] = remarks
+    about = about_study(case, outputs, DRAWN, SEED)
+    about |= {"left_out": ", ".join(lost), "remarks": "\n".join(model_remarks(case, result))}
     return xr.Dataset({**variables, **about_inputs(values)}, coords, about)
 
 

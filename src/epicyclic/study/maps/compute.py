@@ -224,10 +224,11 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     speed = float(speeds[speeds.size // 2])
     line = data.sel(speed=speed).isel(first)
     middles = _checked(torques, line["total"].values)
-    changes = further_values(line) | {OPERATING["speed"].key: OPERATING["speed"].text(speed)}
-    if "temperature" in first:
-        oil = OPERATING["temperature"]
-        changes[oil.key] = oil.text(line["temperature"].item())
+    changes = further_values(line) | {
+        part.key: part.text(line[name].item())
+        for name, part in OPERATING.items()
+        if name in ("speed", *first)
+    }
     if STATE in first:
         changes[STATE_KEY] = line[STATE].item()
     torque = OPERATING["torque"]
@@ -269,8 +270,7 @@ def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
     inner = np.where(backwards, high[first], low[first])
     outer = np.where(backwards, low[first], high[first])
     closer = [inner + part * (outer - inner) for part in CLOSER_TO_ZERO]
-    found: FloatArray = np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
-    return found
+    return np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
 
 
 def _takes_minutes(case: Case) -> bool:

@@ -189,16 +189,13 @@ def _find_columns(headers: tuple[str, ...]) -> tuple[dict[str, Column], list[Pro
             problems.append(_repeated(name, [header for header, _ in candidates]))
         elif candidates:
             try:
-                columns[name] = _column(*candidates[0], _QUANTITIES[name])
+                # shares may have any unit: their sum is the whole
+                quantity, (header, unit) = _QUANTITIES[name], candidates[0]
+                how = () if quantity is None else quantity.scale_from(unit or "")
+                columns[name] = Column(header, *how)
             except PydanticCustomError as error:
-                problems.append(unit_problem(name, *candidates[0], _QUANTITIES[name], error))
+                problems.append(unit_problem(name, header, unit, quantity, error))
     return columns, problems + _missing(found, headers)
-
-
-def _column(header: str, unit: str | None, quantity: Quantity | None) -> Column:
-    if quantity is None:
-        return Column(header)  # shares of any unit: their sum is the whole
-    return Column(header, *quantity.scale_from(unit or ""))
 
 
 def _repeated(name: str, headers: list[str]) -> Problem:

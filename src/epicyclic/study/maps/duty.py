@@ -183,24 +183,28 @@ def cycle_map(
 
 def cycle_plan(case: Case, cycle: Cycle, celsius: tuple[float, ...] | None) -> MapPlan:
     """The points of that map."""
-    speeds = crowded(*cycle.ranges["speed"], _SPEEDS)
-    torques = resolving_zero(crowded(*cycle.ranges["torque"], _TORQUES), _CROWD)
-    temperatures, states = celsius, None
+    if case.computed and "temperature" in cycle.ranges:  # it has no effect without an oil
+        low, high = cycle.ranges["temperature"]
+        celsius = tuple(np.unique(np.linspace(low, high, _TEMPERATURES)).tolist())
+    texts = None if celsius is None else texts_of(celsius, CELSIUS)
+    return grid_plan(case, cycle, (_SPEEDS, _TORQUES, _CROWD), texts)
+
+
+def grid_plan(
+    case: Case,
+    cycle: Cycle,
+    counts: tuple[int, int, int],  # Speeds, torques, and further torques next to zero.
+    temperatures: list[str] | None = None,
+) -> MapPlan:
+    """A map over the speeds, torques and states of a cycle."""
+    states = None
     if case.states:
         check_states(cycle, tuple(case.states))
         states = [name for name in case.states if name in cycle.states]
-    if not case.computed:
-        pass  # without an oil its temperature has no effect
-    elif "temperature" in cycle.ranges:
-        low, high = cycle.ranges["temperature"]
-        temperatures = tuple(np.unique(np.linspace(low, high, _TEMPERATURES)).tolist())
-    return map_plan(
-        case,
-        texts_of(speeds, RPM),
-        texts_of(torques, NEWTON_METRE),
-        None if temperatures is None else texts_of(temperatures, CELSIUS),
-        states=states,
-    )
+    speeds = crowded(*cycle.ranges["speed"], counts[0])
+    torques = resolving_zero(crowded(*cycle.ranges["torque"], counts[1]), counts[2])
+    plane = texts_of(speeds, RPM), texts_of(torques, NEWTON_METRE)
+    return map_plan(case, *plane, temperatures, states=states)
 
 
 def crowded(low: float, high: float, count: int) -> FloatArray:

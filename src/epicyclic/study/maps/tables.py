@@ -263,8 +263,7 @@ def slack(axis: FloatArray) -> float:
 def loss_power(torque_loss: FloatArray, speed: FloatArray) -> FloatArray:
     """Power in W of a torque loss in N m at a speed in rpm."""
     to_rpm, _ = RPM.scale_and_offset()
-    power: FloatArray = torque_loss * np.abs(speed) / to_rpm
-    return power
+    return torque_loss * np.abs(speed) / to_rpm
 
 
 def make_lookup(data: xr.Dataset) -> Lookup:

@@ -28,9 +28,9 @@ from epicyclic.result.result import origin
 from epicyclic.schema.fields import quantity_of
 from epicyclic.study.heat import check_oil
 from epicyclic.study.load import CaseSource, as_case
-from epicyclic.study.maps.compute import held_shaft, map_plan, resolving_zero
+from epicyclic.study.maps.compute import held_shaft
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
-from epicyclic.study.maps.duty import check_states, crowded, point_of, texts_of
+from epicyclic.study.maps.duty import grid_plan, point_of, texts_of
 from epicyclic.study.maps.tables import Lookup, driven_problem, loss_power
 from epicyclic.study.operating import AXES, STATE, axis_name
 from epicyclic.study.sweeps.run import SweepPlan, make_plan
@@ -39,8 +39,6 @@ from epicyclic.units import (
     CELSIUS,
     KELVIN,
     KILOJOULE,
-    NEWTON_METRE,
-    RPM,
     SECOND,
     WATT,
     Quantity,
@@ -394,28 +392,19 @@ def _driven(case: Case, seconds: float, cycle: Cycle) -> _Drive:
     """A cycle: a time series in steps, a histogram as one step. Theory (W37)."""
     if not held_shaft(case):
         raise InputError([driven_problem("only one speed and one torque can be looked up")])
-    states: list[str] = []
-    if case.states:
-        check_states(cycle, tuple(case.states))
-        states = [name for name in case.states if name in cycle.states]
     # The points of the grid, at one temperature.
-    speeds = crowded(*cycle.ranges["speed"], SPEEDS)
-    torques = resolving_zero(crowded(*cycle.ranges["torque"], TORQUES), CROWD)
-    plan = map_plan(
-        case.updated({"models.temperatures": "inlet"}),
-        texts_of(speeds, RPM),
-        texts_of(torques, NEWTON_METRE),
-        states=states or None,
-    )
+    even = case.updated({"models.temperatures": "inlet"})
+    plan = grid_plan(even, cycle, (SPEEDS, TORQUES, CROWD))
     points = [plan.changes(index) for index in range(plan.size)]
     for changes in points:
         del changes[AXES["temperature"]]
     sizes = {axis_name(axis.key): np.array(axis.coordinate) for axis in plan.axes}
     del sizes["temperature"]
+    states = tuple(map(str, sizes.get(STATE, ())))
     if states:
         sizes[STATE] = np.arange(1.0, len(states) + 1)
     shape = tuple(axis.size for axis in sizes.values())
-    grid = Lookup(tuple(sizes), tuple(sizes.values()), tuple(states), (), np.zeros((0, *shape)))
+    grid = Lookup(tuple(sizes), tuple(sizes.values()), states, (), np.zeros((0, *shape)))
     return _Drive(points, tuple(_steps(cycle, grid, seconds / MOST_STEPS)), plan)
 
 

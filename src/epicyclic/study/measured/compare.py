@@ -95,7 +95,7 @@ class Question:
             case=self.case,
             measured=self.table,
             computed=given.loss,
-            calibrated=None if calibrated is None else calibrated.loss,
+            calibrated=states.get(CALIBRATED),
             held_out=held_out,
             load_dependent=self.load_dependent,
             group=group,
@@ -273,10 +273,8 @@ def compare_measured(
     table = question.table
     if relative is not None:
         raise_any(_relative_problems(table, relative), "the comparison")
-        question = replace(
-            question, table=replace(table, uncertainty=relative * np.abs(table.loss))
-        )
-        table = question.table
+        table = replace(table, uncertainty=relative * np.abs(table.loss))
+        question = replace(question, table=table)
     keys = tuple(dict.fromkeys(fit))
     varied = {key for change in table.changes for key in change}
     problems = [*question.problems(), *_fit_problems(keys, hold_out, confidence)]

@@ -265,16 +265,15 @@ class MeasuredComparison:
         """One row for each measurement, units in the column names."""
         import pandas as pd
 
-        own = {"loss", "uncertainty", "component"}
-        labels = {
-            name: list(text) for name, text in self.measured.labels.items() if name not in own
-        }
+        own = {*OPERATING, "loss", "uncertainty", "component"}
         conditions = {
             f"{name} [{OPERATING[name].unit}]": values
             for name, values in self.measured.conditions.items()
         }
         columns: dict[str, Any] = {"line": self.measured.lines} | conditions
-        columns |= {name: text for name, text in labels.items() if name not in OPERATING}
+        columns |= {
+            name: list(text) for name, text in self.measured.labels.items() if name not in own
+        }
         columns |= {"component": self.measured.component, "measured [W]": self.measured.loss}
         if self.measured.uncertainty is not None:
             columns["uncertainty [W]"] = self.measured.uncertainty

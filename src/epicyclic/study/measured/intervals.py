@@ -463,40 +463,24 @@ def combinations(
     noise = float(np.linalg.norm(left)) / math.sqrt(freedom) if freedom else 0.0
     noise = max(noise, 1.0) if weighted else noise
     least = max(noise, SINGULAR * float(singular[0]))
-    return tuple(
-        _described(
-            parameters,
-            direction,
-            reach,
-            change=float(size) / max(noise, TINY) / math.sqrt(count),
-            told_apart=bool(size > least),
+    found = []
+    for size, direction in zip(singular[::-1], directions[::-1], strict=True):
+        order = np.argsort(-np.abs(direction))
+        first = order[0]
+        upward = direction * reach * np.sign(direction[first] * parameters[first].start)
+        named = [
+            (parameters[i], float(parameters[i].start * (1 + upward[i])))
+            for i in order
+            if abs(direction[i]) >= NAMED * abs(direction[first])
+        ]
+        found.append(
+            Combination(
+                keys=tuple(item.key for item, _ in named),
+                units=tuple(item.unit for item, _ in named),
+                start=tuple(item.start for item, _ in named),
+                moved=tuple(min(max(it, item.low), item.high) for item, it in named),
+                change=float(size) / max(noise, TINY) / math.sqrt(count),
+                told_apart=bool(size > least),
+            )
         )
-        for size, direction in zip(singular[::-1], directions[::-1], strict=True)
-    )
-
-
-def _described(
-    parameters: Sequence[Parameter],
-    direction: FloatArray,
-    reach: FloatArray,
-    change: float,
-    told_apart: bool,
-) -> Combination:
-    """A direction with the values that it leads to."""
-    order = np.argsort(-np.abs(direction))
-    first = order[0]
-    named = [int(i) for i in order if abs(direction[i]) >= NAMED * abs(direction[first])]
-    upward = direction * reach * np.sign(direction[first] * parameters[first].start)
-    items = [parameters[i] for i in named]
-    moved = [item.start * (1 + upward[i]) for item, i in zip(items, named, strict=True)]
-    return Combination(
-        keys=tuple(item.key for item in items),
-        units=tuple(item.unit for item in items),
-        start=tuple(item.start for item in items),
-        moved=tuple(
-            min(max(float(value), item.low), item.high)
-            for item, value in zip(items, moved, strict=True)
-        ),
-        change=change,
-        told_apart=told_apart,
-    )
+    return tuple(found)

@@ -188,13 +188,11 @@ def parse_measurements(
         name: _numbers(columns.get(name), quantity_of(*_field(case, key)), problems)
         for name, key in _conditions(case).items()
     }
-    loss = _loss(columns, conditions, case, problems)
-    uncertainty = _uncertainty(columns, loss, problems)
-    if uncertainty is None and SENSOR in columns:
-        uncertainty = _of_torques(columns, conditions, loss, case, problems)
+    stated = _Stated(columns, conditions, case, problems)
+    loss = stated.loss()
+    uncertainty = stated.uncertainty(loss)
     components = _components(columns.get("component"), component, case, grid, problems)
-    total = _two_torques(columns)
-    if total and set(components) != {"total"}:
+    if stated.by_two_torques and set(components) != {"total"}:
         allowed = "is stated by an efficiency or two torques only if it is the total."
         problems.found.append(Problem("component", first_of(components), allowed, "Give losses."))
     own = _conditions(case) | _states(case)
@@ -321,81 +319,91 @@ def _numbers(column: _Column | None, quantity: Quantity | None, problems: _Probl
     )
 
 
-def _loss(
-    columns: Mapping[str, _Column],
-    conditions: Mapping[str, FloatArray],
-    case: Case,
-    problems: _Problems,
-) -> FloatArray:
-    """The measured loss, or that which an efficiency or a second torque implies. [W]"""
-    if _TORQUE_LOSS in columns and "loss" not in columns:
-        taken = _numbers(columns[_TORQUE_LOSS], NEWTON_METRE, problems)
-        return taken * np.abs(conditions["speed"]) * _RAD_PER_S
-    if not _two_torques(columns):
-        return _numbers(columns.get("loss"), WATT, problems)
-    power = conditions["torque"] * conditions["speed"] * _RAD_PER_S
-    if _EFFICIENCY in columns:
-        column = columns[_EFFICIENCY]
-        if not column.unit:
-            cells = (
-                f"{cell} {_UNIT_OF_PARTS}" if cell[-1:].isdigit() else cell for cell in column.cells
-            )
-            column = replace(column, cells=tuple(cells))
-        share = _numbers(column, NUMBER, problems)
-        for row in np.flatnonzero((share <= 0) | (share > 1)):
-            remedy = "Give it as a share, or in per cent with [%] in the header."
-            problems.cell(column, int(row), "must be > 0 and at most 1, or 100 %.", remedy)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(power > 0, power * (1 - share), -power * (1 / share - 1))
-    torque = _numbers(columns[_TORQUE_OUT], NEWTON_METRE, problems)
-    speed = _speed_out(columns, conditions, case, problems)
-    leaving = np.abs(torque * speed) * _RAD_PER_S
-    return np.where(power > 0, power - leaving, leaving + power)
+@dataclass(frozen=True, slots=True)
+class _Stated:
+    """What the columns of a table say of the loss and its uncertainty."""
 
+    columns: Mapping[str, _Column]
+    conditions: Mapping[str, FloatArray]
+    case: Case
+    problems: _Problems
 
-def _two_torques(columns: Collection[str]) -> bool:
-    """True if the loss is the difference of the powers at the two ends."""
-    return bool({_EFFICIENCY, _TORQUE_OUT} & set(columns)) and not (
-        {"loss", _TORQUE_LOSS} & set(columns)
-    )
+    @property
+    def by_two_torques(self) -> bool:
+        """True if the loss is the difference of the powers at the two ends."""
+        return bool({_EFFICIENCY, _TORQUE_OUT} & set(self.columns)) and not (
+            {"loss", _TORQUE_LOSS} & set(self.columns)
+        )
 
+    def loss(self) -> FloatArray:
+        """The measured loss, or that which an efficiency or a second torque implies. [W]"""
+        if _TORQUE_LOSS in self.columns and "loss" not in self.columns:
+            taken = _numbers(self.columns[_TORQUE_LOSS], NEWTON_METRE, self.problems)
+            return taken * np.abs(self.conditions["speed"]) * _RAD_PER_S
+        if not self.by_two_torques:
+            return _numbers(self.columns.get("loss"), WATT, self.problems)
+        power = self.conditions["torque"] * self.conditions["speed"] * _RAD_PER_S
+        if _EFFICIENCY in self.columns:
+            column = self.columns[_EFFICIENCY]
+            if not column.unit:
+                cells = (
+                    f"{cell} {_UNIT_OF_PARTS}" if cell[-1:].isdigit() else cell
+                    for cell in column.cells
+                )
+                column = replace(column, cells=tuple(cells))
+            share = _numbers(column, NUMBER, self.problems)
+            for row in np.flatnonzero((share <= 0) | (share > 1)):
+                remedy = "Give it as a share, or in per cent with [%] in the header."
+                self.problems.cell(column, int(row), "must be > 0 and at most 1, or 100 %.", remedy)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return np.where(power > 0, power * (1 - share), -power * (1 / share - 1))
+        torque = _numbers(self.columns[_TORQUE_OUT], NEWTON_METRE, self.problems)
+        leaving = np.abs(torque * self._speed_out()) * _RAD_PER_S
+        return np.where(power > 0, power - leaving, leaving + power)
 
-def _speed_out(
-    columns: Mapping[str, _Column],
-    conditions: Mapping[str, FloatArray],
-    case: Case,
-    problems: _Problems,
-) -> FloatArray:
-    """Of the output. [rpm]"""
-    if _SPEED_OUT in columns:
-        return _numbers(columns[_SPEED_OUT], RPM, problems)
-    return conditions["speed"] * _ratios(columns.get(STATE), case, len(problems.lines))
+    def uncertainty(self, loss: FloatArray) -> FloatArray | None:
+        """Standard uncertainties in W, from W or from per cent of the loss."""
+        column = self.columns.get("uncertainty")
+        if column is None:
+            return self._of_torques(loss) if SENSOR in self.columns else None
+        if SENSOR in self.columns:
+            allowed = "is given together with uncertainty, which is that of the loss."
+            self.problems.found.append(Problem(SENSOR, "", allowed, "Keep one of them."))
+        if column.unit == _PERCENT:
+            values = _read(column, self.problems, _finite) / 100 * np.abs(loss)
+        else:
+            values = _numbers(column, WATT, self.problems)
+        for row in np.flatnonzero(values <= 0):
+            remedy = "Give the standard uncertainty of every row, or leave the column out."
+            self.problems.cell(column, int(row), "must be > 0.", remedy)
+        return values
 
+    def _of_torques(self, loss: FloatArray) -> FloatArray:
+        """The same from the uncertainty of one torque, or of two independent ones. [W]"""
+        column, two = self.columns[SENSOR], self.by_two_torques
+        entering = np.abs(self.conditions["torque"] * self.conditions["speed"]) * _RAD_PER_S
+        powers = [entering, np.abs(entering - loss)] if two else [np.abs(loss)]
+        if column.unit == _PERCENT:
+            share = _read(column, self.problems, _finite) / 100
+            parts = [share * power for power in powers]
+        else:
+            torque = _numbers(column, NEWTON_METRE, self.problems) * _RAD_PER_S
+            speeds = [self.conditions["speed"]]
+            speeds += [self._speed_out()] if two else []
+            parts = [torque * np.abs(speed) for speed in speeds]
+        found = np.sqrt(sum(part**2 for part in parts))
+        for row in np.flatnonzero(found <= 0):
+            remedy = "Give the standard uncertainty of the torque as [N*m]."
+            self.problems.cell(column, int(row), "leaves a loss without uncertainty.", remedy)
+        return np.asarray(found)
 
-def _of_torques(
-    columns: Mapping[str, _Column],
-    conditions: Mapping[str, FloatArray],
-    loss: FloatArray,
-    case: Case,
-    problems: _Problems,
-) -> FloatArray:
-    """Standard uncertainty of the loss, from that of one torque, or of two independent ones. [W]"""
-    column, two = columns[SENSOR], _two_torques(columns)
-    entering = np.abs(conditions["torque"] * conditions["speed"]) * _RAD_PER_S
-    powers = [entering, np.abs(entering - loss)] if two else [np.abs(loss)]
-    if column.unit == _PERCENT:
-        share = _read(column, problems, _finite) / 100
-        parts = [share * power for power in powers]
-    else:
-        torque = _numbers(column, NEWTON_METRE, problems) * _RAD_PER_S
-        speeds = [conditions["speed"]]
-        speeds += [_speed_out(columns, conditions, case, problems)] if two else []
-        parts = [torque * np.abs(speed) for speed in speeds]
-    found = np.sqrt(sum(part**2 for part in parts))
-    for row in np.flatnonzero(found <= 0):
-        remedy = "Give the standard uncertainty of the torque as [N*m]."
-        problems.cell(column, int(row), "leaves a loss without uncertainty.", remedy)
-    return np.asarray(found)
+    def _speed_out(self) -> FloatArray:
+        """Of the output. [rpm]"""
+        if _SPEED_OUT in self.columns:
+            return _numbers(self.columns[_SPEED_OUT], RPM, self.problems)
+        return self.conditions["speed"] * _ratios(
+            self.columns.get(STATE), self.case, len(self.problems.lines)
+        )
 
 
 def _ratios(states: _Column | None, case: Case, count: int) -> FloatArray:
@@ -444,26 +452,6 @@ def _finite(cell: str) -> float:
     if not math.isfinite(number):
         raise ValueError(cell)
     return number
-
-
-def _uncertainty(
-    columns: Mapping[str, _Column], loss: FloatArray, problems: _Problems
-) -> FloatArray | None:
-    """Standard uncertainties in W, from W or from per cent of the loss."""
-    column = columns.get("uncertainty")
-    if column is None:
-        return None
-    if SENSOR in columns:
-        allowed = "is given together with uncertainty, which is that of the loss."
-        problems.found.append(Problem(SENSOR, "", allowed, "Keep one of them."))
-    if column.unit == _PERCENT:
-        values = _read(column, problems, _finite) / 100 * np.abs(loss)
-    else:
-        values = _numbers(column, WATT, problems)
-    for row in np.flatnonzero(values <= 0):
-        remedy = "Give the standard uncertainty of every row, or leave the column out."
-        problems.cell(column, int(row), "must be > 0.", remedy)
-    return values
 
 
 def _components(

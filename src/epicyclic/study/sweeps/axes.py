@@ -566,7 +566,8 @@ def _problem_of(case: Case, key: str, text: str, varied: set[str]) -> Problem | 
         return unsuitable
     if key in varied:
         return Problem(key, "", "is both varied and linked.", "Either vary or link it.")
-    if not _is_number(case, key):
+    field = _field(case, key)
+    if field[0] is not int and not is_continuous(field, quantity_of(*field)):
         remedy = "Link numbers only; vary this key together with others."
         return Problem(key, "", "is not a number.", remedy)
     try:
@@ -591,11 +592,6 @@ def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
     if field is None:
         raise ValueError(f"uses {key}, which is not a known key")
     return field
-
-
-def _is_number(case: Case, key: str) -> bool:
-    field = _field(case, key)
-    return field[0] is int or is_continuous(field, quantity_of(*field))
 
 
 def _is_found(case: Case, key: str) -> bool:

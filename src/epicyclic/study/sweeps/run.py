@@ -109,15 +109,13 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
 
 def flows_asked(plan: CasePlan, indices: Iterable[int]) -> dict[tuple[Any, ...], dict[str, Any]]:
     """What points change of the pockets, once for all that need the same flows."""
-    return {_flow(changes): changes for changes in _changes(plan, indices)}
-
-
-def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
-    """What the points change of the pockets; those that cannot be made report it themselves."""
+    asked = {}
     for index in indices:
-        with suppress(InputError):
+        with suppress(InputError):  # a point that cannot be made reports it itself
             changes = plan.changes(index).items()
-            yield {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
+            own = {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
+            asked[_flow(own)] = own
+    return asked
 
 
 def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -301,11 +299,7 @@ class SweepPlan(CasePlan):
     @property
     def together(self) -> bool:
         """See `CasePlan`."""
-        alike = [
-            len(axis.values)
-            for axis in self.axes
-            if all(_is_operating(part.key) for part in axis.keys)
-        ]
+        alike = [len(axis.values) for axis in self.axes if _is_of_operation(axis)]
         return math.prod(alike) > 1 and all(map(_is_operating, self.links))
 
     def axes_behind(self, key: str) -> list[int]:
@@ -330,8 +324,7 @@ class SweepPlan(CasePlan):
             for number in self.axes_behind(key)
         }
         depth = [  # names are no numbers of one block
-            (number not in outer and all(_is_operating(part.key) for part in axis.keys))
-            * (2 if axis.unit else 1)
+            (number not in outer and _is_of_operation(axis)) * (2 if axis.unit else 1)
             for number, axis in enumerate(self.axes)
         ]
         powers = [_TORQUE, AXES["speed"]] if self.together else []
@@ -348,6 +341,10 @@ class SweepPlan(CasePlan):
 
 def _is_operating(key: str) -> bool:
     return key.split(".")[0] in _OPERATING_TABLES
+
+
+def _is_of_operation(axis: Axis) -> bool:
+    return all(_is_operating(part.key) for part in axis.keys)
 
 
 @dataclass(frozen=True, slots=True)
@@ -380,13 +377,12 @@ class PointList(CasePlan):
         return {**CasePlan.describe(self), "points": plain(self.points)}
 
     def _place(self, index: int) -> tuple[list[str], list[str], str]:
-        torque = "operation.torque"
         changes = {key: str(value) for key, value in sorted(self.points[index].items())}
         inner = [key for key in changes if _is_operating(key)]
         return (
             [f"{key}={text}" for key, text in changes.items() if key not in inner],
-            [f"{key}={changes[key]}" for key in inner if key != torque],
-            changes.get(torque, ""),
+            [f"{key}={changes[key]}" for key in inner if key != _TORQUE],
+            changes.get(_TORQUE, ""),
         )
 
 
@@ -468,21 +464,14 @@ def parse_vary(
     vary: dict[str, list[Any]] = {}
     for option in options:
         key, equals, text = option.partition("=")
-        key = key.strip()
+        key, given = key.strip(), f'"{option}"'
         if not equals or not text.strip():
-            problems.append(
-                Problem(
-                    name,
-                    f'"{option}"',
-                    "must be key=a,b,c or key=start:stop:count.",
-                    f'For example {name} "{example}=1000:4000:4 rpm".',
-                )
-            )
+            allowed = "must be key=a,b,c or key=start:stop:count."
+            remedy = f'For example {name} "{example}=1000:4000:4 rpm".'
+            problems.append(Problem(name, given, allowed, remedy))
             continue
         if key in vary:
-            problems.append(
-                Problem(name, f'"{option}"', f"varies {key} again.", "Give each key once.")
-            )
+            problems.append(Problem(name, given, f"varies {key} again.", "Give each key once."))
             continue
         try:
             vary[key] = list(_values(case, key, text))
@@ -659,20 +648,17 @@ def _about(label: str, unit: str) -> dict[str, str]:
 
 
 def _attributes(plan: SweepPlan, rows: Rows) -> dict[str, str]:
+    # which keys changed together, and which followed from others
+    groups = [[part.key for part in axis.keys] for axis in plan.axes if axis.together]
+    told = {"together": groups, "links": dict(plan.links)}
     return {
         "title": plan.case.title,
         **origin(plan.case),
         "conventions": "losses in W of the whole gear set, summed over planets; "
         "torque and speed of the input member",
         "pocketing": _about_pocketing(rows),
-    } | _about_links(plan)
-
-
-def _about_links(plan: SweepPlan) -> dict[str, str]:
-    """Which keys changed together, and which followed from others."""
-    groups = [[part.key for part in axis.keys] for axis in plan.axes if axis.together]
-    told = {"together": groups, "links": dict(plan.links)}
-    return {name: json.dumps(content) for name, content in told.items() if content}
+        **{name: json.dumps(content) for name, content in told.items() if content},
+    }
 
 
 def _about_pocketing(rows: Rows) -> str:
@@ -689,13 +675,8 @@ def _about_pocketing(rows: Rows) -> str:
 def check_output(path: Path) -> None:
     """Raise `InputError` unless a sweep can be written to `path`."""
     if path.suffix not in FORMATS:
-        raise one_problem(
-            "-o",
-            str(path),
-            f"must end in {', '.join(FORMATS)}.",
-            "Choose one of these formats.",
-            "the command",
-        )
+        allowed, remedy = f"must end in {', '.join(FORMATS)}.", "Choose one of these formats."
+        raise one_problem("-o", str(path), allowed, remedy, "the command")
     check_place(path)
 
 

@@ -149,7 +149,7 @@ class Journal:
         try:
             with _opened(self.path) as file:
                 while line := file.readline(_LONGEST_LINE):
-                    record = _parse(line.rstrip(b"\n"))
+                    record = _parsed(_RECORD, _record_in(line.rstrip(b"\n")))
                     if record is not None and record.sweep == self.fingerprint:
                         own += 1
                         yield record.point, record.row
@@ -226,7 +226,7 @@ def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
             strange = 0
             while strange <= _MOST_STRANGE_LINES:
                 line = file.readline(_LONGEST_LINE)
-                heading = _parse_heading(line)
+                heading = _parsed(_HEADING, line)
                 if heading is not None:
                     own = heading.study.get("version") == metadata.version("epicyclic")
                     if own and _record_in(line.rstrip(b"\n")) is None:
@@ -252,18 +252,10 @@ def _record_in(line: bytes) -> bytes | None:
     return record if line == _sealed(record) else None
 
 
-def _parse(line: bytes) -> _Record | None:
-    """The record of a line; None if it is none, or has been altered."""
-    record = _record_in(line)
+def _parsed(kind: TypeAdapter[Any], line: bytes | None) -> Any:
+    """What a line says; None if it is of another kind."""
     try:
-        return None if record is None else _RECORD.validate_json(record)
-    except ValidationError:
-        return None
-
-
-def _parse_heading(line: bytes) -> _Heading | None:
-    try:
-        return _HEADING.validate_json(line)
+        return None if line is None else kind.validate_json(line)
     except ValidationError:
         return None
 
