@@ -55,8 +55,8 @@ ADDED_TO_CASE = {
 }
 """Lines of what was added since the house was built, which the changelog counts apart."""
 CEILINGS = {
-    "lines": 70_120 + sum(ADDED.values()),
-    "lines of the core": 54_260 + sum(ADDED_TO_THE_CORE.values()),
+    "lines": 69_985 + sum(ADDED.values()),
+    "lines of the core": 54_130 + sum(ADDED_TO_THE_CORE.values()),
     "lines of case": 4_390 + sum(ADDED_TO_CASE.values()),
     "files": 260,
     "longest chain of imports": 25,
