@@ -109,13 +109,15 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
 
 def flows_asked(plan: CasePlan, indices: Iterable[int]) -> dict[tuple[Any, ...], dict[str, Any]]:
     """What points change of the pockets, once for all that need the same flows."""
-    asked = {}
+    return {_flow(changes): changes for changes in _changes(plan, indices)}
+
+
+def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
+    """What the points change of the pockets; those that cannot be made report it themselves."""
     for index in indices:
-        with suppress(InputError):  # a point that cannot be made reports it itself
+        with suppress(InputError):
             changes = plan.changes(index).items()
-            own = {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
-            asked[_flow(own)] = own
-    return asked
+            yield {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
 
 
 def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
