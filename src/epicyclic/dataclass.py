@@ -12,6 +12,7 @@ from functools import partial
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
+_PARAMS = "__dataclass_params__"
 __all__ = ["asdict", "astuple", "dataclass", "field", "fields", "replace"]
 
 
@@ -28,15 +29,20 @@ def _dataclass(kind: Any = None, /, *, frozen: bool = False, **options: Any) -> 
         methods["__repr__"] = _shown
     if options.get("eq", True):
         methods |= {"__eq__": _equal, "__hash__": _hash}
+    bases = [vars(it).get(_PARAMS) for it in kind.__mro__[1:]]
+    frozen_bases = [params for params in bases if params is not None and params.frozen]
+    for params in frozen_bases:  # of which it must not be known in between
+        params.frozen = False
     made: Any = dataclasses.dataclass(kind, **options | {"init": False, "repr": False, "eq": False})
+    for params in (*frozen_bases, vars(made)[_PARAMS]):
+        params.frozen = True  # so that frozen classes of the standard library may inherit from it
     methods["__init__"] = _init(made)
     for name in methods.keys() - vars(kind).keys():
         setattr(made, name, methods[name])
     if "__eq__" in methods:
-        compared = [it for it in fields(made) if it.compare]
-        made.__compared__ = attrgetter("__class__", *(it.name for it in compared))
-        hashed = (it.name for it in compared if it.hash is not False)
-        made.__hashed__ = attrgetter("__class__", *hashed)
+        compared = {it.name: it.hash is not False for it in fields(made) if it.compare}
+        made.__compared__ = attrgetter("__class__", *compared)
+        made.__hashed__ = attrgetter("__class__", *filter(compared.get, compared))
     return made
 
 

@@ -76,6 +76,28 @@ def test_what_a_class_says_itself_stays():
     assert Own(1.5) == Own(1.5)
 
 
+def test_classes_of_the_standard_library_may_inherit_and_ours_from_them():
+    @dataclass(frozen=True, slots=True)
+    class First:
+        one: float
+
+    @dataclasses.dataclass(frozen=True)
+    class Second(First):
+        two: float = 2.5
+
+    @dataclass(frozen=True, slots=True)
+    class Third(Second):
+        three: float = 3.5
+
+    third = Third(1.5)
+    assert dataclasses.astuple(third) == (1.5, 2.5, 3.5)
+    assert third == Third(1.5, 2.5) != Third(1.0)
+    assert hash(Second(1.5)) == hash(Second(1.5, 2.5))
+    for value in (First(1.5), Second(1.5), third):
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            value.one = 2.0
+
+
 def test_other_classes_are_left_to_the_standard_library():
     @dataclass
     class Free:
