@@ -7,7 +7,7 @@ positive here, and a positive profile shift thickens the tooth of every gear, in
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field  # this module needs nothing else of the package
 from typing import TYPE_CHECKING
 
 import numpy as np

@@ -41,9 +41,8 @@ def eyring_stress(
     squeezed = alpha * pressure
     x = log_viscosity + log_alpha + log_rate + squeezed
     ratio = np.exp(np.minimum(x, LARGE))
-    root = np.sqrt(1.0 + ratio * ratio)
-    arsinh = np.log1p(ratio + ratio * ratio / (1.0 + root)) + np.maximum(x - LARGE, 0.0)
-    share = ratio / root
+    arsinh = np.arcsinh(ratio) + np.maximum(x - LARGE, 0.0)
+    share = ratio / np.sqrt(1.0 + ratio * ratio)
     rise = share * (1.0 + exponent + exponent * squeezed) - exponent * arsinh
     scale = limit / alpha
     return scale * arsinh, scale * fall * rise

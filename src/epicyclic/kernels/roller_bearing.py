@@ -366,20 +366,17 @@ def solve_roller_loads(
         Newton steps in all, or -1 without convergence.
     """
     points, (rows, slices) = len(load), y_over_l.shape
-    q, d = np.zeros((points, rows, psi.size, slices)), start.copy()
+    q, d = np.zeros((points, rows, psi.size, slices)), np.empty_like(start)
     iterations = np.empty(points, np.intp)
     for i in range(points):
-        known = near
-        if not (near or held) and i > 0 and iterations[i - 1] > 0 and largest(load[i]) > 0.0:
-            d[i], known = d[i - 1], True  # that of the point before is nearer
-        iterations[i] = solve_one(
-            load[i], d[i], psi, y_over_l, crown, width, clearance, tolerance, max_iterations,
-            held, known, q[i],
-        )  # fmt: skip
-        if iterations[i] < 0 and known != near:
-            d[i] = start[i]
+        loaded = i > 0 and iterations[i - 1] > 0 and largest(load[i]) > 0.0
+        # first from the point before, which is nearer, and if that leads nowhere from its own start
+        for own in range(0 if loaded and not (near or held) else 1, 2):
+            d[i] = start[i] if own else d[i - 1]
             iterations[i] = solve_one(
                 load[i], d[i], psi, y_over_l, crown, width, clearance, tolerance, max_iterations,
-                held, near, q[i],
+                held, near or not own, q[i],
             )  # fmt: skip
+            if iterations[i] >= 0:
+                break
     return q, d, iterations
