@@ -216,7 +216,7 @@ def test_a_block_leaves_nothing_that_waits_for_the_collector() -> None:
     cases = _cases("talbot-2012")
     solve_together(cases, {})  # what it keeps for the next one is made
     gc.collect()
-    gc.freeze()  # what other tests left, event loops of a cluster that ends among it, does not count
+    gc.freeze()  # what other tests left does not count: event loops of a cluster that ends
     gc.disable()
     try:
         solve_together(cases, {})

@@ -109,12 +109,14 @@ class LineContacts:
             load_number=self.line_load / stiffness,  # (C9)
         )
 
-    @cached_property
+    # Not kept, as they take less time than memory: each contact of a block is one of a thousand.
+
+    @property
     def slide_to_roll_ratio(self) -> FloatArray:
         """abs(u_s)/u_r. Theory (C4). [1]"""
         return np.abs(self.sliding_speed) / np.maximum(self.rolling_speed, LEAST_SPEED)
 
-    @cached_property
+    @property
     def surface_speeds(self) -> tuple[FloatArray, FloatArray]:
         """u_1 and u_2 across the contact. [m/s]"""
         half = self.sliding_speed / 2

@@ -147,9 +147,12 @@ _OPERATING_TABLES = (
 )
 
 
-TOGETHER = 32  # Points solved together, at most: more take memory and no less time.
-FEWEST_TOGETHER = 8  # With fewer there is little to gain, and each point ends for itself.
-FEWEST_BLOCKS = 3  # That a study is cut into, so that several processes can share it.
+MESHES_TOGETHER = 128  # Of all points of a block, at most: more take memory and hardly less time.
+FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
+FEWEST_BLOCKS, MANY_BLOCKS = 3, 12
+"""That a study is cut into, so that several processes can share it: at least so few, and so many
+of more than `QUITE_MANY` points."""
+QUITE_MANY = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +192,10 @@ class CasePlan(Plan):
     @property
     def block(self) -> int:
         """See `Plan`: of as many points as are worth it, if there are enough."""
-        size = min(TOGETHER, self.size // FEWEST_BLOCKS)
+        meshes = sum(len(gearing.meshes) for gearing in self.case.gearings.values())
+        most = max(FEWEST_TOGETHER, MESHES_TOGETHER // max(1, meshes))
+        few = min(QUITE_MANY, self.size // FEWEST_BLOCKS)
+        size = min(most, max(few, self.size // MANY_BLOCKS))
         return size if self.together and size >= FEWEST_TOGETHER else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
@@ -197,7 +203,8 @@ class CasePlan(Plan):
         if not self.together:
             return Plan.solve_all(self, indices)
         place = {index: at for at, index in enumerate(self.order())}
-        blocks = groupby(indices, lambda index: place[index] // self.block)
+        size = self.block
+        blocks = groupby(indices, lambda index: place[index] // size)
         return [row for _, block in blocks for row in self._solve_block(list(block))]
 
     def _solve_block(self, indices: Sequence[int]) -> list[Row]:
