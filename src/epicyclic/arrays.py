@@ -71,6 +71,11 @@ def of_points(values: Any) -> Points:
     return np.asarray(values, dtype=float).view(Points)
 
 
+def points_in(values: Iterable[Any]) -> int:
+    """How many points numbers are of; 0 of single ones."""
+    return next((len(value) for value in values if isinstance(value, Points)), 0)
+
+
 class _Either(NamedTuple):
     """A function of numbers that takes `Points`, too; of numbers `math` is the faster one."""
 
@@ -164,8 +169,7 @@ def side_by_side(values: Iterable[Any]) -> FloatArray:
     values = list(values)
     if Points not in map(type, values):
         return np.array(values, dtype=float)
-    count = next(len(value) for value in values if isinstance(value, Points))
-    table = np.empty((count, len(values)))
+    table = np.empty((points_in(values), len(values)))
     for place, value in enumerate(values):
         table[:, place : place + 1] = value
     return table

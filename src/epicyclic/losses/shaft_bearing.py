@@ -134,6 +134,8 @@ AXIAL_RATIO = Range(
 class BearingLoad:
     """Load on a bearing."""
 
+    pointwise = True
+
     radial: float  # Magnitudes. [N]
     axial: float  # Magnitudes. [N]
 

@@ -16,7 +16,7 @@ from epicyclic.machine.element import (
     State,
     figure,
 )
-from epicyclic.machine.shaft_parts import Unloaded
+from epicyclic.machine.shaft_parts import ShaftPart
 from epicyclic.units import NEWTON_METRE, NUMBER, RPM
 
 METHOD = "shear of the oil film in the gaps, as far as the oil supply fills them"
@@ -80,7 +80,7 @@ def film_drag(
 
 
 @dataclass(frozen=True, slots=True)
-class Clutch(Unloaded):
+class Clutch(ShaftPart):
     """An open clutch or synchronizer between two bodies, which transmits no torque but its drag."""
 
     key: str  # First part of the key of its loss.
@@ -95,8 +95,8 @@ class Clutch(Unloaded):
     terms: ClassVar = ("shear",)
     figure_types: ClassVar = (("clutch", ClutchFigures),)
 
-    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
-        """Loss, figures and flags in a state."""
+    def answer(self, state: State) -> ElementResult:
+        """See `ShaftPart`."""
         one, two = (state.speeds[body] for body in self.between)
         oil, slip = state.fluids.oil, abs(one - two)
         flow = math.inf if self.flow is None else self.flow / self.gaps

@@ -5,8 +5,10 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
+from epicyclic.arrays import points_in, taken
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, Sought, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import BearingLoad
@@ -205,7 +207,7 @@ def joined_key(element: str, name: str) -> str:
     return f"{element}.{name}" if element else name
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class State:
     """What an element sees of the machine."""
 
@@ -227,6 +229,12 @@ class State:
     earlier: Mapping[str, ElementResult] = field(default_factory=dict[str, Any])
     # Loads of the element; what follows one of them need not be found again, the last serves.
     serve: frozenset[str] = frozenset()
+
+    @cached_property
+    def each(self) -> list[State]:
+        """That of each of several points, without what was earlier; nothing of a single one."""
+        count = points_in(self.speeds.values())
+        return taken(replace(self, earlier={}), range(count)) if count else []
 
 
 class Loss(NamedTuple):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import Alone, FloatArray, points_in
 from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import ConvergenceError
 from epicyclic.losses.shaft_bearing import BearingLoad
@@ -244,13 +244,15 @@ class ShaftLayout:
 
 
 def forces_of(
-    layouts: Iterable[ShaftLayout],
+    layouts: Sequence[ShaftLayout],
     torques: Mapping[str, float],  # That each mesh takes up at its first gear. [N m]
 ) -> dict[str, BearingLoad]:
     """Forces on the bearings of all shafts, by the keys of their elements.
 
     Raises `ConvergenceError` if the bearings of a shaft cannot take the forces of its gears.
     """
+    if layouts and (count := points_in(torques.values())):
+        raise Alone(count)
     forces: dict[str, BearingLoad] = {}
     for layout in layouts:
         loads = [seat.load(torques[seat.mesh]) for seat in layout.seats]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from typing import ClassVar, Literal, get_args
 
-from epicyclic.dataclass import dataclass
+from epicyclic.arrays import Each, joined
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.losses.designations import RATING_BAND
 from epicyclic.losses.drag import RPM as ONE_RPM
 from epicyclic.losses.houpert import BallModel
@@ -49,16 +51,29 @@ from epicyclic.units import (
 )
 
 
-class Unloaded:
-    """An element on which torques and forces do not matter."""
+class ShaftPart(ABC):
+    """An element whose formulas take single numbers; torques and forces need not matter to it."""
 
     __slots__ = ()
 
-    several: ClassVar = False
+    several: ClassVar = True
 
     def loads(self, state: State, last: ElementResult | None = None) -> Mapping[str, float]:
         """Nothing."""
         return {}
+
+    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
+        """Losses, figures and flags in a state; of several points for one after the other."""
+        if not state.each:
+            return self.answer(state)
+        found = [self.answer(own) for own in state.each]
+        # equal notes may concern different losses
+        whole: ElementResult = joined(found, Each)
+        return replace(whole, notes=Each(own.notes for own in found))
+
+    @abstractmethod
+    def answer(self, state: State) -> ElementResult:
+        """Losses, figures and flags in the state of one point."""
 
 
 # A loss between two bodies that the user gives as a table: clutch, brake, pump or other drag.
@@ -73,7 +88,7 @@ class TableLossFigures(PartFigures):
 
 
 @dataclass(frozen=True, slots=True)
-class TableLoss(Unloaded):
+class TableLoss(ShaftPart):
     """Drag between two bodies over their speed difference and the oil temperature."""
 
     key: str  # First part of the key of its loss.
@@ -83,8 +98,8 @@ class TableLoss(Unloaded):
     terms: ClassVar = ("drag",)
     figure_types: ClassVar = (("drag", TableLossFigures),)
 
-    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
-        """Loss, figures and flags in a state."""
+    def answer(self, state: State) -> ElementResult:
+        """See `ShaftPart`."""
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
         at = {"speed": speed, "temperature": state.fluids.oil.temperature}
         watts, source = self.table.loss(**at), self.table.source
@@ -214,7 +229,7 @@ class SealFigures(PartFigures):
 
 
 @dataclass(frozen=True, slots=True)
-class Seal(Unloaded):
+class Seal(ShaftPart):
     """A radial lip seal between a shaft and the housing, or between two shafts."""
 
     key: str  # First part of the key of its loss.
@@ -226,8 +241,8 @@ class Seal(Unloaded):
     terms: ClassVar = ("friction",)
     figure_types: ClassVar = (("seal", SealFigures),)
 
-    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
-        """Loss, figures and flags in a state."""
+    def answer(self, state: State) -> ElementResult:
+        """See `ShaftPart`."""
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
         temperature = state.fluids.oil.temperature
         if isinstance(self.model, LossTable):
@@ -278,10 +293,9 @@ class ShaftBearingFigures(PartFigures):
 
 
 @dataclass(frozen=True, slots=True)
-class ShaftBearing:
+class ShaftBearing(ShaftPart):
     """A rolling bearing between a shaft and the housing, or between two shafts."""
 
-    several: ClassVar = False
     key: str  # First part of the keys of its losses; `State.forces` has its load under this key.
     between: tuple[str, str]  # The bodies of its two rings.
     bearing: CatalogueBearing
@@ -308,8 +322,8 @@ class ShaftBearing:
         force = state.forces[self.key]
         return {"radial": force.radial, "axial": force.axial}
 
-    def evaluate(self, state: State, last: ElementResult | None = None) -> ElementResult:
-        """Losses, figures and flags in a state."""
+    def answer(self, state: State) -> ElementResult:
+        """See `ShaftPart`."""
         load = state.forces[self.key] if self.force is None else self.force
         speed = state.speeds[self.between[0]] - state.speeds[self.between[1]]
         oil = state.fluids.at(self.key)

@@ -23,6 +23,7 @@ from epicyclic.arrays import (
     joined,
     larger,
     largest,
+    one_by_one,
     part_of_each,
     taken,
 )
@@ -628,7 +629,7 @@ class _Branch:
         self.state = state = State(
             self.start.statics.speeds,
             found.meshes,
-            forces_of(self.machine.layouts, found.meshes),
+            one_by_one(forces_of, self.machine.layouts, found.meshes),
             cast(Fluids, self.fluids),
             lossless=not self.known and self.earlier is None,
             drives=self.drives,
