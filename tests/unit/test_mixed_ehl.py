@@ -211,9 +211,7 @@ def test_needle_rolling_loss():
 
 def test_all_points_at_once_give_the_same():
     points = np.array(list(random_conditions(50, seed=4)))
-    points[:, 2] = 3000.0  # one material number for all
-    s, u, _, p, r, s_co, s_eq, lam = (np.ascontiguousarray(column) for column in points.T)
-    arrays = (s, u, 3000.0, p, r, s_co, s_eq, lam)
+    arrays = [np.ascontiguousarray(column) for column in points.T]
     for at_all, at_one in (
         (mixed_ehl.sliding_friction_at, mixed_ehl.sliding_friction),
         (mixed_ehl.rolling_loss_number_at, mixed_ehl.rolling_loss_number),

@@ -6,9 +6,11 @@ import dataclasses
 import gc
 import math
 import re
+from collections.abc import Sequence
 from functools import partial
+from itertools import product
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -44,7 +46,7 @@ def _column(*values: float) -> Points:
     return of_points(values).reshape(-1, 1)
 
 
-def _cases(name: str, **changes: str) -> list[ep.PlanetaryCase]:
+def _cases(name: str, **changes: Any) -> list[ep.PlanetaryCase]:
     case = ep.load_case(name).updated(changes)
     return [
         case.updated(
@@ -68,6 +70,22 @@ def _cases(name: str, **changes: str) -> list[ep.PlanetaryCase]:
         ("talbot-2012", {"load_sharing.method": "mesh-load-factor"}),
         ("talbot-2012", {"sun_mesh.misalignment": "70 um"}),  # part of the lines carries load
         ("talbot-2012-pair", {}),
+        ("talbot-2012", {"models.preset": "talbot-2012"}),
+        ("talbot-2012-pair", {"models.friction": "xu-2007"}),
+        ("talbot-2012-pair", {"models.friction": "benedict-kelley"}),
+        ("talbot-2012-pair", {"models.friction": "doleschel"}),
+        ("talbot-2012-pair", {"models.friction": "matsumoto"}),
+        ("talbot-2012-pair", {"models.friction": "schlenk"}),
+        ("talbot-2012-pair", {"models.friction": "niemann-winter"}),
+        (
+            "talbot-2012-pair",
+            {
+                "models.friction": "table",
+                "friction_table.rolling_speed": ["1 m/s", "9 m/s"],
+                "friction_table.slide_to_roll_ratio": [0.0, 0.4, 1.5],
+                "friction_table.friction": [[0.03, 0.02], [0.05, 0.031], [0.06, 0.047]],
+            },
+        ),
         ("train-eaxle", {}),
         (
             "train-eaxle",
@@ -81,7 +99,7 @@ def _cases(name: str, **changes: str) -> list[ep.PlanetaryCase]:
     ],
 )
 def test_points_together_are_as_each_alone(
-    name: str, changes: dict[str, str], monkeypatch: pytest.MonkeyPatch
+    name: str, changes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _check_together(_cases(name, **changes), monkeypatch)
 
@@ -154,6 +172,48 @@ def _check_together(cases: list[ep.PlanetaryCase], monkeypatch: pytest.MonkeyPat
         words, own = (re.sub(r"[\d.]+", "", " | ".join(it.warnings)) for it in (one, other))
         assert own == words
         assert other.to_dict().keys() == one.to_dict().keys()
+
+
+@pytest.mark.parametrize(
+    ("changes", "torques", "speeds", "temperatures"),
+    [
+        (
+            {"operation.input": "carrier"},
+            (28.4, 35.6, 98.57, 483.28),
+            (95, 295, 396, 503),
+            (35, 104),
+        ),
+        (
+            {"operation.input": "ring", "operation.fixed": "sun", "models.temperatures": "flank"},
+            (50.34, 192.11, 446.05, 685.18),
+            (85, 439, 3531, 4745),
+            (56, 95),
+        ),
+    ],
+)
+def test_points_of_a_block_that_parts_keep_what_a_reader_sees(
+    changes: dict[str, Any],
+    torques: Sequence[float],
+    speeds: Sequence[float],
+    temperatures: Sequence[float],
+) -> None:
+    """A part goes on from answers of which the block has forgotten all but what a pass needs."""
+    case = ep.load_case("talbot-2012").updated({"planet.count": 4, **changes})
+    cases = [
+        case.updated(
+            {
+                "operation.torque": f"{torque} N*m",
+                "operation.speed": f"{speed} rpm",
+                "operation.oil_inlet_temperature": f"{temperature} degC",
+            }
+        )
+        for torque, speed, temperature in product(torques, speeds, temperatures)
+    ]
+    for own, found in zip(cases, solve_together(cases, {}), strict=True):
+        assert not isinstance(found, Exception)
+        one = ep.solve(own)
+        assert len(found.warnings) == len(one.warnings)
+        assert found.values() == pytest.approx(one.values(), rel=2e-3, abs=1e-6, nan_ok=True)
 
 
 def test_equal_notes_of_points_concern_their_own_losses() -> None:

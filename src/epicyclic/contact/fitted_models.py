@@ -137,6 +137,13 @@ def regression_groups(states: LineContacts) -> RegressionGroups:
     )
 
 
+def at_each(kernel: Callable[..., FloatArray], states: LineContacts) -> FloatArray:
+    """A kernel of the groups at every contact, of one point or of several."""
+    groups = np.broadcast_arrays(*regression_groups(states))
+    found = kernel(*(group.flatten() for group in groups)).reshape(groups[0].shape)
+    return found.view(type(states.line_load))
+
+
 def _groups(states: LineContacts) -> RegressionGroups:
     """The groups with a slip that has a logarithm."""
     groups = regression_groups(states)

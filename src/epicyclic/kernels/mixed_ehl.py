@@ -209,7 +209,7 @@ def needle_rolling_loss(
 def sliding_friction_at(
     s: FloatArray,
     u: FloatArray,
-    g: float,
+    g: FloatArray,
     p: FloatArray,
     r: FloatArray,
     s_co: FloatArray,
@@ -219,7 +219,7 @@ def sliding_friction_at(
     """`sliding_friction` at every contact point; arrays of shape (n,)."""
     mu = np.empty(s.size)
     for i in range(s.size):
-        mu[i] = sliding_friction(s[i], u[i], g, p[i], r[i], s_co[i], s_eq[i], lam[i])
+        mu[i] = sliding_friction(s[i], u[i], g[i], p[i], r[i], s_co[i], s_eq[i], lam[i])
     return mu
 
 
@@ -227,7 +227,7 @@ def sliding_friction_at(
 def rolling_loss_number_at(
     s: FloatArray,
     u: FloatArray,
-    g: float,
+    g: FloatArray,
     p: FloatArray,
     r: FloatArray,
     s_co: FloatArray,
@@ -237,7 +237,7 @@ def rolling_loss_number_at(
     """`rolling_loss_number` at every contact point; arrays of shape (n,)."""
     loss = np.empty(s.size)
     for i in range(s.size):
-        loss[i] = rolling_loss_number(s[i], u[i], g, p[i], r[i], s_co[i], s_eq[i], lam[i])
+        loss[i] = rolling_loss_number(s[i], u[i], g[i], p[i], r[i], s_co[i], s_eq[i], lam[i])
     return loss
 
 

@@ -32,7 +32,7 @@ import numpy as np
 
 from epicyclic import library
 from epicyclic.arrays import FloatArray, on_grid
-from epicyclic.contact.fitted_models import OilModel, read_oil_model, regression_groups
+from epicyclic.contact.fitted_models import OilModel, at_each, read_oil_model
 from epicyclic.contact.line_contact import LEAST_SPEED, LineContacts
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
@@ -359,7 +359,8 @@ def _mean_group(contact: MeshContact, load_factor: float = 1.0) -> float:
     sum_speed = pitch_point_sum_speed(contact) * held_in_range(speed, _FORMULA_SPEED) / speed
     group = load * 1e-3 / (sum_speed * radius * 1e3)
     viscosity = contact.oil.dynamic_viscosity * 1e3
-    return float(group**0.2 * viscosity**-0.05)
+    found: float = group**0.2 * viscosity**-0.05
+    return found
 
 
 def _relative_roughness(contact: MeshContact) -> float:
@@ -499,7 +500,7 @@ def mixed_ehl(contact: LineContacts, settings: FrictionSettings) -> FloatArray:
     outside Table 5.1 held at its limits (`held_in_table`). [1]
     """
     held = held_in_table(contact, oil_held=settings.oil_held)
-    return sliding_friction_at(*regression_groups(held))
+    return at_each(sliding_friction_at, held)
 
 
 def paired_friction(contact: LineContacts, settings: FrictionSettings) -> FloatArray:
@@ -597,7 +598,8 @@ class FrictionMap:
     def coefficient(self, contact: MeshContact) -> FloatArray:
         """See the class. [1]"""
         names, axes = zip(*self.axes, strict=True)
-        return on_grid(axes, self.values, [getattr(contact, name) for name in names])
+        found = on_grid(axes, self.values, [getattr(contact, name) for name in names])
+        return found.view(type(contact.line_load))
 
 
 def _table_of(settings: FrictionSettings) -> FrictionMap:
@@ -616,7 +618,6 @@ FRICTION_MODELS = {
     for model in (
         FrictionFormula(
             name="mixed-lubrication",
-            several=True,
             title="film and asperities sharing the load",
             source="S. Aihara, J. Tribol. 109 (1987) 471; P. K. Gupta et al., J. Tribol. 114 "
             "(1992) 55; C. R. Evans and K. L. Johnson, Proc. IMechE C 200 (1986) 303",
@@ -640,6 +641,7 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="mixed-ehl+pairing",
+            several=False,
             title="mixed-EHL friction regression, pairing of unequal flanks from the solver",
             source=f"{REGRESSION_SOURCE}, Eq. 5.8; solver for line contacts of this package",
             reliability="mixed-ehl where both flanks are equally rough; the effect of a smoother "

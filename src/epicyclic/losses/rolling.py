@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 
 from epicyclic.arrays import TINY, BoolArray, FloatArray, Points, taken
-from epicyclic.contact.fitted_models import OilModel, regression_groups, rolling_scale
+from epicyclic.contact.fitted_models import OilModel, at_each, rolling_scale
 from epicyclic.contact.line_contact import CONDITIONS, Flanks, LineContacts
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.mesh import Mesh
@@ -86,7 +86,7 @@ def mixed_ehl_rolling(contact: LineContacts, oil_held: bool) -> FloatArray:
     Theory (R5). Talbot (2012), Eq. 5.10 and Table 5.2(b), in the scale of `rolling_scale`.
     """
     held = held_in_table(contact, oil_held=oil_held)
-    number = rolling_loss_number_at(*regression_groups(held))
+    number = at_each(rolling_loss_number_at, held)
     return number * rolling_scale(held) * _beyond(contact, held)
 
 
@@ -124,7 +124,6 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
 
 CONTAINED = RollingFormula(
     name="contained",
-    several=True,
     title="rolling loss contained in the friction",
     source="the tests of the friction model",
     reliability="that of the friction, which was fitted to the whole load-dependent loss",
@@ -147,6 +146,7 @@ ROLLING_MODELS = {
         ),
         RollingFormula(
             name="mixed-ehl+pairing",
+            several=False,
             title="mixed-EHL rolling-loss regression, pairing of unequal flanks from the solver",
             source=f"{REGRESSION_SOURCE}, Eq. 5.10; solver for line contacts of this package",
             reliability="mixed-ehl where both flanks are equally rough; the effect of a smoother "
@@ -157,7 +157,6 @@ ROLLING_MODELS = {
         ),
         RollingFormula(
             name="goksem-hargreaves",
-            several=True,
             title="rolling loss of Goksem and Hargreaves",
             source="Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346; light load: "
             "H. M. Martin, Engineering 102 (1916) 119",

@@ -476,9 +476,8 @@ class Evaluations:
         self, element: Element, state: State, last: ElementResult | None = None
     ) -> ElementResult:
         """The answer to a state, known if the block before asked the same."""
-        number = len(self.done)
-        if number < len(self.before) and _alike(state, self.before[number][0]):
-            result = self.before[number][1]
+        if self.knows(state):
+            result = self.before[len(self.done)][1]
         else:
             self.before = ()
             result = element.evaluate(state, last)
@@ -488,6 +487,11 @@ class Evaluations:
         self.last[element.key] = len(self.done)
         self.done.append((state, result))
         return result
+
+    def knows(self, state: State) -> bool:
+        """Whether the block before asked the same next."""
+        number = len(self.done)
+        return number < len(self.before) and _alike(state, self.before[number][0])
 
     def part(self, rows: Any) -> Evaluations:
         """Those of some points."""
@@ -529,12 +533,18 @@ def _answered(
     if known.drives != state.drives:
         result = evaluate(state, known.result)
         return _Known(Answer(loads, result), result, loads, state.drives)
-    if _agrees(known.loads, loads):
+    # a block that parted has forgotten what a reader asks for of all but its last answers
+    forgotten = not known.result.figures
+    if _agrees(known.loads, loads) and not forgotten:
         return known
     passed = _apart([known.loads[key] for key in loads], [*loads.values()])
     last = known.answer
     predicted, serve = last.predicted(loads, larger(allowed, PREDICTED * passed))
-    if serve >= loads.keys():
+    if forgotten:
+        asked = replace(state, serve=serve)
+        again = serve < loads.keys() and evaluations is not None and evaluations.knows(asked)
+        serve = serve if again else frozenset()
+    elif serve >= loads.keys():
         return _Known(last, replace(last.result, losses=predicted), loads, state.drives)
     result = evaluate(replace(state, serve=serve), known.result)
     whole = replace(result, losses=_mixed(result.losses, predicted, serve))
