@@ -199,21 +199,18 @@ def test_points_of_a_block_that_parts_keep_what_a_reader_sees(
 ) -> None:
     """A part goes on from answers of which the block has forgotten all but what a pass needs."""
     case = ep.load_case("talbot-2012").updated({"planet.count": 4, **changes})
-    cases = [
-        case.updated(
-            {
-                "operation.torque": f"{torque} N*m",
-                "operation.speed": f"{speed} rpm",
-                "operation.oil_inlet_temperature": f"{temperature} degC",
-            }
-        )
-        for torque, speed, temperature in product(torques, speeds, temperatures)
-    ]
-    for own, found in zip(cases, solve_together(cases, {}), strict=True):
-        assert not isinstance(found, Exception)
-        one = ep.solve(own)
-        assert len(found.warnings) == len(one.warnings)
-        assert found.values() == pytest.approx(one.values(), rel=2e-3, abs=1e-6, nan_ok=True)
+    vary = {
+        "operation.torque": [f"{torque} N*m" for torque in torques],
+        "operation.speed": [f"{speed} rpm" for speed in speeds],
+        "operation.oil_inlet_temperature": [f"{celsius} degC" for celsius in temperatures],
+    }
+    data = ep.sweep(case, vary, jobs=1)
+    for place, own in enumerate(product(*vary.values())):
+        point = data.isel(dict(zip(data.dims, np.unravel_index(place, (4, 4, 2)), strict=True)))
+        one = ep.solve(case.updated(dict(zip(vary, own, strict=True))))
+        assert str(point.warnings.values).count(" | ") == len(one.warnings) - 1
+        for name, value in one.values().items():
+            assert float(point[name]) == pytest.approx(value, rel=2e-3, abs=1e-6, nan_ok=True), name
 
 
 def test_equal_notes_of_points_concern_their_own_losses() -> None:
