@@ -251,13 +251,15 @@ def _check_target(quantity: str, target: str | None) -> None:
 
 def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
     from epicyclic.show.result_tables import found_text, heat_items, heat_path_items, remarks
+    from epicyclic.show.summary import first_lists
     from epicyclic.show.terminal import as_on_page, titled
 
     assert result.heat is not None
+    items = *heat_items(result.heat), *heat_path_items(result.heat), *first_lists(result, None)
     return titled(
         result.title or result.kind,
         *([] if found is None else [found_text(found)]),
-        *map(as_on_page, (*heat_items(result.heat), *heat_path_items(result.heat))),
+        *map(as_on_page, items),
         *remarks(case, result),
     )
 
