@@ -39,6 +39,7 @@ ROUNDING = {
     "*misalignment*": 1e-9,
     "*planet_bearing*moment*": 1e-12,
     "*heat/residual": 1e-12,  # over the heat of all losses
+    "*/band/shares/*": 1e-16,  # of the variance: squares of the rounding of losses
 }
 """Numbers that may be nothing but rounding, and how large that may be."""
 
