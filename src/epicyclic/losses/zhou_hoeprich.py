@@ -130,13 +130,12 @@ class TaperedModel(Rollers):
         # of SKF's starvation nobody measured that in thicker oil it leaves next to no rolling
         full = replace(self, skf=replace(self.skf, starvation=0.0))
         moments = tapered_moments(full, bearing, load, speed, oil)
-        thick = oil.dynamic_viscosity > _VISCOSITY.bounds[1]
-        values = {"bore": bearing.bore, "viscosity": oil.dynamic_viscosity}
-        values["rib_film"] = moments.film_ratio
-        flooded = (moments.rolling + moments.rib) * abs(speed)
-        measured = check_ranges(use, _TAPERED_RANGES, values, could_be=thick * flooded)
-        checked = load_flags(use, AXIAL_RATIO, bearing, load, speed, _TAPERED_SPEED)
-        return measured + checked if speed else checked
+        film, viscosity = moments.film_ratio, oil.dynamic_viscosity
+        values = {"bore": bearing.bore, "viscosity": viscosity, "rib_film": film}
+        thick = abs(speed) * (viscosity > _VISCOSITY.bounds[1])
+        most = thick * (moments.rolling + moments.rib)
+        measured = check_ranges(use, _TAPERED_RANGES, values, could_be=most) if speed else ()
+        return measured + load_flags(use, AXIAL_RATIO, bearing, load, speed, _TAPERED_SPEED)
 
 
 @dataclass(frozen=True, slots=True)

@@ -490,8 +490,11 @@ class Evaluations:
 
     def knows(self, state: State) -> bool:
         """Whether the block before asked the same next."""
-        number = len(self.done)
-        return number < len(self.before) and _alike(state, self.before[number][0])
+        if len(self.done) >= len(self.before):
+            return False
+        its, _ = self.before[len(self.done)]
+        same = (np.array_equal(load, its.torques[key]) for key, load in state.torques.items())
+        return state.serve == its.serve and all(same)
 
     def part(self, rows: Any) -> Evaluations:
         """Those of some points."""
@@ -500,11 +503,6 @@ class Evaluations:
     def single(self, count: int) -> list[Evaluations]:
         """Those that are known of each of all points."""
         return [Evaluations(before) for before in taken(self.before, range(count))]
-
-
-def _alike(one: State, two: State) -> bool:
-    loads = ((load, two.torques[key]) for key, load in one.torques.items())
-    return one.serve == two.serve and all(np.array_equal(*pair) for pair in loads)
 
 
 class _Known(NamedTuple):
@@ -534,7 +532,7 @@ def _answered(
         result = evaluate(state, known.result)
         return _Known(Answer(loads, result), result, loads, state.drives)
     # a block that parted has forgotten what a reader asks for of all but its last answers
-    forgotten = not known.result.figures
+    forgotten = evaluations is not None and not known.result.figures
     if _agrees(known.loads, loads) and not forgotten:
         return known
     passed = _apart([known.loads[key] for key in loads], [*loads.values()])

@@ -150,9 +150,8 @@ _OPERATING_TABLES = (
 MESHES_TOGETHER = 128  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
 FEWEST_BLOCKS, MANY_BLOCKS = 3, 12
-"""That a study is cut into, so that several processes can share it: at least so few, and so many
-of more than `QUITE_MANY` points."""
-QUITE_MANY = 32
+"""That a study is cut into at least, for several processes: so many of more than `FEW` points."""
+FEW = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,8 +193,8 @@ class CasePlan(Plan):
         """See `Plan`: of as many points as are worth it, if there are enough."""
         meshes = sum(len(gearing.meshes) for gearing in self.case.gearings.values())
         most = max(FEWEST_TOGETHER, MESHES_TOGETHER // max(1, meshes))
-        few = min(QUITE_MANY, self.size // FEWEST_BLOCKS)
-        size = min(most, max(few, self.size // MANY_BLOCKS))
+        least = min(FEW, self.size // FEWEST_BLOCKS)
+        size = min(most, max(least, self.size // MANY_BLOCKS))
         return size if self.together and size >= FEWEST_TOGETHER else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
