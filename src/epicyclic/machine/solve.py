@@ -426,7 +426,8 @@ def solve_machines(
         rows, evaluations = left.pop()
         known: Sequence[Evaluations | None] = [None] * len(rows)
         machine, _, fluids, *_ = wanted[rows[0]]
-        if len(rows) < FEWEST or fluids is None or not all(it.several for it in machine.elements):
+        several = (getattr(it, "several", False) for it in machine.elements)
+        if len(rows) < FEWEST or fluids is None or not all(several):
             if evaluations.before:
                 known = evaluations.single(len(rows))
         else:
