@@ -77,6 +77,7 @@ def _cases(name: str, **changes: Any) -> list[ep.PlanetaryCase]:
         ("talbot-2012-pair", {"models.friction": "matsumoto"}),
         ("talbot-2012-pair", {"models.friction": "schlenk"}),
         ("talbot-2012-pair", {"models.friction": "niemann-winter"}),
+        ("talbot-2012-pair", {"models.friction": "constant"}),
         (
             "talbot-2012-pair",
             {

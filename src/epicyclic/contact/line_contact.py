@@ -109,7 +109,7 @@ class LineContacts:
             load_number=self.line_load / stiffness,  # (C9)
         )
 
-    # Not kept, as they take less time than memory: each contact of a block is one of a thousand.
+    # Not kept: for all points of a block they would be a seventh of its memory.
 
     @property
     def slide_to_roll_ratio(self) -> FloatArray:

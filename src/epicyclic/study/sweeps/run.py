@@ -149,9 +149,9 @@ _OPERATING_TABLES = (
 
 MESHES_TOGETHER = 128  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
+FEW = 32  # Points of a block that a study of few points has, at most.
 FEWEST_BLOCKS, MANY_BLOCKS = 3, 12
-"""That a study is cut into at least, for several processes: so many of more than `FEW` points."""
-FEW = 32
+"""Into which a study is cut at least, so that processes share it; larger blocks need the latter."""
 
 
 @dataclass(frozen=True, slots=True)
