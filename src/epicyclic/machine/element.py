@@ -5,12 +5,20 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 
 from epicyclic.arrays import points_in, taken
 from epicyclic.dataclass import dataclass, field, replace
-from epicyclic.losses.ranges import ModelUse, Range, SomeFlags, Sought, ValidityFlag, check_ranges
+from epicyclic.losses.ranges import (
+    Flags,
+    ModelUse,
+    Range,
+    SomeFlags,
+    Sought,
+    ValidityFlag,
+    check_ranges,
+)
 from epicyclic.losses.shaft_bearing import BearingLoad
 from epicyclic.oil.oil import (
     MixtureState,
@@ -93,7 +101,7 @@ def fluids_at(
     """Oil and mixture at one temperature."""
     state = oil_at(oil, temperature, pressure_viscosity_factor)
     mixture = mixture_state(state, oil_air_ratio, pressure)
-    return Fluids(state, mixture, pressure, oil_flags(oil, temperature))
+    return Fluids(state, mixture, pressure, Flags(partial(oil_flags, oil, temperature)))
 
 
 def oil_flags(oil: Oil, temperature: float) -> tuple[ValidityFlag, ...]:

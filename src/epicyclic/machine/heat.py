@@ -107,13 +107,14 @@ _Pass = tuple[Mapping[str, float], Solution, Answer]  # Temperatures [K], losses
 def settle(points: Sequence[tuple[Machine, Operation, ThermalModel]]) -> list[Settled | Exception]:
     """Temperatures and losses that agree at each operating point, or what is wrong with it.
 
-    Each pass is one for all points that still need it. See `_passes` for what is raised.
+    Each pass is one for all points that still need it; those of which only a whole solution is left
+    wait for the others. See `_passes` for what is raised.
     """
     passes = [_passes(*point) for point in points]
     found: dict[int, Settled | Exception] = {}
     answers: dict[int, Any] = dict.fromkeys(range(len(passes)))
-    while answers:
-        wanted: dict[int, Wanted] = {}
+    wanted: dict[int, Wanted] = {}
+    while answers or wanted:
         for number, answer in answers.items():
             try:
                 wanted[number] = passes[number].send(answer)
@@ -121,10 +122,10 @@ def settle(points: Sequence[tuple[Machine, Operation, ThermalModel]]) -> list[Se
                 found[number] = done.value
             except Exception as error:
                 found[number] = error
-        answers = {}
-        for whole in (False, True):
-            own = {number: it for number, it in wanted.items() if it.whole == whole}
-            answers |= zip(own, solve_machines(list(own.values())), strict=True)
+        whole = all(it.whole for it in wanted.values())
+        own = {number: it for number, it in wanted.items() if it.whole == whole}
+        wanted = {number: it for number, it in wanted.items() if it.whole != whole}
+        answers = dict(zip(own, solve_machines(list(own.values())), strict=True))
         found |= {number: it for number, it in answers.items() if isinstance(it, Exception)}
         answers = {number: it for number, it in answers.items() if number not in found}
     return [found[number] for number in range(len(passes))]

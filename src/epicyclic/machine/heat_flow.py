@@ -55,11 +55,12 @@ class Network:
         Of the nodes of unknown temperature. [K] Raises `LinAlgError` if the heat of a node has no
         way to a node of given temperature: see `cut_off`.
         """
-        matrix, known = self.system()
+        matrix, known = self.system
         found = np.linalg.solve(matrix, known + self.sources(heat))
         found += np.linalg.solve(matrix, known + self.sources(heat) - matrix @ found)
         return dict(zip(self.nodes, map(float, found), strict=True))
 
+    @cached_property
     def system(self) -> tuple[FloatArray, FloatArray]:
         """Matrix A and vector b of C dT/dt = q + b - A T. Theory (W25)."""
         place = {node: index for index, node in enumerate(self.nodes)}
@@ -92,7 +93,7 @@ class Network:
         self, temperatures: Mapping[str, float], heat: Mapping[str, float]
     ) -> dict[str, float]:
         """Heat that arises at each node less the heat that leaves it. [W]"""
-        matrix, known = self.system()
+        matrix, known = self.system
         found = np.array([temperatures[node] for node in self.nodes])
         left = self.sources(heat) + known - matrix @ found
         return dict(zip(self.nodes, map(float, left), strict=True))

@@ -407,7 +407,7 @@ def _together(wanted: Sequence[Wanted]) -> Wanted:
     fluids = joined([replace(cast(Fluids, it.fluids), flags=()) for it in wanted])
     earlier = [it.earlier for it in wanted if it.earlier is not None]
     if not earlier:
-        return Wanted(machine, operation, fluids)
+        return Wanted(machine, operation, fluids, whole=wanted[0].whole)
     names = "meshes", "rolling", "drives", "floating"
     begun = {name: joined([getattr(it, name) for it in earlier]) for name in names}
     first = replace(earlier[0], results={}, **begun)
