@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from importlib import resources
 
@@ -10,6 +11,7 @@ import pytest
 
 from epicyclic.losses.shaft_bearing import BearingLoad, CatalogueBearing, bearing_types
 from epicyclic.losses.skf_2018 import (
+    LEAST_SUPPLY,
     STARVATION,
     SkfModel,
     drag_variable,
@@ -21,7 +23,11 @@ from epicyclic.losses.skf_2018 import (
     skf_moments,
     skf_series,
 )
+from epicyclic.oil.oil import OilState
 from shaft_bearings import BALL, NEEDLE, PRINTED, ROLLER, RPM, SERIES, TAPER, skf
+
+ALPHA_AND_ON = (17e-9, 0.035, 0.14, 1.0, 0.139, 0.047, 0.065)
+"""What else an oil state has, of which SKF's model takes nothing."""
 
 
 def test_reduction_factors_at_published_conditions():
@@ -105,6 +111,30 @@ def test_submerged_bearing_does_not_starve():
     _, factor = skf(BALL).reduction_factors(BALL, 3000 * RPM, 20e-6)
     assert factor < 0.97
     assert dry / deep == pytest.approx(factor, rel=1e-12)  # rounding
+
+
+def test_thick_oil_starves_films_no_more_than_to_the_largest_rolling():
+    model, load, speed = skf(TAPER), BearingLoad(5000.0, 1000.0), 1500 * RPM
+    _, at_40 = model.reduction_factors(TAPER, speed, 40e-6)
+    largest = 40e-6 * -0.6 / math.log(at_40)  # viscosity at which phi_rs is e^-0.6, by (J8)
+
+    def unheated(viscosity):
+        hot, _ = model.reduction_factors(TAPER, speed, viscosity)
+        return skf_moments(model, TAPER, load, speed, viscosity).rolling / hot
+
+    assert unheated(largest) > max(unheated(0.97 * largest), unheated(1.03 * largest))
+    assert model.supply(TAPER, speed, 40e-6) == at_40 > LEAST_SUPPLY
+    assert model.supply(TAPER, speed, 50 * largest) == LEAST_SUPPLY == math.exp(-0.6)
+
+
+def test_skf_says_what_rolling_could_be_in_thick_oil():
+    load, speed = BearingLoad(5000.0, 1000.0), 1500 * RPM
+    warm, cold = (OilState(300.0, nu, 880.0, 880 * nu, *ALPHA_AND_ON) for nu in (40e-6, 4e-3))
+    assert skf(TAPER).flags("left", TAPER, load, speed, warm) == ()
+    (flag,) = skf(TAPER).flags("left", TAPER, load, speed, cold)
+    flooded, _ = skf(TAPER, oil_level=1.0).parts(TAPER, load, speed, cold)
+    assert flag.quantity == "starvation factor of rolling"
+    assert flag.could_be == pytest.approx(flooded.watts, rel=1e-12)  # rounding
 
 
 def test_moment_of_contact_seals():

@@ -120,6 +120,13 @@ def test_measured_torque_of_a_32216():
     assert abs(np.mean(errors)) < 0.05
 
 
+def test_cold_oil_makes_a_bearing_harder_to_turn():
+    # moments of the theory page, without the bath: [N mm]
+    model, load = replace(LARGE_MODEL, skf=SUPPLY), BearingLoad(0.0, 6000.0)
+    found = [torque(model, LARGE, load, 1000, fva_3(celsius)) for celsius in (50, 20, 0, -20)]
+    assert found == pytest.approx([2220, 3510, 5320, 5550], rel=3e-3)  # printed digits
+
+
 def test_tapered_moments_vanish_with_the_load_and_grow_with_it():
     moments = [
         tapered_moments(LARGE_MODEL, LARGE, BearingLoad(radial, axial), 100.0, fva_3(50))

@@ -171,7 +171,7 @@ def ball_moments(
     G = oil.pressure_viscosity * STEEL
     heat = inlet_film_factor(thermal, pressure / STEEL, 0.0)
     force = STEEL * R_x**2 * point_rolling_force(2 * U, W, G, flatness) * heat
-    _, starved = model.skf.reduction_factors(bearing, speed, oil.kinematic_viscosity)
+    starved = model.skf.supply(bearing, speed, oil.kinematic_viscosity)
     hysteresis = 7.48e-7 * power(D_w / 2, 0.33, Q, 1.33) * (1 - 3.519e-3 * (flatness - 1) ** 0.8063)
     rolling = 2 * force * u * starved + hysteresis * u / (D_w / 2)
     spin = 3 / 8 * a * elliptic * omega * math.sin(alpha) / 2

@@ -14,6 +14,7 @@ from typing import ClassVar
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.losses.designations import bearing_tables
 from epicyclic.losses.drag import RPM
+from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
     AXIAL_RATIO,
     BearingLoad,
@@ -22,8 +23,10 @@ from epicyclic.losses.shaft_bearing import (
     CatalogueBearing,
     FrictionPart,
     WithoutCoefficient,
+    load_flags,
 )
 from epicyclic.oil.oil import OilState
+from epicyclic.units import NUMBER
 
 STARVATION: Mapping[str, float] = {"jet": 3e-8, "oil-bath": 3e-8, "grease": 6e-8, "oil-air": 6e-8}
 """K_rs by lubrication: oil jet, low oil bath, grease, oil and air (SKF 2018). [1]"""
@@ -32,10 +35,22 @@ SUBMERGED = 1.2
 """Oil level over pitch diameter at which a bearing is fully submerged (SKF 2018). [1]"""
 BOUNDARY_FRICTION = 0.12
 STARTING_FRICTION = 0.15  # mu_bl in motion and at the start (SKF 2018). [1]
+VISCOSITY_POWER = 0.6  # With which viscosity and speed are in M_rr (SKF 2018). [1]
+LEAST_SUPPLY = math.exp(-VISCOSITY_POWER)
+"""phi_rs at which M_rr is largest; with less it falls in thicker oil. [1]"""
 
 SKF_SOURCE = "SKF, Rolling bearings, catalogue (2018)"
 SKF_AXIAL_RATIO = replace(
     AXIAL_RATIO, high=0.5, source="axial load of cylindrical roller bearings, SKF"
+)
+
+_SUPPLY = Range(
+    "supply",
+    "starvation factor of rolling",
+    LEAST_SUPPLY,
+    None,
+    NUMBER,
+    "below, it falls with viscosity",
 )
 
 
@@ -108,6 +123,15 @@ class SkfModel(WithoutCoefficient):
         width = math.sqrt(self.constants.bearing_factor / section)
         return hot, math.exp(-self.starvation * nu * rpm * 2 * pitch * width)
 
+    def supply(self, bearing: CatalogueBearing, speed: float, viscosity: float) -> float:
+        """phi_rs as films have it: no less than where SKF's rolling is largest. Theory (J44). [1]
+
+        A departure: neither films nor idle bearings, which lose more the thicker the oil is, give a
+        reason for rolling that vanishes in thick oil.
+        """
+        _, starved = self.reduction_factors(bearing, speed, viscosity)
+        return max(starved, LEAST_SUPPLY)
+
     @property
     def drag_is_estimated(self) -> bool:
         """True if there is an oil bath and `drag_variable` is not given."""
@@ -129,6 +153,16 @@ class SkfModel(WithoutCoefficient):
             FrictionPart("mechanical", True, by_load, "rolling and sliding, SKF 2018", self.source),
             FrictionPart("drag", False, others, "drag in the oil and seals, SKF 2018", self.source),
         )
+
+    def flags(
+        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
+    ) -> tuple[ValidityFlag, ...]:
+        """Flags on speed, forces, and oil so thick that rolling would fall with it."""
+        use = ModelUse("bearing", self.name, where)
+        _, starved = self.reduction_factors(bearing, speed, oil.kinematic_viscosity)
+        flooded, *_ = replace(self, starvation=0.0).parts(bearing, load, speed, oil)
+        found = check_ranges(use, (_SUPPLY,), {"supply": starved}, could_be=flooded.watts)
+        return found + load_flags(use, self.axial_range, bearing, load, speed)
 
 
 def skf_series(kind: BearingType) -> tuple[str, ...]:
@@ -284,7 +318,7 @@ def skf_moments(
     mu_bl = STARTING_FRICTION if speed == 0 else BOUNDARY_FRICTION
     mu_sl = boundary * mu_bl + (1 - boundary) * model.full_film_friction
     return SkfMoments(
-        rolling=1e-3 * hot * dry * rolling * math.pow(nu * rpm, 0.6),
+        rolling=1e-3 * hot * dry * rolling * math.pow(nu * rpm, VISCOSITY_POWER),
         sliding=1e-3 * sliding * mu_sl,
         seal=model.seal_moment,
         drag=skf_drag_moment(model, bearing, speed, viscosity),

@@ -127,7 +127,7 @@ class TaperedModel(Rollers):
     ) -> tuple[ValidityFlag, ...]:
         """Flags on static load, and on what no measured bearing had."""
         use = ModelUse("bearing", self.name, where)
-        # of SKF's starvation nobody measured that in thicker oil it leaves next to no rolling
+        # how much thicker oil starves nobody measured
         full = replace(self, skf=replace(self.skf, starvation=0.0))
         moments = tapered_moments(full, bearing, load, speed, oil)
         film, viscosity = moments.film_ratio, oil.dynamic_viscosity
@@ -274,7 +274,7 @@ def rolling_moment(
             heat = inlet_film_factor(thermal, hertz_pressure(w, R, STEEL) / STEEL, 0.0)
             force = rolling_force(U, G, W) * heat * R / oil.pressure_viscosity
             rolling += force * model.roller_length * reach
-    _, starved = model.skf.reduction_factors(bearing, speed, oil.kinematic_viscosity)
+    starved = model.skf.supply(bearing, speed, oil.kinematic_viscosity)
     return rolling * starved * model.rollers / len(loads)
 
 
