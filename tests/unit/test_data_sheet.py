@@ -98,3 +98,12 @@ def test_too_little_backlash_and_clearance_are_points_to_check():
     thinner = {"pinion.tooth_thickness": "3.08 mm", "gear.root_diameter": "45.4 mm"}
     assert not list(reservations(case.updated(thinner)))
     assert "clearance" in " ".join(reservations(case.updated({"gear.tooth_thickness": "3.07 mm"})))
+
+
+def test_gears_that_do_not_belong_together_are_points_to_check():
+    case = load_case("talbot-2012").updated({"ring.teeth": 120})
+    spaced, shifted, *_ = reservations(case)
+    assert spaced.startswith("3 planets cannot be equally spaced, because (73 + 120)/3 is not an ")
+    assert shifted.startswith("The profile shift of the ring is -2.88: ")
+    stated = case.updated({"planet.angles": ["0 deg", "119.3782 deg", "240.6218 deg"]})
+    assert not [text for text in reservations(stated) if "spaced" in text]

@@ -18,6 +18,7 @@ from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
 from epicyclic.case.tables.uncertainty import stated_values
 from epicyclic.contact.fitted_models import changed_properties
+from epicyclic.gears.assembly import spacing_notes
 from epicyclic.gears.gear import HOUSING
 from epicyclic.gears.gearing import DEFAULT_RIM_THICKNESS, rim_thickness
 from epicyclic.gears.mesh import are_evenly_spaced
@@ -311,29 +312,7 @@ def _arrangement_notes(case: SetCase) -> Iterator[str]:
     gearing = case.gearing
     if gearing.listed and case.models.mesh_loads == "without-losses":
         yield "models.mesh_loads = without-losses has no effect on a set whose gears are listed."
-    planets = gearing.count
-    if planets is None or gearing.stated_angles is not None:
-        return
-    found = gearing.arrangement
-    if found.individual:
-        bodies = list(gearing.bodies.values())
-        stepped = ", ".join(body for body in gearing.planets if bodies.count(body) > 1)
-        fitting = [str(n) for n in range(1, planets + 1) if found.number % n == 0]
-        yield (
-            f"{planets} equally spaced planets cannot be identical: on each {stepped} the gears "
-            f"need a different angle to each other, because {found.number}/{planets} is not an "
-            "integer. Identical planets can be equally spaced if there are "
-            f"{' or '.join(fitting)}."
-        )
-    elif not are_evenly_spaced(found.angles):
-        number = str(found.number)
-        if not gearing.listed:
-            number = f"({gearing.tables['sun'].teeth} + {gearing.tables['ring'].teeth})"
-        placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in found.angles)
-        yield (
-            f"{planets} planets cannot be equally spaced, because {number}/{planets} is not an "
-            f"integer; they stand at {placed} deg."
-        )
+    yield from spacing_notes(gearing)
 
 
 def assemble(case: Case, built: Built, settled: Settled) -> Result:

@@ -14,7 +14,7 @@ from itertools import combinations, combinations_with_replacement, product
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import Gear
 from epicyclic.gears.gearing import RACK_KEYS, Gearing, GearPairing, Pin
-from epicyclic.gears.mesh import nearest_admissible_angle, profile_shift_sum
+from epicyclic.gears.mesh import are_evenly_spaced, nearest_admissible_angle, profile_shift_sum
 from epicyclic.gears.rules import check_mesh, sound_gears
 from epicyclic.messages import millimetres
 
@@ -307,6 +307,33 @@ def _gap(
         moved = Pin(second.radius, second.angle + angles[there] - angles[here])
         gap = min(gap, math.dist(first.place, moved.place) - tips)
     return gap
+
+
+def spacing_notes(gearing: Gearing) -> Iterator[str]:
+    """What planets whose places are not stated need so that they can be assembled."""
+    planets = gearing.count
+    if planets is None or gearing.stated_angles is not None:
+        return
+    found = gearing.arrangement
+    if found.individual:
+        bodies = list(gearing.bodies.values())
+        stepped = ", ".join(body for body in gearing.planets if bodies.count(body) > 1)
+        fitting = [str(n) for n in range(1, planets + 1) if found.number % n == 0]
+        yield (
+            f"{planets} equally spaced planets cannot be identical: on each {stepped} the gears "
+            f"need a different angle to each other, because {found.number}/{planets} is not an "
+            "integer. Identical planets can be equally spaced if there are "
+            f"{' or '.join(fitting)}."
+        )
+    elif not are_evenly_spaced(found.angles):
+        number = str(found.number)
+        if not gearing.listed:
+            number = f"({gearing.tables['sun'].teeth} + {gearing.tables['ring'].teeth})"
+        placed = ", ".join(f"{math.degrees(angle):.4f}" for angle in found.angles)
+        yield (
+            f"{planets} planets cannot be equally spaced, because {number}/{planets} is not an "
+            f"integer; they stand at {placed} deg."
+        )
 
 
 def _fewer(gearing: Gearing, sound: Mapping[str, Gear], close: list[tuple[str, str]]) -> str:
