@@ -264,11 +264,12 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
             _shown(float(one[key]), unit)
             for key in ("first", "second", "difference", "standard_uncertainty", "low", "high")
         )
-        chance = aligned(percent(float(one["probability"])))
-        rows.append((Cell(in_words(name) + (", %" if unit == "1" else "")), *cells, chance))
+        same = not one["difference"] and not one["standard_uncertainty"]
+        chance = aligned(MISSING if same else percent(float(one["probability"])))
+        rows.append((Cell(_label(name)), *cells, chance))
     strong = frozenset({names.index("total"), names.index("efficiency")})
-    head = ("", "first", "second", "mean difference", "u", "95 % from", "to", "second smaller")
-    title = f"{data.attrs['second_title']} less {data.attrs['first_title']}"
+    head = ("", "first", "second", "mean diff.", "u", "95 % from", "to", "2nd smaller")
+    first, second = (one_line(data.attrs[f"{name}_title"]) for name in ("first", "second"))
     table = Table(head, tuple(rows), "Second less first", strong, "Losses in W.")
     total = data.sel(result="total")
     notes = [
@@ -278,7 +279,14 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     ]
     if data.attrs["failed"]:
         notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")
-    return titled(one_line(title), as_on_page(table), as_on_page(Listing(tuple(notes), "Notes")))
+    return titled(f"{second}\nless {first}", as_on_page(table), as_on_page(Listing(tuple(notes), "Notes")))
+
+
+def _label(name: str, grouping: str = "") -> str:
+    """A result in words; `grouping` says what the two groups of losses are sums of."""
+    if name in ("load_dependent", "load_independent"):
+        return name.replace("_", "-") + grouping
+    return in_words(name) + (", %" if name == "efficiency" else "")
 
 
 def band_figures(data: xr.Dataset) -> list[KeyFigure]:
@@ -306,10 +314,7 @@ def _results(data: xr.Dataset) -> Table:
             for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
                         "low", "high", "shortest_low", "shortest_high")
         )  # fmt: skip
-        label = in_words(name) + (", %" if name == "efficiency" else "")
-        if name in ("load_dependent", "load_independent"):
-            label = name.replace("_", "-") + data.attrs["grouping"]
-        rows.append((Cell(label), *values))
+        rows.append((Cell(_label(name, data.attrs["grouping"])), *values))
     strong = frozenset({names.index("total"), names.index("efficiency")})
     head = ("", "case", "mean", "u_c", "U", "95 % from", "to", "shortest", "to")
     what = "Losses" if _unit(data) == "W" else "Energies"
