@@ -158,6 +158,20 @@ def test_a_file_holds_the_map(data, tmp_path, epicyclic, coarse_options):
         assert stored.identical(data)
 
 
+def test_a_map_warns_as_run_does_where_most_is_lost(tmp_path, epicyclic, coarse_options):
+    cold = (*coarse_options, "--set", "operation.oil_inlet_temperature=-40 degC")
+    axes = "--speed", "1000,2000 rpm", "--torque", "300,700 N*m"
+    done = epicyclic("map", "talbot-2012", *axes, *cold, "-o", str(tmp_path / "map.nc"))
+    head, *rest = done.stderr[done.stderr.index("Warning") :].splitlines()
+    assert head.endswith(
+        "where most is lost: input sun, 2000 rpm, 700 N·m, ring fixed, oil at -40 °C"
+    )
+    at = "--set", "operation.speed=2000 rpm", "--set", "operation.torque=700 N*m"
+    screen = " ".join(epicyclic("run", "talbot-2012", *at, *cold).stdout.split())
+    assert len(rest) == 3
+    assert all(text in screen for text in rest)
+
+
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])
 def test_tables_hold_the_map(data, tmp_path, suffix):
     output = tmp_path / f"map.{suffix}"

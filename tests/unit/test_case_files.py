@@ -153,6 +153,14 @@ def test_files_that_are_no_case(write, content, words):
     assert caught.value.source.endswith("case.toml")
 
 
+@pytest.mark.parametrize(("ending", "text"), [("csv", "speed,torque\n1,2\n"), ("json", "{}")])
+def test_a_table_or_result_in_place_of_a_case_is_told_by_its_ending(tmp_path, ending, text):
+    path = tmp_path / f"loss.{ending}"
+    path.write_text(text)
+    problem = only(problems_of(read_case, path))
+    assert problem.allowed == f"the file ends with .{ending} and holds no case."
+
+
 def test_a_line_that_is_not_toml_is_shown(write):
     problem = only(problems_of(read_case, write(TALBOT.replace("[sun]", "[sun"))))
     assert problem.value.startswith("line ")

@@ -25,7 +25,7 @@ from epicyclic.cli.common import (
     table_options,
     wrong_ending,
 )
-from epicyclic.cli.many import Write, compute
+from epicyclic.cli.many import Write, compute, tell_warnings
 from epicyclic.errors import Problem, raise_any
 from epicyclic.files import check_place, write_file
 
@@ -224,13 +224,17 @@ def _map(
 ) -> xr.Dataset:
     """The map that is named, or one of the case that is."""
     from epicyclic.show.record import open_map
-    from epicyclic.study.maps.duty import cycle_map
+    from epicyclic.study.maps.compute import to_map
+    from epicyclic.study.maps.duty import cycle_plan
 
     if Path(map_or_case).suffix == _MAP_SUFFIX:
         return open_map(map_or_case)
     case = load_with(map_or_case, changes)
     with progress_bar("points of the map") as progress:
-        data = cycle_map(case, cycle, celsius, replace(runner, progress=progress))
+        plan = cycle_plan(case, cycle, celsius)
+        rows = replace(runner, progress=progress).within(plan).run(plan)
+    data = to_map(plan, rows)
+    tell_warnings(plan, rows)
     if map_file is not None:
         _write_map(data, map_file)
     return data

@@ -18,6 +18,7 @@ from epicyclic.cli.common import (
     file_option,
     load_with,
     output_option,
+    point_of,
     progress_bar,
     runner_options,
     set_option,
@@ -263,6 +264,7 @@ def map_writer(
         write_map(data.assign_attrs(lumped or {}), output, format)
         if "torque_interpolation" in data.attrs:
             echo(f"Interpolated {data.attrs['torque_interpolation']}.", err=True)
+        tell_warnings(plan, rows)
         return points_written(rows, files)
 
     return write
@@ -359,6 +361,24 @@ def _print_thin_teeth(rows: Rows) -> None:
             "If profile shifts are left out, they are computed for each point.",
             err=True,
         )
+
+
+def tell_warnings(plan: MapPlan, rows: Rows) -> None:
+    """Say what `run` would warn of where most is lost."""
+    from numpy import nan_to_num
+
+    from epicyclic.show.summary import first_warnings
+    from epicyclic.study.solve import solve
+
+    worst = int(nan_to_num(rows.numbers("total"), nan=-1.0).argmax())
+    if not rows.warnings[worst]:
+        return
+    case = plan.case.updated(plan.changes(worst))
+    found = first_warnings(solve(case))
+    if found.items:
+        echo(f"{found.title}, where most is lost: {point_of(case)}", err=True)
+        for text in found.items:
+            echo(f"• {text}", err=True)
 
 
 def points_written(rows: Rows, output: Path | str) -> str:

@@ -186,7 +186,7 @@ def read_file(
     around its mistakes.
     """
     try:
-        tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE))
+        tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE), path.suffix.lower())
         if not tables and not bad_lines:
             refuse("is empty.", f"Fill it; {start}")
         return _take_marks(plain(tables), bad_lines)
@@ -194,7 +194,7 @@ def read_file(
         raise InputError(error.problems, one_line(str(path), _LONGEST_PATH)) from None
 
 
-def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
+def _parse(text: str, ending: str) -> tuple[dict[str, Any], list[_BadLine]]:
     """The tables of a text, its bad lines mended where that is possible."""
     if _is_deep(text):
         refuse("has tables that are nested too deeply.", "Give a case file.")
@@ -212,6 +212,8 @@ def _parse(text: str) -> tuple[dict[str, Any], list[_BadLine]]:
         if all(line.number != other.number for other in bad_lines):
             bad_lines.append(line)
             mended = _mended(line)
+        if mended is None and ending not in ("", ".toml"):
+            refuse(f"ends with {ending} and holds no case.", "Give a .toml file.")
         if mended is None or len(bad_lines) > _MOST_BAD_LINES:
             raise InputError([_problem(bad, "") for bad in bad_lines])
         lines[line.number - 1] = mended

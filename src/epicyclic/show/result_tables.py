@@ -344,7 +344,7 @@ def sums_table(result: Result, train: Train, *, most: int | None = None) -> Tabl
         sums = _largest(sums, most)
 
     def known(watts: float) -> Cell:
-        return number(watts, "", text=f"{watts / size:z.{decimals}f}")
+        return share_row(result, watts, "", decimals, size)[0]
 
     kinds = [kind for kind in LOSS_KINDS if any(kind in own for own in sums.values())]
     columns = kinds if len(kinds) > 1 else []

@@ -234,6 +234,7 @@ def _value(value: xr.DataArray) -> str:
 
 NO_SHARE = 1e-3
 """Share in the variance of a loss below which curves through samples show no effect. [1]"""
+SCATTER = 0.01  # Difference of shares that is worth a sentence. [1]
 CUT_OFF = 1e-3  # Probability of impossible values that is worth a sentence. [1]
 
 
@@ -279,7 +280,9 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     ]
     if data.attrs["failed"]:
         notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")
-    return titled(f"{second}\nless {first}", as_on_page(table), as_on_page(Listing(tuple(notes), "Notes")))
+    return titled(
+        f"{second}\nless {first}", as_on_page(table), as_on_page(Listing(tuple(notes), "Notes"))
+    )
 
 
 def _label(name: str, grouping: str = "") -> str:
@@ -369,6 +372,11 @@ def _budget(data: xr.Dataset) -> Table | Listing:
     )
     if len(orders) == 1:
         note = note.replace("alone and with all interactions; ", "each alone; ")
+    elif (above := float((total[orders[0]] - total[orders[1]]).max())) > SCATTER:
+        note += (
+            f" They scatter: one alone is {percent(above)} of the variance above that with "
+            "interactions, which it cannot exceed. More samples reduce that."
+        )
     head = heads[: len(heads) + len(orders) - 2]
     return _causes(head, rows, note)
 
