@@ -21,7 +21,7 @@ SOURCE = Path(__file__).parents[1] / "src" / "epicyclic"
 ADDED_TO_THE_CORE = {
     "friction of rough flanks": 340,
     "tapered bearings, rolling contained": 290,
-    "the first screen, points to check": 400,
+    "the first screen, points to check, warnings of maps": 450,
     "tables as rigs write them, scatter and models in fits, sheets of maps": 1180,
     "equal results for equal cases, hostile files and names": 530,
     "drag at any speed": 450,
@@ -35,7 +35,7 @@ ADDED_TO_THE_CORE = {
     "points of a sweep solved together": 1_235,
     "temperatures that do not settle, limits of uncertain inputs, ranges of drag": 50,
     "keys and library of strength, odds over a cycle": 170,
-    "ball and thrust bearings by film": 340,
+    "ball and thrust bearings by film, cold bearings": 385,
 }
 ADDED = {
     **ADDED_TO_THE_CORE,

@@ -119,7 +119,11 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What is known before anything is solved: what comes before the other notes, and behind."""
     before: list[str] = list(map(Note, (*fluid_notes(case), *lubrication_notes(case))))
     before += [*load_notes(case), *backlash_notes(case.gearing)]
-    return tuple(before), (*map(Note, case.found), *map(Note, _arrangement_notes(case)))
+    behind = [*case.found, *spacing_notes(case.gearing)]
+    if case.gearing.listed and case.models.mesh_loads == "without-losses":
+        without = "models.mesh_loads = without-losses has no effect"
+        behind.append(f"{without} on a set whose gears are listed.")
+    return tuple(before), tuple(map(Note, behind))
 
 
 def fluid_notes(case: SetCase) -> Iterator[str]:
@@ -305,14 +309,6 @@ def _share_notes(sharing: LoadSharing, shares: tuple[float, ...]) -> Iterator[st
         if key in idle_keys and getattr(sharing, key) != getattr(usual, key):
             idle_key = f"load_sharing.{key}"
             yield Note(f"{idle_key} has no effect with load_sharing.method = {sharing.method}.")
-
-
-def _arrangement_notes(case: SetCase) -> Iterator[str]:
-    """What has no effect on a listed set, and what planets need to be assembled."""
-    gearing = case.gearing
-    if gearing.listed and case.models.mesh_loads == "without-losses":
-        yield "models.mesh_loads = without-losses has no effect on a set whose gears are listed."
-    yield from spacing_notes(gearing)
 
 
 def assemble(case: Case, built: Built, settled: Settled) -> Result:

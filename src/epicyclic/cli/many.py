@@ -376,9 +376,8 @@ def tell_warnings(plan: MapPlan, rows: Rows) -> None:
     case = plan.case.updated(plan.changes(worst))
     found = first_warnings(solve(case))
     if found.items:
-        echo(f"{found.title}, where most is lost: {point_of(case)}", err=True)
-        for text in found.items:
-            echo(f"• {text}", err=True)
+        head = f"{found.title}, where most is lost: {point_of(case)}"
+        echo("\n• ".join((head, *found.items)), err=True)
 
 
 def points_written(rows: Rows, output: Path | str) -> str:

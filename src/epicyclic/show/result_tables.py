@@ -343,15 +343,12 @@ def sums_table(result: Result, train: Train, *, most: int | None = None) -> Tabl
     if most is not None:
         sums = _largest(sums, most)
 
-    def known(watts: float) -> Cell:
-        return share_row(result, watts, "", decimals, size)[0]
-
     kinds = [kind for kind in LOSS_KINDS if any(kind in own for own in sums.values())]
     columns = kinds if len(kinds) > 1 else []
     # the shares of the total also stand beside the single losses
     wide = len(columns) > MOST_KINDS
 
-    def ending(watts: float, key: str) -> tuple[Cell, ...]:
+    def ending(watts: float, key: str = "") -> tuple[Cell, ...]:
         loss, of_total, of_input = share_row(result, watts, key, decimals, size)
         if most is not None:
             return (loss,) if wide else (loss, of_total)
@@ -360,13 +357,13 @@ def sums_table(result: Result, train: Train, *, most: int | None = None) -> Tabl
     rows = [
         (
             Cell(in_words(stage)),
-            *(known(own[kind]) if kind in own else Cell("") for kind in columns),
+            *(ending(own[kind])[0] if kind in own else Cell("") for kind in columns),
             *ending(sum(own.values()), f"stages.{stage}"),
         )
         for stage, own in sums.items()
     ]
-    totals = [sum(own.get(kind, 0.0) for own in sums.values()) for kind in columns]
-    rows.append((Cell("total"), *map(known, totals), *ending(result.total, "total")))
+    totals = [ending(sum(own.get(kind, 0.0) for own in sums.values()))[0] for kind in columns]
+    rows.append((Cell("total"), *totals, *ending(result.total, "total")))
     shares = () if wide else ("of total",)
     head = ("", *columns, "total", *shares, *(("of input",) if most is None else ()))
     strong = frozenset([len(rows) - 1])
