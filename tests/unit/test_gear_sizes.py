@@ -7,7 +7,7 @@ import pytest
 from epicyclic import load_case, solve
 from epicyclic.gears.gear import BasicRack
 from epicyclic.gears.mesh import closed_center_distance, profile_shift_sum, recommended_backlash
-from epicyclic.gears.rules import backlash_notes
+from epicyclic.gears.rules import tooth_notes
 from epicyclic.units import MILLIMETRE
 from problems import only, problems_of
 
@@ -205,8 +205,8 @@ def test_the_other_sign_of_a_ring_is_proposed_where_it_fits():
 
 
 def test_gross_backlash_is_warned_of_and_usual_backlash_is_not():
-    assert list(backlash_notes(load_case(changed()).gearings[""])) == []
-    sun_mesh, ring_mesh = backlash_notes(load_case(changed(planet={"teeth": 26})).gearings[""])
+    assert list(tooth_notes(load_case(changed()).gearings[""])) == []
+    sun_mesh, ring_mesh = tooth_notes(load_case(changed(planet={"teeth": 26})).gearings[""])
     assert "sun mesh has a normal backlash" in sun_mesh
     proposed = float(ring_mesh.split(f"ring.{X} = ")[1].split(" has")[0].split(" it")[0])
     case = load_case(changed(planet={"teeth": 26}, ring={X: proposed}))

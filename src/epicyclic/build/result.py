@@ -22,7 +22,7 @@ from epicyclic.gears.assembly import spacing_notes
 from epicyclic.gears.gear import HOUSING
 from epicyclic.gears.gearing import DEFAULT_RIM_THICKNESS, rim_thickness
 from epicyclic.gears.mesh import are_evenly_spaced
-from epicyclic.gears.rules import backlash_notes
+from epicyclic.gears.rules import tooth_notes
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.friction import CONTAINS_ROLLING, TALBOT_FLUID
 from epicyclic.losses.ranges import SomeFlags, ValidityFlag
@@ -118,7 +118,7 @@ def case_notes(
 def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What is known before anything is solved: what comes before the other notes, and behind."""
     before: list[str] = list(map(Note, (*fluid_notes(case), *lubrication_notes(case))))
-    before += [*load_notes(case), *backlash_notes(case.gearing)]
+    before += [*load_notes(case), *tooth_notes(case.gearing)]
     behind = [*case.found, *spacing_notes(case.gearing)]
     if case.gearing.listed and case.models.mesh_loads == "without-losses":
         without = "models.mesh_loads = without-losses has no effect"

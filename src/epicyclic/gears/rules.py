@@ -369,6 +369,9 @@ def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> Iterator[Problem]:
 
 ROUNDING = 1e-9  # Clearances count as negative beyond this: drawings may state exactly zero. [m]
 
+LARGEST_SHIFT = 1.2
+"""Magnitude of usual profile shifts, general knowledge: larger ones mostly are a wrong number of
+teeth, module or diameter. [1]"""
 GROSS = 5.0  # Backlash over the recommended one from which a result says so; an estimate. [1]
 
 TOO_THIN = "its teeth are too thin for their centre distance"
@@ -392,8 +395,15 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
     return [Problem(", ".join(keys), "", allowed, remedy)]
 
 
-def backlash_notes(gearing: Gearing) -> Iterator[str]:
-    """A note on every mesh whose teeth are far too thin."""
+def tooth_notes(gearing: Gearing) -> Iterator[str]:
+    """A note on every gear with a strange profile shift, and mesh whose teeth are far too thin."""
+    gears = {gear.name: gear for mesh in gearing.geometries for gear in (mesh.gear1, mesh.gear2)}
+    for gear in gears.values():
+        if abs(shift := gear.profile_shift_coefficient) > LARGEST_SHIFT:
+            yield (
+                f"The profile shift of the {gear.name} is {shift:z.2f}: its teeth, diameters and "
+                "centre distance hardly belong together."
+            )
     for mesh in gearing.geometries:
         backlash = mesh.normal_backlash
         usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)

@@ -15,6 +15,7 @@ from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.tables.elements import between
 from epicyclic.gears.assembly import spacing_notes
 from epicyclic.gears.gear import HOUSING
+from epicyclic.gears.rules import tooth_notes
 from epicyclic.oil.oil import GoldLaw, Oil, OilState, oil_state
 from epicyclic.show import page
 from epicyclic.show.page import MISSING, shown
@@ -110,24 +111,12 @@ LEAST_CLEARANCE = 0.1
 (general knowledge). [1]"""
 
 
-LARGEST_SHIFT = 1.2
-"""Magnitude of usual profile shifts, general knowledge: larger ones mostly are a wrong number of
-teeth, module or diameter. [1]"""
-
-
 def reservations(case: Case) -> Iterator[str]:
     """What a designer would correct, although the case can be computed."""
     for name, sheet in data_sheets(case).items():
         where = f"{name}: the" if name else "The"
-        for note in spacing_notes(case.gearings[name]):
+        for note in (*spacing_notes(case.gearings[name]), *tooth_notes(case.gearings[name])):
             yield f"{name}: {note}" if name else note
-        for own in sheet.gears:
-            shift = own.gear.profile_shift_coefficient
-            if abs(shift) > LARGEST_SHIFT:
-                yield (
-                    f"{where} profile shift of the {own.gear.name} is {shift:z.2f}: its teeth, "
-                    "diameters and centre distance hardly belong together."
-                )
         for one in sheet.meshes:
             mesh, found, least = one.mesh, one.mesh.normal_backlash, one.recommended_backlash
             if found < (1 - _ROUNDING) * least:
