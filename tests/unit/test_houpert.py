@@ -13,7 +13,7 @@ from epicyclic.build.elements import build_element
 from epicyclic.case.tables.elements import ShaftBearingTable
 from epicyclic.losses.houpert import CURVATURE, ball_loads, ball_moments, point_rolling_force
 from epicyclic.losses.shaft_bearing import BearingLoad, PalmgrenModel
-from epicyclic.losses.skf_2018 import SkfModel, skf_constants, skf_moments
+from epicyclic.losses.skf_2018 import LEAST_SUPPLY, SkfModel, skf_constants, skf_moments
 from epicyclic.losses.zhou_hoeprich import POSITIONS, rolling_moment, thrust_sliding
 from epicyclic.oil.oil import oil_state
 from epicyclic.study.physics import _oil
@@ -106,6 +106,11 @@ def test_fast_thick_oil_is_flagged_and_an_oil_bath_drags():
     cold = oil_state(OIL, 283.15)
     (flag,) = own.model.flags("b", own.bearing, BearingLoad(1e3, 0.0), 400.0, cold)
     assert "dimensionless speed" in str(flag)
+    starved = own.model.parts(own.bearing, BearingLoad(1e3, 0.0), 400.0, cold)[0].watts
+    assert 1.1 * starved < flag.could_be < starved / LEAST_SUPPLY
+    cool = oil_state(OIL, 318.15)
+    (flag,) = own.model.flags("b", own.bearing, BearingLoad(1e3, 0.0), 400.0, cool)
+    assert flag.could_be == 0  # it starves as SKF has it
     assert own.model.flags("b", own.bearing, BearingLoad(1e3, 0.0), 100.0, WARM) == ()
 
 

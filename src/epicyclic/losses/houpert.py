@@ -15,7 +15,7 @@ import numpy as np
 
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import Flanks, LineContacts
-from epicyclic.dataclass import dataclass
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.kernels.line_contact import inlet_film_factor, power
 from epicyclic.losses.mixed_lubrication import mixed_friction
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
@@ -27,7 +27,7 @@ from epicyclic.losses.shaft_bearing import (
     WithoutCoefficient,
     load_flags,
 )
-from epicyclic.losses.skf_2018 import SkfModel
+from epicyclic.losses.skf_2018 import LEAST_SUPPLY, SkfModel
 from epicyclic.losses.zhou_hoeprich import AS_MADE, POSITIONS, STEEL, film_parts, roller_loads
 from epicyclic.oil.oil import OilState
 from epicyclic.units import NUMBER
@@ -88,7 +88,13 @@ class BallModel(WithoutCoefficient):
         """Flags on static load, speed, and what the solutions of rolling contacts cover."""
         use = ModelUse("bearing", self.name, where)
         own = {"speed_number": ball_moments(self, bearing, load, speed, oil).speed_number}
-        found = check_ranges(use, (_SPEED_NUMBER,), own) if speed else ()
+        most = 0.0
+        if self.skf.supply(bearing, speed, oil.kinematic_viscosity) <= LEAST_SUPPLY:
+            # how much thicker oil starves nobody measured
+            full = replace(self, skf=replace(self.skf, starvation=0.0))
+            moments = ball_moments(full, bearing, load, speed, oil)
+            most = (moments.rolling + moments.sliding) * abs(speed)
+        found = check_ranges(use, (_SPEED_NUMBER,), own, could_be=most) if speed else ()
         return found + load_flags(use, AXIAL_RATIO, bearing, load, speed)
 
 
