@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from rich.console import Console
 from scipy import stats
 
 import epicyclic as ep
@@ -16,7 +17,7 @@ from epicyclic.errors import InputError
 from epicyclic.losses.pocket_tables import FlowFamily
 from epicyclic.show.page import Listing
 from epicyclic.show.plots.catalogue import available
-from epicyclic.show.uncertainty_tables import uncertainty_items
+from epicyclic.show.uncertainty_tables import pair_tables, uncertainty_items
 from epicyclic.study.bands.inputs import uncertain_values
 from epicyclic.study.bands.plan import at_deviations, look_nearby
 from epicyclic.study.bands.samples import (
@@ -281,6 +282,14 @@ def test_a_paired_difference_is_known_better_than_an_unpaired_one(case):
     assert "gear.roughness" not in data.attrs["shared"].split(", ")
     same = ep.compare_cases(case, case, samples=16, jobs=1)
     assert not same["difference"].sel(result="total").any()
+    titled = same.assign_attrs(first_title="A" * 70, second_title="B" * 70)
+    console = Console(width=100)
+    with console.capture() as shown:
+        console.print(pair_tables(titled))
+    head, less, *rows = shown.get().splitlines()
+    assert (head, less) == ("B" * 70, "less " + "A" * 70)
+    chances = {row.split()[-1] for row in rows if row.startswith(("load-dependent ", "total "))}
+    assert chances == {"-"}  # equal losses are neither smaller nor larger
 
 
 @pytest.mark.parametrize("times", [(), (0.0,), (-1.0, 2.0), (math.nan, 1.0), (math.inf,)])

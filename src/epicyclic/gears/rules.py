@@ -397,8 +397,8 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
 
 def tooth_notes(gearing: Gearing) -> Iterator[str]:
     """A note on every gear with a strange profile shift, and mesh whose teeth are far too thin."""
-    gears = {gear.name: gear for mesh in gearing.geometries for gear in (mesh.gear1, mesh.gear2)}
-    for gear in gears.values():
+    named = {gear.name: gear for mesh in gearing.geometries for gear in (mesh.gear1, mesh.gear2)}
+    for gear in named.values():
         if abs(shift := gear.profile_shift_coefficient) > LARGEST_SHIFT:
             yield (
                 f"The profile shift of the {gear.name} is {shift:z.2f}: its teeth, diameters and "
