@@ -121,8 +121,8 @@ def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
     before += [*load_notes(case), *tooth_notes(case.gearing)]
     behind = [*case.found, *spacing_notes(case.gearing)]
     if case.gearing.listed and case.models.mesh_loads == "without-losses":
-        without = "models.mesh_loads = without-losses has no effect"
-        behind.append(f"{without} on a set whose gears are listed.")
+        without = "models.mesh_loads = without-losses"
+        behind.append(f"{without} has no effect on a set whose gears are listed.")
     return tuple(before), tuple(map(Note, behind))
 
 

@@ -396,13 +396,13 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
 
 
 def tooth_notes(gearing: Gearing) -> Iterator[str]:
-    """A note on every gear with a strange profile shift, and mesh whose teeth are far too thin."""
+    """A note on every gear of unusual profile shift, and mesh whose teeth are far too thin."""
     named = {gear.name: gear for mesh in gearing.geometries for gear in (mesh.gear1, mesh.gear2)}
     for gear in named.values():
         if abs(shift := gear.profile_shift_coefficient) > LARGEST_SHIFT:
             yield (
-                f"The profile shift of the {gear.name} is {shift:z.2f}: its teeth, diameters and "
-                "centre distance hardly belong together."
+                f"The profile shift of the {gear.name} is {shift:z.2f}: its number of "
+                "teeth, a diameter or the centre distance is probably wrong."
             )
     for mesh in gearing.geometries:
         backlash = mesh.normal_backlash

@@ -90,7 +90,7 @@ class BallModel(WithoutCoefficient):
         own = {"speed_number": ball_moments(self, bearing, load, speed, oil).speed_number}
         most = 0.0
         if self.skf.supply(bearing, speed, oil.kinematic_viscosity) <= LEAST_SUPPLY:
-            # how much thicker oil starves nobody measured
+            # nobody measured how far thicker oil starves
             full = replace(self, skf=replace(self.skf, starvation=0.0))
             moments = ball_moments(full, bearing, load, speed, oil)
             most = (moments.rolling + moments.sliding) * abs(speed)

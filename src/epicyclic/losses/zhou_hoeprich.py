@@ -127,7 +127,7 @@ class TaperedModel(Rollers):
     ) -> tuple[ValidityFlag, ...]:
         """Flags on static load, and on what no measured bearing had."""
         use = ModelUse("bearing", self.name, where)
-        # how much thicker oil starves nobody measured
+        # nobody measured how far thicker oil starves
         full = replace(self, skf=replace(self.skf, starvation=0.0))
         moments = tapered_moments(full, bearing, load, speed, oil)
         film, viscosity = moments.film_ratio, oil.dynamic_viscosity
