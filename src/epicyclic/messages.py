@@ -190,15 +190,15 @@ def misspelt(name: str, known: Iterable[str]) -> str:
     return nearest if clear else ""
 
 
-_SEPARATORS = re.compile(r"[-_. ]")
+_SEPARATORS = str.maketrans("", "", "-_. ")
 
 
 def _likeness(name: str, known: str, *, score_cutoff: float | None = None) -> float:
     """In percent; a name that is part of another one is somewhat like it."""
-    from rapidfuzz import fuzz
+    from rapidfuzz.fuzz import ratio
 
     one, two = name.casefold(), known.casefold()
-    score = fuzz.ratio(one, two, score_cutoff=score_cutoff)
-    one, two = (_SEPARATORS.sub("", it) for it in (one, two))
+    score = ratio(one, two, score_cutoff=score_cutoff)
+    one, two = one.translate(_SEPARATORS), two.translate(_SEPARATORS)
     partly = min(len(one), len(two)) > 3 and (one in two or two in one)
     return max(score, _LIKENESS + 10) if partly else score

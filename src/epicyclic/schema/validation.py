@@ -85,8 +85,8 @@ def unknown_key(
     """The problem of a key that the schema does not have."""
     name = str(place.path[-1])
     known = () if place.owner is None else tuple(place.owner.model_fields)
-    homes = [f"{table}.{name}" for table, fields in tables if name in fields.model_fields]
     remedy = did_you_mean(name, known)
+    homes = () if remedy else [f"{table}.{name}" for table, it in tables if name in it.model_fields]
     if place.path[0] == _OF_KEYS and isinstance(value, dict):
         remedy = f'Write {_OF_KEYS}."{dotted(place.path[1:])}", with the key in quotes.'
     elif not remedy and homes:
