@@ -40,7 +40,7 @@ AGREEMENT = 3e-5
 """Change of a temperature from one pass to the next at which losses and heat agree. [K]"""
 NEARLY = 1e-3
 """Change of a temperature from which on torques agree with the losses in each pass. [K]"""
-NEAR = 0.01  # Change of expected temperatures, over that of the last pass, with which they serve.
+NEAR = 0.1  # Change of expected temperatures, over that of the last pass, with which they serve.
 QUICK = 0.5
 """Change of expected temperatures over the one before up to which they are repeated; also how much
 warmer a temperature may make itself. [1]"""
