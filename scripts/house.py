@@ -27,7 +27,7 @@ ADDED_TO_THE_CORE = {
     "drag at any speed": 450,
     "bearings by designation, pairs of bearings, plain pins, rollers that turn": 1650,
     "oil level of a housing, tables of heat, fast bearings, grease": 365,
-    "default tips, every mistake at once, formulas without a case": 645,
+    "default tips, every mistake at once, formulas without a case": 655,
     "bands and pictures of one size, arrangement of a train": 535,
     "test rigs, seals of sets, open clutches, rollers without a cage": 590,
     "a first run in two processes, sizes of units": 185,

@@ -182,6 +182,7 @@ def test_values_are_shown_as_they_were_written(every_kind):
             "uncertainty.sun.roughness",
             'Write uncertainty."sun.roughness", with the key in quotes.',
         ),
+        ("planet", "teeth", 400, "planet.teeth, planet.thickness_diameter", "about 26 teeth."),
         ("planet", "count", 40, "planet.count", "Use at most 11 planets, equally spaced."),
         (
             "planet",
@@ -211,6 +212,15 @@ def test_one_problem_for_one_mistake(table, key, value, place, words):
     assert problem.key == place
     assert words in problem.remedy
     assert len(problem.value) < 80
+
+
+def test_a_wrong_centre_distance_is_told_as_such():
+    tables = builtin_case("talbot-2012")
+    tables["gears"]["center_distance"] = "200 mm"
+    tooth = [it for it in problems_of(read_case, tables) if "thickness" in it.key]
+    (found,) = (it for it in problems_of(read_case, tables) if "ring mesh" in it.allowed)
+    assert (found.key, tooth) == ("gears.center_distance", [])
+    assert "Without profile shift it is 92.15 mm." in found.remedy
 
 
 @pytest.mark.parametrize(

@@ -126,10 +126,29 @@ def _no_involute_for_thickness(gearing: Gearing, name: str) -> Problem:
         allowed = f"puts the middle of the balls inside the base circle of {millimetres(base)}."
         remedy = "Check it, measuring_pin_diameter, tooth number and module."
         return Problem(f"{key}.dimension_over_pins", shown, allowed, remedy)
-    shown = millimetres(table.thickness_diameter or 0.0)
+    diameter, reference = table.thickness_diameter or 0.0, table.teeth * rack.transverse_module
+    place, shown = f"{key}.thickness_diameter", millimetres(diameter)
+    if reference - diameter > 2 * FARTHEST_TIP * rack.normal_module:
+        return _other_teeth(key, place, shown, table.teeth, (reference, diameter))
     allowed = f"lies inside the base circle of {millimetres(base)}, where no involute exists."
     remedy = "Give the tooth thickness at a larger diameter."
-    return Problem(f"{key}.thickness_diameter", shown, allowed, remedy)
+    return Problem(place, shown, allowed, remedy)
+
+
+def _other_teeth(
+    gear: str,  # Key.
+    circle: str,  # Key of the diameter of a circle.
+    shown: str,  # That diameter.
+    teeth: int,
+    diameters: tuple[float, float],  # Of the reference circle: of these teeth, and likely. [m]
+) -> Problem:
+    """A circle so far from the reference circle that it, or the number of teeth, is wrong."""
+    reference, likely = diameters
+    allowed = f"do not belong together: {teeth} teeth have a reference circle of "
+    allowed += f"{millimetres(reference)}."
+    remedy = "Correct one of the two, or the module: this diameter belongs to about "
+    remedy += f"{round(teeth * likely / reference)} teeth."
+    return Problem(f"{gear}.teeth, {circle}", f"{teeth}, {shown}", allowed, remedy)
 
 
 def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
@@ -150,13 +169,8 @@ def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     thickness = thickness_key(key, table)
     module = gear.rack.normal_module
     if abs(gear.tip_radius - gear.reference_radius) > FARTHEST_TIP * module:
-        allowed = f"do not belong together: {gear.teeth} teeth have a reference circle of "
-        allowed += f"{millimetres(2 * gear.reference_radius)}."
-        reference = gear.tip_radius + (module if gear.internal else -module)
-        teeth = round(gear.teeth * reference / gear.reference_radius)
-        remedy = f"Correct one of the two: this tip circle belongs to about {teeth} teeth."
-        shown = f"{table.teeth}, {tip_shown}"
-        return Problem(f"{key}.teeth, {tip}", shown, allowed, remedy)
+        likely = 2 * (gear.tip_radius + (module if gear.internal else -module))
+        return _other_teeth(key, tip, tip_shown, gear.teeth, (2 * gear.reference_radius, likely))
     if gear.tip_radius <= gear.base_radius:
         allowed = f"lies inside the base circle of {millimetres(2 * gear.base_radius)}, so that "
         allowed += "the tooth has no involute at its tip."
@@ -198,6 +212,13 @@ def check_mesh(
         allowed = f"must exceed {millimetres(bases)}, the "
         allowed += f"{'difference' if mesh.internal else 'sum'} of the base radii of {one.name} "
         allowed += f"and {two.name}."
+        remedy = f"{_reference_distance(mesh)} Check tooth numbers and module too."
+        return [Problem(distance_key, millimetres(mesh.center_distance), allowed, remedy)]
+    shifts = [gear.profile_shift_coefficient for gear in (one, two)]
+    usual = mesh.backlash < -ROUNDING and max(map(abs, shifts)) <= LARGEST_SHIFT
+    if usual and _over(mesh) > 2 * LARGEST_SHIFT:  # neither thickness is to blame
+        allowed = f"is far too {'large' if mesh.internal else 'small'} for the teeth of the "
+        allowed += f"{mesh.name}."
         remedy = f"{_reference_distance(mesh)} Check tooth numbers and module too."
         return [Problem(distance_key, millimetres(mesh.center_distance), allowed, remedy)]
     problems = _check_backlash(gearing, mesh, distance_key)

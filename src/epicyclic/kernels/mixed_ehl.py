@@ -207,15 +207,9 @@ def needle_rolling_loss(
 
 @kernel
 def sliding_friction_at(
-    s: FloatArray,
-    u: FloatArray,
-    g: FloatArray,
-    p: FloatArray,
-    r: FloatArray,
-    s_co: FloatArray,
-    s_eq: FloatArray,
-    lam: FloatArray,
-) -> FloatArray:
+    s: FloatArray, u: FloatArray, g: FloatArray, p: FloatArray,
+    r: FloatArray, s_co: FloatArray, s_eq: FloatArray, lam: FloatArray,
+) -> FloatArray:  # fmt: skip
     """`sliding_friction` at every contact point; arrays of shape (n,)."""
     mu = np.empty(s.size)
     for i in range(s.size):
@@ -225,15 +219,9 @@ def sliding_friction_at(
 
 @kernel
 def rolling_loss_number_at(
-    s: FloatArray,
-    u: FloatArray,
-    g: FloatArray,
-    p: FloatArray,
-    r: FloatArray,
-    s_co: FloatArray,
-    s_eq: FloatArray,
-    lam: FloatArray,
-) -> FloatArray:
+    s: FloatArray, u: FloatArray, g: FloatArray, p: FloatArray,
+    r: FloatArray, s_co: FloatArray, s_eq: FloatArray, lam: FloatArray,
+) -> FloatArray:  # fmt: skip
     """`rolling_loss_number` at every contact point; arrays of shape (n,)."""
     loss = np.empty(s.size)
     for i in range(s.size):
