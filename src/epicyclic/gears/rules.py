@@ -207,18 +207,17 @@ def check_mesh(
         allowed = f"must exceed the {one.teeth} teeth of the {one.name}, which turns inside it."
         remedy = "Check both tooth numbers."
         return [Problem(f"{gearing.key(two.name)}.teeth", str(two.teeth), allowed, remedy)]
-    bases = two.base_radius + mesh.side * one.base_radius
+    bases, allowed = two.base_radius + mesh.side * one.base_radius, ""
+    largest = max(abs(gear.profile_shift_coefficient) for gear in (one, two))
     if bases >= mesh.center_distance:
         allowed = f"must exceed {millimetres(bases)}, the "
         allowed += f"{'difference' if mesh.internal else 'sum'} of the base radii of {one.name} "
         allowed += f"and {two.name}."
-        remedy = f"{_reference_distance(mesh)} Check tooth numbers and module too."
-        return [Problem(distance_key, millimetres(mesh.center_distance), allowed, remedy)]
-    shifts = [gear.profile_shift_coefficient for gear in (one, two)]
-    usual = mesh.backlash < -ROUNDING and max(map(abs, shifts)) <= LARGEST_SHIFT
-    if usual and _over(mesh) > 2 * LARGEST_SHIFT:  # neither thickness is to blame
+    elif mesh.backlash < -ROUNDING and largest <= LARGEST_SHIFT and _over(mesh) > 2 * LARGEST_SHIFT:
+        # the thickness of neither gear is to blame
         allowed = f"is far too {'large' if mesh.internal else 'small'} for the teeth of the "
         allowed += f"{mesh.name}."
+    if allowed:
         remedy = f"{_reference_distance(mesh)} Check tooth numbers and module too."
         return [Problem(distance_key, millimetres(mesh.center_distance), allowed, remedy)]
     problems = _check_backlash(gearing, mesh, distance_key)
