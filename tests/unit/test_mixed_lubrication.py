@@ -37,8 +37,8 @@ def contact(pair):
 
 def stress_at(temperature, pressure, rate, oil):
     """Of the film at a temperature."""
-    log_rate = math.log(rate * oil[4] * oil[5] / 0.047)
-    return eyring_stress(temperature, pressure, log_rate, 0.047, oil)[0]
+    log_rate = math.log(rate * oil[4] * oil[5] / oil[7])
+    return eyring_stress(temperature, pressure, log_rate, tuple(oil))[0]
 
 
 def share(contact):
@@ -87,7 +87,7 @@ def test_the_film_is_as_hot_as_its_stress_makes_it(contact):
     pressure, rate = np.array([0.6e9, 0.9e9]), np.array([1e6, 4e6])
     warm, heating = np.array([3.0, 7.0]), np.array([5e-7, 8e-7])
     oil = model._oil_constants(contact.oil)
-    stress = film_stress(pressure, rate, warm, heating, 0.047, oil)
+    stress = film_stress(pressure, rate, warm, heating, oil)
     for i in range(2):
         hot = oil[0] + warm[i] + heating[i] * stress[i]
         assert stress[i] == pytest.approx(stress_at(hot, pressure[i], rate[i], oil), rel=1e-9)
@@ -101,25 +101,21 @@ def test_the_stress_is_found_however_stiff_the_oil():
         n, viscosity = 40, 10 ** rng.uniform(-0.3, 6)
         oil = np.array(
             [rng.uniform(230, 450), math.log(viscosity + 0.7), math.log(viscosity),
-             rng.uniform(2, 5), 0.9e-3, 10 ** rng.uniform(-9, -7.2), rng.uniform(0, 0.3)]
+             rng.uniform(2, 5), 0.9e-3, 10 ** rng.uniform(-9, -7.2), rng.uniform(0, 0.3), 0.047]
         )  # fmt: skip
         pressure, rate = 10 ** rng.uniform(5, 9.8, n), 10 ** rng.uniform(-3, 9, n)
         warm, heating = 10 ** rng.uniform(-6, 2, n), 10 ** rng.uniform(-14, -5.3, n)
-        stress = film_stress(pressure, rate, warm, heating, 0.047, oil)
-        log_rate = np.log(rate * (oil[4] * oil[5] / 0.047))
+        stress = film_stress(pressure, rate, warm, heating, oil)
         hot = oil[0] + warm + heating * stress
-        assert stress == pytest.approx(
-            eyring_stress(hot, pressure, log_rate, 0.047, oil)[0], rel=1e-7
-        )
+        found = [stress_at(*each, oil) for each in zip(hot, pressure, rate, strict=True)]
+        assert stress == pytest.approx(found, rel=1e-7)
 
 
 def test_derivative_of_the_stress_to_the_temperature(contact):
-    oil = model._oil_constants(contact.oil)
+    oil = tuple(model._oil_constants(contact.oil))
     for pressure, log_rate in ((0.0, -9.0), (0.4e9, -6.0), (1.5e9, -4.0)):
-        low, high = (
-            eyring_stress(oil[0] + d, pressure, log_rate, 0.047, oil)[0] for d in (-1e-3, 1e-3)
-        )
-        slope = eyring_stress(oil[0], pressure, log_rate, 0.047, oil)[1]
+        low, high = (eyring_stress(oil[0] + d, pressure, log_rate, oil)[0] for d in (-1e-3, 1e-3))
+        slope = eyring_stress(oil[0], pressure, log_rate, oil)[1]
         assert slope == pytest.approx((high - low) / 2e-3, rel=1e-6)
         assert slope < 0
 

@@ -274,13 +274,15 @@ import_module("numba.np.arraymath")
 linalg.ensure_blas = _ask
 
 
-def kernel(function: Callable[P, R]) -> Callable[P, R]:
+def kernel(function: Callable[P, R], *, inlined: bool = False) -> Callable[P, R]:
     """Compile `function` at first call and keep the machine code on disk.
 
     ``fastmath`` stays off, because it makes NaN checks vanish; division by zero gives inf, and
-    callers check that results are finite.
+    callers check that results are finite. What is `inlined` leaves loops over it vector code.
     """
-    compiled: Any = numba.njit(fastmath=False, error_model="numpy", nogil=True)(function)
+    compiled: Any = numba.njit(
+        fastmath=False, error_model="numpy", nogil=True, forceinline=inlined
+    )(function)
     if _CACHE_DIR is not None:
         config: Any = numba.config
         previous = config.CACHE_DIR

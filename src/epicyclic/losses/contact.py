@@ -129,7 +129,7 @@ def mesh_contact(
     """Conditions at the loaded segments of `lines`. Theory (C2)."""
     touching = _touching(mesh, lines)
     if isinstance(line_load, Points):
-        load = line_load.reshape(len(line_load), -1)[:, touching.place]
+        load = line_load.reshape(len(line_load), -1).take(touching.place, axis=1)  # row by row
         touching = touching._replace(weight=touching.weight * (load > 0))
     else:
         load = line_load.ravel()[touching.place]

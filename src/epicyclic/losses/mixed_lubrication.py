@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray, log, sqrt
+from epicyclic.arrays import FloatArray, log, side_by_side, sqrt
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.contact.temperatures import flash_temperature
 from epicyclic.dataclass import dataclass
@@ -137,23 +137,18 @@ def mixed_friction(
     # rises for each pascal of the film: of both flanks, and the mean across it, evenly heated
     heating = flash * (1 - share) / pressure + slip * film / (12 * oil.thermal_conductivity)
     stress = film_stress(
-        pressure,
-        slip / film,
-        flash * share * boundary,
-        heating,
-        oil.limiting_traction,
-        _oil_constants(oil),
+        pressure, slip / film, flash * share * boundary, heating, _oil_constants(oil)
     )
     return share * boundary + (1 - share) * stress / pressure
 
 
-def _oil_constants(oil: OilState) -> list[float]:
+def _oil_constants(oil: OilState) -> FloatArray:
     """As `eyring_stress` takes them: the line of ASTM D341 that touches at this temperature."""
     viscosity = oil.kinematic_viscosity / MM2_PER_S
     shifted = viscosity + D341_OFFSET
     # -d(log log(nu + 0.7))/d(log T) from beta = -d(ln nu)/dT
     slope = oil.thermoviscosity * oil.temperature * viscosity / (shifted * log(shifted))
-    return [
+    constants = (
         oil.temperature,
         log(shifted),
         log(viscosity),
@@ -161,4 +156,6 @@ def _oil_constants(oil: OilState) -> list[float]:
         oil.density * MM2_PER_S,
         oil.pressure_viscosity,
         oil.pressure_viscosity_exponent,
-    ]
+        oil.limiting_traction,
+    )
+    return side_by_side(constants)
