@@ -53,32 +53,6 @@ def eyring_stress(
 
 
 @kernel
-def _film_stress(
-    pressure: FloatArray, log_rate: FloatArray, warm: FloatArray, heating: FloatArray,
-    oil: tuple[float, ...], stress: FloatArray,
-) -> None:  # fmt: skip
-    """`film_stress` of one point."""
-    T0, limit = oil[0], oil[7]
-    moved, left = np.full_like(stress, math.inf), np.empty_like(stress)
-    stress[:] = START * limit * pressure
-    for number in range(QUICK_STEPS):
-        for i in range(len(stress)):
-            hot, slope = eyring_stress(
-                T0 + warm[i] + heating[i] * stress[i], pressure[i], log_rate[i], oil
-            )
-            step = (hot - stress[i]) / (1.0 - heating[i] * slope)
-            stress[i] += step
-            size = abs(step)
-            left[i] = LEFT * stress[i] * moved[i] * moved[i] - size * size * size
-            moved[i] = size
-        if number and (left >= 0.0).all():
-            return
-    for i in range(len(stress)):
-        if not left[i] >= 0.0:
-            stress[i] = _bounded(pressure[i], log_rate[i], warm[i], heating[i], oil)
-
-
-@kernel
 def _bounded(
     pressure: float, log_rate: float, warm: float, heating: float, oil: tuple[float, ...]
 ) -> float:
@@ -105,18 +79,39 @@ def _film_stresses(
     pressure: FloatArray, rate: FloatArray, warm: FloatArray, heating: FloatArray, oil: FloatArray
 ) -> FloatArray:
     """`film_stress` of all points."""
-    stress, log_rate = np.empty_like(pressure), np.empty_like(pressure[0])
+    stresses, n = np.empty_like(pressure), pressure.shape[1]
+    log_rate, moved, left = np.empty(n), np.empty(n), np.empty(n)
     for row in range(len(pressure)):
-        own = oil[row]
-        constants = (own[0], own[1], own[2], own[3], own[4], own[5], own[6], own[7])
-        of_rate = own[4] * own[5] / own[7]
-        for i in range(len(log_rate)):
-            log_rate[i] = logarithm((rate[row, i] if rate[row, i] > 0.0 else 1.0) * of_rate)
-        _film_stress(pressure[row], log_rate, warm[row], heating[row], constants, stress[row])
-        for i in range(len(log_rate)):
-            if not rate[row, i] > 0.0:
-                stress[row, i] = 0.0
-    return stress
+        p, slip, warmth, heat, stress = (
+            pressure[row], rate[row], warm[row], heating[row], stresses[row],
+        )  # fmt: skip
+        its = oil[row]
+        own = (its[0], its[1], its[2], its[3], its[4], its[5], its[6], its[7])
+        for i in range(n):
+            sheared = slip[i] if slip[i] > 0.0 else 1.0
+            log_rate[i] = logarithm(sheared * (own[4] * own[5] / own[7]))
+            stress[i], moved[i] = START * own[7] * p[i], math.inf
+        for number in range(QUICK_STEPS):
+            for i in range(n):
+                hot, slope = eyring_stress(
+                    own[0] + warmth[i] + heat[i] * stress[i], p[i], log_rate[i], own
+                )
+                step = (hot - stress[i]) / (1.0 - heat[i] * slope)
+                stress[i] += step
+                size = abs(step)
+                left[i] = LEFT * stress[i] * moved[i] * moved[i] - size * size * size
+                moved[i] = size
+            found = 0
+            for i in range(n):
+                found += left[i] >= 0.0
+            if number and found == n:
+                break
+        for i in range(n):
+            if not left[i] >= 0.0:
+                stress[i] = _bounded(p[i], log_rate[i], warmth[i], heat[i], own)
+            if not slip[i] > 0.0:
+                stress[i] = 0.0
+    return stresses
 
 
 def film_stress(
