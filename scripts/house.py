@@ -33,7 +33,7 @@ ADDED_TO_THE_CORE = {
     "a first run in two processes, sizes of units": 185,
     "points of a sweep that share a machine": 150,
     "points of a sweep solved together": 1_235,
-    "friction in vector code": 130,
+    "friction in vector code": 115,
     "temperatures that do not settle, limits of uncertain inputs, ranges of drag": 50,
     "keys and library of strength, odds over a cycle": 170,
     "ball and thrust bearings by film, cold bearings": 390,

@@ -129,8 +129,8 @@ def film_stress(
         As for `eyring_stress`.
     """
     shape = (-1, pressure.shape[-1])
-    given: list[Any] = [
+    rows: list[Any] = [
         np.ascontiguousarray(it).reshape(shape) for it in (pressure, rate, warm, heating)
     ]
-    found = _film_stresses(given[0], given[1], given[2], given[3], np.atleast_2d(oil))
-    return found.reshape(pressure.shape).view(type(pressure))
+    rows.append(np.ascontiguousarray(np.broadcast_to(oil, (len(rows[0]), np.shape(oil)[-1]))))
+    return _film_stresses(*rows).reshape(pressure.shape).view(type(pressure))
