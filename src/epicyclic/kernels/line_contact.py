@@ -1,4 +1,4 @@
-"""Hertz line contact, films, rolling traction; mean Eyring stress of a contact."""
+"""Hertz line contact, films, rolling traction; mean Eyring stress; powers in vector code."""
 
 from __future__ import annotations
 
