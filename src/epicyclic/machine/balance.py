@@ -197,6 +197,8 @@ class Friction:
 class Balance:
     """Torques in balance."""
 
+    pointwise = True
+
     torques: Mapping[str, float]  # From outside, on every body. [N m]
     # That each mesh takes up at its first gear, at the load of its driving gear. [N m]
     meshes: Mapping[str, float]

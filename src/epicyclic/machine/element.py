@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from epicyclic.arrays import points_in, taken
 from epicyclic.dataclass import dataclass, field, replace
@@ -298,11 +298,6 @@ class ElementResult:
     figures: Mapping[str, DataclassInstance] = field(default_factory=dict[str, Any])
     flags: SomeFlags = ()  # Models used outside their ranges.
     notes: tuple[str, ...] | Sought[str] = ()  # What else the user must know.
-
-    @property
-    def unread(self) -> Self:
-        """What the next pass goes on from, without what only a reader asks for."""
-        return replace(self, figures={}, flags=(), notes=())
 
 
 class Element(Protocol):

@@ -207,13 +207,6 @@ class GearSetResult(ElementResult):
     bearings: Mapping[tuple[str, int], BearingResult]
     known_flows: KnownFlows  # Through pockets, also those at other temperatures.
 
-    @property
-    def unread(self) -> GearSetResult:
-        """See `ElementResult`; its meshes, too."""
-        meshes = {key: mesh.unread for key, mesh in self.meshes.items()}
-        bearings = {key: bearing.unread for key, bearing in self.bearings.items()}
-        return replace(self, figures={}, flags=(), notes=(), meshes=meshes, bearings=bearings)
-
     def of_last_pass(self) -> dict[str, Any]:
         """What nothing goes on from: these fields, empty."""
         return {

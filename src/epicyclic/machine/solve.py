@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property, partial, reduce
+from functools import cached_property, reduce
 from operator import and_
 from typing import Any, NamedTuple, cast
 
@@ -66,6 +66,8 @@ ROUNDING = 1e-14  # Change, relative to the largest load, that is rounding. [1]
 @dataclass(frozen=True, slots=True)
 class Answer:
     """The last answer of an element, and the one before."""
+
+    pointwise = True
 
     loads: Mapping[str, float]  # As from `Element.loads`.
     result: ElementResult
@@ -344,7 +346,7 @@ class Wanted(NamedTuple):
 
 def solve_machine(
     wanted: Wanted,
-    evaluations: Evaluations | None = None,  # Filled; those of a block of which this is a part.
+    trail: Trail | None = None,  # Filled; that of a block of which this is a part.
 ) -> tuple[Solution, bool]:
     """Torques and losses, and whether they agree. Theory (T5), (T6).
 
@@ -354,15 +356,14 @@ def solve_machine(
     machine, operation, fluids, start, earlier, whole = wanted
     if start is None:
         start = start_of(machine, operation)
-    if not whole and (lagging := _one_pass(wanted, start)):
+    trail = Trail() if trail is None else trail
+    if not whole and (lagging := _one_pass(wanted, start, trail)):
         return lagging
     directions, powers = start.directions, start.lossless.powers
     drives = directions.drives
-    branch = _Branch(
-        machine, operation, start, fluids, {}, earlier, drives, evaluations=evaluations
-    )
+    branch = _Branch(machine, operation, start, fluids, trail, earlier, drives)
     if earlier is None:  # as the losses of one pass turn them
-        found = branch.follow(branch.begin())
+        found = branch.follow()
         balance = found.balance if isinstance(found, _Pass) else found
         drives = drives_first(balance.powers, drives)
     else:
@@ -384,7 +385,7 @@ def solve_machine(
     return branch.solution(last.balance, directions), True
 
 
-def _one_pass(wanted: Wanted, start: Start) -> tuple[Solution, bool] | None:
+def _one_pass(wanted: Wanted, start: Start, trail: Trail) -> tuple[Solution, bool] | None:
     """What is wanted that is not whole; None where losses decide the directions of powers."""
     machine, operation, fluids, _, earlier, _ = wanted
     drives, powers, braking = start.directions.drives, start.lossless.powers, frozenset[str]()
@@ -394,8 +395,8 @@ def _one_pass(wanted: Wanted, start: Start) -> tuple[Solution, bool] | None:
         led = drives_first(powers, drives)
     if any(led[key] != first for key, first in drives.items() if key not in braking):
         return None
-    branch = _Branch(machine, operation, start, fluids, {}, earlier, drives, braking)
-    found = branch.follow(branch.begin())
+    branch = _Branch(machine, operation, start, fluids, trail, earlier, drives, braking)
+    found = branch.follow()
     balance = found.balance if isinstance(found, _Pass) else found
     return branch.solution(balance, start.directions), isinstance(found, _Pass)
 
@@ -419,26 +420,25 @@ def solve_machines(
 ) -> list[tuple[Solution, bool] | Exception]:
     """As `solve_machine` has each of them, or what that raises."""
     found: dict[int, tuple[Solution, bool] | Exception] = {}
-    left: list[tuple[Sequence[int], Evaluations]] = []
+    left: list[tuple[Sequence[int], Trail]] = []
     if wanted:
-        left.append((range(len(wanted)), Evaluations()))
+        left.append((range(len(wanted)), Trail()))
     while left:
-        rows, evaluations = left.pop()
-        known: Sequence[Evaluations | None] = [None] * len(rows)
+        rows, trail = left.pop()
         machine, _, fluids, *_ = wanted[rows[0]]
         several = (getattr(it, "several", False) for it in machine.elements)
         if len(rows) < FEWEST or fluids is None or not all(several):
-            if evaluations.before:
-                known = evaluations.single(len(rows))
+            trails = trail.parts(range(len(rows)))
         else:
+            trails = [Trail() for _ in rows]
             try:
                 one = _together([wanted[row] for row in rows])
-                solution, agree = solve_machine(one, evaluations)
+                solution, agree = solve_machine(one, trail)
             except Apart as parting:
-                left += _parts(rows, parting.rows, evaluations)
+                left += _parted(rows, parting.rows, trail)
                 continue
             except EpicyclicError:
-                left += _parts(rows, np.arange(len(rows)) < len(rows) // 2, evaluations)
+                left += _parted(rows, np.arange(len(rows)) < len(rows) // 2, trail)
                 continue
             except Exception as error:  # `Alone`, or what single points tell of themselves
                 if is_interrupt(error):
@@ -449,7 +449,7 @@ def solve_machines(
                     state = replace(own.state, fluids=wanted[row].fluids)
                     found[row] = replace(own, state=state), agree
                 continue
-        for row, its in zip(rows, known, strict=True):
+        for row, its in zip(rows, trails, strict=True):
             try:
                 found[row] = solve_machine(wanted[row], its)
             except Exception as error:
@@ -457,53 +457,34 @@ def solve_machines(
     return [found[row] for row in range(len(wanted))]
 
 
-def _parts(
-    rows: Sequence[int], side: BoolArray, evaluations: Evaluations
-) -> Iterator[tuple[Sequence[int], Evaluations]]:
-    """The points of either side of a block, and what is known of them."""
-    for places in (np.flatnonzero(~side), np.flatnonzero(side)):
-        yield [rows[place] for place in places.tolist()], evaluations.part(places)
+def _parted(
+    rows: Sequence[int], side: BoolArray, trail: Trail
+) -> Iterator[tuple[Sequence[int], Trail]]:
+    """The points of either side of a block, and how far they have come."""
+    sides = [np.flatnonzero(~side), np.flatnonzero(side)]
+    for places, its in zip(sides, trail.parts(sides), strict=True):
+        yield [rows[place] for place in places.tolist()], its
 
 
 @dataclass
-class Evaluations:
-    """Answers of elements in the order in which they were asked, also of a block that parted."""
+class Trail:
+    """What has been found so far: where a block parts, its parts go on from there."""
 
-    before: Sequence[tuple[State, ElementResult]] = ()  # Of the block of which this is a part.
-    done: list[tuple[State, ElementResult]] = field(default_factory=list)
-    last: dict[str, int] = field(default_factory=dict)  # Of each element, number in `done`.
+    # Torques after each pass of the block that parted, which this is to follow.
+    ahead: list[Balance | _Pass] = field(default_factory=list["Balance | _Pass"])
+    passed: list[Balance | _Pass] = field(default_factory=list["Balance | _Pass"])  # The same here.
+    known: dict[str, _Known] = field(default_factory=dict[str, "_Known"])  # By key of the element.
+    begun: Balance | None = None  # Torques that the pass under way began with.
+    answered: frozenset[str] = frozenset()  # Elements that have answered in it.
+    state: State | None = None  # That the elements saw last.
 
-    def of(
-        self, element: Element, state: State, last: ElementResult | None = None
-    ) -> ElementResult:
-        """The answer to a state, known if the block before asked the same."""
-        if self.knows(state):
-            result = self.before[len(self.done)][1]
-        else:
-            self.before = ()
-            result = element.evaluate(state, last)
-        if element.key in self.last:  # the contacts of a pass take memory, and only a reader asks
-            asked, old = self.done[self.last[element.key]]
-            self.done[self.last[element.key]] = asked, old.unread
-        self.last[element.key] = len(self.done)
-        self.done.append((state, result))
-        return result
-
-    def knows(self, state: State) -> bool:
-        """Whether the block before asked the same next."""
-        if len(self.done) >= len(self.before):
-            return False
-        its, _ = self.before[len(self.done)]
-        same = (np.array_equal(load, its.torques[key]) for key, load in state.torques.items())
-        return state.serve == its.serve and all(same)
-
-    def part(self, rows: Any) -> Evaluations:
-        """Those of some points."""
-        return Evaluations(taken(self.done, [rows])[0])
-
-    def single(self, count: int) -> list[Evaluations]:
-        """Those that are known of each of all points."""
-        return [Evaluations(before) for before in taken(self.before, range(count))]
+    def parts(self, rows: Sequence[Any]) -> list[Trail]:
+        """That of each of some points, a number in `rows`, or of several, an array of them."""
+        each = taken((self.passed, self.known, self.begun, self.state), rows)
+        return [
+            Trail(list(passed), [], dict(known), begun, self.answered, state)
+            for passed, known, begun, state in each
+        ]
 
 
 class _Known(NamedTuple):
@@ -521,31 +502,23 @@ def _answered(
     state: State,
     known: _Known | None,
     allowed: float,  # Relative error of predicted losses.
-    evaluations: Evaluations | None = None,
 ) -> _Known:
     """The answer of an element to a state: the last one, one predicted from it, or a new one."""
-    evaluate = element.evaluate if evaluations is None else partial(evaluations.of, element)
     if known is None:
-        loads, result = element.loads(state), evaluate(state)
+        loads, result = element.loads(state), element.evaluate(state)
         return _Known(Answer(loads, result), result, loads, state.drives)
     loads = element.loads(state, known.result)
     if known.drives != state.drives:
-        result = evaluate(state, known.result)
+        result = element.evaluate(state, known.result)
         return _Known(Answer(loads, result), result, loads, state.drives)
-    # a block that parted has forgotten what a reader asks for of all but its last answers
-    forgotten = evaluations is not None and not known.result.figures
-    if _agrees(known.loads, loads) and not forgotten:
+    if _agrees(known.loads, loads):
         return known
     passed = _apart([known.loads[key] for key in loads], [*loads.values()])
     last = known.answer
     predicted, serve = last.predicted(loads, larger(allowed, PREDICTED * passed))
-    if forgotten:
-        asked = replace(state, serve=serve)
-        again = serve < loads.keys() and evaluations is not None and evaluations.knows(asked)
-        serve = serve if again else frozenset()
-    elif serve >= loads.keys():
+    if serve >= loads.keys():
         return _Known(last, replace(last.result, losses=predicted), loads, state.drives)
-    result = evaluate(replace(state, serve=serve), known.result)
+    result = element.evaluate(replace(state, serve=serve), known.result)
     whole = replace(result, losses=_mixed(result.losses, predicted, serve))
     return _Known(last.then(loads, result, serve), whole, loads, state.drives)
 
@@ -553,6 +526,8 @@ def _answered(
 @dataclass(frozen=True, slots=True)
 class _Pass:
     """Torques that agree with the losses."""
+
+    pointwise = True
 
     balance: Balance
     drives: Mapping[str, bool]
@@ -567,14 +542,12 @@ class _Branch:
     operation: Operation
     start: Start
     fluids: Fluids | None
-    known: Mapping[str, _Known]  # What the elements have answered so far, by their keys.
+    trail: Trail  # What has been found so far.
     earlier: Solution | None  # Whose loads and results it begins with.
     drives: Mapping[str, bool]  # For each mesh, True if its first gear drives it.
     # Meshes whose losses are friction, whichever gear drives.
     braking: frozenset[str] = frozenset()
     passes: int = 0  # So far.
-    evaluations: Evaluations | None = None  # Of several points.
-    state: State = field(init=False, repr=False)  # That the elements saw in the last of them.
 
     @cached_property
     def unlost(self) -> Balance:
@@ -587,7 +560,7 @@ class _Branch:
     @property
     def results(self) -> dict[str, ElementResult]:
         """The last results of the elements, by their keys."""
-        return {key: known.result for key, known in self.known.items()}
+        return {key: known.result for key, known in self.trail.known.items()}
 
     def solution(self, found: Balance, directions: Directions) -> Solution:
         """The losses of the last pass, and torques."""
@@ -602,12 +575,12 @@ class _Branch:
             meshes=found.meshes, drives=self.drives, rolling=found.powers, results=self.results,
             given=given, ratio=start.ratio, self_locking=directions.locking,
             jammed=directions.jammed, unique=found.unique, floating=self.braking,
-            standing=start.standing, state=self.state,
+            standing=start.standing, state=cast(State, self.trail.state),
         )  # fmt: skip
 
     def begin(self) -> Balance:
         """Torques with the losses that are known so far."""
-        if self.known:
+        if self.trail.passed:
             return self._with_losses(self.unlost)[0]
         if self.earlier is not None:
             return self.under(self.unlost, self.earlier.meshes)
@@ -629,18 +602,30 @@ class _Branch:
         }
         return replace(found, meshes=meshes, powers=powers)
 
-    def follow(self, found: Balance) -> Balance | _Pass:
-        """Torques with the losses that those of `found` lead to; a `_Pass` if they agree.
+    def follow(self, last: Balance | None = None) -> Balance | _Pass:
+        """Torques with the losses that those of `last` lead to; a `_Pass` if they agree.
 
-        Raises `ConvergenceError` if losses or torques grow beyond all bounds.
+        Without, with those of the torques to begin with. Raises `ConvergenceError` if losses or
+        torques grow beyond all bounds.
         """
         self.passes += 1
-        self.state = state = State(
+        trail = self.trail
+        if not trail.ahead:
+            trail.begun = found = trail.begun or last or self.begin()
+            trail.ahead = [self._followed(found)]
+            trail.begun, trail.answered = None, frozenset()
+        trail.passed.append(trail.ahead.pop(0))
+        return trail.passed[-1]
+
+    def _followed(self, found: Balance) -> Balance | _Pass:
+        """Torques with the losses at those of `found`."""
+        trail = self.trail
+        trail.state = state = State(
             self.start.statics.speeds,
             found.meshes,
             one_by_one(forces_of, self.machine.layouts, found.meshes),
             cast(Fluids, self.fluids),
-            lossless=not self.known and self.earlier is None,
+            lossless=not trail.passed and self.earlier is None,
             drives=self.drives,
             earlier={} if self.earlier is None else self.earlier.results,
         )
@@ -649,12 +634,11 @@ class _Branch:
         moved = _apart([self.unlost.meshes[key] for key in found.meshes], [*found.meshes.values()])
         allowed = AGREEMENT / larger(moved, AGREEMENT / LOSS_AGREEMENT)
         with np.errstate(over="ignore"):  # a loss may be too large for a number
-            self.known = {
-                element.key: _answered(
-                    element, state, self.known.get(element.key), allowed, self.evaluations
-                )
-                for element in self.machine.elements
-            }
+            for element in self.machine.elements:
+                key = element.key
+                if key not in trail.answered:
+                    trail.known[key] = _answered(element, state, trail.known.get(key), allowed)
+                    trail.answered |= {key}
         results = self.results.values()
         if not isfinite(sum(loss.watts for it in results for loss in it.losses.values())):
             raise self.disagreement()
@@ -689,7 +673,7 @@ def _converged(branch: _Branch) -> _Pass:
     Nearly always plain repetition finds them. Loads that follow their losses slowly are left to
     secants, those that steep losses throw to and fro to steps that become smaller.
     """
-    found = _repeated(branch, branch.begin(), 1.0, PLAIN_PASSES)
+    found = _repeated(branch, None, 1.0, PLAIN_PASSES)
     if not isinstance(found, _Pass):
         found = _by_secants(branch, found)
     for share, passes in SMALL_STEPS:
@@ -700,20 +684,20 @@ def _converged(branch: _Branch) -> _Pass:
 
 
 def _repeated(
-    branch: _Branch, found: Balance | _Pass, share: float, passes: int
+    branch: _Branch, found: Balance | _Pass | None, share: float, passes: int
 ) -> Balance | _Pass:
     """After so many passes, or when losses and torques agree; loads go that share of each step."""
     for _ in range(passes):
         if isinstance(found, _Pass):
-            return found
+            break
         new = branch.follow(found)
-        if isinstance(new, Balance) and share < 1:
+        if found is not None and isinstance(new, Balance) and share < 1:
             meshes = {
                 key: old + share * (new.meshes[key] - old) for key, old in found.meshes.items()
             }
             new = branch.under(new, meshes)
         found = new
-    return found
+    return cast(Balance | _Pass, found)
 
 
 def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
