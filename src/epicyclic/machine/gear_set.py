@@ -342,7 +342,8 @@ class GearSet:
         for planet in self.planets:
             if planet.bearing is not None:
                 load = self.count * planet.pin_radius * planet.force(duties, speed)
-                aside = DIRECTION * load.imag
+                # where it turns from inward to outward, nothing changes that a sign would tell
+                aside = DIRECTION * (2 * abs(load) + load.imag)
                 loads |= {planet.key: abs(load), OUTWARD.format(planet.key): aside}
         return loads
 

@@ -110,21 +110,35 @@ class Answer:
             rows = np.asarray(holds)[:, 0]
             if min(rows.sum(), (~rows).sum()) >= FEWEST:
                 raise Apart(rows)
-        serve = {it: near[it] & (len(off) * error <= most) for it, error in off.items()}
-        return losses, frozenset(key for it in serve if every(serve[it]) for key in it)
+        serve: set[str] = set()
+        spent = 0.0
+        for part, it in sorted(
+            (_most(error / larger(most, TINY)), it) for it, error in off.items()
+        ):
+            spent += part if it else 0.0  # what follows all loads is found again with any of them
+            if spent <= 1 and every(near[it]):
+                serve.update(it)
+        return losses, frozenset(serve)
 
     def then(
         self, loads: Mapping[str, float], result: ElementResult, serve: frozenset[str]
     ) -> Answer:
         """The next answer; what follows the loads that `serve` is still that to the last ones."""
-        own = {key: self.loads[key] for key in serve}
-        if not every(self.alike(loads, result)):
-            return Answer({**loads, **own}, result)
-        old = self.before or self
-        older = {key: old.loads[key] for key in serve}
-        # of what contacts were like before, nobody asks
-        losses = ElementResult(_mixed(self.result.losses, old.result.losses, serve))
-        return Answer({**loads, **own}, result, Answer({**self.loads, **older}, losses))
+        own = {**loads, **{key: self.loads[key] for key in serve}}
+        alike, old = self.alike(loads, result), self.before or self
+        # no line leads through answers that are not alike, and what contacts were like nobody asks
+        before = {key: (old if key in serve else self).loads[key] for key in loads}
+        losses = _mixed(self.result.losses, old.result.losses, serve)
+        older = Answer(
+            {key: either(alike, load, own[key]) for key, load in before.items()},
+            ElementResult(
+                {
+                    name: loss._replace(watts=either(alike, losses[name].watts, loss.watts))
+                    for name, loss in result.losses.items()
+                }
+            ),
+        )
+        return Answer(own, result, older)
 
     def alike(self, loads: Mapping[str, float], result: ElementResult) -> Any:
         """Whether loads have the same signs, and losses act at the same places."""
@@ -179,6 +193,12 @@ class _Step:
         error = either((watts == 0) & (watts != older), math.inf, error * (watts != older))
         found: float = either(self.before == 0, STEEP * self.size, error)
         return found
+
+
+def _most(share: float) -> float:
+    """The largest of all points; infinite if one is no number."""
+    found = float(np.asarray(share).max())
+    return found if found <= 1 else math.inf
 
 
 def _mixed(losses: Losses, others: Losses, serve: frozenset[str]) -> Losses:
