@@ -514,7 +514,8 @@ class _Known(NamedTuple):
     # The last answer, which may be a predicted one, and the loads that it belongs to.
     result: ElementResult
     loads: Mapping[str, float]
-    drives: Mapping[str, bool]  # Which gears drove then: pockets are others on the other flank.
+    # Which of its gears drove then: pockets are others on the other flank.
+    drives: Mapping[str, bool]
 
 
 def _answered(
@@ -524,23 +525,24 @@ def _answered(
     allowed: float,  # Relative error of predicted losses.
 ) -> _Known:
     """The answer of an element to a state: the last one, one predicted from it, or a new one."""
-    if known is None:
-        loads, result = element.loads(state), element.evaluate(state)
-        return _Known(Answer(loads, result), result, loads, state.drives)
-    loads = element.loads(state, known.result)
-    if known.drives != state.drives:
-        result = element.evaluate(state, known.result)
-        return _Known(Answer(loads, result), result, loads, state.drives)
+    drives = {
+        key: first for key, first in state.drives.items() if key.partition(".")[0] == element.key
+    }
+    last_one = None if known is None else known.result
+    loads = element.loads(state, last_one)
+    if known is None or known.drives != drives:
+        result = element.evaluate(state, last_one)
+        return _Known(Answer(loads, result), result, loads, drives)
     if _agrees(known.loads, loads):
         return known
     passed = _apart([known.loads[key] for key in loads], [*loads.values()])
     last = known.answer
     predicted, serve = last.predicted(loads, larger(allowed, PREDICTED * passed))
     if serve >= loads.keys():
-        return _Known(last, replace(last.result, losses=predicted), loads, state.drives)
+        return _Known(last, replace(last.result, losses=predicted), loads, drives)
     result = element.evaluate(replace(state, serve=serve), known.result)
     whole = replace(result, losses=_mixed(result.losses, predicted, serve))
-    return _Known(last.then(loads, result, serve), whole, loads, state.drives)
+    return _Known(last.then(loads, result, serve), whole, loads, drives)
 
 
 @dataclass(frozen=True, slots=True)
