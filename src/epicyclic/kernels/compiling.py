@@ -278,10 +278,12 @@ def kernel(function: Callable[P, R], *, inlined: bool = False) -> Callable[P, R]
     """Compile `function` at first call and keep the machine code on disk.
 
     ``fastmath`` stays off, because it makes NaN checks vanish; division by zero gives inf, and
-    callers check that results are finite. What is `inlined` leaves loops over it vector code.
+    callers check that results are finite. What is `inlined` leaves loops over it vector code, in
+    which products may be added without rounding them first.
     """
+    fused: Any = {"contract"} if inlined else False
     compiled: Any = numba.njit(
-        fastmath=False, error_model="numpy", nogil=True, forceinline=inlined
+        fastmath=fused, error_model="numpy", nogil=True, forceinline=inlined
     )(function)
     if _CACHE_DIR is not None:
         config: Any = numba.config
