@@ -191,7 +191,7 @@ def mesh_flows(
         figures = None
         if not request[0].scales(*request[1:]):
             if isinstance(request[1], Points):  # one solved at a time goes on from those known
-                raise Alone(len(request[1])) if request[0] in tables[key] else Alone
+                raise Alone(len(request[1]))
             if request[0] in tables[key]:
                 figures = tables[key][request[0]].figures(*request[1:])
             figures = known.figures(*request) if figures is None else figures
