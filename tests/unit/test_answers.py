@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import epicyclic as ep
+from epicyclic.arrays import of_points
 from epicyclic.machine import gear_set
 from epicyclic.machine.element import LOAD_DEPENDENT, ElementResult, Loss
 from epicyclic.machine.solve import LOSS_AGREEMENT, NEAR, Answer
@@ -78,8 +79,17 @@ def test_what_scatters_is_foretold_within_its_scatter():
 )
 def test_another_direction_or_place_starts_anew(load, mesh):
     answer = after(answers(100.0, 99.0), {"mesh": load}, result(1.0, mesh))
-    assert answer.before is None
+    assert answer.before.loads == answer.loads
+    assert answer.before.result.losses == answer.result.losses
     assert foretold(answer, {"mesh": load * 1.0001}, 1e9) is None
+
+
+def test_of_several_points_those_that_turn_start_anew():
+    first, second = (of_points([[load], [other]]) for load, other in ((100, 97), (99, -96)))
+    answer = after(Answer({"mesh": first}, losses(first)), {"mesh": second}, losses(second))
+    assert answer.before.loads["mesh"].ravel().tolist() == [100.0, -96.0]
+    watts = [losses(load).losses["sliding"].watts for load in (100.0, 96.0)]
+    assert answer.before.result.losses["sliding"].watts.ravel() == pytest.approx(watts, rel=1e-14)
 
 
 def test_loads_beside_the_line_are_not_foretold():

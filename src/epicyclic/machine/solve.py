@@ -71,8 +71,7 @@ class Answer:
 
     loads: Mapping[str, float]  # As from `Element.loads`.
     result: ElementResult
-    # None if there is none, or none that the same losses at the same places belong to.
-    before: Answer | None = None
+    before: Answer | None = None  # As the last one where the same losses had other places.
 
     def predicted(
         self,
@@ -110,15 +109,8 @@ class Answer:
             rows = np.asarray(holds)[:, 0]
             if min(rows.sum(), (~rows).sum()) >= FEWEST:
                 raise Apart(rows)
-        serve: set[str] = set()
-        spent = 0.0
-        for part, it in sorted(
-            (_most(error / larger(most, TINY)), it) for it, error in off.items()
-        ):
-            spent += part if it else 0.0  # what follows all loads is found again with any of them
-            if spent <= 1 and every(near[it]):
-                serve.update(it)
-        return losses, frozenset(serve)
+        serve = {it: near[it] & (len(off) * error <= most) for it, error in off.items()}
+        return losses, frozenset(key for it in serve if every(serve[it]) for key in it)
 
     def then(
         self, loads: Mapping[str, float], result: ElementResult, serve: frozenset[str]
@@ -193,12 +185,6 @@ class _Step:
         error = either((watts == 0) & (watts != older), math.inf, error * (watts != older))
         found: float = either(self.before == 0, STEEP * self.size, error)
         return found
-
-
-def _most(share: float) -> float:
-    """The largest of all points; infinite if one is no number."""
-    found = float(np.asarray(share).max())
-    return found if found <= 1 else math.inf
 
 
 def _mixed(losses: Losses, others: Losses, serve: frozenset[str]) -> Losses:
