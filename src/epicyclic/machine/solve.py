@@ -433,10 +433,11 @@ def solve_machines(
         rows, trail = left.pop()
         machine, _, fluids, *_ = wanted[rows[0]]
         several = (getattr(it, "several", False) for it in machine.elements)
+        trails = [Trail() for _ in rows]
         if len(rows) < FEWEST or fluids is None or not all(several):
-            trails = trail.parts(range(len(rows)))
+            if trail.known:
+                trails = trail.parts(range(len(rows)))
         else:
-            trails = [Trail() for _ in rows]
             try:
                 one = _together([wanted[row] for row in rows])
                 solution, agree = solve_machine(one, trail)
@@ -481,14 +482,13 @@ class Trail:
     passed: list[Balance | _Pass] = field(default_factory=list["Balance | _Pass"])  # The same here.
     known: dict[str, _Known] = field(default_factory=dict[str, "_Known"])  # By key of the element.
     begun: Balance | None = None  # Torques that the pass under way began with.
-    answered: frozenset[str] = frozenset()  # Elements that have answered in it.
     state: State | None = None  # That the elements saw last.
 
     def parts(self, rows: Sequence[Any]) -> list[Trail]:
         """That of each of some points, a number in `rows`, or of several, an array of them."""
         each = taken((self.passed, self.known, self.begun, self.state), rows)
         return [
-            Trail(list(passed), [], dict(known), begun, self.answered, state)
+            Trail(list(passed), [], dict(known), begun, state)
             for passed, known, begun, state in each
         ]
 
@@ -618,16 +618,10 @@ class _Branch:
         """
         self.passes += 1
         trail = self.trail
-        if not trail.ahead:
-            trail.begun = found = trail.begun or last or self.begin()
-            trail.ahead = [self._followed(found)]
-            trail.begun, trail.answered = None, frozenset()
-        trail.passed.append(trail.ahead.pop(0))
-        return trail.passed[-1]
-
-    def _followed(self, found: Balance) -> Balance | _Pass:
-        """Torques with the losses at those of `found`."""
-        trail = self.trail
+        if trail.ahead:
+            trail.passed.append(trail.ahead.pop(0))
+            return trail.passed[-1]
+        trail.begun = found = last or trail.begun or self.begin()
         trail.state = state = State(
             self.start.statics.speeds,
             found.meshes,
@@ -642,20 +636,19 @@ class _Branch:
         moved = _apart([self.unlost.meshes[key] for key in found.meshes], [*found.meshes.values()])
         allowed = AGREEMENT / larger(moved, AGREEMENT / LOSS_AGREEMENT)
         with np.errstate(over="ignore"):  # a loss may be too large for a number
-            for element in self.machine.elements:
-                key = element.key
-                if key not in trail.answered:
-                    trail.known[key] = _answered(element, state, trail.known.get(key), allowed)
-                    trail.answered |= {key}
+            for element in self.machine.elements:  # those that have answered to it stay as they are
+                known = trail.known.get(element.key)
+                trail.known[element.key] = _answered(element, state, known, allowed)
         results = self.results.values()
         if not isfinite(sum(loss.watts for it in results for loss in it.losses.values())):
             raise self.disagreement()
         new, efficiencies = self._with_losses(found)
-        if _agrees(found.meshes, new.meshes):
-            return _Pass(new, self.drives, efficiencies)
-        if not largest(new.meshes.values()) < MOST_TORQUE:
+        agrees = _agrees(found.meshes, new.meshes)
+        if not agrees and not largest(new.meshes.values()) < MOST_TORQUE:
             raise self.disagreement()
-        return new
+        trail.begun = None
+        trail.passed.append(_Pass(new, self.drives, efficiencies) if agrees else new)
+        return trail.passed[-1]
 
     def disagreement(self) -> ConvergenceError:
         """What to say if losses and torques do not agree."""
