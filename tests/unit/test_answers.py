@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import epicyclic as ep
 from epicyclic.arrays import of_points
+from epicyclic.build.machine import build
 from epicyclic.machine import gear_set
 from epicyclic.machine.element import LOAD_DEPENDENT, ElementResult, Loss
-from epicyclic.machine.solve import LOSS_AGREEMENT, NEAR, Answer
+from epicyclic.machine.solve import LOSS_AGREEMENT, NEAR, Answer, lossless_state
 
 
 def result(watts, mesh="S.mesh"):
@@ -90,6 +93,22 @@ def test_of_several_points_those_that_turn_start_anew():
     assert answer.before.loads["mesh"].ravel().tolist() == [100.0, -96.0]
     watts = [losses(load).losses["sliding"].watts for load in (100.0, 96.0)]
     assert answer.before.result.losses["sliding"].watts.ravel() == pytest.approx(watts, rel=1e-14)
+
+
+def test_a_planet_pressed_inward_and_then_outward_is_as_before():
+    built = build(ep.load_case("talbot-2012").updated({"operation.speed": "120 rpm"}))
+    state = lossless_state(built.machine, built.operation, built.fluids)
+    (own,) = built.sets.values()
+    (planet,) = own.planets
+    loads, pressed = [], []
+    for share in (0.99, 1.01):
+        ring = share * state.torques[".ring_mesh"]
+        its = replace(state, torques={**state.torques, ".ring_mesh": ring})
+        duties = {duty.gears.key: duty for duty in own.mean_duties(its)}
+        pressed.append(planet.force(duties, its.speeds[own.carrier]).imag)
+        loads.append(own.loads(its))
+    assert pressed[0] * pressed[1] < 0
+    assert Answer(loads[0], result(1.0)).alike(loads[1], result(1.0))
 
 
 def test_loads_beside_the_line_are_not_foretold():

@@ -198,7 +198,7 @@ def test_points_of_a_block_that_parts_keep_what_a_reader_sees(
     speeds: Sequence[float],
     temperatures: Sequence[float],
 ) -> None:
-    """A part goes on from answers of which the block has forgotten all but what a pass needs."""
+    """A part goes on from the answers of its block."""
     case = ep.load_case("talbot-2012").updated({"planet.count": 4, **changes})
     vary = {
         "operation.torque": [f"{torque} N*m" for torque in torques],
@@ -253,6 +253,34 @@ def test_points_that_agree_rest_while_others_are_evaluated(monkeypatch: pytest.M
     assert max(asked) == len(cases)
     assert sum(asked) <= 1.1 * alone
     assert asked[-1] == len(cases) / 2
+
+
+def _asked(
+    cases: Sequence[ep.PlanetaryCase], name: str, monkeypatch: pytest.MonkeyPatch
+) -> list[int]:
+    """For how many points at once the meshes of the cases were solved."""
+    asked = []
+    solve_mesh = gear_set.solve_mesh
+
+    def counted(duty: Any, *args: Any) -> object:
+        if duty.gears.key == name:
+            asked.append(np.size(duty.speed1))
+        return solve_mesh(duty, *args)
+
+    monkeypatch.setattr(gear_set, "solve_mesh", counted)
+    assert not [it for it in solve_together(cases, {}) if isinstance(it, Exception)]
+    return asked
+
+
+def test_flows_with_voids_leave_points_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = ep.load_case("train-eaxle")
+    cases = [
+        case.updated({"operation.torque": f"{torque} N*m", "operation.speed": f"{speed} rpm"})
+        for torque, speed in zip(
+            (71, 83, 96, 104, 127), (9100, 9900, 10700, 11300, 11900), strict=True
+        )
+    ]
+    assert min(_asked(cases, "sun_mesh", monkeypatch)) == 5
 
 
 @pytest.mark.parametrize("kind", ["flank", "network"])
