@@ -257,7 +257,7 @@ def tabulated(
     return found
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=1024)  # two for each set and speed of a map
 def _race_table(
     model: OilModel,
     quantity: str,
