@@ -10,8 +10,8 @@ import epicyclic as ep
 from epicyclic.arrays import of_points
 from epicyclic.build.machine import build
 from epicyclic.machine import gear_set
-from epicyclic.machine.element import LOAD_DEPENDENT, ElementResult, Loss
-from epicyclic.machine.solve import LOSS_AGREEMENT, NEAR, Answer, lossless_state
+from epicyclic.machine.element import LOAD_DEPENDENT, ElementResult, Loss, State
+from epicyclic.machine.solve import LOSS_AGREEMENT, NEAR, Answer, _answered, lossless_state
 
 
 def result(watts, mesh="S.mesh"):
@@ -109,6 +109,26 @@ def test_a_planet_pressed_inward_and_then_outward_is_as_before():
         loads.append(own.loads(its))
     assert pressed[0] * pressed[1] < 0
     assert Answer(loads[0], result(1.0)).alike(loads[1], result(1.0))
+
+
+def test_an_element_is_asked_again_where_its_own_gears_drive_the_other_way():
+    class Own:
+        key = "S"
+        asked = 0
+
+        def loads(self, state, last=None):
+            return state.torques
+
+        def evaluate(self, state, last=None):
+            self.asked += 1
+            return losses(state.torques["S.mesh"])
+
+    element, known = Own(), None
+    for own, other, asked in ((True, True, 1), (True, False, 1), (False, False, 2)):
+        drives = {"S.mesh": own, "T.mesh": other}
+        state = State({}, {"S.mesh": 70.0}, {}, None, drives=drives)
+        known = _answered(element, state, known, LOSS_AGREEMENT)
+        assert element.asked == asked
 
 
 def test_loads_beside_the_line_are_not_foretold():

@@ -45,7 +45,7 @@ from epicyclic.machine.planets import (
 from epicyclic.machine.pocket_flow import MeshFlow, mesh_flows
 from epicyclic.units import NEWTON, format_number
 
-OUTWARD = "{}_outward"  # Key of the load that presses a planet outward, beside the whole of it.
+OUTWARD = "{}_outward"  # Key of what tells the direction of the load on a planet bearing.
 DIRECTION = 0.05
 """Its weight: a bearing loses by the size of its load, and little by its direction. [1]"""
 WORTH_A_NOTE = 0.1
@@ -342,7 +342,7 @@ class GearSet:
         for planet in self.planets:
             if planet.bearing is not None:
                 load = self.count * planet.pin_radius * planet.force(duties, speed)
-                # where it turns from inward to outward, nothing changes that a sign would tell
+                # positive either way: its sign tells of no other flank, as those of other loads do
                 aside = DIRECTION * (2 * abs(load) + load.imag)
                 loads |= {planet.key: abs(load), OUTWARD.format(planet.key): aside}
         return loads

@@ -71,7 +71,8 @@ class Answer:
 
     loads: Mapping[str, float]  # As from `Element.loads`.
     result: ElementResult
-    before: Answer | None = None  # As the last one where the same losses had other places.
+    # None if there is none; the last one again for points whose loads or losses changed sides.
+    before: Answer | None = None
 
     def predicted(
         self,
