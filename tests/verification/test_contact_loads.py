@@ -25,12 +25,14 @@ def solve(
     lines = len(length)
     *found, _ = solve_contact_loads(
         force,
-        compliance,
-        np.zeros((lines, lines)) if coupling is None else coupling,
-        np.zeros_like(length) if separation is None else separation,
-        length,
-        np.full_like(length, local_a),
-        local_b,
+        (
+            compliance,
+            np.zeros((lines, lines)) if coupling is None else coupling,
+            np.zeros_like(length) if separation is None else separation,
+            length,
+            np.full_like(length, local_a),
+            local_b,
+        ),
         length if start is None else start,
         np.nan,
         np.nan,
@@ -115,6 +117,14 @@ def random_problem(rng, kind):
     }
 
 
+def teeth(problem, separation):
+    """The teeth of a problem with another gap of their unloaded flanks."""
+    length, a, b = problem["length"], problem["local_a"], problem["local_b"]
+    return (
+        problem["compliance"], problem["coupling"], separation, length, np.full_like(length, a), b
+    )  # fmt: skip
+
+
 def test_any_load_and_any_gap_are_solved_and_the_solution_fulfils_the_conditions():
     rng = np.random.default_rng(3)
     for kind in range(200):
@@ -123,14 +133,7 @@ def test_any_load_and_any_gap_are_solved_and_the_solution_fulfils_the_conditions
         assert iterations > 0
         length, force = problem["length"], problem["force"]
         closed, _ = deflections(
-            forces,
-            problem["compliance"],
-            problem["coupling"],
-            problem["separation"],
-            length,
-            np.full_like(length, problem["local_a"]),
-            problem["local_b"],
-            LINEAR_SHARE * force / length.sum(),
+            forces, teeth(problem, problem["separation"]), LINEAR_SHARE * force / length.sum()
         )
         used = length > 0
         scale = approach - problem["separation"][used].min()
@@ -154,12 +157,7 @@ def test_the_careful_method_finds_the_same_solution():
         nearest = gap[length > 0].min()
         careful, same_approach, _, iterations, _ = careful_solution(
             problem["force"],
-            problem["compliance"],
-            problem["coupling"],
-            gap - nearest,
-            length,
-            np.full_like(length, problem["local_a"]),
-            problem["local_b"],
+            teeth(problem, gap - nearest),
             LINEAR_SHARE * problem["force"] / length.sum(),
             1e-9,
             1000,

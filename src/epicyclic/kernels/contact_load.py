@@ -35,6 +35,11 @@ ENOUGH_DESCENT = 0.1
 """A step is short enough when the slope of the energy has fallen to this part of its start. [1]"""
 MOST_HALVINGS = 30
 
+Teeth = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, float]
+"""C, influence coefficients of both teeth [m/N]; G, deflection of each line under a unit total
+force on each [m/N]; s, gap of the unloaded flanks along the common normal [m]; lengths of the
+segments, zero where a line is not in contact [m]; A and B of delta_c [m^2/N]."""
+
 
 @kernel
 def local_law(q: float, a: float, b: float, floor: float) -> tuple[float, float]:
@@ -109,21 +114,13 @@ def after_step(start: FloatArray, share: float, step: FloatArray) -> FloatArray:
 
 
 @kernel
-def deflections(
-    forces: FloatArray,
-    compliance: FloatArray,
-    coupling: FloatArray,
-    separation: FloatArray,
-    length: FloatArray,
-    local_a: FloatArray,
-    local_b: float,
-    floor: float,
-) -> tuple[FloatArray, FloatArray]:
+def deflections(forces: FloatArray, teeth: Teeth, floor: float) -> tuple[FloatArray, FloatArray]:
     """s + C F + G F + delta_c of every segment [m], and the slope of delta_c over F [m/N].
 
     Influence coefficients are symmetric, so that C F is a sum of rows, which become vector
     instructions.
     """
+    compliance, coupling, separation, length, local_a, local_b = teeth
     lines, segments = length.shape
     closed = np.zeros((lines, segments))
     slope = np.zeros((lines, segments))
@@ -182,8 +179,7 @@ def newton_step(
     loaded: BoolArray,
     closed: FloatArray,
     slope: FloatArray,
-    compliance: FloatArray,
-    coupling: FloatArray,
+    teeth: Teeth,
 ) -> tuple[FloatArray, float, float, FloatArray]:
     """Newton's step on the loaded segments to the total `force`.
 
@@ -200,6 +196,7 @@ def newton_step(
     rise : ndarray, shape (lines, segments)
         Rise of each force with the total one. [1]
     """
+    compliance, coupling = teeth[0], teeth[1]
     lines, segments = loaded.shape
     unit = np.zeros((lines, segments))
     back = np.zeros((lines, segments))
@@ -283,19 +280,6 @@ def is_solution(
 
 
 @kernel
-def quick_update(forces: FloatArray, step: FloatArray, loaded: BoolArray) -> None:
-    """Take the whole step, and let go of all segments that it would make pull."""
-    lines, segments = forces.shape
-    for line in range(lines):
-        for k in range(segments):
-            if loaded[line, k]:
-                forces[line, k] += step[line, k]
-                if not forces[line, k] > 0.0:
-                    forces[line, k] = 0.0
-                    loaded[line, k] = False
-
-
-@kernel
 def load_touching(
     loaded: BoolArray, closed: FloatArray, length: FloatArray, approach: float, tolerance: float
 ) -> None:
@@ -336,11 +320,11 @@ def share_until_release(forces: FloatArray, step: FloatArray, loaded: BoolArray)
 
 @kernel
 def let_go(forces: FloatArray, loaded: BoolArray, limit: float) -> None:
-    """Release the loaded segments whose force does not exceed `limit`."""
+    """Release the loaded segments whose force does not exceed `limit`, or is NaN."""
     lines, segments = forces.shape
     for line in range(lines):
         for k in range(segments):
-            if loaded[line, k] and forces[line, k] <= limit:
+            if loaded[line, k] and not forces[line, k] > limit:
                 forces[line, k] = 0.0
                 loaded[line, k] = False
 
@@ -359,16 +343,7 @@ def is_even(closed: FloatArray, loaded: BoolArray, approach: float, tolerance: f
 
 @kernel
 def careful_solution(
-    force: float,
-    compliance: FloatArray,
-    coupling: FloatArray,
-    separation: FloatArray,
-    length: FloatArray,
-    local_a: FloatArray,
-    local_b: float,
-    floor: float,
-    tolerance: float,
-    max_iterations: int,
+    force: float, teeth: Teeth, floor: float, tolerance: float, max_iterations: int
 ) -> tuple[FloatArray, float, float, int, FloatArray]:
     """The solution by steps that keep the balance and never increase the energy.
 
@@ -376,15 +351,12 @@ def careful_solution(
     the loaded ones. No set of loaded segments comes back, so that the method ends. Parameters and
     returns as for `solve_contact_loads`.
     """
+    length = teeth[3]
     forces, loaded = shared(force, length)
-    closed, slope = deflections(
-        forces, compliance, coupling, separation, length, local_a, local_b, floor
-    )
+    closed, slope = deflections(forces, teeth, floor)
     rise = np.zeros(length.shape)
     for iteration in range(max_iterations):
-        step, approach, stiffness, rise = newton_step(
-            force, forces, loaded, closed, slope, compliance, coupling
-        )
+        step, approach, stiffness, rise = newton_step(force, forces, loaded, closed, slope, teeth)
         share = share_until_release(forces, step, loaded)
         blocked = share < 1.0
         descent = -product(step, closed)
@@ -393,18 +365,14 @@ def careful_solution(
         start = forces
         for _ in range(MOST_HALVINGS):
             forces = after_step(start, share, step)
-            closed, slope = deflections(
-                forces, compliance, coupling, separation, length, local_a, local_b, floor
-            )
+            closed, slope = deflections(forces, teeth, floor)
             if product(step, closed) <= enough:
                 break
             share *= 0.5
             blocked = False
         if blocked:
             let_go(forces, loaded, tolerance * force / length.size)
-            closed, slope = deflections(
-                forces, compliance, coupling, separation, length, local_a, local_b, floor
-            )
+            closed, slope = deflections(forces, teeth, floor)
         elif is_solution(force, forces, approach, closed, length, tolerance):
             return forces, approach, stiffness, iteration + 1, rise
         elif is_even(closed, loaded, approach, tolerance):
@@ -415,12 +383,7 @@ def careful_solution(
 @kernel
 def solve_contact_loads(
     force: float,  # Normal force of the mesh. [N]
-    compliance: FloatArray,  # C: influence coefficients of both teeth. [m/N]
-    coupling: FloatArray,  # G: deflection of each line under a unit total force on each. [m/N]
-    separation: FloatArray,  # s: gap of the unloaded flanks along the common normal. [m]
-    length: FloatArray,  # Lengths of the segments; zero where a line is not in contact. [m]
-    local_a: FloatArray,  # A of delta_c. [m^2/N]
-    local_b: float,  # B of delta_c. [m^2/N]
+    teeth: Teeth,
     # Forces to begin with, whatever their sum, none for those that pull: what is next to the
     # solution saves most of the steps, the lengths do for a start from nothing. [N]
     start: FloatArray,
@@ -449,6 +412,7 @@ def solve_contact_loads(
     rise : ndarray, shape (lines, segments)
         Rise of each force with the total one, before the last step. [1]
     """
+    compliance, coupling, separation, length, local_a, local_b = teeth
     nearest = np.inf
     for line in range(length.shape[0]):
         for k in range(length.shape[1]):
@@ -461,24 +425,22 @@ def solve_contact_loads(
             gap[line, k] = separation[line, k] - nearest
             whole += length[line, k]
     floor = LINEAR_SHARE * force / whole
+    teeth = (compliance, coupling, gap, length, local_a, local_b)
     approach -= nearest
     forces, loaded = shared(force, start)
     for iteration in range(QUICK_STEPS):
-        closed, slope = deflections(
-            forces, compliance, coupling, gap, length, local_a, local_b, floor
-        )
+        closed, slope = deflections(forces, teeth, floor)
         if iteration == 0 and not product(closed, length) < np.inf:
             return np.zeros(length.shape), approach, stiffness, -1, rise
         enough = tolerance if iteration else UNREFINED * tolerance
         if is_solution(force, forces, approach, closed, length, enough):
             return forces, approach + nearest, stiffness, iteration, rise
         load_touching(loaded, closed, length, approach, tolerance)
-        step, approach, stiffness, rise = newton_step(
-            force, forces, loaded, closed, slope, compliance, coupling
-        )
-        quick_update(forces, step, loaded)
+        step, approach, stiffness, rise = newton_step(force, forces, loaded, closed, slope, teeth)
+        forces = after_step(forces, 1.0, step)  # let go of all segments that it makes pull
+        let_go(forces, loaded, 0.0)
     forces, approach, stiffness, iterations, rise = careful_solution(
-        force, compliance, coupling, gap, length, local_a, local_b, floor, tolerance, max_iterations
+        force, teeth, floor, tolerance, max_iterations
     )
     if iterations > 0:
         iterations += QUICK_STEPS
@@ -526,12 +488,7 @@ def solve_points(
             found, approach[i, m], stiffness[i, m], iterations[i, m], rise[i, m] = (
                 solve_contact_loads(
                     forces[i],
-                    compliance[m],
-                    coupling[m],
-                    separation[m],
-                    length[m],
-                    local_a[m],
-                    local_b,
+                    (compliance[m], coupling[m], separation[m], length[m], local_a[m], local_b),
                     start,
                     closer + more / stiff,
                     stiff,
