@@ -53,6 +53,9 @@ STALLED = 1e-6
 energy of small forces is rounding. [1]"""
 SMALL_FORCE = 1e-3  # A largest load below this counts as this size in `STALLED`. [N]
 
+Rollers = tuple[FloatArray, FloatArray, FloatArray, float, float]
+"""The parameters of `solve_roller_loads` from `psi` to `clearance`."""
+
 
 @kernel
 def slice_stiffness(loaded_length: float) -> float:
@@ -84,11 +87,7 @@ def slice_deflection(
 def potential(
     d: FloatArray,
     load: FloatArray,
-    psi: FloatArray,
-    y_over_l: FloatArray,
-    crown: FloatArray,
-    width: float,
-    clearance: float,
+    rollers: Rollers,
     stiffness: FloatArray,
     gradient: FloatArray,
     hessian: FloatArray,
@@ -97,6 +96,7 @@ def potential(
 
     Theory (B10).
     """
+    psi, y_over_l, crown, width, clearance = rollers
     energy = 0.0
     gradient[:] = -load
     hessian[:] = 0.0
@@ -132,21 +132,14 @@ def potential(
 
 
 @kernel
-def loaded_lengths(
-    d: FloatArray,
-    psi: FloatArray,
-    y_over_l: FloatArray,
-    crown: FloatArray,
-    width: float,
-    clearance: float,
-    lengths: FloatArray,
-) -> None:
+def loaded_lengths(d: FloatArray, rollers: Rollers, lengths: FloatArray) -> None:
     """Fill `lengths`, (rows, rollers), with the length over which each roller is loaded.
 
     Theory (B11). The source counts loaded slices, a number that jumps. Here the slice in which the
     load ends counts for the part of it that a straight line between slice middles finds loaded, so
     that the load distribution is a continuous function of the load.
     """
+    psi, y_over_l, crown, width, clearance = rollers
     rows, slices = y_over_l.shape
     delta = np.empty(slices)
     for z in range(psi.size):
@@ -189,11 +182,7 @@ def hold_tilt(gradient: FloatArray, hessian: FloatArray) -> None:
 def minimise(
     d: FloatArray,
     load: FloatArray,
-    psi: FloatArray,
-    y_over_l: FloatArray,
-    crown: FloatArray,
-    width: float,
-    clearance: float,
+    rollers: Rollers,
     stiffness: FloatArray,
     tolerance: float,
     max_iterations: int,
@@ -203,6 +192,7 @@ def minimise(
 
     Returns the number of steps, or -1 if `max_iterations` did not suffice.
     """
+    _, y_over_l, _, width, clearance = rollers
     gradient = np.empty(4)
     hessian = np.empty((4, 4))
     trial_gradient = np.empty(4)
@@ -210,9 +200,7 @@ def minimise(
     system, step, trial = np.empty((4, 5)), np.empty(4), np.empty(4)
     scale = largest(load)
     reference = slice_stiffness(width * y_over_l.size) * width * clearance_scale(clearance)
-    energy = potential(
-        d, load, psi, y_over_l, crown, width, clearance, stiffness, gradient, hessian
-    )
+    energy = potential(d, load, rollers, stiffness, gradient, hessian)
     relative_shift = NEWTON_SHIFT
     for iteration in range(max_iterations):
         if held:
@@ -243,10 +231,7 @@ def minimise(
         for _ in range(LARGEST_STEP_HALVINGS):
             for i in range(4):
                 trial[i] = d[i] + factor * step[i]
-            trial_energy = potential(
-                trial, load, psi, y_over_l, crown, width, clearance, stiffness,
-                trial_gradient, trial_hessian,
-            )  # fmt: skip
+            trial_energy = potential(trial, load, rollers, stiffness, trial_gradient, trial_hessian)
             if held:
                 hold_tilt(trial_gradient, trial_hessian)
             decrease = SUFFICIENT_DECREASE * factor * slope
@@ -262,9 +247,7 @@ def minimise(
             relative_shift *= SHIFT_GROWTH
         if not accepted:
             if relative_shift < HIGHEST_SHIFT:
-                potential(
-                    d, load, psi, y_over_l, crown, width, clearance, stiffness, gradient, hessian
-                )
+                potential(d, load, rollers, stiffness, gradient, hessian)
                 continue
             break
         d[:] = trial
@@ -292,11 +275,7 @@ def clearance_scale(clearance: float) -> float:
 def solve_one(
     load: FloatArray,
     d: FloatArray,
-    psi: FloatArray,
-    y_over_l: FloatArray,
-    crown: FloatArray,
-    width: float,
-    clearance: float,
+    rollers: Rollers,
     tolerance: float,
     max_iterations: int,
     held: bool,
@@ -304,12 +283,13 @@ def solve_one(
     q: FloatArray,
 ) -> int:
     """As `solve_roller_loads` under one load; moves the state `d`, fills the intensities `q`."""
+    psi, y_over_l, crown, width, clearance = rollers
     rows, slices = y_over_l.shape
     if largest(load) == 0.0:
         return 0
     lengths = np.full((rows, psi.size), width * slices)
     if near:
-        loaded_lengths(d, psi, y_over_l, crown, width, clearance, lengths)
+        loaded_lengths(d, rollers, lengths)
     stiffness = np.empty((rows, psi.size))
     total = 0
     converged = False
@@ -317,17 +297,14 @@ def solve_one(
         for row in range(rows):
             for z in range(psi.size):
                 stiffness[row, z] = slice_stiffness(lengths[row, z])
-        steps = minimise(
-            d, load, psi, y_over_l, crown, width, clearance, stiffness, tolerance, max_iterations,
-            held,
-        )  # fmt: skip
+        steps = minimise(d, load, rollers, stiffness, tolerance, max_iterations, held)
         if steps < 0:
             return -1
         total += steps
         if (outer > 0 and steps == 0) or outer == LENGTH_UPDATES:
             converged = True
             break
-        loaded_lengths(d, psi, y_over_l, crown, width, clearance, lengths)
+        loaded_lengths(d, rollers, lengths)
     if not converged:
         return -1
     for z in range(psi.size):
@@ -365,6 +342,7 @@ def solve_roller_loads(
     iterations : ndarray, shape (n,)
         Newton steps in all, or -1 without convergence.
     """
+    rollers = (psi, y_over_l, crown, width, clearance)
     points, (rows, slices) = len(load), y_over_l.shape
     q, d = np.zeros((points, rows, psi.size, slices)), np.empty_like(start)
     iterations = np.empty(points, np.intp)
@@ -374,9 +352,8 @@ def solve_roller_loads(
         for own in range(0 if loaded and not (near or held) else 1, 2):
             d[i] = start[i] if own else d[i - 1]
             iterations[i] = solve_one(
-                load[i], d[i], psi, y_over_l, crown, width, clearance, tolerance, max_iterations,
-                held, near or not own, q[i],
-            )  # fmt: skip
+                load[i], d[i], rollers, tolerance, max_iterations, held, near or not own, q[i]
+            )
             if iterations[i] >= 0:
                 break
     return q, d, iterations
