@@ -67,14 +67,26 @@ def _euler_steps(
     Returns the Newton iterations; negative if no solution was found.
     """
     kept = (fields[0].copy(), fields[1].copy(), fields[2].copy())
+    excess = np.zeros_like(fields[0])
     rates = np.zeros(3)
     work = np.zeros(3)
     largest, smallest = SMALLEST // parts[0], SMALLEST // parts[1]
-    iterations, done, part = 0, largest - largest, largest  # for a literal 0 it is compiled twice
+    iterations, done, part = 0, 0, largest
     while done < SMALLEST:
-        found = _euler_step(
-            start, end, fields, numbers, live, fluid, fresh, step, (done, part), rates
+        left, right = done / SMALLEST, (done + part) / SMALLEST
+        share = right - left
+        now = (
+            start[0] + right * (end[0] - start[0]),
+            (end[0] - start[0]) * share,
+            start[2] + right * (end[2] - start[2]),
+            start[3] + right * (end[3] - start[3]),
+            start[4] + right * (end[4] - start[4]),
+            start[5] + right * (end[5] - start[5]),
         )
+        _excess(kept[0], start[0] + left * (end[0] - start[0]), live, fluid[0], excess)
+        shares = kinetic_shares(kept[1], now, numbers[0], fluid, fresh)
+        before = (excess, kept[1], kept[2])
+        found = solve_stage(now, before, fields, numbers, fluid, fresh, shares, step * share, rates)
         iterations += abs(found)
         if found > 0:
             work += step * part / SMALLEST * rates
@@ -89,41 +101,6 @@ def _euler_steps(
             return -iterations
     totals[:3] += work
     return iterations
-
-
-@kernel
-def _euler_step(
-    start: Shape,
-    end: Shape,
-    fields: Fields,
-    numbers: Numbers,
-    live: Flags,
-    fluid: Fluid,
-    fresh: Fresh,
-    step: float,
-    place: tuple[int, int],
-    rates: Floats,
-) -> int:
-    """One implicit Euler step over a part of a time step; iterations as from `solve_stage`.
-
-    `place`: where the part begins and how long it is, both over the step divided by `SMALLEST`.
-    """
-    q, axial, cross = fields
-    left, right = place[0] / SMALLEST, (place[0] + place[1]) / SMALLEST
-    share = right - left
-    now = (
-        start[0] + right * (end[0] - start[0]),
-        (end[0] - start[0]) * share,
-        start[2] + right * (end[2] - start[2]),
-        start[3] + right * (end[3] - start[3]),
-        start[4] + right * (end[4] - start[4]),
-        start[5] + right * (end[5] - start[5]),
-    )
-    excess = np.zeros_like(q)
-    _excess(q, start[0] + left * (end[0] - start[0]), live, fluid[0], excess)
-    shares = kinetic_shares(axial, now, numbers[0], fluid, fresh)
-    before = (excess, axial.copy(), cross.copy())
-    return int(solve_stage(now, before, fields, numbers, fluid, fresh, shares, step * share, rates))
 
 
 @kernel
@@ -280,7 +257,9 @@ def periodic_flow(
             history[1][n] = axial
             history[2][n] = cross
         stored_now = _stored(q, shape[0][2 * steps], alive, xi, excess)
-        _renumber(fields, fresh, alive, shift)
+        for rows in (q, axial, cross, fresh[0], fresh[1]):
+            move_on(rows, shift, 0.0)
+        move_on(alive, shift, False)
         field_change = np.abs(q - before).max() / max(np.abs(q).max(), 1e-300)
         before[:] = q
         work = totals[0]
@@ -369,18 +348,10 @@ def _leave(q: float, volume: float, fluid: Fluid, totals: Floats) -> float:
 
 
 @kernel
-def _renumber(fields: Fields, fresh: Fresh, alive: Flags, shift: int) -> None:
+def move_on(rows: Floats | Flags, shift: int, last: float) -> None:
     """Give every pocket the number of the one that it has replaced one period later."""
-    q, axial, cross = fields
-    for i in range(cross.shape[0]):
-        source = i + shift
-        if source < cross.shape[0]:
-            cross[i], fresh[0][i] = cross[source], fresh[0][source]
+    for i in range(rows.shape[0]):
+        if i + shift < rows.shape[0]:
+            rows[i] = rows[i + shift]
         else:
-            cross[i], fresh[0][i] = 0.0, 0.0
-        if source < q.shape[0]:
-            q[i], axial[i], alive[i] = q[source], axial[source], alive[source]
-            fresh[1][i] = fresh[1][source]
-        elif i < q.shape[0]:
-            q[i], axial[i], alive[i] = 0.0, 0.0, False
-            fresh[1][i] = 0.0
+            rows[i] = last

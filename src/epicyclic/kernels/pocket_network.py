@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from epicyclic.kernels.compiling import kernel
-from epicyclic.kernels.pocket_flow import NEW_INERTIA, mark_fresh
+from epicyclic.kernels.pocket_flow import NEW_INERTIA, mark_fresh, move_on
 from epicyclic.kernels.pocket_stage import Flags, Floats, Fresh, Indices, downstream_share
 
 Openings = tuple[Floats, Floats, Floats, Floats]
@@ -338,16 +338,6 @@ def _drops(
 
 
 @kernel
-def _move_on(rows: Floats, shift: int, last: float) -> None:
-    """Give every pocket the number of the one that it has replaced one period later."""
-    for i in range(rows.shape[0]):
-        if i + shift < rows.shape[0]:
-            rows[i] = rows[i + shift]
-        else:
-            rows[i] = last
-
-
-@kernel
 def _begin(live: Flags, alive: Flags, state: State) -> None:
     """Put new cells, and those that have ended, to ambient state; stop openings without a cell."""
     q, full, axial, cross = state
@@ -429,7 +419,7 @@ def periodic_network(
         (np.zeros_like(axial), np.zeros_like(axial)), (np.zeros_like(cross), np.zeros_like(cross))
     )  # fmt: skip
     matrix, right = np.zeros((pockets * slices, pockets + 1)), np.zeros(pockets * slices)
-    work = (matrix, right, row, laws, np.zeros((5, slices + 2)))
+    carried = np.zeros((5, slices + 2))
     last_work = 0.0
     figures[0] = 1.0
     for period in range(1, limits[0] + 1):
@@ -450,6 +440,7 @@ def periodic_network(
             first, last = _span(live[n])
             part, cells = slice(first, last), slice(first, last + 2)
             gaps = slice(first, last + 1)
+            here = ((laws[0][0][part], laws[0][1][part]), (laws[1][0][gaps], laws[1][1][gaps]))
             iterations = _advance(
                 live[n, part],
                 (volume[n, part], volume[n + 1, part]),
@@ -459,16 +450,7 @@ def periodic_network(
                 (inertias[0][part], inertias[1][gaps]),
                 (start[0][cells], start[1][cells], start[2][part], start[3][gaps]),
                 (q[cells], full[cells], axial[part], cross[gaps]),
-                (
-                    work[0],
-                    work[1],
-                    row[cells],
-                    (
-                        (work[3][0][0][part], work[3][0][1][part]),
-                        (work[3][1][0][gaps], work[3][1][1][gaps]),
-                    ),
-                    work[4],
-                ),
+                (matrix, right, row[cells], here, carried),
                 tolerance,
             )
             figures[1] += abs(iterations)
@@ -482,18 +464,11 @@ def periodic_network(
                     filled = max(filled, abs(full[i + 1, j + 1] - history[1][n, i + 1, j + 1]))
             history[0][n], history[1][n], history[2][n], history[3][n] = q, full, axial, cross
             history[4][n], history[5][n] = inertias
-            _drops(axial, share, live[n], inertias[0], rules[2], history[6][n], work[4])
-        _move_on(q[1:-1], shift, 0.0)
-        _move_on(full[1:-1], shift, 1.0)
-        _move_on(axial, shift, 0.0)
-        _move_on(cross, shift, 0.0)
-        _move_on(fresh[0], shift, 0.0)
-        _move_on(fresh[1], shift, 0.0)
-        for i in range(pockets):
-            if i + shift < pockets:
-                alive[i] = alive[i + shift]
-            else:
-                alive[i] = False
+            _drops(axial, share, live[n], inertias[0], rules[2], history[6][n], carried)
+        for rows in (q[1:-1], axial, cross, fresh[0], fresh[1]):
+            move_on(rows, shift, 0.0)
+        move_on(full[1:-1], shift, 1.0)
+        move_on(alive, shift, False)
         figures[0] = abs(done - last_work) / max(abs(done), 1e-300)
         last_work = done
         repeats = solved and figures[0] <= limits[1] and moved <= 10 * limits[1] * largest
