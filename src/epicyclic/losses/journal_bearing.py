@@ -252,7 +252,14 @@ def solve_journal(
         return rise * (2 * flow + bearing.conductance) - found.watts
 
     def at(rise: float) -> JournalState:
-        return _at(bearing, force, speed, oil, oil.temperature + rise)
+        """The bearing with a film so much warmer than its oil, without a moment."""
+        temperature = oil.temperature + rise
+        eta = film_viscosity(oil, temperature)
+        x, film, contact = loaded_journal(bearing, force, speed, eta)
+        middle = cmath.rect(_share(x), cmath.phase(film + contact))
+        flow = journal_curves(bearing.slenderness).at(x)[2]
+        across = abs(middle) * film.imag
+        return _state(bearing, middle, 0j, across, contact, flow, speed, eta, temperature)
 
     aligned = at(_root(lambda rise: excess(at(rise)), 0.0, HOTTEST))
     if not (moment and force and speed):
@@ -360,18 +367,6 @@ def _tilted(
         if share < 1:  # the limit is far away, or the whole moment can be held
             tried.append((found, min(1.0, 2 * share) if limit is None else 1.0))
     return none
-
-
-def _at(
-    bearing: JournalBearing, force: float, speed: float, oil: OilState, temperature: float
-) -> JournalState:
-    """The bearing with a film of known temperature, without a moment."""
-    eta = film_viscosity(oil, temperature)
-    x, film, contact = loaded_journal(bearing, force, speed, eta)
-    middle = cmath.rect(_share(x), cmath.phase(film + contact))
-    flow = journal_curves(bearing.slenderness).at(x)[2]
-    across = abs(middle) * film.imag
-    return _state(bearing, middle, 0j, across, contact, flow, speed, eta, temperature)
 
 
 def _state(
