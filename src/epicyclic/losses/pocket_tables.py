@@ -7,6 +7,7 @@ import math
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import lru_cache
 from importlib import metadata
 from itertools import pairwise
@@ -132,13 +133,11 @@ class FlowFamily:
         """Scaled figures of the flow at a number; NaN if it does not repeat or is not found."""
         unit, solve = MixtureState(self.oil_fraction, 1.0, 0.0), pocket_flow.__wrapped__
         resolution = (self.slices, self.steps, self.end_length)
-        try:  # not kept: only its figures are needed again
+        with suppress(ConvergenceError):  # not kept: only its figures are needed again
             flow = solve(self.geometry, number, unit, 1.0, self.model, *resolution)
-        except ConvergenceError:
-            return np.full(5, math.nan)
-        if not flow.periodic:
-            return np.full(5, math.nan)
-        return scaled_figures(flow_figures(flow), number, 1.0)
+            if flow.periodic:
+                return scaled_figures(flow_figures(flow), number, 1.0)
+        return np.full(5, math.nan)
 
 
 def flow_figures(flow: PocketFlow) -> FlowFigures:
@@ -193,7 +192,7 @@ def from_scaled(
 
 WIDEST = math.log(2.0)
 """Largest distance of the first nodes, where the numbers asked for lie closer: an octave."""
-SAME = 1e-9  # Numbers that differ less, relatively, are one. [1]
+SAME = 1e-9  # Numbers that differ less, relatively, are one: machines round differently. [1]
 KEPT_MOST = 10_000  # Flows remembered for the next tables.
 
 
@@ -308,7 +307,7 @@ class _Growing:
             int(np.searchsorted(self._number, number)): flow for number, flow in flows.items()
         }
         if not self._solved:
-            self._open = _gaps(sorted(places))
+            self._open = list(pairwise(sorted(places)))
         else:
             known = sorted(self._solved)
             scaled = np.array([self._solved[i] for i in known])
@@ -332,7 +331,7 @@ class _Growing:
         return FlowTable(
             number=self._number[known],
             scaled=np.array([self._solved[i] for i in known]),
-            readable=np.array([gap in self._readable for gap in _gaps(known)], dtype=np.bool_),
+            readable=np.array([gap in self._readable for gap in pairwise(known)], dtype=np.bool_),
             error=self._error,
         )
 
@@ -349,10 +348,6 @@ class _Growing:
         inside = self._place[low + 1 : high]
         middle = (self._place[low] + self._place[high]) / 2
         return low + 1 + int(np.abs(inside - middle).argmin())
-
-
-def _gaps(places: list[int]) -> list[tuple[int, int]]:
-    return list(pairwise(places))
 
 
 # Flows through pockets that were solved for one operating point, for those next to them.
@@ -432,7 +427,6 @@ class KnownFlows:
 ATTRIBUTE = "flows"  # Attribute of the NetCDF file that holds the tables as JSON.
 _KEY = "models.pocketing_table"
 _REMEDY = "Make it with 'epicyclic pockets table', or leave the key out."
-_SAME = 1e-9  # Numbers that differ less, relatively, are the same: machines round differently. [1]
 
 NEGLIGIBLE = 1e-3
 """Share of the largest power of a table; what is below zero by less is numerical error. [1]"""
@@ -580,7 +574,7 @@ def _leaves(name: str, value: Any) -> Iterator[tuple[str, _Plain]]:
 
 def _same(one: _Plain, other: _Plain) -> bool:
     if isinstance(one, float) and isinstance(other, int | float):
-        return math.isclose(one, other, rel_tol=_SAME)
+        return math.isclose(one, other, rel_tol=SAME)
     return one == other
 
 
