@@ -68,7 +68,6 @@ class _Sized:
     teeth: int  # z1 + z2, those of a ring negative.
     rack: BasicRack  # Rack of both gears.
     place: tuple[str, ...]  # Path of its centre distance.
-    stated_distance: float | None  # [m]
     gives_way: str  # The gear that is thinned where digits contradict each other.
     group: str  # Meshes of one group have one centre distance.
 
@@ -145,7 +144,6 @@ def _with_named_rack(gearing: Gearing) -> tuple[Gearing, tuple[Found, ...]]:
 
 def _sized(gearing: Gearing) -> Iterator[_Sized]:
     """The meshes whose gears have one basic rack: profile shifts of others tell no distance."""
-    distances = gearing.distances
     for mesh in gearing.meshes:
         one, two = (gearing.racks[gear] for gear in (mesh.first, mesh.second))
         least = _ALIKE * one.normal_module
@@ -162,7 +160,6 @@ def _sized(gearing: Gearing) -> Iterator[_Sized]:
             teeth[0] + (-1 if mesh.internal else 1) * teeth[1],
             one,
             tuple(gearing.distance_key(mesh).split(".")),
-            distances[mesh.key],
             gives_way=mesh.second if mesh.internal else central or mesh.first,
             group=gearing.planet_of(mesh) or mesh.key,
         )
@@ -201,9 +198,9 @@ class _Solver:
         self.meshes = meshes = list(_sized(gearing))
         self.found: list[Found] = []
         self.distances: dict[str, float] = {
-            mesh.group: mesh.stated_distance
+            mesh.group: distance
             for mesh in reversed(meshes)
-            if mesh.stated_distance is not None
+            if (distance := gearing.distances[mesh.drawn.key]) is not None
         }
         racks = {name: mesh.rack for mesh in meshes for name in mesh.gears}
         self.thinned = {
