@@ -24,15 +24,10 @@ TIP_POINTS = 9
 
 
 @kernel
-def _involute_angle(rho: float, base: float, base_half_angle: float, outward: float) -> float:
-    """Polar angle of the involute with radius of curvature `rho`, from the middle of the tooth."""
-    roll = rho / base
-    return base_half_angle - outward * (roll - math.atan(roll))
-
-
-@kernel
 def _involute_point(rho: float, base: float, base_half_angle: float, outward: float) -> complex:
-    angle = _involute_angle(rho, base, base_half_angle, outward)
+    """Point of the involute with radius of curvature `rho`, the middle of the tooth along x."""
+    roll = rho / base
+    angle = base_half_angle - outward * (roll - math.atan(roll))
     return math.hypot(base, rho) * cmath.exp(1j * angle)
 
 
@@ -208,36 +203,15 @@ def gap_table(
     leading: float,  # As for `_gap`.
     gears: tuple[Points, Floats, Floats, Points, Floats, Floats],  # As for `_gap`.
     mesh: Floats,  # As for `_gap`.
-) -> Floats:
-    """Gap between two flanks and its middle at many angles. Theory (Q3).
+) -> tuple[Floats, Points]:
+    """Gap between two flanks at many angles, and where it is narrowest. Theory (Q3).
 
-    Width, x and y of the middle. [m]
+    Width, and the points on gear 1 and on gear 2. [m]
     """
-    table = np.empty((phi.size, 3))
+    width, feet = np.empty(phi.size), np.empty((phi.size, 2), np.complex128)
     for n in range(phi.size):
-        width, foot1, foot2, _, _ = _gap(phi[n], leading, gears, mesh)
-        middle = (foot1 + foot2) / 2
-        table[n, 0] = width
-        table[n, 1] = middle.real
-        table[n, 2] = middle.imag
-    return table
-
-
-@kernel
-def gap_feet(
-    phi: Floats,
-    leading: float,
-    gears: tuple[Points, Floats, Floats, Points, Floats, Floats],
-    mesh: Floats,
-) -> Points:
-    """Points of both flanks where the gap between them is narrowest, arguments as for `gap_table`.
-
-    On gear 1 and on gear 2. [m]
-    """
-    feet = np.empty((phi.size, 2), np.complex128)
-    for n in range(phi.size):
-        _, feet[n, 0], feet[n, 1], _, _ = _gap(phi[n], leading, gears, mesh)
-    return feet
+        width[n], feet[n, 0], feet[n, 1], _, _ = _gap(phi[n], leading, gears, mesh)
+    return width, feet
 
 
 @kernel
@@ -320,45 +294,36 @@ def _add_pocket(
     `pocket_table`, `phi` one angle.
     """
     flank1, _, _, flank2, _, gear2 = gears
-    centre2, z1 = mesh[0], mesh[1]
-    side = mesh[3]
-    half_pitch = math.pi / z1
+    centre2, side = mesh[0], mesh[3]
+    half_pitch = math.pi / mesh[1]
     # Teeth of gear 1 whose leading and trailing flanks bound the pocket.
     lead = phi if member == 1 else phi - half_pitch
     trail = phi if member == 1 else phi + half_pitch
     _, lead1, lead2, lead_after1, lead_after2 = _gap(lead, 1.0, gears, mesh)
     _, trail1, trail2, trail_after1, trail_after2 = _gap(trail, -1.0, gears, mesh)
-    lead_turn2, mirror2 = _facing(lead, 1.0, mesh, gear2)
+    lead_turn2, _ = _facing(lead, 1.0, mesh, gear2)
     trail_turn2, _ = _facing(trail, -1.0, mesh, gear2)
+    # Foot, index after it and turn of the four flanks, in the order in which the outline passes.
+    ahead1, ahead2 = (lead1, lead_after1, lead), (lead2, lead_after2, lead_turn2)
+    behind1, behind2 = (trail1, trail_after1, trail), (trail2, trail_after2, trail_turn2)
     if member == 1:
-        polygon[0] = lead1
-        count = _add_tooth(polygon, 1, flank1, (lead_after1, trail_after1), (lead, 0.0))
-        polygon[count] = trail1
-        polygon[count + 1] = trail2
-        after, turns = (trail_after2, lead_after2), (trail_turn2, lead_turn2)
-        count = _add_space(polygon, count + 2, flank2, after, turns, -mirror2, centre2)
-        polygon[count] = lead2
-        return count + 1
-    # The leading flank of one tooth of gear 1 faces the tooth of gear 2 in the space before it;
-    # seen from gear 2 that is the positive side if the axes turn together.
-    ahead = (lead2, lead_after2) if side > 0.0 else (trail2, trail_after2)
-    behind = (trail2, trail_after2) if side > 0.0 else (lead2, lead_after2)
-    polygon[0] = ahead[0]
-    count = _add_tooth(polygon, 1, flank2, (ahead[1], behind[1]), (lead_turn2, centre2))
-    polygon[count] = behind[0]
-    count += 1
-    if side > 0.0:
-        polygon[count] = trail1
-        count = _add_space(
-            polygon, count + 1, flank1, (trail_after1, lead_after1), (trail, lead), -1.0, 0.0
-        )
-        polygon[count] = lead1
+        ends = (ahead1, behind1, behind2, ahead2)
+        tooth, place, space, centre = flank1, (lead, 0.0), flank2, centre2
     else:
-        polygon[count] = lead1
-        count = _add_space(
-            polygon, count + 1, flank1, (lead_after1, trail_after1), (lead, trail), 1.0, 0.0
-        )
-        polygon[count] = trail1
+        # The leading flank of one tooth of gear 1 faces the tooth of gear 2 in the space before it;
+        # seen from gear 2 that is the positive side if the axes turn together.
+        ends = (ahead2, behind2, behind1, ahead1)
+        if side < 0.0:
+            ends = (behind2, ahead2, ahead1, behind1)
+        tooth, place, space, centre = flank2, (lead_turn2, centre2), flank1, 0.0
+    first, second, third, last = ends
+    polygon[0] = first[0]
+    count = _add_tooth(polygon, 1, tooth, (first[1], second[1]), place)
+    polygon[count], polygon[count + 1] = second[0], third[0]
+    # On either gear the path along a space begins on the flank whose mirroring is `-side`.
+    after, turns = (third[1], last[1]), (third[2], last[2])
+    count = _add_space(polygon, count + 2, space, after, turns, -side, centre)
+    polygon[count] = last[0]
     return count + 1
 
 

@@ -84,10 +84,11 @@ def _sections(
     first = min(life[0, 0], life[1, 0] - half_pitch) - margin
     last = max(life[0, 1], life[1, 1] + half_pitch) + margin
     gap_angle = np.linspace(first, last, angles)
-    gaps = np.stack(
-        [kernels.gap_table(gap_angle, leading, gears, figures) for leading in (1.0, -1.0)]
-    )
-    for array in (life, angle, tables, gap_angle, gaps):
+    gaps = [kernels.gap_table(gap_angle, leading, gears, figures) for leading in (1.0, -1.0)]
+    width = np.stack([width for width, _ in gaps])
+    middle = np.stack([(feet[:, 0] + feet[:, 1]) / 2 for _, feet in gaps])
+    gap_middle = np.stack([middle.real, middle.imag], axis=-1)
+    for array in (life, angle, tables, gap_angle, width, gap_middle):
         array.flags.writeable = False
     return PocketGeometry(
         mesh=mesh,
@@ -96,8 +97,8 @@ def _sections(
         area=tables[..., 0],
         centroid=tables[..., 1:],
         gap_angle=gap_angle,
-        gap=gaps[..., 0],
-        gap_middle=gaps[..., 1:],
+        gap=width,
+        gap_middle=gap_middle,
         pitch=2 * half_pitch,
     )
 
@@ -130,7 +131,7 @@ def gap_feet(
     On gear 1 and on gear 2, axes as of `pocket_outlines`. [m]
     """
     gears, figures = _section(mesh, tools, drives1)
-    return kernels.gap_feet(angle, 1.0 if leading else -1.0, gears, figures)
+    return kernels.gap_table(angle, 1.0 if leading else -1.0, gears, figures)[1]
 
 
 def _section(mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool) -> tuple[Any, Any]:
@@ -162,10 +163,9 @@ def _flank(gear: Gear, tool: Tool | None) -> tuple[NDArray[np.complex128], Float
     outward = -1.0 if gear.internal else 1.0
     root, fillet, involute_end, corner = outline.joints
     points = outline.radius[: corner + 1] * np.exp(1j * outline.half_angle[: corner + 1])
-    base = gear.base_radius
-    form = math.sqrt(max(0.0, outline.form_radius**2 - base**2))
+    form, tip = map(gear.roll_length_at, (outline.form_radius, gear.tip_form_radius))
     at_base = gear.thickness_half_angle + outward * involute(gear.rack.transverse_pressure_angle)
-    figures = np.array([base, at_base, form, gear.roll_length_at(gear.tip_form_radius), outward])
+    figures = np.array([gear.base_radius, at_base, form, tip, outward])
     return points, np.array([root, fillet, involute_end], dtype=np.float64), figures
 
 
