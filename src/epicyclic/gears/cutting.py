@@ -569,11 +569,10 @@ def _fillet(
 
 def _involute(gear: Gear, start_radius: float, points: int) -> tuple[FloatArray, FloatArray]:
     """Radii and half angles of the involute by even steps of roll angle, the first left out."""
-    base = gear.base_radius
-    start = math.sqrt(max(0.0, start_radius**2 - base**2))
-    curvature = _steps(start, gear.roll_length_at(gear.tip_form_radius), points)
+    start, end = map(gear.roll_length_at, (start_radius, gear.tip_form_radius))
+    curvature = _steps(start, end, points)
     half_angle = gear.half_angles_at(curvature)
-    radius = np.hypot(base, curvature)
+    radius = np.hypot(gear.base_radius, curvature)
     radius[-1] = gear.tip_form_radius
     half_angle[-1] = gear.half_angle_at(gear.tip_form_radius)
     return radius, half_angle

@@ -68,8 +68,7 @@ def usual_span_teeth(gear: Gear) -> int:
     middle = gear.reference_radius + (-1 if gear.internal else 1) * (
         gear.profile_shift_coefficient * gear.rack.normal_module
     )
-    chord = 2 * math.sqrt(max(0.0, middle**2 - gear.base_radius**2))
-    wanted = chord / math.cos(gear.rack.base_helix_angle)
+    wanted = 2 * gear.roll_length_at(middle) / math.cos(gear.rack.base_helix_angle)
     return max(2, 1 + round((wanted - span(gear, 1)) / pitch))
 
 

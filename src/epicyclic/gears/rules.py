@@ -225,7 +225,7 @@ def check_mesh(
     clearance1, clearance2 = mesh.tip_clearances
     for tip, root, clearance in ((two, one, clearance2), (one, two, clearance1)):
         if clearance < -ROUNDING:
-            ends.append(_negative_clearance(gearing, mesh, tip, root))
+            ends.append(_negative_clearance(gearing, tip, root, clearance))
             continue
         try:
             ends += _check_end_of_contact(gearing, mesh, root, tip)
@@ -247,9 +247,8 @@ def _reference_distance(mesh: Mesh) -> str:
     return f"Without profile shift it is {millimetres(distance)}."
 
 
-def _negative_clearance(gearing: Gearing, mesh: Mesh, tip: Gear, root: Gear) -> Problem:
+def _negative_clearance(gearing: Gearing, tip: Gear, root: Gear, clearance: float) -> Problem:
     """The tip of one gear reaches into the root of the other."""
-    clearance = mesh.tip_clearances[0] if tip is mesh.gear1 else mesh.tip_clearances[1]
     key, shown = _tips(gearing, tip)
     allowed = f"the tip of the {tip.name} reaches {millimetres(-clearance)} into the root of the "
     allowed += f"{root.name} (negative tip clearance)."
@@ -323,10 +322,8 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
 
     Raises `ValueError` if no tool generates `gear`.
     """
-    if gear is mesh.gear1:
-        curvature, radius = mesh.path_start, mesh.inner_radii[0]
-    else:
-        curvature, radius = mesh.curvature2(mesh.path_end), mesh.inner_radii[1]
+    member = 1 if gear is mesh.gear1 else 2
+    curvature, radius = active_profile(mesh, member)[0], mesh.inner_radii[member - 1]
     change = "change tooth numbers or profile shifts"
     if curvature < 0:
         fault = (
@@ -353,7 +350,7 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
 def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
     """Tip radius of `mate` whose contact with the other gear ends at `radius` there."""
     gear = mesh.gear2 if mate is mesh.gear1 else mesh.gear1
-    curvature = math.sqrt(max(0.0, radius**2 - gear.base_radius**2))
+    curvature = gear.roll_length_at(radius)
     length = mesh.line_of_action - mesh.side * curvature
     if mate is mesh.gear1:
         length = mesh.side * (mesh.line_of_action - curvature)
@@ -496,14 +493,9 @@ class _Flank:
 
     key: str
     gear: Gear
-    mesh: Mesh
-    member: int
+    mesh: str  # Its name.
+    active: tuple[float, float]  # Roll lengths of the active profile at root and tip. [m]
     table: StatedFlank
-
-    @property
-    def active(self) -> tuple[float, float]:
-        """Roll lengths of the active profile at the root and at the tip. [m]"""
-        return active_profile(self.mesh, self.member)
 
     @property
     def active_length(self) -> float:
@@ -522,7 +514,8 @@ def _check_flanks(gearing: Gearing, mesh: Mesh) -> Iterator[Problem]:
             if table is not gear_table.micro_geometry:
                 name = "micro_geometry_ring_side"
             key = f"{gearing.key(gear.name)}.{name}"
-            yield from _check_flank(_Flank(key, gear, mesh, member, table))
+            active = active_profile(mesh, member)
+            yield from _check_flank(_Flank(key, gear, mesh.name, active, table))
 
 
 def _check_flank(flank: _Flank) -> Iterator[Problem]:
@@ -552,7 +545,7 @@ def _relief_length(flank: _Flank, end: str) -> float | Problem:
         remedy = f"Give {end}_relief_roll_length or {end}_relief_diameter."
         return Problem(key, f"{amount * 1e6:.5g} um", allowed, remedy)
     near, far = flank.active[::-1] if end == "tip" else flank.active
-    inside = f"the active profile of the {flank.mesh.name}"
+    inside = f"the active profile of the {flank.mesh}"
     if diameter is not None:
         length = (flank.gear.roll_length_at(diameter / 2) - near) / (far - near)
         if 0 < length <= 1:
@@ -588,7 +581,7 @@ def _diameter_at(gear: Gear, roll_length: float) -> float:
 def _check_overlap(flank: _Flank, tip: float, root: float) -> Iterator[Problem]:
     if tip + root > flank.active_length:
         allowed = f"tip relief over {millimetres(tip)} and root relief over {millimetres(root)} of "
-        allowed += f"roll overlap: the active profile of the {flank.mesh.name} is "
+        allowed += f"roll overlap: the active profile of the {flank.mesh} is "
         allowed += f"{millimetres(flank.active_length)} long."
         yield Problem(f"{flank.key}.tip_relief", "", allowed, "Shorten one of the two.")
 
@@ -627,7 +620,7 @@ def _check_place(flank: _Flank, table: StatedTopography) -> Iterator[Problem]:
     """The points of a sound topography must lie where the flank works."""
     ends = sorted(_diameter_at(flank.gear, roll) for roll in flank.active)
     places = (
-        ("diameter", table.diameter, f"active profile of the {flank.mesh.name}", ends),
+        ("diameter", table.diameter, f"active profile of the {flank.mesh}", ends),
         ("face_position", table.face_position, "face", [0.0, flank.gear.face_width]),
     )
     for name, points, where, (low, high) in places:
