@@ -269,9 +269,11 @@ def flow_easing(contact: LineContact, heating: Heating | None) -> float:
 
 
 def thinning(
-    contact: LineContact, heating: Heating, pressure: FloatArray, rise: FloatArray
+    contact: LineContact, heating: Heating | None, pressure: FloatArray, rise: FloatArray
 ) -> FloatArray:
-    """What a `rise` of the temperature [K] takes off ln(mu). Theory (H31)."""
+    """What a `rise` of the temperature [K] takes off ln(mu): 0 if isothermal. Theory (H31)."""
+    if heating is None:
+        return np.zeros_like(rise)
     thinned = heating.thermoviscosity * rise
     if isinstance(contact.oil.pressure_law, Roelands):
         stiffer = 1 + np.maximum(pressure, 0) / ROELANDS_PRESSURE

@@ -67,8 +67,6 @@ def _surface(number: int, surface: Profile) -> str:
 
 
 def _displayed(figure: ContactFigure) -> float:
-    if figure.display == figure.unit:
-        return figure.value
     if figure.display == "%":
         return 100 * figure.value
     return Quantity(figure.name, figure.unit, figure.display).to_display(figure.value)
