@@ -298,7 +298,7 @@ def test_two_level_solver_solves_the_full_equations():
     groups = kernels_linear.groups_for(n)
     kernels_linear.update_groups(row, active, groups)
     band = np.empty((n + kernels_linear.BAND, 2 * kernels_linear.BAND + 1))
-    kernels_linear.factor_band(local, by_film, kernels_linear.near_coefficients(row), active, band)
+    kernels_linear.factor_band(local, by_film, row, active, band)
     coarse = kernels_linear.coarse_matrix(local, by_film, groups.across, active, 0.1)
     order = np.empty(coarse.shape[0], dtype=np.int64)
     coarse = kernels_linear.factor_dense(coarse, order)

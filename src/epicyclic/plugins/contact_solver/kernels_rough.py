@@ -31,7 +31,6 @@ from epicyclic.plugins.contact_solver.kernels_linear import (
     deflect,
     factor_band,
     factor_dense,
-    near_coefficients,
     solve_linear,
     space_for,
     update_groups,
@@ -191,7 +190,6 @@ def solve_step(
     band = np.empty((n + BAND, 2 * BAND + 1))
     size = groups.bends.shape[0] + 1
     coarse, rows = np.empty((size, size)), np.empty(size, dtype=np.int64)
-    near = near_coefficients(kernel_row)
     error = np.inf
     iteration = linear = 0
     while iteration < max_iterations and not error < tolerance:
@@ -203,7 +201,7 @@ def solve_step(
         tridiagonals(film, rho, d_rho, terms, order, active, compliance, local, by_film)
         if iteration == 1 or linear > REFRESH:
             update_groups(kernel_row, active, groups)
-            factor_band(local, by_film, near, active, band)
+            factor_band(local, by_film, kernel_row, active, band)
             coarse = factor_dense(coarse_matrix(local, by_film, groups.across, active, dx), rows)
         linear = solve_linear(
             lack, kernel_row, coarse, rows, groups.bends, local, by_film, band, active, dx,
