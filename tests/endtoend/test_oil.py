@@ -413,7 +413,7 @@ def test_oil_and_heat_of_the_contact_solver_reach_every_contact(monkeypatch):
     state = ep.solve(case).meshes["mesh"].contact.oil
     oil, heating, settings = calls[0]
     assert oil.pressure_law == TwoSlope(state.pressure_viscosity, 5e-9, 0.4e9)
-    assert oil.shear == LimitingStress(1e6, 0.04)
+    assert oil.shear_law == LimitingStress(1e6, 0.04)
     assert settings.asperities.film == pytest.approx(30e-9)
     assert settings.asperities.friction == 0.12
     # sqrt(k rho c) of steel of 7850 kg/m^3
@@ -445,7 +445,7 @@ def test_too_many_unsolved_contacts_are_no_result(monkeypatch):
 
 @pytest.mark.slow
 def test_direct_contacts_of_smooth_flanks_are_those_of_the_solver():
-    from epicyclic.oil.rheology import Roelands
+    from epicyclic.oil.rheology import ReeEyring, Roelands
     from epicyclic.plugins.contact_solver.conditions import ContactOil, LineContact
     from epicyclic.plugins.contact_solver.steady import solve_smooth
 
@@ -459,7 +459,9 @@ def test_direct_contacts_of_smooth_flanks_are_those_of_the_solver():
     result = ep.solve(ep.load_case("talbot-2012-pair").updated(changes))
     contact = result.meshes["mesh"].contact
     power = contact.line_load * np.abs(contact.sliding_speed) * contact.weight
-    oil = ContactOil(contact.dynamic_viscosity, Roelands(contact.pressure_viscosity), 5e6)
+    oil = ContactOil(
+        contact.dynamic_viscosity, Roelands(contact.pressure_viscosity), ReeEyring(5e6)
+    )
     every = range(0, power.size, 25)
     exact = 0.0
     for i in every:

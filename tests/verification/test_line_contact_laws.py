@@ -35,7 +35,7 @@ STEEL = math.sqrt(46 * 7850 * 460)
 
 def contact_of(p_h, speed, slip, law=None, oil_law=None, viscosity=0.02):
     load = 2 * math.pi * RADIUS * p_h**2 / MODULUS
-    oil = ContactOil(viscosity, oil_law or Roelands(1.5e-8), shear_law=law)
+    oil = ContactOil(viscosity, oil_law or Roelands(1.5e-8), law or Newtonian())
     return LineContact(
         load, RADIUS, MODULUS, speed * (1 + slip / 2), speed * (1 - slip / 2), oil
     )  # fmt: skip

@@ -470,7 +470,7 @@ class LoadedMesh:
     Attributes
     ----------
     mesh : Mesh
-    lines : ContactLines
+    compliance : MeshCompliance
     force : float
         Transverse, tangent to the base circles. [N]
     line_load : ndarray, shape (positions, lines, segments)

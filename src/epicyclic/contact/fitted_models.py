@@ -27,16 +27,17 @@ from epicyclic.kernels.mixed_ehl import (
     BLEND_HALF_WIDTH,
     FRICTION_BOUNDARY_LIMIT,
     FRICTION_FULL_FILM_LIMIT,
-    NEEDLE_RADIUS_REFERENCE,
-    NEEDLE_ROUGHNESS_REFERENCE,
     ROLLING_LIMIT,
+    log_mu_boundary,
+    log_mu_full_film,
+    log_mu_mixed,
+    log_needle_loss,
+    log_rolling_film,
+    log_rolling_mixed,
 )
 from epicyclic.oil.oil import Oil
 
-# The regressions of Talbot (2012) as forms: his groups and products, coefficients to be fitted.
-
-
-Columns = Callable[[LineContacts], Sequence[FloatArray | float]]
+# The regressions of Talbot (2012) as forms: his formulas, with coefficients to be fitted.
 
 SMALLEST_SLIP = 1e-4  # Slide-to-roll ratio put into the logarithms. [1]
 SMALLEST_SINGULAR = 1e-10
@@ -52,27 +53,34 @@ class Regression:
 
     name: str
     title: str
-    branches: tuple[Columns, ...]  # From conditions to the columns of each branch.
+    # ln of the quantity in each branch, from coefficients and groups, and how many coefficients.
+    branches: tuple[tuple[Callable[..., Any], int], ...]
     limits: tuple[float, ...]  # Film ratios at which branches meet.
     # From conditions to the unit of the quantity.
     scale: Callable[[LineContacts], FloatArray | float]
+    groups: Callable[[LineContacts], Sequence[Any]]  # From conditions to those of the branches.
 
     @property
     def size(self) -> int:
         """Number of coefficients of all branches."""
-        return sum(self._sizes())
+        return sum(size for _, size in self.branches)
 
     def value(self, states: LineContacts, coefficients: FloatArray) -> FloatArray:
         """See the class."""
-        return np.exp(self._matrix(states) @ coefficients) * self.scale(states)
+        logarithm: Any = 0.0
+        for (formula, size), share in zip(self.branches, self._weights(states), strict=True):
+            logarithm += share * formula(coefficients[:size], self.groups(states))
+            coefficients = coefficients[size:]
+        value: FloatArray = np.exp(logarithm) * self.scale(states)
+        return value
 
     def fit(self, states: LineContacts, target: FloatArray, weight: FloatArray) -> FloatArray:
         """Linear least squares of the logarithm, all branches at once.
 
         Raises `ValueError` if a branch has fewer contacts than coefficients.
         """
-        shares, sizes = self._weights(states), self._sizes()
-        if any(np.count_nonzero(s) <= size for s, size in zip(shares, sizes, strict=True)):
+        parts = zip(self.branches, self._weights(states), strict=True)
+        if any(np.count_nonzero(share) <= size for (_, size), share in parts):
             raise ValueError("too few contacts in a range of film ratios")
         matrix = np.sqrt(weight)[:, None] * self._matrix(states)
         size = np.sqrt((matrix**2).mean(axis=0))
@@ -83,17 +91,12 @@ class Regression:
 
     def _matrix(self, states: LineContacts) -> FloatArray:
         """Columns of all branches, each times the share of its branch, shape (n, size)."""
-        shape = states.radius.shape
         columns = [
-            share * column
-            for branch, share in zip(self.branches, self._weights(states), strict=True)
-            for column in branch(states)
+            share * formula(coefficients, self.groups(states))
+            for (formula, size), share in zip(self.branches, self._weights(states), strict=True)
+            for coefficients in np.eye(size)
         ]
-        return np.stack([np.broadcast_to(column, shape) for column in columns], axis=1)
-
-    def _sizes(self) -> list[int]:
-        one = contacts_at(**dict.fromkeys(CONDITIONS, np.ones(1)), equivalent_modulus=1.0)
-        return [len(columns(one)) for columns in self.branches]
+        return np.stack(columns, axis=1)
 
     def _weights(self, states: LineContacts) -> list[FloatArray]:
         """Share of each branch, blended as (F4)."""
@@ -150,58 +153,6 @@ def _groups(states: LineContacts) -> RegressionGroups:
     return groups._replace(s=np.maximum(groups.s, SMALLEST_SLIP))
 
 
-def _friction_boundary(states: LineContacts) -> Sequence[FloatArray | float]:
-    """Columns of Talbot (2012), Eq. 5.8a. Theory (F1)."""
-    q = _groups(states)
-    log_s, log_co = np.log(q.s), np.log(q.s_co)
-    return (
-        1.0, q.s * q.g, q.s * q.s_eq, q.lam * q.p, q.lam * q.g, q.r * q.g, q.r * q.s_co,
-        q.r * log_s, log_co * log_s, q.lam * np.log(q.r), q.lam * log_co, np.log(q.u) * log_co,
-    )  # fmt: skip
-
-
-def _friction_mixed(states: LineContacts) -> Sequence[FloatArray | float]:
-    """Columns of Eq. 5.8b. Theory (F2)."""
-    q = _groups(states)
-    log_s, log_r, log_co = np.log(q.s), np.log(q.r), np.log(q.s_co)
-    return (
-        1.0, q.r * q.s, q.r * q.g, q.r * q.u, q.g * log_s, np.log(q.u) * log_s, q.r * log_s,
-        log_r * log_s, q.p * np.log(q.lam), q.g * np.log(q.p), q.r * log_co, log_r * log_co,
-    )  # fmt: skip
-
-
-def _friction_film(states: LineContacts) -> Sequence[FloatArray | float]:
-    """Columns of Eq. 5.8c. Theory (F3)."""
-    q = _groups(states)
-    log_s, log_g, log_r = np.log(q.s), np.log(q.g), np.log(q.r)
-    return (
-        1.0, q.s * q.r, q.g * q.p, q.g * q.r, log_s, q.g * log_s, q.p * log_s, q.r * log_s,
-        log_g, q.r * log_g, q.p * np.log(q.u), q.g * log_r, q.r * log_r,
-    )  # fmt: skip
-
-
-def _rolling_mixed(states: LineContacts) -> Sequence[FloatArray | float]:
-    """Columns of Eq. 5.10a. Theory (R1)."""
-    q = _groups(states)
-    log_u, log_eq = np.log(q.u), np.log(q.s_eq)
-    return (
-        1.0, q.s * q.u, q.s * q.g, q.s_co * q.s_eq, q.r * np.log(q.lam), log_u,
-        q.lam * np.log(q.g), np.log(q.r), q.lam * np.log(q.s_co), log_eq, log_u * log_eq,
-    )  # fmt: skip
-
-
-def _rolling_film(states: LineContacts) -> Sequence[FloatArray | float]:
-    """Columns of Eq. 5.10b. Theory (R2)."""
-    q = _groups(states)
-    log_lam, log_u, log_g = np.log(q.lam), np.log(q.u), np.log(q.g)
-    log_p, log_co = np.log(q.p), np.log(q.s_co)
-    return (
-        1.0, q.s * log_lam, q.u * log_lam, log_u, log_p * log_u, q.s * log_g,
-        q.s_co * np.log(q.r), log_u * log_co, log_g * log_co, log_p * log_co,
-        q.s * np.log(q.s_eq),
-    )  # fmt: skip
-
-
 def rolling_scale(states: LineContacts) -> FloatArray:
     """mu u_r^2: the power per length that turns the number of Eq. 5.10 into W/m. Theory (R4).
 
@@ -213,33 +164,28 @@ def rolling_scale(states: LineContacts) -> FloatArray:
     return scale
 
 
-def _needle_film(states: LineContacts) -> Sequence[FloatArray | float]:
-    """Columns of Eq. 3.5. Theory (B14)."""
-    q = _groups(states)
-    flow = states.rolling_speed * states.dynamic_viscosity
-    theta = flow / (states.hertz_pressure * states.composite_roughness)
-    rough = states.composite_roughness / NEEDLE_ROUGHNESS_REFERENCE
-    log_theta, log_p = np.log(theta), np.log(q.p)
-    log_u = np.log(flow / (states.flanks.equivalent_modulus * NEEDLE_ROUGHNESS_REFERENCE))
+def _needle_contact(states: LineContacts) -> Sequence[Any]:
+    """What `log_needle_loss` takes."""
     return (
-        1.0, q.g * theta, q.g * rough, theta * log_theta, log_theta**2, log_u * log_theta,
-        rough * log_theta, log_u * np.log(q.g), q.p * np.log(q.g),
-        np.log(states.radius / NEEDLE_RADIUS_REFERENCE) * log_p, np.log(rough) * log_p,
+        states.hertz_pressure, states.rolling_speed, states.dynamic_viscosity,
+        states.pressure_viscosity, states.radius, states.composite_roughness,
+        states.flanks.equivalent_modulus,
     )  # fmt: skip
 
 
 FRICTION_REGRESSION = Regression(
     "regression", "form of Talbot (2012), Eq. 5.8",
-    (_friction_boundary, _friction_mixed, _friction_film),
-    (FRICTION_BOUNDARY_LIMIT, FRICTION_FULL_FILM_LIMIT), lambda _: 1.0,
+    ((log_mu_boundary, 12), (log_mu_mixed, 12), (log_mu_full_film, 13)),
+    (FRICTION_BOUNDARY_LIMIT, FRICTION_FULL_FILM_LIMIT), lambda _: 1.0, _groups,
 )  # fmt: skip
 ROLLING_REGRESSION = Regression(
-    "regression", "form of Talbot (2012), Eq. 5.10", (_rolling_mixed, _rolling_film),
-    (ROLLING_LIMIT,), rolling_scale,
+    "regression", "form of Talbot (2012), Eq. 5.10",
+    ((log_rolling_mixed, 11), (log_rolling_film, 11)), (ROLLING_LIMIT,), rolling_scale, _groups,
 )  # fmt: skip
 NEEDLE_REGRESSION = Regression(
-    "regression", "form of Talbot (2012), Eq. 3.5", (_needle_film,), (), lambda _: 1.0
-)
+    "regression", "form of Talbot (2012), Eq. 3.5", ((log_needle_loss, 11),), (), lambda _: 1.0,
+    _needle_contact,
+)  # fmt: skip
 
 
 # Forms with physical structure: smooth over all film ratios, and safe to continue beyond the data.

@@ -61,10 +61,8 @@ def solve_branch_forces(
     Theory (S3), (S4). [N] Raises `ConvergenceError` if no forces balance.
     """
     loose = [name for name in directions if name in supports]
-    if loose:
-        displacement = np.hstack([directions[name] for name in loose])
-    else:
-        displacement = np.zeros((len(branches.angles), 0))
+    nothing = np.zeros((len(branches.angles), 0))
+    displacement = np.hstack([nothing, *(directions[name] for name in loose)])
     stiffness = np.repeat([supports[name] for name in loose], 2)
     loaded = np.ones(len(branches.angles), dtype=bool)
     softest = branches.compliance + max((1 / one for one in stiffness if one), default=0.0)

@@ -4,11 +4,15 @@ Talbot (2012): sliding friction, Eq. 5.8 with Table 5.2(a); rolling loss of gear
 with Table 5.2(b); rolling loss of needle contacts, Eq. 3.5 with Table 3.2. Arguments are the
 dimensionless groups of the source: s = |u_s|/u_r, U, G, p = p_h/E_eq, R = R_eq/b_h, S_co and S_eq
 over R_eq, film ratio L. The branches in L do not meet; each pair is blended here (`blend_weight`).
+
+The formula of a branch takes its coefficients, in which it is linear, so that other simulations are
+fitted with it too. It takes numbers and arrays; compiled, its name has an underscore.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +25,31 @@ FRICTION_FULL_FILM_LIMIT = 3.0
 ROLLING_LIMIT = 1.0
 # Half-width of the blend between branches, in ln L. Not in the source: its branches jump.
 BLEND_HALF_WIDTH = 0.2
+# Tables 5.2(a), 5.2(b) and 3.2 of Talbot (2012).
+FRICTION_BOUNDARY = (
+    -0.92139, -0.00008711, -4400.2, -208.356, 0.00034889, 0.00000156, 18.9479,
+    0.00201603, -0.0059483, -1.90169, -0.579273, -0.00711570,
+)  # fmt: skip
+FRICTION_MIXED = (
+    -4.35656, -0.0060247, 0.00001033, -5940595.0, -0.00009197, -0.0251361, 0.0092455, -0.146072,
+    -21.8661, 0.00007909, 0.00315987, -0.0584464,
+)  # fmt: skip
+FRICTION_FULL_FILM = (
+    -54.986, -0.0058891, -0.041242, 0.00000905, 0.48686, -0.00022193, 21.533, 0.0074347, 6.8850,
+    0.035346, -5.2323, -0.00073500, -0.052499,
+)  # fmt: skip
+ROLLING_MIXED = (
+    -55.5228, -4049775804.0, 0.00036893, 91748360.0, 0.0035756, -2.81418, 0.79315, -1.57573,
+    0.71772, -4.20259, -0.162010,
+)  # fmt: skip
+ROLLING_FILM = (
+    -63.8414, -0.74816, 700205388.0, -4.85987, -0.287849, -0.43762, 2202.89, -0.183452, -0.123683,
+    0.50128, -0.370511,
+)  # fmt: skip
+NEEDLE_FILM = (
+    27.3758, 0.0169312, -0.00260401, 55.582, 0.179813, -0.097448, -1.33225, 0.272560, -15.4258,
+    -0.102883, 0.233836,
+)  # fmt: skip
 # Smallest slide-to-roll ratio put into the powers: at the pitch point s = 0 and mu -> 0. [1]
 SMALLEST_SLIDE_TO_ROLL = 1e-9
 
@@ -33,56 +62,51 @@ def blend_weight(lam: float, limit: float) -> float:
     return t * t * (3.0 - 2.0 * t)
 
 
-@kernel
-def _log_mu_boundary(
-    s: float, u: float, g: float, p: float, r: float, s_co: float, s_eq: float, lam: float
-) -> float:
+def log_mu_boundary(c: Any, groups: Any) -> Any:
     """ln(mu) of Eq. 5.8a, 0 < L <= 0.7. Theory (F1)."""
-    a0, a1, a2, a3 = -0.92139, -0.00008711, -4400.2, -208.356
-    a4, a5, a6 = 0.00034889, 0.00000156, 18.9479
-    b1, b2, b3, b4, b5 = 0.00201603, -0.0059483, -1.90169, -0.579273, -0.00711570
+    a0, a1, a2, a3, a4, a5, a6, b1, b2, b3, b4, b5 = c
+    s, u, g, p, r, s_co, s_eq, lam = groups
     exponent = a0 + s * (a1 * g + a2 * s_eq) + lam * (a3 * p + a4 * g) + r * (a5 * g + a6 * s_co)
     return (
         exponent
-        + (b1 * r + b2 * math.log(s_co)) * math.log(s)
-        + b3 * lam * math.log(r)
-        + (b4 * lam + b5 * math.log(u)) * math.log(s_co)
+        + (b1 * r + b2 * np.log(s_co)) * np.log(s)
+        + b3 * lam * np.log(r)
+        + (b4 * lam + b5 * np.log(u)) * np.log(s_co)
     )
 
 
-@kernel
-def _log_mu_mixed(
-    s: float, u: float, g: float, p: float, r: float, s_co: float, lam: float
-) -> float:
+def log_mu_mixed(c: Any, groups: Any) -> Any:
     """ln(mu) of Eq. 5.8b, 0.7 < L <= 3. Theory (F2)."""
-    a0, a1, a2, a3 = -4.35656, -0.0060247, 0.00001033, -5940595.0
-    b1, b2, b3, b4 = -0.00009197, -0.0251361, 0.0092455, -0.146072
-    b5, b6, b7, b8 = -21.8661, 0.00007909, 0.00315987, -0.0584464
+    a0, a1, a2, a3, b1, b2, b3, b4, b5, b6, b7, b8 = c
+    s, u, g, p, r, s_co, _, lam = groups
     return (
         a0
         + r * (a1 * s + a2 * g + a3 * u)
-        + (b1 * g + b2 * math.log(u) + b3 * r + b4 * math.log(r)) * math.log(s)
-        + b5 * p * math.log(lam)
-        + b6 * g * math.log(p)
-        + (b7 * r + b8 * math.log(r)) * math.log(s_co)
+        + (b1 * g + b2 * np.log(u) + b3 * r + b4 * np.log(r)) * np.log(s)
+        + b5 * p * np.log(lam)
+        + b6 * g * np.log(p)
+        + (b7 * r + b8 * np.log(r)) * np.log(s_co)
     )
 
 
-@kernel
-def _log_mu_full_film(s: float, u: float, g: float, p: float, r: float) -> float:
+def log_mu_full_film(c: Any, groups: Any) -> Any:
     """ln(mu) of Eq. 5.8c, L > 3. Theory (F3)."""
-    a0, a1, a2, a3 = -54.986, -0.0058891, -0.041242, 0.00000905
-    b1, b2, b3, b4, b5 = 0.48686, -0.00022193, 21.533, 0.0074347, 6.8850
-    b6, b7, b8, b9 = 0.035346, -5.2323, -0.00073500, -0.052499
+    a0, a1, a2, a3, b1, b2, b3, b4, b5, b6, b7, b8, b9 = c
+    s, u, g, p, r, _, _, _ = groups
     return (
         a0
         + a1 * s * r
         + g * (a2 * p + a3 * r)
-        + (b1 + b2 * g + b3 * p + b4 * r) * math.log(s)
-        + (b5 + b6 * r) * math.log(g)
-        + b7 * p * math.log(u)
-        + (b8 * g + b9 * r) * math.log(r)
+        + (b1 + b2 * g + b3 * p + b4 * r) * np.log(s)
+        + (b5 + b6 * r) * np.log(g)
+        + b7 * p * np.log(u)
+        + (b8 * g + b9 * r) * np.log(r)
     )
+
+
+_log_mu_boundary = kernel(log_mu_boundary)
+_log_mu_mixed = kernel(log_mu_mixed)
+_log_mu_full_film = kernel(log_mu_full_film)
 
 
 @kernel
@@ -90,62 +114,58 @@ def sliding_friction(
     s: float, u: float, g: float, p: float, r: float, s_co: float, s_eq: float, lam: float
 ) -> float:
     """Coefficient of sliding friction, Talbot (2012) Eq. 5.8, branches blended. Theory (F4). [1]"""
-    s = max(s, SMALLEST_SLIDE_TO_ROLL)
+    groups = (max(s, SMALLEST_SLIDE_TO_ROLL), u, g, p, r, s_co, s_eq, lam)
     upper = blend_weight(lam, FRICTION_BOUNDARY_LIMIT)
     full = blend_weight(lam, FRICTION_FULL_FILM_LIMIT)
     log_mu = 0.0
     if upper < 1.0:
-        log_mu += (1.0 - upper) * _log_mu_boundary(s, u, g, p, r, s_co, s_eq, lam)
+        log_mu += (1.0 - upper) * _log_mu_boundary(FRICTION_BOUNDARY, groups)
     if upper > 0.0 and full < 1.0:
-        log_mu += upper * (1.0 - full) * _log_mu_mixed(s, u, g, p, r, s_co, lam)
+        log_mu += upper * (1.0 - full) * _log_mu_mixed(FRICTION_MIXED, groups)
     if full > 0.0:
-        log_mu += full * _log_mu_full_film(s, u, g, p, r)
+        log_mu += full * _log_mu_full_film(FRICTION_FULL_FILM, groups)
     return math.exp(log_mu)
 
 
-@kernel
-def _log_rolling_mixed(
-    s: float, u: float, g: float, r: float, s_co: float, s_eq: float, lam: float
-) -> float:
+def log_rolling_mixed(c: Any, groups: Any) -> Any:
     """ln of Eq. 5.10a without its prefactor, 0 < L <= 1. Theory (R1)."""
-    a0, a1, a2, a3 = -55.5228, -4049775804.0, 0.00036893, 91748360.0
-    b1, b2, b3, b4 = 0.0035756, -2.81418, 0.79315, -1.57573
-    b5, b6, b7 = 0.71772, -4.20259, -0.162010
-    log_u = math.log(u)
+    a0, a1, a2, a3, b1, b2, b3, b4, b5, b6, b7 = c
+    s, u, g, _, r, s_co, s_eq, lam = groups
+    log_u = np.log(u)
     return (
         a0
         + s * (a1 * u + a2 * g)
         + a3 * s_co * s_eq
-        + b1 * r * math.log(lam)
+        + b1 * r * np.log(lam)
         + b2 * log_u
-        + b3 * lam * math.log(g)
-        + b4 * math.log(r)
-        + b5 * lam * math.log(s_co)
-        + (b6 + b7 * log_u) * math.log(s_eq)
+        + b3 * lam * np.log(g)
+        + b4 * np.log(r)
+        + b5 * lam * np.log(s_co)
+        + (b6 + b7 * log_u) * np.log(s_eq)
     )
 
 
-@kernel
-def _log_rolling_film(
-    s: float, u: float, g: float, p: float, r: float, s_co: float, s_eq: float, lam: float
-) -> float:
+def log_rolling_film(c: Any, groups: Any) -> Any:
     """ln of Eq. 5.10b without its prefactor, L > 1. Theory (R2).
 
     The bases of b5 (G) and b6 (R_eq) are set the way in which the two branches meet at L = 1.
     """
-    a0, b1, b2, b3, b4 = -63.8414, -0.74816, 700205388.0, -4.85987, -0.287849
-    b5, b6, b7, b8 = -0.43762, 2202.89, -0.183452, -0.123683
-    b9, b10 = 0.50128, -0.370511
-    log_u, log_g, log_p = math.log(u), math.log(g), math.log(p)
+    a0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10 = c
+    s, u, g, p, r, s_co, s_eq, lam = groups
+    log_u, log_g, log_p = np.log(u), np.log(g), np.log(p)
     return (
         a0
-        + (b1 * s + b2 * u) * math.log(lam)
+        + (b1 * s + b2 * u) * np.log(lam)
         + (b3 + b4 * log_p) * log_u
         + b5 * s * log_g
-        + b6 * s_co * math.log(r)
-        + (b7 * log_u + b8 * log_g + b9 * log_p) * math.log(s_co)
-        + b10 * s * math.log(s_eq)
+        + b6 * s_co * np.log(r)
+        + (b7 * log_u + b8 * log_g + b9 * log_p) * np.log(s_co)
+        + b10 * s * np.log(s_eq)
     )
+
+
+_log_rolling_mixed = kernel(log_rolling_mixed)
+_log_rolling_film = kernel(log_rolling_film)
 
 
 @kernel
@@ -156,12 +176,13 @@ def rolling_loss_number(
 
     Without the prefactor printed in the source, 1e5 W/m: `oilmodel.regressions.rolling_scale`.
     """
+    groups = (s, u, g, p, r, s_co, s_eq, lam)
     film = blend_weight(lam, ROLLING_LIMIT)
     log_loss = 0.0
     if film < 1.0:
-        log_loss += (1.0 - film) * _log_rolling_mixed(s, u, g, r, s_co, s_eq, lam)
+        log_loss += (1.0 - film) * _log_rolling_mixed(ROLLING_MIXED, groups)
     if film > 0.0:
-        log_loss += film * _log_rolling_film(s, u, g, p, r, s_co, s_eq, lam)
+        log_loss += film * _log_rolling_film(ROLLING_FILM, groups)
     return math.exp(log_loss)
 
 
@@ -170,6 +191,31 @@ NEEDLE_ROUGHNESS_REFERENCE = 1e-6
 NEEDLE_RADIUS_REFERENCE = 5e-3
 # Prefactor printed in Eq. 3.5. [W/m]
 NEEDLE_LOSS_SCALE = 1e5
+
+
+def log_needle_loss(c: Any, contact: Any) -> Any:
+    """ln of Eq. 3.5 without its prefactor, of a contact as `needle_rolling_loss` takes it. [1]
+
+    Theory (B14).
+    """
+    a0, a1, a2, b1, b2, b3, b4, b5, b6, b7, b8 = c
+    p_h, u_r, mu_d, alpha_pv, r_eq, s_co, e_eq = contact
+    theta = u_r * mu_d / (p_h * s_co)
+    log_theta = np.log(theta)
+    log_u = np.log(u_r * mu_d / (e_eq * NEEDLE_ROUGHNESS_REFERENCE))
+    g = alpha_pv * e_eq
+    p = p_h / e_eq
+    rough = s_co / NEEDLE_ROUGHNESS_REFERENCE
+    return (
+        a0
+        + g * (a1 * theta + a2 * rough)
+        + (b1 * theta + b2 * log_theta + b3 * log_u + b4 * rough) * log_theta
+        + (b5 * log_u + b6 * p) * np.log(g)
+        + (b7 * np.log(r_eq / NEEDLE_RADIUS_REFERENCE) + b8 * np.log(rough)) * np.log(p)
+    )
+
+
+_log_needle_loss = kernel(log_needle_loss)
 
 
 @kernel
@@ -186,22 +232,7 @@ def needle_rolling_loss(
 
     Theory (B14).
     """
-    a0, a1, a2 = 27.3758, 0.0169312, -0.00260401
-    b1, b2, b3, b4 = 55.582, 0.179813, -0.097448, -1.33225
-    b5, b6, b7, b8 = 0.272560, -15.4258, -0.102883, 0.233836
-    theta = u_r * mu_d / (p_h * s_co)
-    log_theta = math.log(theta)
-    log_u = math.log(u_r * mu_d / (e_eq * NEEDLE_ROUGHNESS_REFERENCE))
-    g = alpha_pv * e_eq
-    p = p_h / e_eq
-    rough = s_co / NEEDLE_ROUGHNESS_REFERENCE
-    log_loss = (
-        a0
-        + g * (a1 * theta + a2 * rough)
-        + (b1 * theta + b2 * log_theta + b3 * log_u + b4 * rough) * log_theta
-        + (b5 * log_u + b6 * p) * math.log(g)
-        + (b7 * math.log(r_eq / NEEDLE_RADIUS_REFERENCE) + b8 * math.log(rough)) * math.log(p)
-    )
+    log_loss = _log_needle_loss(NEEDLE_FILM, (p_h, u_r, mu_d, alpha_pv, r_eq, s_co, e_eq))
     return NEEDLE_LOSS_SCALE * math.exp(log_loss)
 
 

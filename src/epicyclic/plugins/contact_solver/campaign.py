@@ -19,7 +19,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic import library
 from epicyclic.arrays import FloatArray
 from epicyclic.contact.elastic_teeth import one_thread
-from epicyclic.dataclass import dataclass, field, replace
+from epicyclic.dataclass import asdict, dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.files import make_folder, read_bytes, read_text, write_file
 from epicyclic.messages import did_you_mean, one_line
@@ -103,12 +103,7 @@ class Design:
 
     def describe(self) -> dict[str, Any]:
         """As plain data, for files."""
-        return {
-            "part": self.part,
-            "axes": {name: list(values) for name, values in self.axes},
-            "size": self.size,
-            "seed": self.seed,
-        }
+        return asdict(self) | {"axes": {name: list(values) for name, values in self.axes}}
 
     def check_types(self) -> None:
         """Raise `TypeError` if anything is not of its type, or there are too many points."""
@@ -372,15 +367,13 @@ def make_campaign(
         if count is not None and count > MOST_CONTACTS:
             allowed = f"must be {MOST_CONTACTS} or less."
             raise one_problem(name, str(count), allowed, "Give a smaller one.", "the command")
-    designs = []
-    if size is None:
-        designs.append(GEAR_TABLE)
-    elif size > 0:
-        designs.append(GEAR_TABLE.filling(size, seed, ranges or {}))
-    if bearing_size is None and size is None:
-        designs.append(BEARING_TABLE)
-    elif bearing_size:
-        designs.append(BEARING_TABLE.filling(bearing_size, seed, ranges or {}))
+    if size is not None:
+        bearing_size = bearing_size or 0
+    designs = [
+        table if count is None else table.filling(count, seed, ranges or {})
+        for table, count in ((GEAR_TABLE, size), (BEARING_TABLE, bearing_size))
+        if count is None or count > 0
+    ]
     if ranges and not size:
         stated, allowed = ", ".join(ranges), "needs a space-filling design."
         raise one_problem("ranges", stated, allowed, "Give a size.", "the command")

@@ -255,8 +255,4 @@ def _fit(folders: Sequence[CampaignFolder], output: Path, plot: Path | None) -> 
     terminal().print(oil_model_tables(model))
     echo(f"Wrote {output}.")
     if plot is not None:
-        simulated = {
-            quantity: (states, target)
-            for quantity, (states, target, _) in simulated_quantities(folders).items()
-        }
-        draw(oil_model_figure(model, simulated), plot)
+        draw(oil_model_figure(model, simulated_quantities(folders)), plot)

@@ -94,17 +94,8 @@ class ContactOil:
 
     viscosity: float  # Dynamic viscosity at ambient pressure. [Pa s]
     pressure_law: PressureLaw
-    # tau_0 of the Ree-Eyring law; infinite for a Newtonian oil. [Pa]
-    eyring_stress: float = math.inf
+    shear_law: ShearLaw = Newtonian()
     compressible: bool = True  # Density after Dowson and Higginson, or constant.
-    shear_law: ShearLaw | None = None  # Instead of the Ree-Eyring law of `eyring_stress`.
-
-    @property
-    def shear(self) -> ShearLaw:
-        """The law of shear that holds."""
-        if self.shear_law is not None:
-            return self.shear_law
-        return Newtonian() if math.isinf(self.eyring_stress) else ReeEyring(self.eyring_stress)
 
     @property
     def roelands_index(self) -> float:
@@ -119,7 +110,7 @@ class ContactOil:
 def contact_oil(oil: OilState, laws: OilLaws) -> ContactOil:
     """An oil at the temperature of a contact, and how it behaves there."""
     pressure_law = laws.pressure(oil.pressure_viscosity)
-    return ContactOil(oil.dynamic_viscosity, pressure_law, shear_law=laws.shear)
+    return ContactOil(oil.dynamic_viscosity, pressure_law, laws.shear)
 
 
 @dataclass(frozen=True)
@@ -146,13 +137,9 @@ class LineContact:
             )
             if not (value > 0 and math.isfinite(value))
         ]
-        if not self.oil.eyring_stress > 0:
-            value, allowed = f"{self.oil.eyring_stress:g}", "must be above zero."
-            problems.append(Problem("oil.eyring_stress", value, allowed, "Use inf for no limit."))
         problems += [
             Problem(f"oil.shear_law.{name}", f"{value:g}", allowed, "Change it.")
-            for name, value, allowed in shear_problems(self.oil.shear)
-            if self.oil.shear_law is not None
+            for name, value, allowed in shear_problems(self.oil.shear_law)
         ]
         raise_any(problems, "the contact")
 
@@ -219,10 +206,10 @@ class LineContact:
             packing=PACKING * p_h if oil.compressible else 0.0,
             poiseuille=easing * self.half_width**3 * p_h / wedge,
             sliding=oil.viscosity * abs(self.sliding_speed) / (p_h * self.film_scale),
-            shear_law=SHEAR_CODES[type(oil.shear)],
-            stress=getattr(oil.shear, "stress", math.inf) / p_h,
-            stress_slope=getattr(oil.shear, "slope", 0.0),
-            exponent=getattr(oil.shear, "exponent", 1.0),
+            shear_law=SHEAR_CODES[type(oil.shear_law)],
+            stress=getattr(oil.shear_law, "stress", math.inf) / p_h,
+            stress_slope=getattr(oil.shear_law, "slope", 0.0),
+            exponent=getattr(oil.shear_law, "exponent", 1.0),
         )
 
 
@@ -282,9 +269,11 @@ def flow_easing(contact: LineContact, heating: Heating | None) -> float:
 
 
 def thinning(
-    contact: LineContact, heating: Heating, pressure: FloatArray, rise: FloatArray
+    contact: LineContact, heating: Heating | None, pressure: FloatArray, rise: FloatArray
 ) -> FloatArray:
-    """What a `rise` of the temperature [K] takes off ln(mu). Theory (H31)."""
+    """What a `rise` of the temperature [K] takes off ln(mu): 0 if isothermal. Theory (H31)."""
+    if heating is None:
+        return np.zeros_like(rise)
     thinned = heating.thermoviscosity * rise
     if isinstance(contact.oil.pressure_law, Roelands):
         stiffer = 1 + np.maximum(pressure, 0) / ROELANDS_PRESSURE

@@ -43,7 +43,6 @@ from epicyclic.plugins.contact_solver.conditions import (
     LineContact,
     contact_oil,
     heating_of,
-    thinning,
 )
 from epicyclic.plugins.contact_solver.direct import EhlDirect, solver_range
 from epicyclic.plugins.contact_solver.kernels_steady import shear_stresses
@@ -69,6 +68,7 @@ from epicyclic.schema.fields import Table, option
 from epicyclic.schema.read import plain, read_file, with_value
 from epicyclic.schema.validation import validate
 from epicyclic.units import (
+    KELVIN,
     MICROMETRE,
     MILLIMETRE,
     NUMBER,
@@ -294,6 +294,7 @@ def contact_model(case: ContactCase) -> ContactModel:
     """Contact, profiles and asperities of a case."""
     modulus = contact_modulus(case.surface1.material, case.surface2.material)
     table = case.contact
+    oil = oil_state(case.lubricant.oil, case.lubricant.temperature)
     load = table.line_load
     if load is None:
         assert table.hertz_pressure is not None
@@ -305,18 +306,14 @@ def contact_model(case: ContactCase) -> ContactModel:
         equivalent_modulus=modulus,
         speed1=table.rolling_speed * (1 + slip),
         speed2=table.rolling_speed * (1 - slip),
-        oil=contact_oil(_oil_state(case), oil_laws(case.lubricant)),
+        oil=contact_oil(oil, oil_laws(case.lubricant)),
     )
     surfaces = (_profile(case.surface1), _profile(case.surface2))
     asperities = AsperityContact(case.asperities.film, case.asperities.friction)
-    return ContactModel(contact, surfaces, asperities, _heating(case))
+    return ContactModel(contact, surfaces, asperities, _heating(case, oil))
 
 
-def _oil_state(case: ContactCase) -> OilState:
-    return oil_state(case.lubricant.oil, case.lubricant.temperature)
-
-
-def _heating(case: ContactCase) -> Heating | None:
+def _heating(case: ContactCase, oil: OilState) -> Heating | None:
     table = case.heating
     if table.model == "isothermal":
         return None
@@ -324,7 +321,7 @@ def _heating(case: ContactCase) -> Heating | None:
         solid_of(surface.material, table.solid_conductivity, table.solid_heat_capacity)
         for surface in (case.surface1, case.surface2)
     )
-    return heating_of(_oil_state(case), *(solid.effusivity for solid in solids))
+    return heating_of(oil, *(solid.effusivity for solid in solids))
 
 
 def _profile(table: Surface) -> Profile:
@@ -340,10 +337,6 @@ def _profile(table: Surface) -> Profile:
     )  # fmt: skip
 
 
-# What to know before the figures of a line contact are used: ranges left, roughness lost.
-
-
-KELVIN = Quantity("a temperature difference", "K", "K")
 ROUGH_RANGES = (
     solver_range("film_ratio", "film ratio", NUMBER),
     solver_range("composite_roughness", "composite roughness", MICROMETRE),
@@ -353,94 +346,6 @@ HIGHEST_RISE = Range(
 )
 """Beyond it the estimate of heat thins the oil too much."""
 FEWEST_POINTS = 16  # Points of a profile in the width of the contact, below which it is hardly one.
-
-
-def film_ratio(model: ContactModel, smooth: SmoothSolution) -> float:
-    """Minimum film of the smooth contact over the composite Rq. [1]"""
-    return smooth.minimum_film / model.composite_roughness
-
-
-def contact_flags(
-    case: ContactCase, model: ContactModel, smooth: SmoothSolution
-) -> tuple[ValidityFlag, ...]:
-    """A flag for every quantity outside what solver and oil data are good for."""
-    contact = model.contact
-    ranges = [*EhlDirect.ranges, HIGHEST_RISE]
-    values = {
-        "radius": contact.radius,
-        "hertz_pressure": contact.hertz_pressure,
-        "rolling_speed": contact.rolling_speed,
-        "slide_to_roll_ratio": abs(contact.sliding_speed) / contact.rolling_speed,
-        "temperature_rise": float(smooth.temperature_rise.max()),
-    }
-    if not model.smooth:
-        ranges += ROUGH_RANGES
-        values["film_ratio"] = film_ratio(model, smooth)
-        values["composite_roughness"] = model.composite_roughness
-    use = ModelUse("solver", "line contact", "contact")
-    oil = case.lubricant
-    return (*check_ranges(use, ranges, values), *oil_flags(oil.oil, oil.temperature))
-
-
-def contact_notes(
-    case: ContactCase, model: ContactModel, smooth: SmoothSolution, rough: RoughSolution | None
-) -> Iterator[str]:
-    """What else limits a rough contact: standing roughness, thin films, unsuitable profiles."""
-    if rough is None or not rough.x.size:
-        return
-    if case.numerics.frozen_roughness:
-        yield (
-            "The roughness is at rest, so all results apply to one position of the profiles, "
-            "whatever the standard error. The rolling loss has no meaning for moving surfaces."
-        )
-    speed = model.contact.rolling_speed
-    if speed < DRY_SPEED:
-        yield (
-            f"At {format_number(speed, 2)} m/s, below {DRY_SPEED:g} m/s, oil leaks out of the "
-            "valleys of real surfaces, but transverse ridges, as here, trap it. Load and "
-            "friction of the touching surfaces are then too small to be used."
-        )
-    ratio = film_ratio(model, smooth)
-    if ratio < VALIDATED_FILM_RATIO:
-        yield (
-            f"At a film ratio of {format_number(ratio, 2)}, below {VALIDATED_FILM_RATIO:g}, "
-            "friction, load on asperities and rolling loss are not validated. Vary "
-            "asperities.film, asperities.friction and the correlation lengths."
-        )
-    spacing = float(rough.x[1] - rough.x[0])
-    for number, surface in enumerate(model.surfaces, 1):
-        if surface.rms > 0:
-            yield from _profile_notes(f"surface{number}", surface, spacing, model)
-
-
-def _profile_notes(
-    name: str, surface: Profile, spacing: float, model: ContactModel
-) -> Iterator[str]:
-    shown = {
-        key: format_number(unit.to_display(value), 4)
-        for key, value, unit in (
-            ("spacing", spacing, MICROMETRE),
-            ("own", surface.spacing, MICROMETRE),
-            ("length", surface.length, MILLIMETRE),
-            ("width", 2 * model.contact.half_width, MILLIMETRE),
-        )
-    }
-    left = surface.kept(spacing)
-    if left < FEWEST_KEPT:
-        yield (
-            f"The nodes, {shown['spacing']} um apart, resolve {percent(left, 0)} of the Rq of "
-            f"{name}; shorter waves are lost. Raise numerics.nodes."
-        )
-    if FEWEST_POINTS * surface.spacing > 2 * model.contact.half_width:
-        yield (
-            f"The points of {name} are {shown['own']} um apart, in a contact {shown['width']} mm "
-            "wide. A finer profile is needed, or its positions are not in mm."
-        )
-    if surface.length < 2 * model.contact.half_width:
-        yield (
-            f"The profile of {name}, {shown['length']} mm long, repeats itself within the "
-            f"contact, {shown['width']} mm wide. Give a longer profile."
-        )
 
 
 FRAMES = 60  # Moments kept for an animation.
@@ -476,11 +381,30 @@ class ContactResult:
         return self.smooth.message if self.rough is None else self.rough.message
 
     @property
+    def film_ratio(self) -> float:
+        """Minimum film of the smooth contact over the composite Rq. [1]"""
+        return self.smooth.minimum_film / self.model.composite_roughness
+
+    @property
     def flags(self) -> tuple[ValidityFlag, ...]:
-        """Quantities outside what solver and oil data are good for."""
+        """A flag for every quantity outside what solver and oil data are good for."""
         if self.smooth.status is not Status.CONVERGED:
             return ()
-        return contact_flags(self.case, self.model, self.smooth)
+        contact, oil = self.model.contact, self.case.lubricant
+        ranges = [*EhlDirect.ranges, HIGHEST_RISE]
+        values = {
+            "radius": contact.radius,
+            "hertz_pressure": contact.hertz_pressure,
+            "rolling_speed": contact.rolling_speed,
+            "slide_to_roll_ratio": abs(contact.sliding_speed) / contact.rolling_speed,
+            "temperature_rise": float(self.smooth.temperature_rise.max()),
+        }
+        if not self.model.smooth:
+            ranges += ROUGH_RANGES
+            values["film_ratio"] = self.film_ratio
+            values["composite_roughness"] = self.model.composite_roughness
+        use = ModelUse("solver", "line contact", "contact")
+        return (*check_ranges(use, ranges, values), *oil_flags(oil.oil, oil.temperature))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -488,7 +412,32 @@ class ContactResult:
         if self.smooth.status is not Status.CONVERGED:
             return ()
         left = (range_left([flag]) for flag in self.flags)
-        return (*left, *contact_notes(self.case, self.model, self.smooth, self.rough))
+        return (*left, *(() if self.rough is None else self._notes(self.rough)))
+
+    def _notes(self, rough: RoughSolution) -> Iterator[str]:
+        """What else limits a rough contact: standing roughness, thin films, unsuitable profiles."""
+        if self.case.numerics.frozen_roughness:
+            yield (
+                "The roughness is at rest, so all results apply to one position of the profiles, "
+                "whatever the standard error. The rolling loss has no meaning for moving surfaces."
+            )
+        speed = self.model.contact.rolling_speed
+        if speed < DRY_SPEED:
+            yield (
+                f"At {format_number(speed, 2)} m/s, below {DRY_SPEED:g} m/s, oil leaks out of the "
+                "valleys of real surfaces, but transverse ridges, as here, trap it. Load and "
+                "friction of the touching surfaces are then too small to be used."
+            )
+        if self.film_ratio < VALIDATED_FILM_RATIO:
+            yield (
+                f"At a film ratio of {format_number(self.film_ratio, 2)}, below "
+                f"{VALIDATED_FILM_RATIO:g}, friction, load on asperities and rolling loss are not "
+                "validated. Vary asperities.film, asperities.friction and the correlation lengths."
+            )
+        spacing, width = float(rough.x[1] - rough.x[0]), 2 * self.model.contact.half_width
+        for number, surface in enumerate(self.model.surfaces, 1):
+            if surface.rms > 0:
+                yield from _profile_notes(f"surface{number}", surface, spacing, width)
 
     @property
     def figures(self) -> list[ContactFigure]:
@@ -515,7 +464,7 @@ class ContactResult:
             found.append(("smooth: highest temperature rise", rise, "K", "K"))
         if rough is not None:
             found += [
-                ("film ratio", film_ratio(self.model, smooth), "1", "1"),
+                ("film ratio", self.film_ratio, "1", "1"),
                 ("friction coefficient", rough.friction_coefficient, "1", "1"),
                 ("its standard error", rough.friction_error, "1", "1"),
                 ("friction of asperities", rough.asperity_friction_share, "1", "%"),
@@ -535,16 +484,10 @@ class ContactResult:
         Theory (H23).
         """
         assert self.rough is not None
-        model, smooth, x = self.model, self.smooth, self.rough.x
-        contact = model.contact
-        thinned = np.zeros_like(x)
-        if model.heating is not None:
-            rise = np.interp(x, smooth.x, smooth.temperature_rise)
-            pressure = np.interp(x, smooth.x, smooth.pressure)
-            thinned = thinning(contact, model.heating, pressure, rise)
+        contact, thinned = self.model.contact, self.rough.thinned
         scaled = frame.pressure / contact.hertz_pressure, frame.film / contact.film_scale
         fluid = shear_stresses(*scaled, thinned, contact.scaled_fluid()) * contact.hertz_pressure
-        friction = model.asperities.friction if contact.sliding_speed else 0.0
+        friction = self.model.asperities.friction if contact.sliding_speed else 0.0
         return np.where(self.touching(frame), friction * frame.pressure, fluid)
 
     def touching(self, frame: Frame) -> BoolArray:
@@ -592,6 +535,26 @@ class ContactResult:
                 "shear_stress": self.shear_stress(frame).tolist(),
             }
         return data
+
+
+def _profile_notes(name: str, surface: Profile, spacing: float, width: float) -> Iterator[str]:
+    """Whether nodes resolve a profile, and the profile fits a contact of some width. [m]"""
+    wide, left = MILLIMETRE.text(width, 4), surface.kept(spacing)
+    if left < FEWEST_KEPT:
+        yield (
+            f"The nodes, {MICROMETRE.text(spacing, 4)} apart, resolve {percent(left, 0)} of the Rq "
+            f"of {name}; shorter waves are lost. Raise numerics.nodes."
+        )
+    if FEWEST_POINTS * surface.spacing > width:
+        yield (
+            f"The points of {name} are {MICROMETRE.text(surface.spacing, 4)} apart, in a contact "
+            f"{wide} wide. A finer profile is needed, or its positions are not in mm."
+        )
+    if surface.length < width:
+        yield (
+            f"The profile of {name}, {MILLIMETRE.text(surface.length, 4)} long, repeats itself "
+            f"within the contact, {wide} wide. Give a longer profile."
+        )
 
 
 def _statistics(surface: Profile) -> dict[str, float]:

@@ -355,5 +355,4 @@ def _friction(
     unsolved = rough.unsolved_steps > LARGEST_UNSOLVED_SHARE * max(rough.steps, 1)
     if not known or unsolved:
         return np.nan, 1.0
-    spacing = float(rough.x[1] - rough.x[0])
-    return rough.friction_coefficient, min(one.kept(spacing), two.kept(spacing))
+    return rough.friction_coefficient, rough.roughness_kept

@@ -39,6 +39,7 @@ from epicyclic.plugins.contact_solver.campaign import (
 )
 from epicyclic.plugins.contact_solver.conditions import FEWEST_KEPT
 from epicyclic.plugins.contact_solver.contact import contact_model
+from epicyclic.plugins.contact_solver.rough import LARGEST_UNSOLVED_SHARE
 from epicyclic.study.sweeps.runner import Progress, Runner
 
 # Fits of all forms of a quantity, with errors at contacts that they had not seen.
@@ -152,8 +153,6 @@ def _rounded(value: float) -> float:
 
 
 LARGEST_ERROR = 0.10  # Standard error of a simulated mean over it above which it is not fitted. [1]
-LARGEST_UNSOLVED_SHARE = 0.01
-"""Share of time steps without convergence above which a simulation is not fitted. [1]"""
 SCATTER = 0.05
 """Relative error that a form has anyway: smaller ones of a simulation do not count more. [1]"""
 QUANTITIES = {

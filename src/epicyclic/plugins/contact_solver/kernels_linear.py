@@ -123,13 +123,14 @@ def apply_rows(
 
 @kernel
 def factor_band(
-    local: FloatArray, by_film: FloatArray, near: FloatArray, active: BoolArray, band: FloatArray
-) -> None:
+    local: FloatArray, by_film: FloatArray, kernel_row: FloatArray, active: BoolArray,
+    band: FloatArray,
+) -> None:  # fmt: skip
     """LU of the banded matrix, pivots inverted, in `band`, shape (n + BAND, 2 BAND + 1).
 
     With rows of ones below, all loops have their full length.
     """
-    fill_band(local, by_film, near, active, band)
+    fill_band(local, by_film, kernel_row, active, band)
     for i in range(active.size):
         row = band[i]
         pivot = row[BAND] = 1.0 / row[BAND]
@@ -143,10 +144,12 @@ def factor_band(
 
 @kernel
 def fill_band(
-    local: FloatArray, by_film: FloatArray, near: FloatArray, active: BoolArray, band: FloatArray
-) -> None:
+    local: FloatArray, by_film: FloatArray, kernel_row: FloatArray, active: BoolArray,
+    band: FloatArray,
+) -> None:  # fmt: skip
     """The banded matrix of active nodes, with ones on the diagonal for all other rows."""
     n = active.size
+    near = kernel_row[n - 1 : n + BAND] - kernel_row[n + BAND]  # less that of the next offset
     bends = np.zeros((3, 2 * BAND + 1))  # of the nodes i - 1, i, i + 1 by the pressures of the band
     for side in range(3):
         for k in range(2 * BAND + 1):
@@ -401,11 +404,3 @@ def solve_linear(
         solution += rest[k] * ahead[k]
         bend += rest[k] * bends[k]
     return steps
-
-
-@kernel
-def near_coefficients(kernel_row: FloatArray) -> FloatArray:
-    """Coefficients of the offsets 0 to `BAND` less that of the next."""
-    middle = kernel_row.size // 2
-    near: FloatArray = kernel_row[middle : middle + BAND + 1] - kernel_row[middle + BAND + 1]
-    return near

@@ -31,7 +31,6 @@ from epicyclic.plugins.contact_solver.kernels_linear import (
     deflect,
     factor_band,
     factor_dense,
-    near_coefficients,
     solve_linear,
     space_for,
     update_groups,
@@ -137,35 +136,26 @@ def residual(
 @kernel
 def tridiagonals(
     film: FloatArray, rho: FloatArray, d_rho: FloatArray, terms: FloatArray, order: FloatArray,
-    active: BoolArray, local: FloatArray, by_film: FloatArray,
+    active: BoolArray, compliance: float, local: FloatArray, by_film: FloatArray,
 ) -> None:  # fmt: skip
-    """Derivatives of the excess of mass in P and in H of nodes i - 1, i, i + 1."""
+    """Derivatives of the excess of mass in P and in H of nodes i - 1, i, i + 1.
+
+    A node that a thicker film fills by more than it holds is held back by a `compliance`. Beside a
+    steep pressure the inflow of a thin film grows faster with it than its mass. The node then has
+    two states, and Newton's method would swing between them.
+    """
     n = film.size
     local[:] = 0.0
     by_film[:] = 0.0
     for i in range(1, n - 1):
         if active[i]:
-            local[i, 0] = terms[i - 1, 0]
-            local[i, 1] = order[i] * d_rho[i] * film[i] + terms[i - 1, 1] - terms[i, 0]
-            local[i, 2] = -terms[i, 1]
             by_film[i, 0] = terms[i - 1, 2]
             by_film[i, 1] = order[i] * rho[i] + terms[i - 1, 3] - terms[i, 2]
             by_film[i, 2] = -terms[i, 3]
-
-
-@kernel
-def hold_back(
-    order: FloatArray, rho: FloatArray, by_film: FloatArray, active: BoolArray,
-    compliance: float, local: FloatArray,
-) -> None:  # fmt: skip
-    """Add to the derivative in P of nodes that a thicker film fills by more than it holds.
-
-    Beside a steep pressure the inflow of a thin film grows faster with it than its mass. The node
-    then has two states, and Newton's method would swing between them.
-    """
-    for i in range(order.size):
-        if active[i]:
+            local[i, 0] = terms[i - 1, 0]
+            local[i, 1] = order[i] * d_rho[i] * film[i] + terms[i - 1, 1] - terms[i, 0]
             local[i, 1] += compliance * max(order[i] * rho[i] - by_film[i, 1], 0.0)
+            local[i, 2] = -terms[i, 1]
 
 
 @kernel
@@ -181,7 +171,7 @@ def solve_step(
     load: float,
     active: BoolArray,  # Nodes with a full film, changed to the solution.
     groups: Groups,  # As for `update_groups`.
-    held: float,  # As for `hold_back`, over the compliance of a node to its own pressure.
+    held: float,  # Compliance as for `tridiagonals`, over that of a node to its own pressure.
     tolerance: float,  # Of the last change of a pressure over the largest or p_h, and of load.
     linear_tolerance: float,  # As `tolerance` for `solve_linear`.
     max_iterations: int,
@@ -200,7 +190,6 @@ def solve_step(
     band = np.empty((n + BAND, 2 * BAND + 1))
     size = groups.bends.shape[0] + 1
     coarse, rows = np.empty((size, size)), np.empty(size, dtype=np.int64)
-    near = near_coefficients(kernel_row)
     error = np.inf
     iteration = linear = 0
     while iteration < max_iterations and not error < tolerance:
@@ -208,11 +197,11 @@ def solve_step(
         face_terms(pressure, film, fluid, dx, rho, d_rho, conductance, terms)
         residual(pressure, film, rho, conductance, order, history, active, lack[:n])
         lack[n] = load - dx * (pressure.sum() - 0.5 * pressure[0])
-        tridiagonals(film, rho, d_rho, terms, order, active, local, by_film)
-        hold_back(order, rho, by_film, active, held * kernel_row[n - 1], local)
+        compliance = held * kernel_row[n - 1]
+        tridiagonals(film, rho, d_rho, terms, order, active, compliance, local, by_film)
         if iteration == 1 or linear > REFRESH:
             update_groups(kernel_row, active, groups)
-            factor_band(local, by_film, near, active, band)
+            factor_band(local, by_film, kernel_row, active, band)
             coarse = factor_dense(coarse_matrix(local, by_film, groups.across, active, dx), rows)
         linear = solve_linear(
             lack, kernel_row, coarse, rows, groups.bends, local, by_film, band, active, dx,

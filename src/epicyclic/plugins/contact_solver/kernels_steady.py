@@ -62,17 +62,6 @@ def deflection_matrix(points: FloatArray, nodes: FloatArray) -> FloatArray:
 
 
 @kernel
-def quadrature_weights(x: FloatArray) -> FloatArray:
-    """Weights of the trapezoidal rule on the nodes `x`, shape (n,)."""
-    weights = np.zeros(x.size)
-    for i in range(x.size - 1):
-        half = 0.5 * (x[i + 1] - x[i])
-        weights[i] += half
-        weights[i + 1] += half
-    return weights
-
-
-@kernel
 def _film(pressure: FloatArray, approach: float, gap: FloatArray, matrix: FloatArray) -> FloatArray:
     """H = H_0 + gap + deflection, shape (n,). Theory (H10)."""
     return gap + approach + matrix @ pressure
@@ -165,16 +154,6 @@ def _assemble(
 
 
 @kernel
-def _step_length(film: FloatArray, change: FloatArray, limit: float) -> float:
-    """Largest share of a step that takes no film below `limit` of what it was."""
-    length = 1.0
-    for i in range(film.size):
-        if change[i] < 0.0:
-            length = min(length, (1.0 - limit) * film[i] / -change[i])
-    return length
-
-
-@kernel
 def _balance_errors(
     flow: FloatArray, pressure: FloatArray, active: BoolArray, weights: FloatArray, load: float
 ) -> FloatArray:
@@ -211,7 +190,8 @@ def solve_steady(
     negative if `tolerance` was not met, and the measure that `tolerance` bounds.
     """
     n = x.size
-    weights = quadrature_weights(x)
+    half = 0.5 * np.diff(x)
+    weights = np.append(half, 0.0) + np.append(0.0, half)  # of the trapezoidal rule
     pressure = guess.copy()
     active = (pressure > 0.0) | (x <= 0.0)
     active[0] = active[n - 1] = False
@@ -226,8 +206,10 @@ def solve_steady(
         step = np.linalg.solve(jacobian, lack)
         change = matrix @ step[:n] + step[n]
         largest, peak = np.abs(step[:n]).max(), pressure.max()
-        length = _step_length(film, change, SMALLEST_FILM_SHARE)
-        length = min(length, LARGEST_PRESSURE_SHARE * peak / largest)
+        length = min(1.0, LARGEST_PRESSURE_SHARE * peak / largest)
+        for i in range(n):
+            if change[i] < 0.0:  # every node keeps a share of its film
+                length = min(length, (1.0 - SMALLEST_FILM_SHARE) * film[i] / -change[i])
         for i in range(1, n - 1):
             pressure[i] += length * step[i]
             if pressure[i] < 0.0:

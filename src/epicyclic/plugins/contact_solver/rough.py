@@ -222,13 +222,14 @@ class Frame:
 class RoughSolution:
     """Averages of a transient rough contact."""
 
-    contact: LineContact
     smooth: SmoothSolution  # The same contact without roughness, where the simulation starts.
     # Failed if the friction did not become stationary or too many steps had no solution.
     status: Status
     message: str  # Why it failed; empty if it did not.
     # What follows is of a simulation; without a smooth contact there is none.
     x: FloatArray = field(default_factory=lambda: np.empty(0))  # [m]
+    # What heat takes off ln(mu) at each x. [1]
+    thinned: FloatArray = field(default_factory=lambda: np.empty(0))
     # Coefficient at every step that counts. [1]
     friction: FloatArray = field(default_factory=lambda: np.empty(0))
     friction_coefficient: float = math.nan  # Mean, from the means of blocks. [1]
@@ -293,10 +294,7 @@ class _Simulation:
         self.pressure[-1] = 0
         self.smooth_pressure = self.pressure.copy()
         rise = np.interp(self.x, x, smooth.temperature_rise)
-        self.thinned = np.zeros_like(rise)
-        if heating is not None:
-            pressure = self.pressure * contact.hertz_pressure
-            self.thinned = thinning(contact, heating, pressure, rise)
+        self.thinned = thinning(contact, heating, self.pressure * contact.hertz_pressure, rise)
         # the smooth pressure before the grid, and half a cell into it
         outside = np.append(x[x < inlet], [inlet, inlet + self.dx])
         upstream = np.append(np.interp(outside[:-1], x, known), 0.0)
@@ -328,6 +326,8 @@ class _Simulation:
             )
         ]
         self.steps = self.tried = self.unsolved = 0
+        self.records: list[FloatArray] = []  # Of the blocks that count, and their means.
+        self.means: list[FloatArray] = []
         self.frames: deque[Frame] = deque(maxlen=MOST_FRAMES)
         self.center = int(np.argmin(np.abs(self.x)))
         self.steps_to_frame = 0
@@ -338,6 +338,11 @@ class _Simulation:
         self.time = 0.0
         self.smooth_power = float(self.march(self.still)[-1, Column.FLOW_POWER])
         self.smooth_state = _State(self.pressure.copy(), self.now.copy(), self.approach)
+
+    def add_block(self) -> None:
+        """Another block of the averages."""
+        self.records.append(self.advance(BLOCK))
+        self.means.append(self.records[-1].mean(axis=0))
 
     def advance(self, time: float) -> FloatArray:
         """Records of a `time` in b/u_r, shape (steps, 9); keeps frames if they are asked for.
@@ -438,9 +443,7 @@ def solve_rough(
     """Simulate until the mean friction is known well enough. Theory (H21), (H25)."""
     smooth = solve_smooth(contact, heating=heating)
     if smooth.status is not Status.CONVERGED:
-        return RoughSolution(
-            contact, smooth, Status.FAILED, f"the smooth contact: {smooth.message}"
-        )
+        return RoughSolution(smooth, Status.FAILED, f"the smooth contact: {smooth.message}")
     surfaces = (surface1, surface2)
     asperities = asperities or AsperityContact()
     run = _Simulation(smooth, surfaces, nodes, asperities, frame_interval, heating, frozen)
@@ -450,23 +453,22 @@ def solve_rough(
         linear_tolerance=COARSE_LINEAR_TOLERANCE,
     )  # fmt: skip
     _settle(run, aid)
-    series = _Series(run), _Series(aid)
     most = math.ceil(most_blocks / BLOCK)
     plan = Plan(fewest := min(FEWEST_BLOCKS, most), fewest)
     while True:
-        for blocks, wanted in zip(series, plan, strict=True):
-            while len(blocks.means) < wanted:
-                blocks.extend()
-                if progress is not None and blocks.run is run:
-                    progress(len(blocks.means), wanted)
-        means = _means(*series)
+        for grid, wanted in zip((run, aid), plan, strict=True):
+            while len(grid.means) < wanted:
+                grid.add_block()
+                if progress is not None and grid is run:
+                    progress(len(grid.means), wanted)
+        means = _means(run, aid)
         judged = means.friction if contact.sliding_speed else means.rolling
         if not math.isfinite(judged.value) or judged.within(tolerance):
             break
         before, plan = plan, next_plan(judged, tolerance, aid.work / run.work, most)
         if plan == before:
             break
-    return _solution(run, series[0], means, _failure(run, judged, tolerance))
+    return _solution(run, means, _failure(run, judged, tolerance))
 
 
 def _coarse_nodes(run: _Simulation, surfaces: Sequence[Profile]) -> int:
@@ -488,20 +490,6 @@ def _settle(run: _Simulation, aid: _Simulation) -> None:
         each.advance(LEAD)
 
 
-class _Series:
-    """Records of a simulation, and their means over blocks."""
-
-    def __init__(self, run: _Simulation) -> None:
-        self.run = run
-        self.records: list[FloatArray] = []
-        self.means: list[FloatArray] = []
-
-    def extend(self) -> None:
-        """Another block."""
-        self.records.append(self.run.advance(BLOCK))
-        self.means.append(self.records[-1].mean(axis=0))
-
-
 @dataclass(frozen=True, slots=True)
 class _Means:
     """Averages in time, scaled but for the rolling loss; `rest` by `Column`."""
@@ -511,10 +499,9 @@ class _Means:
     rest: Sequence[float]
 
 
-def _means(fine: _Series, coarse: _Series) -> _Means:
+def _means(run: _Simulation, aid: _Simulation) -> _Means:
     """Averages from both grids; of the rolling loss the smooth one and what roughness adds."""
-    on, by = np.array(fine.means), np.array(coarse.means)
-    run, contact = fine.run, fine.run.contact
+    on, by, contact = np.array(run.means), np.array(aid.means), run.contact
     power = contact.hertz_pressure * contact.film_scale * contact.rolling_speed
     smooth = run.smooth.rolling_loss
     flow, flow_by = on[:, Column.FLOW_POWER] - run.smooth_power, by[:, Column.FLOW_POWER]
@@ -527,7 +514,6 @@ def _means(fine: _Series, coarse: _Series) -> _Means:
 
 def _failure(run: _Simulation, judged: Estimate, tolerance: float) -> str:
     """Why there is no result to rely on; empty if there is."""
-    unsolved = run.unsolved
     if not math.isfinite(judged.value):
         return "a time step failed"
     if not judged.within(tolerance):
@@ -536,8 +522,8 @@ def _failure(run: _Simulation, judged: Estimate, tolerance: float) -> str:
         return (
             f"{what} reaches an uncertainty of {percent(share)} only after {run.tried} time steps"
         )
-    if unsolved > LARGEST_UNSOLVED_SHARE * run.tried:
-        return f"{unsolved} of {run.tried} time steps did not converge"
+    if run.unsolved > LARGEST_UNSOLVED_SHARE * run.tried:
+        return f"{run.unsolved} of {run.tried} time steps did not converge"
     return ""
 
 
@@ -547,18 +533,18 @@ def _shear(records: FloatArray) -> FloatArray:
     return total
 
 
-def _solution(run: _Simulation, series: _Series, means: _Means, message: str) -> RoughSolution:
+def _solution(run: _Simulation, means: _Means, message: str) -> RoughSolution:
     """The result of a simulation."""
     contact = run.contact
     load = math.pi / 2
-    records, mean, shear = np.concatenate(series.records), means.rest, means.friction
+    records, mean, shear = np.concatenate(run.records), means.rest, means.friction
     touching = mean[Column.ASPERITY_SHEAR] / shear.value if shear.value > 0 else 0.0
     return RoughSolution(
-        contact=contact,
         smooth=run.smooth,
         status=Status.FAILED if message else Status.CONVERGED,
         message=message,
         x=run.x * contact.half_width,
+        thinned=run.thinned,
         friction=_shear(records) / load,
         friction_coefficient=shear.value / load,
         friction_error=shear.error / load,

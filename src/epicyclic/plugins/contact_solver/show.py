@@ -67,8 +67,6 @@ def _surface(number: int, surface: Profile) -> str:
 
 
 def _displayed(figure: ContactFigure) -> float:
-    if figure.display == figure.unit:
-        return figure.value
     if figure.display == "%":
         return 100 * figure.value
     return Quantity(figure.name, figure.unit, figure.display).to_display(figure.value)
@@ -304,8 +302,6 @@ def _over_x(result: ContactResult, ax: Axes, label: str) -> Axes:
     return ax
 
 
-Simulated = Mapping[str, tuple[LineContacts, FloatArray]]
-
 MARKERS = ("o", "^", "s")
 LABELS = {
     "friction": "coefficient of friction",
@@ -322,7 +318,11 @@ SLIPS = (0.05, 0.2, 0.8)
 POINTS = 80
 
 
-def oil_model_figure(model: OilModel, simulated: Simulated) -> Figure:
+def oil_model_figure(
+    model: OilModel,
+    # As from `simulated_quantities`.
+    simulated: Mapping[str, tuple[LineContacts, FloatArray, FloatArray]],
+) -> Figure:
     """Every quantity computed against simulated, and friction over the film ratio."""
     count = len(model.fits) + ("friction" in model.fits)
     rows, columns = (2, 2) if count > 3 else (1, count)
@@ -331,7 +331,7 @@ def oil_model_figure(model: OilModel, simulated: Simulated) -> Figure:
         axes,
     ):
         for ax, quantity in zip(axes.flat, model.fits, strict=False):
-            plot_against_simulations(model, quantity, *simulated[quantity], ax)
+            plot_against_simulations(model, quantity, *simulated[quantity][:2], ax)
         if "friction" in model.fits:
             plot_over_film_ratio(model, axes.flat[len(model.fits)])
     return figure

@@ -148,11 +148,6 @@ class SmoothSolution:
         return float(np.interp(0.0, self.x, self.film))
 
     @property
-    def load(self) -> float:
-        """Integral of the pressure. [N/m]"""
-        return float(np.trapezoid(self.pressure, self.x))
-
-    @property
     def friction_coefficient(self) -> float:
         """Sliding friction over the load. Theory (H18). [1]"""
         return float(np.trapezoid(self.shear_stress, self.x)) / self.contact.line_load
@@ -189,7 +184,7 @@ def solve_smooth(
     fluid = contact.scaled_fluid(easing)
     grid = grid_for(film, inlet)
     x = graded_nodes(node_counts(nodes)[0], grid)
-    pressure, approach = _first_guess(x, film), 0.0
+    pressure = _first_guess(x, film)
     message, iterations, error = "", 0, math.inf
     matrix = deflection_matrix(x, x)
     approach = film - float(np.interp(0.0, x, matrix @ pressure))
@@ -209,21 +204,10 @@ def solve_smooth(
         if iterations <= 0:
             message = message or f"no convergence in {-iterations} Newton steps on {count} nodes"
             break
-    return _in_si(contact, heating, x, (pressure, height, flow), (message, iterations, error))
-
-
-def _in_si(
-    contact: LineContact, heating: Heating | None, x: FloatArray,
-    scaled: tuple[FloatArray, FloatArray, FloatArray], ending: tuple[str, int, float],
-) -> SmoothSolution:  # fmt: skip
-    """The solution from scaled pressure, film and flow; message, iterations and error."""
-    pressure, height, flow = scaled
-    message, iterations, error = ending
-    rise, thinned = np.zeros_like(x), np.zeros_like(x)
     si = x * contact.half_width, pressure * contact.hertz_pressure, height * contact.film_scale
-    if heating is not None and not message:
-        rise = temperature_rise(contact, heating, *si)
-        thinned = thinning(contact, heating, si[1], rise)
+    heating = None if message else heating
+    rise = np.zeros_like(x) if heating is None else temperature_rise(contact, heating, *si)
+    thinned = thinning(contact, heating, si[1], rise)
     stress = shear_stresses(pressure, height, thinned, contact.scaled_fluid())
     return SmoothSolution(
         contact=contact,
