@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import re
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from html import escape
 from pathlib import Path
@@ -18,7 +18,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic import library
 from epicyclic.case.expand import expand, gearing_of
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
-from epicyclic.case.keys import Changes, field_at, known_keys, value_of, with_changes
+from epicyclic.case.keys import field_at, known_keys, value_of, with_changes
 from epicyclic.case.rules import (
     bearing_force_problems,
     check_listed_bearings,
@@ -405,14 +405,11 @@ def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
             )
 
 
-def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Found]:
+def converted_roughness(raw: Mapping[str, Any]) -> Iterator[Found]:
     """How roughness that is stated as Ra or Rz is converted."""
-    for key, value in raw.items():
-        name = f"{place}{key}"
-        if isinstance(value, dict):
-            yield from converted_roughness(value, f"{name}.")
-        elif key.endswith("roughness") and (told := roughness_told(value)) is not None:
-            yield Found(name, f"{1e6 * told[0]:.4g} um", told[1])
+    for key, value in flattened(raw):
+        if key.endswith("roughness") and (told := roughness_told(value)) is not None:
+            yield Found(key, f"{1e6 * told[0]:.4g} um", told[1])
 
 
 def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
@@ -702,8 +699,7 @@ def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
     if not isinstance(raw, dict):
         remedy = "Write [sets.NAME] and its keys below it."
         return _ReadSet(None, [Problem("", written(raw), "must be a table of keys.", remedy)])
-    key = (_frozen(raw), _frozen(dict(shared)))
-    return _read_set_cached(_Given(raw, dict(shared), folder, key))
+    return _read_set_cached(_Given(raw, dict(shared), folder, repr((raw, shared))))
 
 
 @dataclass(frozen=True)
@@ -713,16 +709,7 @@ class _Given:
     raw: dict[str, Any] = field(compare=False)
     shared: dict[str, Any] = field(compare=False)
     folder: Path
-    key: Hashable  # Both tables, frozen.
-
-
-def _frozen(value: Any) -> Hashable:
-    """Plain values as something to be compared; 1, 1.0 and true are different."""
-    if isinstance(value, dict):
-        return frozenset((key, _frozen(item)) for key, item in value.items())
-    if isinstance(value, list | tuple):
-        return (type(value), *map(_frozen, value))
-    return type(value), value
+    key: str  # Both tables as text, in which 1, 1.0 and true are different.
 
 
 @lru_cache(maxsize=64)
@@ -963,24 +950,24 @@ def read_case(
         tables, problems = read_file(path)
     kind = tables.get("kind")
     if changes and isinstance(kind, str) and kind in KINDS:
-        changed = with_changes(KINDS[kind], tables, changes)
-        return _changed_case(changed, name, problems)
+        return build_case(tables, changes, name, problems)
     return _build_any(tables, name, problems)
 
 
-def _changed_case(changed: Changes, source: str, problems: Sequence[Problem] = ()) -> Case:
-    """The case of changed tables, which tells what the changes replaced."""
-    made = _build_any(changed.tables, source, [*problems, *changed.problems])
-    made._replaced = changed.replaced
-    return made
-
-
-def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Case:
+def build_case(
+    tables: Mapping[str, Any],
+    changes: Mapping[str, Any],
+    source: str,
+    problems: Sequence[Problem] = (),  # Found before.
+) -> Case:
     """The case of `tables` of a known kind, which may need the `changes` to be complete.
 
     Raises `InputError` with every problem of the changed tables, as problems of `source`.
     """
-    return _changed_case(with_changes(KINDS[tables["kind"]], plain(tables), changes), source)
+    changed = with_changes(KINDS[tables["kind"]], plain(tables), changes)
+    made = _build_any(changed.tables, source, [*problems, *changed.problems])
+    made._replaced = changed.replaced
+    return made
 
 
 def changed_tables(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
