@@ -538,14 +538,8 @@ WATT_PER_KELVIN = Quantity("a thermal conductance", "W/K", "W/K")
 WATT_PER_MM = Quantity("a power per length", "W/m", "W/mm")
 
 
-class _Dimensionless:
-    """Marks a number as one that has no unit because it has no dimension."""
-
-    def __repr__(self) -> str:
-        return "dimensionless"
-
-
-Number = Annotated[float, _Dimensionless()]
+Number = Annotated[float, "dimensionless"]
+"""A number that has no unit because it has no dimension."""
 
 Length = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5, open_low=True)]
 SmallLength = Annotated[float, Quantity("a length", "m", "um", low=0.0, high=1e4)]
