@@ -241,17 +241,9 @@ def _end() -> NoReturn:
     last.daemon = True
     last.start()
     with suppress(Exception):
-        for worker in _workers():
-            worker.terminate()  # those of loky have no `kill`
+        if "multiprocessing" in sys.modules:  # else none shares the work
+            for worker in sys.modules["multiprocessing"].active_children():
+                worker.terminate()  # those of loky have no `kill`
         tell_once()
         atexit._run_exitfuncs()
     os._exit(EXIT_INTERRUPTED)
-
-
-def _workers() -> list[Any]:
-    """Processes that this one has started to share its work."""
-    if "multiprocessing" not in sys.modules:
-        return []
-    import multiprocessing
-
-    return multiprocessing.active_children()
