@@ -199,7 +199,9 @@ class ElementTable(Table):
 
     @property
     def bodies(self) -> dict[str, str]:
-        """The two bodies that it is between, by their keys."""
+        """The two bodies that it is between, by their keys: it states both, or a shaft."""
+        if (both := getattr(self, "between", None)) is not None:
+            return {f"between[{number}]": body for number, body in enumerate(both)}
         return {key: getattr(self, key) for key in ("shaft", "against")}
 
     def problems(self) -> Iterator[Problem]:
@@ -223,10 +225,6 @@ class DragTable(ElementTable, LossTableTable):
     between: tuple[str, str] = Field(
         description='The two shafts whose speeds differ; one of them may be "housing".'
     )
-
-    @property
-    def bodies(self) -> dict[str, str]:
-        return {f"between[{number}]": body for number, body in enumerate(self.between)}
 
     def problems(self) -> Iterator[Problem]:
         yield from super().problems()
@@ -252,10 +250,6 @@ class ClutchTable(ElementTable):
     oil_flow: VolumeFlow | None = option(
         "Oil to all gaps together. Default: as much as fills them, which drags most."
     )
-
-    @property
-    def bodies(self) -> dict[str, str]:
-        return {f"between[{number}]": body for number, body in enumerate(self.between)}
 
     def problems(self) -> Iterator[Problem]:
         yield from super().problems()
