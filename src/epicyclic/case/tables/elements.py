@@ -22,6 +22,7 @@ from epicyclic.case.tables.base import (
 )
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
+from epicyclic.losses.ranges import BearingType, Cage
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.fields import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import Length, Number, Play, Quantity, SmallLength, Temperature, VolumeFlow
@@ -91,7 +92,7 @@ class PlanetBearing(Table):
         ge=0,
         le=100,
     )
-    cage: Literal["caged", "full-complement"] = "caged"
+    cage: Cage = "caged"
     palmgren_coefficient: Number | None = option(
         "f1 of the palmgren method. Default: 0.0003 caged, 0.00055 full complement, 0.00025 "
         "spherical.",
@@ -281,22 +282,13 @@ class ShaftBearingTable(ElementTable):
         "6208, NU 2210, 32006, NKI 40/30, ...: type and sizes by the ISO plans and estimated load "
         "ratings, where they are not given."
     )
-    type: Literal[
-        "deep-groove",
-        "cylindrical",
-        "tapered",
-        "needle",
-        "angular-contact",
-        "spherical",
-        "thrust-ball",
-        "thrust-roller",
-    ] = Field(description="thrust-ball, thrust-roller: need axial_force, take no radial one.")
+    type: BearingType = Field(
+        description="thrust-ball, thrust-roller: need axial_force, take no radial one."
+    )
     bore: Length
     outside_diameter: Length
     width: Length | None = option("Needed for the drag of rollers in an oil bath.")
-    cage: Literal["caged", "full-complement"] = option(
-        "full-complement: cylindrical and needle rollers only.", "caged"
-    )
+    cage: Cage = option("full-complement: cylindrical and needle rollers only.", "caged")
     model: Literal[
         "auto", "houpert", "zhou-hoeprich", "palmgren", "harris", "skf-2018", "table"
     ] = option(
