@@ -44,7 +44,7 @@ from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.gears.rules import gears_by_name
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.machine.train_shape import motion_problems, named_problems
-from epicyclic.messages import PART_NAME, PART_NAME_RULE, did_you_mean, millimetres, written
+from epicyclic.messages import did_you_mean, millimetres, part_name_problems, written
 from epicyclic.oil.oil import Oil
 from epicyclic.schema.fields import Table
 from epicyclic.units import BAR
@@ -183,9 +183,7 @@ def name_problems(gearing: Gearing) -> Iterator[Problem]:
             allowed = f"cannot be the name of a gear or body, because every set has a {name}."
             yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
     for name in dict.fromkeys((*gearing.bodies, *gearing.bodies.values())):
-        if not PART_NAME.fullmatch(name):
-            allowed = f"is not a valid name for a gear: {PART_NAME_RULE}."
-            yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
+        yield from part_name_problems(f'gears."{name}"', name, "gear")
 
 
 def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
