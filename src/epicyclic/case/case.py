@@ -16,7 +16,7 @@ from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.expand import expand, gearing_of
+from epicyclic.case.expand import expand
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
 from epicyclic.case.keys import field_at, known_keys, value_of, with_changes
 from epicyclic.case.rules import (
@@ -81,12 +81,11 @@ from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.sizing import Found, complete, places_told, problems_of_some
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
 from epicyclic.messages import (
-    PART_NAME,
-    PART_NAME_RULE,
     did_you_mean,
     either,
     misspelt,
     one_line,
+    part_name_problems,
     path_of,
     refused,
     value_at,
@@ -363,15 +362,17 @@ def with_sizes(
     gears = sections.get("gears")
     if not isinstance(gears, Gears):
         return validation, told, None
-    gearing = gearing_of(sections) if known is None else known[0]
+    planetary, pair = ("sun", "planet", "ring"), ("pinion", "gear")
+    gearing = None if known is None else known[0]
+    if known is None and any(sections.keys() >= set(names) for names in (planetary, pair)):
+        gearing, _ = expand(sections)
     if gearing is None:
         # something follows from gears of which some are not valid
         tables = {key: it for key, it in sections.items() if isinstance(it, GearTable)}
         if gears.center_distance is None or not all(it.states_thickness for it in tables.values()):
             del sections["gears"]
-        pair = bool({"pinion", "gear"} & raw.keys())
         stand_in = SimpleNamespace(teeth=1, internal=False, count=1, angles=None)
-        others = dict.fromkeys(("pinion", "gear") if pair else ("sun", "planet", "ring"), stand_in)
+        others = dict.fromkeys(planetary if raw.keys().isdisjoint(pair) else pair, stand_in)
         whole = expand({"gears": gears, **others, **tables})[0]
         some = (as_given(it, dict(raw)) for it in problems_of_some(whole, tables, raw))
         return Validation(None, sections, [*validation.problems, *some]), told, None
@@ -617,9 +618,7 @@ class TrainCase(_TrainHead):
         for name in named:
             read = _read_set(raw_sets[name], shared, folder)
             found += [_below(f"sets.{name}", problem) for problem in read.problems]
-            if not PART_NAME.fullmatch(name):
-                allowed = f"is not a valid name for a set: {PART_NAME_RULE}."
-                found.append(Problem(f"sets.{name}", "", allowed, "Choose another name."))
+            found += part_name_problems(f"sets.{name}", name, "set")
             sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in read.found]
             if read.table is not None:
                 sets[name] = read.table
@@ -802,9 +801,7 @@ def _part_problems(
     """
     for kind, name, table in case.elements:
         key = f"{kind}.{name}"
-        if not PART_NAME.fullmatch(name):
-            allowed = f"is not a valid name for a part: {PART_NAME_RULE}."
-            yield Problem(key, "", allowed, "Choose another name.")
+        yield from part_name_problems(key, name, "part")
         if name in taken:
             allowed = f"has the same name as another part, {taken[name]}.{name}."
             yield Problem(key, "", allowed, "Choose another name.")

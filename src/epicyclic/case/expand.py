@@ -34,13 +34,6 @@ def expand(
     return _planetary(parts), list(_given_planetary_problems(parts))
 
 
-def gearing_of(parts: Parts) -> Gearing | None:
-    """The gearing of a planetary set or a pair; None if a table that it needs is not there."""
-    if parts.keys() >= {"gears", "sun", "planet", "ring"}:
-        return _planetary(parts)
-    return _pair(parts) if parts.keys() >= {"gears", "pinion", "gear"} else None
-
-
 def _planetary(parts: Parts) -> Gearing:
     """Sun, planets and ring, with the torques of the members without losses. Theory (K3), (K4)."""
     sun, ring = parts["sun"].teeth, parts["ring"].teeth
