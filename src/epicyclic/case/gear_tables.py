@@ -75,12 +75,6 @@ class Gears(SharedGears):
     helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
     center_distance: Length | None = option("Of every mesh. Default: from the profile shifts, x.")
 
-    @property
-    def distance(self) -> float:
-        """The centre distance, as given or found; see `epicyclic.gears.sizing`. [m]"""
-        assert self.center_distance is not None
-        return self.center_distance
-
 
 class TopographyTable(Table):
     """Measured deviations of a flank, positive where material is missing."""
@@ -253,8 +247,8 @@ class GearTable(Teeth):
 
     @property
     def is_ring(self) -> bool:
-        """True for a gear with internal teeth."""
-        return False
+        """True for a gear with internal teeth: a ring, and another one that is said to be."""
+        return isinstance(self, GivenRing) or (isinstance(self, GivenGear) and self.internal)
 
 
 _RimThickness = Annotated[
@@ -272,11 +266,6 @@ class PairGear(GivenGear, GearTable):
     STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
 
     rim_thickness: _RimThickness = None
-
-    @property
-    def is_ring(self) -> bool:
-        """As stated."""
-        return self.internal
 
 
 class Planet(GearTable):
@@ -308,11 +297,6 @@ class Ring(GivenRing, GearTable):
     STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
 
     rim_thickness: _RimThickness = None
-
-    @property
-    def is_ring(self) -> bool:
-        """Always."""
-        return True
 
 
 class SetMesh(Table):
