@@ -1,4 +1,8 @@
-"""Rules across keys and tables: of a set, and of a train with its shafts and states."""
+"""Rules across keys and tables: of a set, and of a train with its shafts and states.
+
+Every function returns the problems it finds; none stops at the first. A check runs only if the
+tables that it needs are valid by themselves.
+"""
 
 from __future__ import annotations
 
@@ -52,12 +56,6 @@ from epicyclic.units import BAR
 if TYPE_CHECKING:
     from epicyclic.case.case import TrainCase
     from epicyclic.contact.fitted_models import OilModel
-
-
-# Checks across keys and tables.
-#
-# Every function returns the problems it finds; none stops at the first. A check runs only if the
-# tables that it needs are valid by themselves.
 
 
 MOST_COEFFICIENTS = 5_000_000
@@ -405,8 +403,6 @@ _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = 
 
 
 # Can a train run as stated: shafts, states, freedom, oil around its sets, forces on bearings?
-#
-# Every function returns the problems it finds; none stops at the first.
 
 
 def lubrication_problems(train: TrainCase) -> Iterator[Problem]:
