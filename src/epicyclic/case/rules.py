@@ -12,6 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from epicyclic.case.expand import expand
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, PlanetPin, ShaftBearingTable
 from epicyclic.case.tables.models import (
@@ -335,9 +337,10 @@ def _check_friction_table(table: FrictionTable) -> list[Problem]:
         remedy = "Give the values of the axes to which the coefficients belong."
         return [Problem("friction_table", f"{len(axes)} axes", allowed, remedy)]
     problems = rising_problems(axes, "friction_table.")
-    wanted = " x ".join(f"{len(points)}" for points in axes.values())
-    if table.shape() != tuple(len(points) for points in axes.values()):
+    rows, *columns = (len(points) for points in axes.values())
+    if [np.shape(row) for row in table.friction] != [tuple(columns)] * rows:
         shown = f"{len(table.friction)} entries"
+        wanted = " x ".join(map(str, (rows, *columns)))
         allowed = f"must have {wanted} values, for the points of {' and '.join(axes)}."
         remedy = "Give one value, or one row, for each value of the first axis."
         problems.append(Problem("friction_table.friction", shown, allowed, remedy))
