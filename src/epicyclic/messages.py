@@ -126,8 +126,8 @@ def part_name_problems(key: str, name: str, noun: str) -> list[Problem]:
     """The problem of a name that no part may have."""
     if _PART_NAME.fullmatch(name):
         return []
-    allowed = f"is not a valid name for a {noun}: begin with a letter or digit, and use no dot or "
-    return [Problem(key, "", f"{allowed}slash.", "Choose another name.")]
+    rule = "begin with a letter or digit, and use no dot or slash"
+    return [Problem(key, "", f"is not a valid name for a {noun}: {rule}.", "Choose another name.")]
 
 
 def millimetres(value: float) -> str:
