@@ -62,11 +62,16 @@ if TYPE_CHECKING:
     from epicyclic.study.sweeps.run import sweep as sweep
     from epicyclic.validation.pocketing import pocketing_study as pocketing_study
 
-_HOME = {
+_HOME = {  # those of plug-ins are missing with them
     name: f"epicyclic.{module}"
     for module, names in {
         "case.case": "GearPairCase PlanetaryCase case_schema",
         "errors": "ConvergenceError EpicyclicError InputError Problem",
+        "plugins.contact_solver.fit": "characterise_oil",
+        "plugins.design.search": "design",
+        "plugins.design.strength": "strength",
+        "plugins.rexs.exporting": "write_rexs",
+        "plugins.rexs.importing": "RexsImport read_rexs",
         "show.html": "report_html",
         "show.record": "ResultRecord open_result record save_result",
         "show.views": "Result solve solve_for",
@@ -87,25 +92,16 @@ _HOME = {
         "study.pockets": "pocket_details",
         "study.solve": "loaded_meshes mesh_contacts",
         "study.sweeps.run": "sweep",
+        "validation.pocketing": "pocketing_study",
     }.items()
     for name in names.split()
 }
 
-_OF_PLUG_INS = {  # as they declare in their `PLUG_IN`; missing with the plug-in
-    "RexsImport": "epicyclic.plugins.rexs.importing",
-    "characterise_oil": "epicyclic.plugins.contact_solver.fit",
-    "design": "epicyclic.plugins.design.search",
-    "pocketing_study": "epicyclic.validation.pocketing",
-    "read_rexs": "epicyclic.plugins.rexs.importing",
-    "strength": "epicyclic.plugins.design.strength",
-    "write_rexs": "epicyclic.plugins.rexs.exporting",
-}
-
-__all__ = sorted(_HOME | _OF_PLUG_INS)
+__all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> Any:
-    home = _HOME.get(name) or _OF_PLUG_INS.get(name)
+    home = _HOME.get(name)
     if home is not None:
         return getattr(importlib.import_module(home), name)
     raise AttributeError(f"module 'epicyclic' has no attribute {name!r}")

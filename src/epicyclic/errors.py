@@ -8,8 +8,6 @@ from itertools import pairwise
 
 from epicyclic.dataclass import dataclass
 
-# Exceptions of the package, and the text of their messages.
-#
 # Bad input is described by `Problem` objects, one per mistake, and reported all together by one
 # `InputError`. Nothing here imports the rest of the package.
 

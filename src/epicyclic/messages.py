@@ -13,9 +13,8 @@ from epicyclic.errors import InputError, Problem, printable
 _LONGEST_SHOWN = 60  # Text that users wrote is cut to this many characters in messages.
 
 NAME = re.compile(r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028\u2029]+")
-PART_NAME = re.compile(rf"(?![\x00-/:-@[-^`{{-\xa0])(?![^/.]*[/.]){NAME.pattern}(?<!\s)")
+_PART_NAME = re.compile(rf"(?![\x00-/:-@[-^`{{-\xa0])(?![^/.]*[/.]){NAME.pattern}(?<!\s)")
 """Names of parts begin names of variables in NetCDF files, and end at a dot."""
-PART_NAME_RULE = "begin with a letter or digit, and use no dot or slash"
 
 _QUOTED = r'"((?:[^"\\]|\\.)*)"'  # A quote or backslash in it follows a backslash, as in TOML.
 _DEEPEST = 20  # Dots of a key; tables of a case are nested a few levels deep.
@@ -121,6 +120,14 @@ def refused(error: PydanticCustomError, key: str, given: str) -> Problem:
     """The problem of a value that its quantity refuses."""
     remedy = str((error.context or {}).get("remedy", ""))
     return Problem(key, given, sentence(error.message(), capital=False), sentence(remedy))
+
+
+def part_name_problems(key: str, name: str, noun: str) -> list[Problem]:
+    """The problem of a name that no part may have."""
+    if _PART_NAME.fullmatch(name):
+        return []
+    rule = "begin with a letter or digit, and use no dot or slash"
+    return [Problem(key, "", f"is not a valid name for a {noun}: {rule}.", "Choose another name.")]
 
 
 def millimetres(value: float) -> str:

@@ -14,40 +14,23 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Literal
 
-from epicyclic.dataclass import dataclass, field
-
 Kind = Literal[
-    "commands",
-    "case_readers",
-    "map_formats",
-    "friction_models",
-    "details",
-    "plans",
-    "plan_writers",
-    "names",
-]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlugIn:
-    """What a plug-in offers: for each name the place, ``"module:object"`` within the plug-in."""
-
-    commands: Mapping[str, str] = field(default_factory=dict)  # Click commands by their names.
-    # By the ending of a file, `epicyclic.study.load.CaseReader`.
-    case_readers: Mapping[str, str] = field(default_factory=dict)
-    # By the name of a format of loss maps, `epicyclic.study.maps.formats.Format`.
-    map_formats: Mapping[str, str] = field(default_factory=dict)
+    "commands",  # Click commands by their names.
+    "case_readers",  # By the ending of a file, `epicyclic.study.load.CaseReader`.
+    "map_formats",  # By the name of a format of loss maps, `epicyclic.study.maps.formats.Format`.
     # By its name in ``models.friction``, a function of a case that returns a
     # `epicyclic.losses.friction.FrictionModel`.
-    friction_models: Mapping[str, str] = field(default_factory=dict)
+    "friction_models",
     # By the key of a table of a case, a function of a case that has it, and of its result or None,
     # that returns items of a page for ``check``, ``run --details`` and reports.
-    details: Mapping[str, str] = field(default_factory=dict)
+    "details",
     # By `Plan.kind`, classes of plans whose shards ``merge`` puts together, and for each a function
     # of a plan and a path that returns an `epicyclic.cli.many.Write`.
-    plans: Mapping[str, str] = field(default_factory=dict)
-    plan_writers: Mapping[str, str] = field(default_factory=dict)
-    names: Mapping[str, str] = field(default_factory=dict)  # Public names of `epicyclic`.
+    "plans",
+    "plan_writers",
+]
+PlugIn = Mapping[Kind, Mapping[str, str]]
+"""What a plug-in offers: for each name the place, ``"module:object"`` within the plug-in."""
 
 
 @cache
@@ -67,7 +50,7 @@ def offered(kind: Kind) -> Mapping[str, str]:
     return {
         name: f"{package}.{place}"
         for package, plug_in in plug_ins().items()
-        for name, place in getattr(plug_in, kind).items()
+        for name, place in plug_in.get(kind, {}).items()
     }
 
 

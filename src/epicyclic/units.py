@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -371,9 +372,10 @@ class Quantity:
 
     def _is_allowed(self, shown: float) -> bool:
         """True for a number in the display unit within the bounds."""
-        # comparisons written so that NaN fails them
+        # comparisons written so that NaN fails them, and a whole number too large to be a float
         low_ok = self.low is None or (shown > self.low if self.open_low else shown >= self.low)
-        return low_ok and (self.high is None or shown <= self.high) and math.isfinite(shown)
+        high_ok = self.high is None or shown <= self.high
+        return low_ok and high_ok and abs(shown) <= sys.float_info.max
 
     def scale_from(self, unit: str) -> tuple[float, float]:
         """What arrays of numbers in `unit` are multiplied by, and what is added, for display.
@@ -453,7 +455,7 @@ class Quantity:
 
     def _form(self, number: float | None = None) -> str:
         """How to write it; with the user's `number` if it is allowed and short enough."""
-        if number is None or not self._is_allowed(_as_float(number)):
+        if number is None or not self._is_allowed(number):
             return f"give a number with its unit, {self.display}"
         text = format_number(number, 12) if isinstance(number, float) else str(number)
         return f'give it in {self.display}, such as "{text} {self.display}"'
@@ -486,14 +488,6 @@ class Quantity:
             "x-unit": self.display,
             "pattern": r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*[^0-9\s].*$",
         }
-
-
-def _as_float(number: float) -> float:
-    """`number`, or infinity if it is a whole number too large to be one."""
-    try:
-        return float(number)
-    except OverflowError:
-        return math.inf
 
 
 @cache
@@ -538,14 +532,8 @@ WATT_PER_KELVIN = Quantity("a thermal conductance", "W/K", "W/K")
 WATT_PER_MM = Quantity("a power per length", "W/m", "W/mm")
 
 
-class _Dimensionless:
-    """Marks a number as one that has no unit because it has no dimension."""
-
-    def __repr__(self) -> str:
-        return "dimensionless"
-
-
-Number = Annotated[float, _Dimensionless()]
+Number = Annotated[float, "dimensionless"]
+"""A number that has no unit because it has no dimension."""
 
 Length = Annotated[float, Quantity("a length", "m", "mm", low=0.0, high=1e5, open_low=True)]
 SmallLength = Annotated[float, Quantity("a length", "m", "um", low=0.0, high=1e4)]

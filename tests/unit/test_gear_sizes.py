@@ -117,7 +117,7 @@ def test_the_centre_distance_follows_from_profile_shifts():
     assert case.found[0].key == "gears.center_distance"
     without_sun = load_case(changed(gears={"center_distance": None}, sun={X: None}))
     assert meshes(without_sun)[1].backlash == pytest.approx(0.0, abs=1e-12)
-    assert without_sun.gears.distance != case.gears.distance
+    assert without_sun.gears.center_distance != case.gears.center_distance
 
 
 def test_what_is_found_reads_again_as_the_same_case():

@@ -52,7 +52,7 @@ OF_A_CASE = {
     "name",
     [
         name
-        for name in sorted(ep._HOME | ep._OF_PLUG_INS)
+        for name in sorted(ep._HOME)
         if inspect.isfunction(getattr(ep, name))
         and "Case" in str(inspect.signature(getattr(ep, name))).partition("->")[0]
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import re
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from html import escape
 from pathlib import Path
@@ -16,9 +16,9 @@ from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import PydanticCustomError
 
 from epicyclic import library
-from epicyclic.case.expand import expand, gearing_of
+from epicyclic.case.expand import expand
 from epicyclic.case.gear_tables import Gears, GearTable, PairGear, Planet, Ring, SetMesh
-from epicyclic.case.keys import Changes, field_at, known_keys, value_of, with_changes
+from epicyclic.case.keys import field_at, known_keys, value_of, with_changes
 from epicyclic.case.rules import (
     bearing_force_problems,
     check_listed_bearings,
@@ -81,12 +81,11 @@ from epicyclic.gears.gearing import Gearing
 from epicyclic.gears.sizing import Found, complete, places_told, problems_of_some
 from epicyclic.machine.train_shape import TrainShape, shape_of_train
 from epicyclic.messages import (
-    PART_NAME,
-    PART_NAME_RULE,
     did_you_mean,
     either,
     misspelt,
     one_line,
+    part_name_problems,
     path_of,
     refused,
     value_at,
@@ -363,15 +362,17 @@ def with_sizes(
     gears = sections.get("gears")
     if not isinstance(gears, Gears):
         return validation, told, None
-    gearing = gearing_of(sections) if known is None else known[0]
+    planetary, pair = ("sun", "planet", "ring"), ("pinion", "gear")
+    gearing = None if known is None else known[0]
+    if known is None and any(sections.keys() >= set(names) for names in (planetary, pair)):
+        gearing, _ = expand(sections)
     if gearing is None:
         # something follows from gears of which some are not valid
         tables = {key: it for key, it in sections.items() if isinstance(it, GearTable)}
         if gears.center_distance is None or not all(it.states_thickness for it in tables.values()):
             del sections["gears"]
-        pair = bool({"pinion", "gear"} & raw.keys())
         stand_in = SimpleNamespace(teeth=1, internal=False, count=1, angles=None)
-        others = dict.fromkeys(("pinion", "gear") if pair else ("sun", "planet", "ring"), stand_in)
+        others = dict.fromkeys(planetary if raw.keys().isdisjoint(pair) else pair, stand_in)
         whole = expand({"gears": gears, **others, **tables})[0]
         some = (as_given(it, dict(raw)) for it in problems_of_some(whole, tables, raw))
         return Validation(None, sections, [*validation.problems, *some]), told, None
@@ -405,14 +406,11 @@ def negative_teeth(raw: Mapping[str, Any]) -> Iterator[Found]:
             )
 
 
-def converted_roughness(raw: Mapping[str, Any], place: str = "") -> Iterator[Found]:
+def converted_roughness(raw: Mapping[str, Any]) -> Iterator[Found]:
     """How roughness that is stated as Ra or Rz is converted."""
-    for key, value in raw.items():
-        name = f"{place}{key}"
-        if isinstance(value, dict):
-            yield from converted_roughness(value, f"{name}.")
-        elif key.endswith("roughness") and (told := roughness_told(value)) is not None:
-            yield Found(name, f"{1e6 * told[0]:.4g} um", told[1])
+    for key, value in flattened(raw):
+        if key.endswith("roughness") and (told := roughness_told(value)) is not None:
+            yield Found(key, f"{1e6 * told[0]:.4g} um", told[1])
 
 
 def told_oil(raw: Mapping[str, Any]) -> Iterator[Found]:
@@ -620,9 +618,7 @@ class TrainCase(_TrainHead):
         for name in named:
             read = _read_set(raw_sets[name], shared, folder)
             found += [_below(f"sets.{name}", problem) for problem in read.problems]
-            if not PART_NAME.fullmatch(name):
-                allowed = f"is not a valid name for a set: {PART_NAME_RULE}."
-                found.append(Problem(f"sets.{name}", "", allowed, "Choose another name."))
+            found += part_name_problems(f"sets.{name}", name, "set")
             sizes += [replace(one, key=f"sets.{name}.{one.key}") for one in read.found]
             if read.table is not None:
                 sets[name] = read.table
@@ -702,8 +698,7 @@ def _read_set(raw: Any, shared: Mapping[str, Any], folder: Path) -> _ReadSet:
     if not isinstance(raw, dict):
         remedy = "Write [sets.NAME] and its keys below it."
         return _ReadSet(None, [Problem("", written(raw), "must be a table of keys.", remedy)])
-    key = (_frozen(raw), _frozen(dict(shared)))
-    return _read_set_cached(_Given(raw, dict(shared), folder, key))
+    return _read_set_cached(_Given(raw, dict(shared), folder, repr((raw, shared))))
 
 
 @dataclass(frozen=True)
@@ -713,16 +708,7 @@ class _Given:
     raw: dict[str, Any] = field(compare=False)
     shared: dict[str, Any] = field(compare=False)
     folder: Path
-    key: Hashable  # Both tables, frozen.
-
-
-def _frozen(value: Any) -> Hashable:
-    """Plain values as something to be compared; 1, 1.0 and true are different."""
-    if isinstance(value, dict):
-        return frozenset((key, _frozen(item)) for key, item in value.items())
-    if isinstance(value, list | tuple):
-        return (type(value), *map(_frozen, value))
-    return type(value), value
+    key: str  # Both tables as text, in which 1, 1.0 and true are different.
 
 
 @lru_cache(maxsize=64)
@@ -815,9 +801,7 @@ def _part_problems(
     """
     for kind, name, table in case.elements:
         key = f"{kind}.{name}"
-        if not PART_NAME.fullmatch(name):
-            allowed = f"is not a valid name for a part: {PART_NAME_RULE}."
-            yield Problem(key, "", allowed, "Choose another name.")
+        yield from part_name_problems(key, name, "part")
         if name in taken:
             allowed = f"has the same name as another part, {taken[name]}.{name}."
             yield Problem(key, "", allowed, "Choose another name.")
@@ -963,24 +947,24 @@ def read_case(
         tables, problems = read_file(path)
     kind = tables.get("kind")
     if changes and isinstance(kind, str) and kind in KINDS:
-        changed = with_changes(KINDS[kind], tables, changes)
-        return _changed_case(changed, name, problems)
+        return build_case(tables, changes, name, problems)
     return _build_any(tables, name, problems)
 
 
-def _changed_case(changed: Changes, source: str, problems: Sequence[Problem] = ()) -> Case:
-    """The case of changed tables, which tells what the changes replaced."""
-    made = _build_any(changed.tables, source, [*problems, *changed.problems])
-    made._replaced = changed.replaced
-    return made
-
-
-def build_case(tables: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Case:
+def build_case(
+    tables: Mapping[str, Any],
+    changes: Mapping[str, Any],
+    source: str,
+    problems: Sequence[Problem] = (),  # Found before.
+) -> Case:
     """The case of `tables` of a known kind, which may need the `changes` to be complete.
 
     Raises `InputError` with every problem of the changed tables, as problems of `source`.
     """
-    return _changed_case(with_changes(KINDS[tables["kind"]], plain(tables), changes), source)
+    changed = with_changes(KINDS[tables["kind"]], plain(tables), changes)
+    made = _build_any(changed.tables, source, [*problems, *changed.problems])
+    made._replaced = changed.replaced
+    return made
 
 
 def changed_tables(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -29,16 +29,10 @@ def expand(
     """The gearing of a set, and what cannot be about it."""
     if "members" in parts:
         return _listed(parts, set(joined))
+    make, check = _planetary, _given_planetary_problems
     if "pinion" in parts:
-        return _pair(parts), list(_given_pair_problems(parts))
-    return _planetary(parts), list(_given_planetary_problems(parts))
-
-
-def gearing_of(parts: Parts) -> Gearing | None:
-    """The gearing of a planetary set or a pair; None if a table that it needs is not there."""
-    if parts.keys() >= {"gears", "sun", "planet", "ring"}:
-        return _planetary(parts)
-    return _pair(parts) if parts.keys() >= {"gears", "pinion", "gear"} else None
+        make, check = _pair, _given_pair_problems
+    return make(parts), [] if "gears" in parts else list(check(parts))
 
 
 def _planetary(parts: Parts) -> Gearing:
@@ -122,8 +116,6 @@ def _pairing(
 def _given_planetary_problems(parts: Parts) -> Iterator[Problem]:
     """Tooth numbers that leave no room for planets; those of computed sets are checked before."""
     sun, ring, planet = (parts[name].teeth for name in ("sun", "ring", "planet"))
-    if "gears" in parts:
-        return
     if ring <= sun:
         allowed = f"must exceed the {sun} teeth of the sun, which it surrounds."
         yield Problem("ring.teeth", str(ring), allowed, "Check both tooth numbers.")
@@ -145,7 +137,7 @@ def _given_planetary_problems(parts: Parts) -> Iterator[Problem]:
 
 def _given_pair_problems(parts: Parts) -> Iterator[Problem]:
     pinion, gear = parts["pinion"].teeth, parts["gear"].teeth
-    if "gears" not in parts and parts["gear"].internal and gear <= pinion:
+    if parts["gear"].internal and gear <= pinion:
         allowed = f"must exceed the {pinion} teeth of the pinion, which turns inside it."
         yield Problem("gear.teeth", str(gear), allowed, "Check both tooth numbers.")
 

@@ -75,12 +75,6 @@ class Gears(SharedGears):
     helix_angle: HelixAngle = Field(description="beta at the reference circle, magnitude.")
     center_distance: Length | None = option("Of every mesh. Default: from the profile shifts, x.")
 
-    @property
-    def distance(self) -> float:
-        """The centre distance, as given or found; see `epicyclic.gears.sizing`. [m]"""
-        assert self.center_distance is not None
-        return self.center_distance
-
 
 class TopographyTable(Table):
     """Measured deviations of a flank, positive where material is missing."""
@@ -137,7 +131,53 @@ RING_TEETH: Any = Field(
 )
 
 
-class GearTable(Table):
+def _with_positive_teeth(table: Any) -> Any:
+    """The keys of a gear that may be a ring, with the magnitudes of numbers that mark it as one.
+
+    ISO 21771 gives rings negative numbers of teeth, DIN 3960 negative diameters too. The sign of
+    their profile shift is that of this program; see the page on geometry.
+    """
+    teeth = table.get("teeth") if isinstance(table, dict) else None
+    is_negative = isinstance(teeth, int) and teeth <= -LEAST_TEETH
+    if not is_negative or table.get("internal") is False:
+        return table
+    positive = dict(table) | {"teeth": -table["teeth"]}
+    for key in ("tip_diameter", "root_diameter", "thickness_diameter", "dimension_over_pins"):
+        if isinstance(table.get(key), str):
+            positive[key] = table[key].strip().removeprefix("-")
+    return positive
+
+
+def _internal_if_negative(table: Any) -> Any:
+    """The same of a gear that need not be a ring, which negative teeth make it."""
+    positive = _with_positive_teeth(table)
+    return positive if positive is table else positive | {"internal": True}
+
+
+class Teeth(Table):
+    """A gear of which only the number of teeth matters."""
+
+    teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
+
+
+class GivenRing(Teeth):
+    """The ring of a set of given efficiency."""
+
+    _sign = model_validator(mode="before")(_with_positive_teeth)
+
+    teeth: int = RING_TEETH
+
+
+class GivenGear(Teeth):
+    """A gear of a pair of given efficiency."""
+
+    _sign = model_validator(mode="before")(_internal_if_negative)
+
+    teeth: int = RING_TEETH
+    internal: bool = option("true: a ring gear around the pinion.", False)
+
+
+class GearTable(Teeth):
     """One gear."""
 
     STAND_INS: ClassVar[dict[str, object]] = {
@@ -153,7 +193,6 @@ class GearTable(Table):
         ("tooth_thickness_allowance", "tooth_thickness_fit"),
     )
 
-    teeth: int = Field(ge=LEAST_TEETH, le=MOST_TEETH, description="Number of teeth.")
     face_width: Length
     tip_diameter: Length | None = option(
         "Inner diameter of a ring. Default: from addendum_coefficient and tip_alteration."
@@ -208,31 +247,8 @@ class GearTable(Table):
 
     @property
     def is_ring(self) -> bool:
-        """True for a gear with internal teeth."""
-        return False
-
-
-def with_positive_teeth(table: Any) -> Any:
-    """The keys of a gear that may be a ring, with the magnitudes of numbers that mark it as one.
-
-    ISO 21771 gives rings negative numbers of teeth, DIN 3960 negative diameters too. The sign of
-    their profile shift is that of this program; see the page on geometry.
-    """
-    teeth = table.get("teeth") if isinstance(table, dict) else None
-    is_negative = isinstance(teeth, int) and teeth <= -LEAST_TEETH
-    if not is_negative or table.get("internal") is False:
-        return table
-    positive = dict(table) | {"teeth": -table["teeth"]}
-    for key in ("tip_diameter", "root_diameter", "thickness_diameter", "dimension_over_pins"):
-        if isinstance(table.get(key), str):
-            positive[key] = table[key].strip().removeprefix("-")
-    return positive
-
-
-def internal_if_negative(table: Any) -> Any:
-    """The same of a gear that need not be a ring, which negative teeth make it."""
-    positive = with_positive_teeth(table)
-    return positive if positive is table else positive | {"internal": True}
+        """True for a gear with internal teeth: a ring, and another one that is said to be."""
+        return isinstance(self, GivenRing) or (isinstance(self, GivenGear) and self.internal)
 
 
 _RimThickness = Annotated[
@@ -244,20 +260,12 @@ _RimThickness = Annotated[
 ]
 
 
-class PairGear(GearTable):
+class PairGear(GivenGear, GearTable):
     """The gear that meets the pinion."""
 
     STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
-    _sign = model_validator(mode="before")(internal_if_negative)
 
-    teeth: int = RING_TEETH
-    internal: bool = option("true: a ring gear around the pinion.", False)
     rim_thickness: _RimThickness = None
-
-    @property
-    def is_ring(self) -> bool:
-        """As stated."""
-        return self.internal
 
 
 class Planet(GearTable):
@@ -283,23 +291,16 @@ class Planet(GearTable):
     )
 
 
-class Ring(GearTable):
+class Ring(GivenRing, GearTable):
     """The ring gear."""
 
     STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
-    _sign = model_validator(mode="before")(with_positive_teeth)
 
-    teeth: int = RING_TEETH
     rim_thickness: _RimThickness = None
 
-    @property
-    def is_ring(self) -> bool:
-        """Always."""
-        return True
 
-
-class MeshTable(Table):
-    """What belongs to a mesh and to none of its gears."""
+class SetMesh(Table):
+    """Misalignment and backlash of a mesh."""
 
     STAND_INS: ClassVar[dict[str, object]] = {"misalignment": None}
 
@@ -308,11 +309,6 @@ class MeshTable(Table):
         "towards the end where contact ends.",
         "0 um",
     )
-
-
-class SetMesh(MeshTable):
-    """Misalignment and backlash of a mesh."""
-
     normal_backlash: ShortLength | None = option(
         "j_bn, used to find a profile shift or centre distance that is left out. Default: "
         "none, as for the profile shifts of ISO 21771."

@@ -1,4 +1,8 @@
-"""Rules across keys and tables: of a set, and of a train with its shafts and states."""
+"""Rules across keys and tables: of a set, and of a train with its shafts and states.
+
+Every function returns the problems it finds; none stops at the first. A check runs only if the
+tables that it needs are valid by themselves.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from epicyclic.case.expand import expand
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, PlanetPin, ShaftBearingTable
@@ -44,7 +50,7 @@ from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.gears.rules import gears_by_name
 from epicyclic.losses.ranges import FITTED_QUANTITIES
 from epicyclic.machine.train_shape import motion_problems, named_problems
-from epicyclic.messages import PART_NAME, PART_NAME_RULE, did_you_mean, millimetres, written
+from epicyclic.messages import did_you_mean, millimetres, part_name_problems, written
 from epicyclic.oil.oil import Oil
 from epicyclic.schema.fields import Table
 from epicyclic.units import BAR
@@ -52,12 +58,6 @@ from epicyclic.units import BAR
 if TYPE_CHECKING:
     from epicyclic.case.case import TrainCase
     from epicyclic.contact.fitted_models import OilModel
-
-
-# Checks across keys and tables.
-#
-# Every function returns the problems it finds; none stops at the first. A check runs only if the
-# tables that it needs are valid by themselves.
 
 
 MOST_COEFFICIENTS = 5_000_000
@@ -183,9 +183,7 @@ def name_problems(gearing: Gearing) -> Iterator[Problem]:
             allowed = f"cannot be the name of a gear or body, because every set has a {name}."
             yield Problem(f"gears.{name}", "", allowed, "Choose another name.")
     for name in dict.fromkeys((*gearing.bodies, *gearing.bodies.values())):
-        if not PART_NAME.fullmatch(name):
-            allowed = f"is not a valid name for a gear: {PART_NAME_RULE}."
-            yield Problem(f'gears."{name}"', "", allowed, "Choose another name.")
+        yield from part_name_problems(f'gears."{name}"', name, "gear")
 
 
 def _planet_problems(table: ListedSet, gearing: Gearing) -> Iterator[Problem]:
@@ -339,9 +337,10 @@ def _check_friction_table(table: FrictionTable) -> list[Problem]:
         remedy = "Give the values of the axes to which the coefficients belong."
         return [Problem("friction_table", f"{len(axes)} axes", allowed, remedy)]
     problems = rising_problems(axes, "friction_table.")
-    wanted = " x ".join(f"{len(points)}" for points in axes.values())
-    if table.shape() != tuple(len(points) for points in axes.values()):
+    rows, *columns = (len(points) for points in axes.values())
+    if [np.shape(row) for row in table.friction] != [tuple(columns)] * rows:
         shown = f"{len(table.friction)} entries"
+        wanted = " x ".join(map(str, (rows, *columns)))
         allowed = f"must have {wanted} values, for the points of {' and '.join(axes)}."
         remedy = "Give one value, or one row, for each value of the first axis."
         problems.append(Problem("friction_table.friction", shown, allowed, remedy))
@@ -407,8 +406,6 @@ _CHECKS: tuple[tuple[Callable[..., Iterable[Problem]], tuple[str, ...]], ...] = 
 
 
 # Can a train run as stated: shafts, states, freedom, oil around its sets, forces on bearings?
-#
-# Every function returns the problems it finds; none stops at the first.
 
 
 def lubrication_problems(train: TrainCase) -> Iterator[Problem]:

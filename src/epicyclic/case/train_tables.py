@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, model_validator
+from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from epicyclic.case.gear_tables import (
-    RING_TEETH,
     Gears,
     GearTable,
+    GivenGear,
+    GivenRing,
     PairGear,
     Planet,
     PressureAngle,
     Ring,
     SetMesh,
     SharedGears,
-    internal_if_negative,
-    with_positive_teeth,
+    Teeth,
 )
 from epicyclic.case.tables.elements import (
     Carrier,
@@ -51,24 +51,6 @@ from epicyclic.units import (
 )
 
 Efficiency = Annotated[Number, Field(gt=0, le=1)]
-_BODY: Any = option("Gears with the same body turn together. Default: its own.")
-_PLANET: Any = option(
-    "true: the gear is on the carrier. Default: as the meshes and shafts suggest."
-)
-
-
-class Teeth(Table):
-    """A gear of which only the number of teeth matters."""
-
-    teeth: int = Field(ge=5, le=2000, description="Number of teeth.")
-
-
-class GivenRing(Teeth):
-    """The ring of a set of given efficiency."""
-
-    _sign = model_validator(mode="before")(with_positive_teeth)
-
-    teeth: int = RING_TEETH
 
 
 class GivenPlanet(Table):
@@ -78,21 +60,13 @@ class GivenPlanet(Table):
     count: int = option("Number of planets.", 3, ge=1, le=99)
 
 
-class GivenGear(Teeth):
-    """A gear of a pair of given efficiency."""
-
-    _sign = model_validator(mode="before")(internal_if_negative)
-
-    teeth: int = RING_TEETH
-
-    internal: bool = option("true: a ring gear around the pinion.", False)
-
-
 class GivenListedGear(GivenGear):
     """A gear of a listed set of given efficiency."""
 
-    body: str | None = _BODY
-    planet: bool | None = _PLANET
+    body: str | None = option("Gears with the same body turn together. Default: its own.")
+    planet: bool | None = option(
+        "true: the gear is on the carrier. Default: as the meshes and shafts suggest."
+    )
 
 
 class PlanetarySet(Table):
@@ -158,11 +132,9 @@ class GivenPair(Table):
     efficiency: Efficiency
 
 
-class ListedGear(PairGear):
+class ListedGear(GivenListedGear, PairGear):
     """A gear of a listed set whose losses are computed."""
 
-    body: str | None = _BODY
-    planet: bool | None = _PLANET
     normal_module: Length | None = option("Default: of [gears].")
     transverse_module: Length | None = option("Default: of [gears].")
     normal_pressure_angle: PressureAngle | None = option("Default: of [gears].")

@@ -177,7 +177,7 @@ SIZES = (30, 2000)  # Smallest and largest size of a picture. [mm]
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 
 
-def check_ending(option: str, path: Path, endings: Sequence[str] = PICTURES) -> None:
+def check_ending(option: str, path: Path, endings: Sequence[str]) -> None:
     """Raise `InputError` for a file that ends otherwise."""
     raise_any(wrong_ending(option, path, endings), "the command")
 
@@ -275,9 +275,18 @@ def write_page(path: Path, page: str) -> None:
 # Options that commands share, above all a case and changes of its keys.
 
 
-def file_option(*names: str, metavar: str | None = "FILE", **options: Any) -> Callable[[Any], Any]:
-    """An option that names a file."""
-    return click.option(*names, metavar=metavar, type=click.Path(path_type=Path), **options)
+def file_option(
+    *names: str, metavar: str | None = "FILE", endings: Sequence[str] = (), **options: Any
+) -> Callable[[Any], Any]:
+    """An option that names a file, which must end so if there are `endings`."""
+
+    def checked(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
+        if path is not None and endings:
+            check_ending(names[0], path, endings)
+        return path
+
+    kind = click.Path(path_type=Path)
+    return click.option(*names, metavar=metavar, type=kind, callback=checked, **options)
 
 
 case_argument = click.argument("case", metavar="CASE")
@@ -380,21 +389,16 @@ contact_set_option = set_option_for("the contact", "lubricant.eyring_stress=8 MP
 
 
 def plot_option(text: str, endings: Sequence[str] = PICTURES) -> Callable[[Any], Any]:
-    """The option --plot, with its help, of a file that must end so."""
-
-    def checked(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
-        if path is not None:
-            check_ending("--plot", path, endings)
-        return path
-
-    return file_option("--plot", callback=checked, help=text)
+    """The option --plot, with its help."""
+    return file_option("--plot", endings=endings, help=text)
 
 
 def output_option(
-    text: str, metavar: str | None = None, required: bool = False
+    text: str, metavar: str | None = None, required: bool = False, endings: Sequence[str] = ()
 ) -> Callable[[Any], Any]:
     """The option -o, with its help."""
-    return file_option("-o", "--output", required=required, metavar=metavar, help=text)
+    names = ("-o", "--output")
+    return file_option(*names, required=required, metavar=metavar, endings=endings, help=text)
 
 
 picture_option = click.option(

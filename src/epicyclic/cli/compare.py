@@ -11,7 +11,6 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.cli.common import (
     case_argument,
-    check_ending,
     draw,
     journal_option,
     json_option,
@@ -103,7 +102,7 @@ if TYPE_CHECKING:
     "--seed", type=click.IntRange(0), default=0, help="Seed of the random share; default: 0."
 )
 @table_options
-@output_option("Write the calibrated case (.toml).", "FILE")
+@output_option("Write the calibrated case (.toml).", "FILE", endings=(".toml",))
 @plot_option("Draw parity and residuals to .png, .svg or .pdf.")
 @json_option
 @journal_option
@@ -145,12 +144,10 @@ def compare(
 
     rig = Rig(baseline, unloaded, torque_uncertainty)
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
-    if output is not None:
-        check_ending("-o", output, (".toml",))
-        if not keys:
-            allowed = "holds the calibrated case, but no keys are calibrated."
-            remedy = "Name the keys with --fit."
-            raise one_problem("-o", str(output), allowed, remedy, "the command")
+    if output is not None and not keys:
+        allowed = "holds the calibrated case, but no keys are calibrated."
+        remedy = "Name the keys with --fit."
+        raise one_problem("-o", str(output), allowed, remedy, "the command")
     if runner.shard is not None:
         others = {"--relative": relative, "--hold-out": hold_out, "--journal": journal}
         _check_shard(json_file, {"--fit": fit, **others})

@@ -16,15 +16,8 @@ from typing import Any, NoReturn
 
 import click
 
-from epicyclic.cli.case import check, friction, heat, mesh, run, warm_up
+from epicyclic.cli import case, compare, duty, many, merge, pockets, show, uncertainty
 from epicyclic.cli.common import echo, tell_compilation
-from epicyclic.cli.compare import compare
-from epicyclic.cli.duty import duty
-from epicyclic.cli.many import loss_map, sweep
-from epicyclic.cli.merge import merge
-from epicyclic.cli.pockets import pockets, pockets_table
-from epicyclic.cli.show import cases, init, oils, plot, report, schema
-from epicyclic.cli.uncertainty import compare_cases, uncertainty
 from epicyclic.errors import (
     EXIT_BROKEN_PIPE,
     EXIT_DONE,
@@ -90,32 +83,12 @@ def cli() -> None:
     """
 
 
+for module in (case, compare, duty, many, merge, pockets, show, uncertainty):
+    for command in vars(module).values():
+        if isinstance(command, click.Command):
+            cli.add_command(command)
+
 _LONGEST_NAME = 300
-COMMANDS = (
-    run,
-    check,
-    sweep,
-    loss_map,
-    merge,
-    duty,
-    uncertainty,
-    compare_cases,
-    heat,
-    warm_up,
-    mesh,
-    pockets,
-    pockets_table,
-    friction,
-    compare,
-    cases,
-    oils,
-    init,
-    report,
-    plot,
-    schema,
-)
-for command in COMMANDS:
-    cli.add_command(command)
 
 
 def main() -> None:
@@ -268,17 +241,9 @@ def _end() -> NoReturn:
     last.daemon = True
     last.start()
     with suppress(Exception):
-        for worker in _workers():
-            worker.terminate()  # those of loky have no `kill`
+        if "multiprocessing" in sys.modules:  # else none shares the work
+            for worker in sys.modules["multiprocessing"].active_children():
+                worker.terminate()  # those of loky have no `kill`
         tell_once()
         atexit._run_exitfuncs()
     os._exit(EXIT_INTERRUPTED)
-
-
-def _workers() -> list[Any]:
-    """Processes that this one has started to share its work."""
-    if "multiprocessing" not in sys.modules:
-        return []
-    import multiprocessing
-
-    return multiprocessing.active_children()

@@ -35,14 +35,15 @@ if TYPE_CHECKING:
     from epicyclic.study.sweeps.runner import Rows, Runner
 
 
-ANIMATION = ".gif"
-
-
 @click.command()
 @case_argument
 @set_option
 @plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf, and its section to FILE-MESH-section.")
-@file_option("--animate", help="Animate each mesh in FILE-MESH.gif, with the pressure as colour.")
+@file_option(
+    "--animate",
+    endings=(".gif",),
+    help="Animate each mesh in FILE-MESH.gif, with the pressure as colour.",
+)
 def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Path | None) -> None:
     """Show the pockets between the teeth: shape, pressure, speed of the flow, power.
 
@@ -54,8 +55,6 @@ def pockets(case: str, changes: tuple[str, ...], plot: Path | None, animate: Pat
     from epicyclic.show.studies import pocket_tables
     from epicyclic.study.pockets import pocket_details
 
-    if animate is not None:
-        check_ending("--animate", animate, (ANIMATION,))
     loaded = load_with(case, changes)
     with working():
         meshes = pocket_details(loaded)
@@ -89,7 +88,7 @@ FORMATS = (".nc", ".csv")
     help='Speed of the input member, as in "500:5000:10 rpm".',
 )
 @temperature_option
-@output_option(".nc for use in a case, or .csv", required=True)
+@output_option(".nc for use in a case, or .csv", required=True, endings=FORMATS)
 @shard_option
 @runner_options
 def pockets_table(
@@ -103,7 +102,6 @@ def pockets_table(
     from epicyclic.study.pocketing_table import make_table_plan
 
     loaded = load_with(case, changes)
-    check_ending("-o", output, FORMATS)
     check_values(values)
     given = parse_axes(loaded, values)
     plan = make_table_plan(loaded, given["speed"], given.get("temperature"))

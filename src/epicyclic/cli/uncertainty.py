@@ -11,7 +11,6 @@ import click
 
 from epicyclic.cli.common import (
     beside,
-    check_ending,
     draw,
     load_with,
     output_option,
@@ -59,7 +58,7 @@ seed_option = click.option(
     "--points", metavar="N", type=int, help="Points that represent the CYCLE; default: 16."
 )
 @seed_option
-@output_option("Write a .nc file.", "FILE")
+@output_option("Write a .nc file.", "FILE", endings=(MAP_SUFFIX,))
 @plot_option("Draw the drivers and the band to FILE-drivers.png and FILE-band.png.")
 @runner_options
 def uncertainty(
@@ -83,8 +82,6 @@ def uncertainty(
     """
     from epicyclic.show.uncertainty_tables import uncertainty_tables
 
-    if output is not None:
-        check_ending("-o", output, (MAP_SUFFIX,))
     for path in (output, plot):
         if path is not None:
             check_place(path)

@@ -5,13 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar, cast
+from typing import Any, Generic, Literal, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
 from epicyclic.arrays import BoolArray, Each, FloatArray, Points, between
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
+
+BearingType = Literal[
+    "deep-groove",
+    "cylindrical",
+    "tapered",
+    "needle",
+    "angular-contact",
+    "spherical",
+    "thrust-ball",
+    "thrust-roller",
+]
+"""Kinds of rolling bearings: a model holds for some of them."""
+Cage = Literal["caged", "full-complement"]
 
 # Ranges in which models were made: values held in them, and flags for what leaves them.
 

@@ -6,7 +6,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import ClassVar, Literal, NamedTuple, get_args
+from typing import ClassVar, NamedTuple, get_args
 
 import numpy as np
 
@@ -21,22 +21,10 @@ from epicyclic.losses.drag import (
     speed_parameter,
 )
 from epicyclic.losses.loss_table import LossTable
-from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.losses.ranges import BearingType, Cage, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.oil.oil import OilState
 from epicyclic.units import NUMBER
 from epicyclic.units import RPM as SPEED
-
-BearingType = Literal[
-    "deep-groove",
-    "cylindrical",
-    "tapered",
-    "needle",
-    "angular-contact",
-    "spherical",
-    "thrust-ball",
-    "thrust-roller",
-]
-Cage = Literal["caged", "full-complement"]
 
 BEARING_TYPES: tuple[BearingType, ...] = get_args(BearingType)
 THRUST_TYPES = ("thrust-ball", "thrust-roller")

@@ -14,12 +14,10 @@ from typing import ClassVar
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.losses.designations import bearing_tables
 from epicyclic.losses.drag import RPM
-from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.losses.ranges import BearingType, Cage, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
     AXIAL_RATIO,
     BearingLoad,
-    BearingType,
-    Cage,
     CatalogueBearing,
     FrictionPart,
     WithoutCoefficient,

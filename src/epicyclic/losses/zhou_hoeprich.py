@@ -29,11 +29,10 @@ from epicyclic.losses.drag import (
     bearing_viscous_loss,
 )
 from epicyclic.losses.mixed_lubrication import Surfaces, mixed_friction
-from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
+from epicyclic.losses.ranges import BearingType, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
     AXIAL_RATIO,
     BearingLoad,
-    BearingType,
     CatalogueBearing,
     FrictionPart,
     WithoutCoefficient,

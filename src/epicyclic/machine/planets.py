@@ -50,11 +50,9 @@ from epicyclic.losses.planet_bearing import (
     rubbing,
     tilting_moments,
 )
-from epicyclic.losses.ranges import Flags, Sought
+from epicyclic.losses.ranges import BearingType, Cage, Flags, Sought
 from epicyclic.losses.rolling import FittedRolling
 from epicyclic.losses.shaft_bearing import (
-    BearingType,
-    Cage,
     CatalogueBearing,
     limit_text,
     limiting_speed,

@@ -10,7 +10,7 @@ from epicyclic.dataclass import dataclass
 from epicyclic.errors import Problem
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.gears.gearing import Gearing
-from epicyclic.messages import NAME, PART_NAME, PART_NAME_RULE, did_you_mean, written
+from epicyclic.messages import NAME, did_you_mean, part_name_problems, written
 
 if TYPE_CHECKING:  # cases that are only read need no machine
     from epicyclic.machine.machine import Coupling, Machine, MeshRow
@@ -165,9 +165,7 @@ def shape_of_train(
     for shaft, names in shafts.items():
         key = f"shafts.{shaft}"
         joined[shaft] = []
-        if not PART_NAME.fullmatch(shaft):
-            allowed = f"is not a valid name for a shaft: {PART_NAME_RULE}."
-            problems.append(Problem(key, "", allowed, "Choose another name."))
+        problems += part_name_problems(key, shaft, "shaft")
         for name in names:
             member = aliases.get(name, name)
             if member not in members:

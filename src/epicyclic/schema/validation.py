@@ -189,8 +189,6 @@ def _number_remedy(value: Any) -> str:
     return f"write {match[1]}, without quotes"
 
 
-# The tables of a case against the schema: what is sound, and every problem of the rest.
-
 AnyCase = TypeVar("AnyCase", bound=Table)
 
 

@@ -20,11 +20,11 @@ from pydantic_core import PydanticCustomError
 from epicyclic.arrays import FloatArray
 from epicyclic.build.elements import build_element
 from epicyclic.build.machine import oil_medium
+from epicyclic.case.gear_tables import Teeth as TeethTable
 from epicyclic.case.tables.base import Roughness
 from epicyclic.case.tables.elements import Force, ShaftBearingTable
 from epicyclic.case.tables.models import GearPairModels
 from epicyclic.case.tables.operation import Lubricant
-from epicyclic.case.train_tables import Teeth as TeethTable
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import InputError, one_problem, raise_any
 from epicyclic.gears.gear import involute

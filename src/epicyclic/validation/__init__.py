@@ -2,13 +2,12 @@
 
 from epicyclic.registry import PlugIn
 
-PLUG_IN = PlugIn(
-    commands={
+PLUG_IN: PlugIn = {
+    "commands": {
         "validate": "commands:validate",
         "reproduce": "commands:reproduce",
         "study": "commands:study",
     },
-    plans={"study": "pocketing:StudyPlan"},
-    plan_writers={"study": "commands:study_writer"},
-    names={"pocketing_study": "pocketing:pocketing_study"},
-)
+    "plans": {"study": "pocketing:StudyPlan"},
+    "plan_writers": {"study": "commands:study_writer"},
+}

@@ -22,6 +22,7 @@ from epicyclic.case.tables.base import (
 )
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
+from epicyclic.losses.ranges import BearingType, Cage
 from epicyclic.messages import did_you_mean, millimetres, written
 from epicyclic.schema.fields import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import Length, Number, Play, Quantity, SmallLength, Temperature, VolumeFlow
@@ -91,7 +92,7 @@ class PlanetBearing(Table):
         ge=0,
         le=100,
     )
-    cage: Literal["caged", "full-complement"] = "caged"
+    cage: Cage = "caged"
     palmgren_coefficient: Number | None = option(
         "f1 of the palmgren method. Default: 0.0003 caged, 0.00055 full complement, 0.00025 "
         "spherical.",
@@ -197,9 +198,14 @@ class LossTableTable(PointsTable):
 class ElementTable(Table):
     """An element of a train: what it is between, and what contradicts itself in its table."""
 
+    TABLE_AXES: ClassVar[tuple[str, ...]] = ("speed", "temperature")
+    """Those that a table of its loss may have; only bearings carry a load."""
+
     @property
     def bodies(self) -> dict[str, str]:
-        """The two bodies that it is between, by their keys."""
+        """The two bodies that it is between, by their keys: it states both, or a shaft."""
+        if (both := getattr(self, "between", None)) is not None:
+            return {f"between[{number}]": body for number, body in enumerate(both)}
         return {key: getattr(self, key) for key in ("shaft", "against")}
 
     def problems(self) -> Iterator[Problem]:
@@ -211,10 +217,8 @@ class ElementTable(Table):
 
     def points(self, folder: Path) -> LossTable | None:
         """Its torque or power if it states a table; raises `InputError` for a bad file."""
-        return None
-
-
-_DRAG_AXES = ("speed", "temperature")  # Axes of the tables of parts that carry no load.
+        own = getattr(self, "table", None)
+        return None if own is None else _loss_table(own, folder, "table.", self.TABLE_AXES)
 
 
 class DragTable(ElementTable, LossTableTable):
@@ -224,16 +228,12 @@ class DragTable(ElementTable, LossTableTable):
         description='The two shafts whose speeds differ; one of them may be "housing".'
     )
 
-    @property
-    def bodies(self) -> dict[str, str]:
-        return {f"between[{number}]": body for number, body in enumerate(self.between)}
-
     def problems(self) -> Iterator[Problem]:
         yield from super().problems()
-        yield from loss_table_problems(self, _DRAG_AXES)
+        yield from loss_table_problems(self, self.TABLE_AXES)
 
     def points(self, folder: Path) -> LossTable:
-        return _loss_table(self, folder, "", _DRAG_AXES)
+        return _loss_table(self, folder, "", self.TABLE_AXES)
 
 
 class ClutchTable(ElementTable):
@@ -252,10 +252,6 @@ class ClutchTable(ElementTable):
     oil_flow: VolumeFlow | None = option(
         "Oil to all gaps together. Default: as much as fills them, which drags most."
     )
-
-    @property
-    def bodies(self) -> dict[str, str]:
-        return {f"between[{number}]": body for number, body in enumerate(self.between)}
 
     def problems(self) -> Iterator[Problem]:
         yield from super().problems()
@@ -281,28 +277,21 @@ _OF_OTHERS = {"cylindrical": 3, "thrust-roller": 3, "deep-groove": 2, "thrust-ba
 class ShaftBearingTable(ElementTable):
     """A rolling bearing of a shaft."""
 
+    TABLE_AXES = LossTableTable.AXES
+
     shaft: str = Field(description="The shaft in its bore.")
     against: str = option("The body that holds its outer ring.", "housing")
     designation: ShaftDesignation | None = option(
         "6208, NU 2210, 32006, NKI 40/30, ...: type and sizes by the ISO plans and estimated load "
         "ratings, where they are not given."
     )
-    type: Literal[
-        "deep-groove",
-        "cylindrical",
-        "tapered",
-        "needle",
-        "angular-contact",
-        "spherical",
-        "thrust-ball",
-        "thrust-roller",
-    ] = Field(description="thrust-ball, thrust-roller: need axial_force, take no radial one.")
+    type: BearingType = Field(
+        description="thrust-ball, thrust-roller: need axial_force, take no radial one."
+    )
     bore: Length
     outside_diameter: Length
     width: Length | None = option("Needed for the drag of rollers in an oil bath.")
-    cage: Literal["caged", "full-complement"] = option(
-        "full-complement: cylindrical and needle rollers only.", "caged"
-    )
+    cage: Cage = option("full-complement: cylindrical and needle rollers only.", "caged")
     model: Literal[
         "auto", "houpert", "zhou-hoeprich", "palmgren", "harris", "skf-2018", "table"
     ] = option(
@@ -422,7 +411,7 @@ class ShaftBearingTable(ElementTable):
             reason = f"has no constants for {kind} bearings."
             yield Problem("model", written(model), reason, 'Choose model = "palmgren" or "table".')
             return
-        yield from _own_table_problems(self, LossTableTable.AXES)
+        yield from _own_table_problems(self)
         yield from _roller_problems(self)
         if model == "skf-2018":
             yield from _skf_problems(self)
@@ -430,10 +419,6 @@ class ShaftBearingTable(ElementTable):
         if model in ("harris", "skf-2018") and not (rated or self.static_load_rating):
             reason = f"is missing; the model {model} needs it for ball bearings."
             yield Problem("static_load_rating", "", reason, "Add C0 from the catalogue.")
-
-    def points(self, folder: Path) -> LossTable | None:
-        axes = LossTableTable.AXES
-        return None if self.table is None else _loss_table(self.table, folder, "table.", axes)
 
 
 class SealTable(ElementTable):
@@ -451,10 +436,7 @@ class SealTable(ElementTable):
 
     def problems(self) -> Iterator[Problem]:
         yield from super().problems()
-        yield from _own_table_problems(self, _DRAG_AXES)
-
-    def points(self, folder: Path) -> LossTable | None:
-        return None if self.table is None else _loss_table(self.table, folder, "table.", _DRAG_AXES)
+        yield from _own_table_problems(self)
 
 
 # What contradicts itself, or is missing, in one of these tables; keys are relative to the table.
@@ -552,15 +534,13 @@ def _skf_problems(table: ShaftBearingTable) -> Iterator[Problem]:
         yield Problem("series", written(table.series), reason, remedy)
 
 
-def _own_table_problems(
-    table: ShaftBearingTable | SealTable, axes: Collection[str]
-) -> Iterator[Problem]:
+def _own_table_problems(table: ShaftBearingTable | SealTable) -> Iterator[Problem]:
     """Problems of the loss table of an element, and of one that is missing or idle."""
     if table.model == "table" and table.table is None:
         reason = "needs a table of friction torque or power."
         yield Problem("model", '"table"', reason, "Add table, or choose another model.")
     elif table.model == "table" and table.table is not None:
-        for found in loss_table_problems(table.table, axes):
+        for found in loss_table_problems(table.table, table.TABLE_AXES):
             yield replace(found, key=f"table.{found.key}".rstrip("."))
     elif table.table is not None:
         yield Problem("table", "", 'belongs to model = "table".', "Delete it, or choose that.")

@@ -227,13 +227,6 @@ class FrictionTable(PointsTable):
         description="One value or one row for each value of the first axis."
     )
 
-    def shape(self) -> tuple[int, ...]:
-        """Shape of `friction`; -1 for rows of unequal length."""
-        lengths = {len(row) for row in self.friction if isinstance(row, tuple)}
-        if not lengths:
-            return (len(self.friction),)
-        return (len(self.friction), lengths.pop() if len(lengths) == 1 else -1)
-
 
 class ContactSolver(OilBehaviour):
     """How the contacts of a mesh are solved for friction = ehl-direct."""

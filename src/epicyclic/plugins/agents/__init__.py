@@ -2,4 +2,4 @@
 
 from epicyclic.registry import PlugIn
 
-PLUG_IN = PlugIn(commands={"mcp": "commands:mcp", "skill": "commands:skill"})
+PLUG_IN: PlugIn = {"commands": {"mcp": "commands:mcp", "skill": "commands:skill"}}

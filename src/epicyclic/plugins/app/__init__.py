@@ -2,4 +2,4 @@
 
 from epicyclic.registry import PlugIn
 
-PLUG_IN = PlugIn(commands={"app": "command:app"})
+PLUG_IN: PlugIn = {"commands": {"app": "command:app"}}

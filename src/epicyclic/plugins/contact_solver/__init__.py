@@ -2,10 +2,9 @@
 
 from epicyclic.registry import PlugIn
 
-PLUG_IN = PlugIn(
-    commands={"contact": "commands:contact", "oil": "commands:oil"},
-    friction_models={"ehl-direct": "direct:friction_of"},
-    plans={"oil": "campaign:Campaign"},
-    plan_writers={"oil": "commands:campaign_writer"},
-    names={"characterise_oil": "fit:characterise_oil"},
-)
+PLUG_IN: PlugIn = {
+    "commands": {"contact": "commands:contact", "oil": "commands:oil"},
+    "friction_models": {"ehl-direct": "direct:friction_of"},
+    "plans": {"oil": "campaign:Campaign"},
+    "plan_writers": {"oil": "commands:campaign_writer"},
+}

@@ -2,12 +2,11 @@
 
 from epicyclic.registry import PlugIn
 
-PLUG_IN = PlugIn(
-    commands={
+PLUG_IN: PlugIn = {
+    "commands": {
         "strength": "commands:strength",
         "design": "commands:design",
         "relief": "commands:relief",
     },
-    details={"strength": "tables:strength_tables"},
-    names={"strength": "strength:strength", "design": "search:design"},
-)
+    "details": {"strength": "tables:strength_tables"},
+}

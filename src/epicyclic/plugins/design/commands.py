@@ -12,9 +12,9 @@ import click
 
 from epicyclic.cli.common import (
     case_argument,
-    check_ending,
     draw,
     echo,
+    file_option,
     journal_option,
     json_option,
     load_with,
@@ -37,11 +37,10 @@ if TYPE_CHECKING:
 @case_argument
 @set_option
 @json_option
-@click.option(
+@file_option(
     "--rotor-dynamics",
     "rotor",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
+    endings=(".json", ".csv"),
     help="Write inertias, and mean and harmonics of mesh stiffness and transmission error, to a "
     ".json or .csv file.",
 )
@@ -63,14 +62,12 @@ def strength(
     """
     from rich.console import Group
 
-    from epicyclic.plugins.design.mass import ENDINGS, as_list, parts, rotor_dynamics, rotor_text
+    from epicyclic.plugins.design.mass import as_list, parts, rotor_dynamics, rotor_text
     from epicyclic.plugins.design.strength import as_dict
     from epicyclic.plugins.design.strength import strength as rate
     from epicyclic.plugins.design.tables import mass_table, tables_of
     from epicyclic.show.terminal import as_on_page, titled
 
-    if rotor is not None:
-        check_ending("--rotor-dynamics", rotor, ENDINGS)
     loaded = load_with(case, changes)
     if tell_given(loaded, "rate", json_file is not None) and rotor is None:
         show(Group, lambda: '{"least": {}, "meshes": {}, "bearings": {}, "parts": []}', json_file)

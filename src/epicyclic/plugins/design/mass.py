@@ -124,7 +124,6 @@ def as_list(found: tuple[Part, ...]) -> list[dict[str, str | float]]:
 
 HARMONICS = 10  # Of the mesh frequency, at most.
 POSITIONS = 4  # Mesh positions over one wave of the highest harmonic, at least.
-ENDINGS = (".json", ".csv")
 
 
 def rotor_dynamics(case: Case) -> dict[str, Any]:

@@ -2,14 +2,9 @@
 
 from epicyclic.registry import PlugIn
 
-PLUG_IN = PlugIn(
-    commands={"rexs": "commands:rexs"},
-    case_readers=dict.fromkeys(
+PLUG_IN: PlugIn = {
+    "commands": {"rexs": "commands:rexs"},
+    "case_readers": dict.fromkeys(
         (".rexs", ".rexs.xml", ".rexsj", ".rexs.json", ".rexsz", ".rexs.zip"), "importing:read_rexs"
     ),
-    names={
-        "RexsImport": "importing:RexsImport",
-        "read_rexs": "importing:read_rexs",
-        "write_rexs": "exporting:write_rexs",
-    },
-)
+}

@@ -2,8 +2,8 @@
 
 from epicyclic.registry import PlugIn
 
-PLUG_IN = PlugIn(
-    map_formats={
+PLUG_IN: PlugIn = {
+    "map_formats": {
         "excel": "workbook:EXCEL",
         "matlab": "workbook:MATLAB",
         "vecto": "tables:VECTO",
@@ -12,4 +12,4 @@ PLUG_IN = PlugIn(
         "fmu": "fmu:FMU",
         "gem": "tables:GEM",
     }
-)
+}
