@@ -8,19 +8,22 @@ import secrets
 import signal
 import socket
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, suppress
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import closing, suppress
 from functools import partial
-from http.cookies import CookieError, SimpleCookie
 from importlib import resources
 from pathlib import Path
 from typing import Any, NoReturn
-from urllib.parse import parse_qs
 
 import uvicorn
 from fastapi import FastAPI
 from nicegui import app as nicegui_app
 from nicegui import events, ui
+from starlette.datastructures import MutableHeaders
+from starlette.requests import HTTPConnection
+from starlette.responses import PlainTextResponse, RedirectResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocketClose
 
 from epicyclic import library
 from epicyclic.case.case import Case
@@ -73,27 +76,33 @@ class Guard:
     among the hosts, but leads to this machine, is an attack by rebinding.
     """
 
-    def __init__(self, app: Any, token: str, hosts: Collection[str]) -> None:
+    def __init__(self, app: ASGIApp, token: str, hosts: Collection[str]) -> None:
         self.app, self.token, self.hosts = app, token, frozenset(hosts)
 
-    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse, let in with a cookie, or hand on."""
-        if scope["type"] not in ("http", "websocket"):
-            await self.app(scope, receive, send)
-            return
-        headers: dict[str, str] = {}
-        for name, value in scope["headers"]:  # one given twice is a list, and none of what may be
-            key, text = name.decode("latin-1").lower(), value.decode("latin-1")
-            headers[key] = f"{headers[key]}, {text}" if key in headers else text
-        if not self._is_own(headers):
-            await _refuse(scope, receive, send, _FORBIDDEN, "This is not the address of the app.")
-        elif scope["type"] == "http" and self._has_token(scope):
-            await _answer(send, _SEE_OTHER, "", {"location": "/", "set-cookie": self._cookie()})
-        elif self._has_cookie(headers):
-            await self._hand_on(scope, receive, send, headers)
+        if scope["type"] in ("http", "websocket"):
+            answering = self._answering(HTTPConnection(scope))
+            await answering(scope, _bounded(receive), _with_headers(send))
         else:
+            await self.app(scope, receive, send)
+
+    def _answering(self, asked: HTTPConnection) -> ASGIApp:
+        """The application that answers."""
+        # a header given twice is a list, and none of what may be
+        headers = {name: ", ".join(asked.headers.getlist(name)) for name in asked.headers}
+        if not self._is_own(headers):
+            return _refusal(asked, _FORBIDDEN, "This is not the address of the app.")
+        if asked.scope["type"] == "http" and self._has_token(asked):
+            return RedirectResponse("/", _SEE_OTHER, {"set-cookie": self._cookie()})
+        if not self._is_token(asked.cookies.get(self._name, "")):
             text = "Open the address with its token, as printed by the command."
-            await _refuse(scope, receive, send, _FORBIDDEN, text)
+            return _refusal(asked, _FORBIDDEN, text)
+        length = headers.get("content-length", "0")
+        is_number = length.isdecimal() and len(length) <= _MOST_DIGITS
+        if not is_number or int(length) > LARGEST_BODY:
+            return _refusal(asked, _TOO_LARGE, "This is too large.")
+        return self.app
 
     def _is_own(self, headers: Mapping[str, str]) -> bool:
         """True if the browser has the page from here, as far as it tells."""
@@ -102,16 +111,9 @@ class Guard:
         full = host if ":" in host.rpartition("]")[2] else f"{host}:{_USUAL_PORT}"
         return full in self.hosts and origin in (None, f"http://{host}")
 
-    def _has_cookie(self, headers: Mapping[str, str]) -> bool:
-        try:
-            found = SimpleCookie(headers.get("cookie", "")).get(self._name)
-        except CookieError:
-            return False
-        return found is not None and self._is_token(found.value)
-
-    def _has_token(self, scope: Any) -> bool:
-        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
-        return bool(scope["method"] == "GET" and scope["path"] == "/" and self._is_token(given[0]))
+    def _has_token(self, asked: HTTPConnection) -> bool:
+        is_page = asked.scope["method"] == "GET" and asked.scope["path"] == "/"
+        return is_page and self._is_token(asked.query_params.get("token", ""))
 
     def _is_token(self, given: str) -> bool:
         return hmac.compare_digest(given.encode(), self.token.encode())
@@ -124,22 +126,18 @@ class Guard:
     def _cookie(self) -> str:
         return f"{self._name}={self.token}; Path=/; HttpOnly; SameSite=Strict"
 
-    async def _hand_on(
-        self, scope: Any, receive: Any, send: Any, headers: Mapping[str, str]
-    ) -> None:
-        length = headers.get("content-length", "0")
-        is_number = length.isdecimal() and len(length) <= _MOST_DIGITS
-        if not is_number or int(length) > LARGEST_BODY:
-            await _refuse(scope, receive, send, _TOO_LARGE, "This is too large.")
-            return
-        await self.app(scope, _bounded(receive), _with_headers(send))
+
+def _refusal(asked: HTTPConnection, status: int, text: str) -> ASGIApp:
+    if asked.scope["type"] == "websocket":
+        return WebSocketClose(_CLOSED, text)
+    return PlainTextResponse(text, status)
 
 
-def _bounded(receive: Any) -> Any:
+def _bounded(receive: Receive) -> Receive:
     """Ends a request that turns out too large, whatever it said of its length."""
     total = 0
 
-    async def call() -> Any:
+    async def call() -> Message:
         nonlocal total
         message = await receive()
         if message["type"] == "http.request":
@@ -151,30 +149,14 @@ def _bounded(receive: Any) -> Any:
     return call
 
 
-def _with_headers(send: Any) -> Any:
-    async def call(message: Any) -> None:
+def _with_headers(send: Send) -> Send:
+    async def call(message: Message) -> None:
         if message["type"] == "http.response.start":
-            added = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
-            message = {**message, "headers": [*message.get("headers", ()), *added]}
+            message.setdefault("headers", [])
+            MutableHeaders(scope=message).update(HEADERS)
         await send(message)
 
     return call
-
-
-async def _refuse(scope: Any, receive: Any, send: Any, status: int, text: str) -> None:
-    if scope["type"] == "websocket":
-        await receive()
-        await send({"type": "websocket.close", "code": _CLOSED, "reason": text})
-    else:
-        await _answer(send, status, text, {})
-
-
-async def _answer(send: Any, status: int, text: str, headers: Mapping[str, str]) -> None:
-    body = text.encode()
-    head = HEADERS | {"content-type": "text/plain; charset=utf-8", "content-length": str(len(body))}
-    pairs = [(name.encode(), value.encode()) for name, value in (head | dict(headers)).items()]
-    await send({"type": "http.response.start", "status": status, "headers": pairs})
-    await send({"type": "http.response.body", "body": body})
 
 
 # Opening and saving: files go through the browser, never by a path on the page.
@@ -460,9 +442,12 @@ def serve(
     token = secrets.token_urlsafe(_TOKEN_BYTES)
     with closing(_listening(host, port)) as listening:
         bound, found = listening.getsockname()[:2]
-        names = names_of(host, bound)
-        hosts = [f"{name}:{found}" for name in names]
-        with _shelves(desk) as shelves:
+        hosts = [f"{name}:{found}" for name in names_of(host, bound)]
+        signal.signal(signal.SIGTERM, _leave)  # folder and processes would be left
+        with (
+            tempfile.TemporaryDirectory(prefix="epicyclic-app-") as folder,
+            closing(Shelves(desk, Path(folder))) as shelves,
+        ):
             app = Guard(application(shelves), token, hosts)
             told(f"http://{hosts[0]}/?token={token}")
             config = uvicorn.Config(
@@ -495,18 +480,6 @@ def _own_names() -> list[str]:
     return []
 
 
-@contextmanager
-def _shelves(desk: Desk) -> Iterator[Shelves]:
-    """Processes and a folder that last as long as the server."""
-    signal.signal(signal.SIGTERM, _leave)  # what is below would be skipped
-    with tempfile.TemporaryDirectory(prefix="epicyclic-app-") as folder:
-        shelves = Shelves(desk, Path(folder))
-        try:
-            yield shelves
-        finally:
-            shelves.close()
-
-
 def _leave(number: int, frame: object) -> NoReturn:
     raise SystemExit(TERMINATED)
 
@@ -536,13 +509,9 @@ def _not_listening(host: str, port: int, told: str) -> InputError:
 def application(shelves: Shelves) -> FastAPI:
     """The pages, without anything that keeps others away."""
     app = FastAPI(openapi_url=None)
-
-    async def root() -> None:
-        await show(shelves)
-
     ui.run_with(
         app,
-        root=root,
+        root=partial(show, shelves),
         title="Epicyclic",
         show_welcome_message=False,
         binding_refresh_interval=None,
