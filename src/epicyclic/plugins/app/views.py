@@ -443,7 +443,7 @@ class MapView(View):
         if self._known is None:
             ui.notify("There is no map yet. Compute one first.")
             return
-        await download(self._do, self._known[0], name, None, "map")
+        await download(self._worker.do, self._known[0], name, None, "map")
 
     def _take(self, axis: str, event: events.ValueChangeEventArguments[str]) -> None:
         self._texts[axis] = event.value or ""
@@ -479,7 +479,7 @@ class MapView(View):
         options = [word for axis, text in values.items() if text for word in (f"--{axis}", text)]
         command = self._desk().command("map", *options, "-o", "map.nc")
         if self._sheet is None or not self._sheet.update(study, answer.sections, answer.wide):
-            self._sheet = sheet = Sheet(self._do, study, answer.wide)
+            self._sheet = sheet = Sheet(self._worker.do, study, answer.wide)
             self._body.clear()
             with self._body:
                 self._command = ui.code(command).classes("wrapped")
@@ -495,9 +495,6 @@ class MapView(View):
         sheet = self._sheet
         sheet.age(study)
         await sheet.draw(lambda: sheet is self._sheet and not self._is_asked)
-
-    async def _do(self, *work: Any) -> Any:
-        return await self._worker.do(*work, progress=lambda done, total: None)
 
 
 def _values(axis: str, part: OperatingValue, text: str) -> str:
