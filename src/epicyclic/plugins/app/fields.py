@@ -160,12 +160,8 @@ class Form:
 
     async def _remove(self, key: str) -> None:
         self._desk.remove(key)
-        await self._renew(self._owner(key))
-
-    def _owner(self, key: str) -> str:
-        """The group that holds a key, or its own if that stands outside of groups."""
-        owner = owner_of(key)
-        return owner if owner in self._groups else key
+        owner = owner_of(key)  # none of a table that stands outside of others
+        await self._renew(owner if owner in self._groups else key)
 
     def _ask_rename(self, key: str, name: str) -> None:
         async def rename(new: str) -> str:

@@ -7,13 +7,14 @@ import hmac
 import secrets
 import signal
 import socket
+import sys
 import tempfile
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import closing, suppress
 from functools import partial
 from importlib import resources
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import uvicorn
 from fastapi import FastAPI
@@ -257,8 +258,10 @@ _GONE = """addEventListener("unhandledrejection", (event) => {
 
 def add_assets() -> None:
     """What the page needs before it is connected."""
-    ui.add_css(_asset("app.css"))
-    ui.add_body_html(f"<script>{_asset('turning.js')}{_GONE}</script>")
+    files = resources.files("epicyclic.plugins.app")
+    style, script = ((files / it).read_text(encoding="utf-8") for it in ("app.css", "turning.js"))
+    ui.add_css(style)
+    ui.add_body_html(f"<script>{script}{_GONE}</script>")
 
 
 class Page:
@@ -306,12 +309,12 @@ class Page:
                         shelf, self._do, views, self._slow.want, self._show_figures
                     )
         self._build_form()
-        ui.timer(0, self._changed, once=True)
+        ui.timer(0, self._follow, once=True)
 
     def _build_form(self) -> None:
         self._form_place.clear()
         with self._form_place:
-            self._form = Form(self.desk, self._changed, self._moved)
+            self._form = Form(self.desk, self._follow, partial(self._follow, is_moving=True))
 
     def _choose(self, then: Any) -> None:
         ask_for_case(self._shelf.folder, then)
@@ -322,7 +325,7 @@ class Page:
         self._chapters.clear()
         self._build_form()
         with self._results:
-            ui.timer(0, self._changed, once=True)
+            ui.timer(0, self._follow, once=True)
 
     def _open_design(self, desk: Desk) -> None:
         """Show what follows from a design, in place of the front that it was chosen from."""
@@ -332,17 +335,9 @@ class Page:
     async def _do(self, *work: Any) -> Any:
         return await self._shelf.slow.do(*work, progress=self._doing.progress)
 
-    async def _changed(self) -> None:
-        """After a change of the case."""
-        self._is_moving = False
-        await self._follow()
-
-    async def _moved(self) -> None:
-        """While an input moves."""
-        self._is_moving = True
-        await self._follow()
-
-    async def _follow(self) -> None:
+    async def _follow(self, *, is_moving: bool = False) -> None:
+        """After a change of the case, or while an input moves."""
+        self._is_moving = is_moving
         self._tell()
         if self.desk.case is not None:
             self._chapters.age(Study(self.desk.case))
@@ -416,11 +411,6 @@ class Page:
         dialog.open()
 
 
-def _asset(name: str) -> str:
-    """A file of the package that goes into the page."""
-    return (resources.files("epicyclic.plugins.app") / name).read_text(encoding="utf-8")
-
-
 # The server of the app: one address on this machine, with a token.
 
 
@@ -443,7 +433,8 @@ def serve(
     with closing(_listening(host, port)) as listening:
         bound, found = listening.getsockname()[:2]
         hosts = [f"{name}:{found}" for name in names_of(host, bound)]
-        signal.signal(signal.SIGTERM, _leave)  # folder and processes would be left
+        # else folder and processes would be left
+        signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(TERMINATED))
         with (
             tempfile.TemporaryDirectory(prefix="epicyclic-app-") as folder,
             closing(Shelves(desk, Path(folder))) as shelves,
@@ -478,10 +469,6 @@ def _own_names() -> list[str]:
     with suppress(OSError):
         return [own, *(str(found[4][0]) for found in socket.getaddrinfo(own, None))]
     return []
-
-
-def _leave(number: int, frame: object) -> NoReturn:
-    raise SystemExit(TERMINATED)
 
 
 def _listening(host: str, port: int) -> socket.socket:

@@ -267,18 +267,13 @@ class Sheet:
             try:
                 drawings = await self._do(tasks.picture, study, place.name, IN_PAGE)
             except EpicyclicError as error:
-                drawings = [_told(str(error))]
+                drawings = [Drawing("", "", items_html(Listing((str(error),))))]
             if place.is_gone:
                 return
             place.show(drawings, study)
             place.age(study)
             if not is_wanted():
                 return
-
-
-def _told(text: str) -> Drawing:
-    """Words in the place of a figure."""
-    return Drawing("", "", items_html(Listing((text,))))
 
 
 def _parts(section: Section) -> Iterator[Part | Drawing]:
@@ -434,10 +429,9 @@ class MapView(View):
 
     def age(self) -> None:
         """Mark a map of another case."""
-        if self._known is not None and self._sheet is not None:
-            now = self._desk().case
-            if now is not None:
-                self._sheet.age(replace(self._known[0], case=now))
+        now = self._desk().case
+        if self._known is not None and self._sheet is not None and now is not None:
+            self._sheet.age(replace(self._known[0], case=now))
 
     async def _save(self, name: str) -> None:
         if self._known is None:
