@@ -86,8 +86,6 @@ class ReferenceFilm:
     """The film at the point A of the test gears C-GF in a load stage."""
 
     bulk_temperature: float  # [K]
-    contact_temperature: float  # [K]
-    film: float  # [m]
     ratio: float  # lambda_GFT. [1]
 
     @property
@@ -159,7 +157,7 @@ def reference_film(oil: Oil, stage: int) -> ReferenceFilm:
         film_oil(oil, bulk),
         film_oil(oil, touching),
     )
-    return ReferenceFilm(bulk, touching, float(film), float(film) / TEST_ROUGHNESS)
+    return ReferenceFilm(bulk, float(film) / TEST_ROUGHNESS)
 
 
 def scuffing_temperature(stage: int, viscosity: float, lubricant_factor: float) -> float:
