@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -150,10 +150,6 @@ class TablePlan(Plan):
     def size(self) -> int:
         """Number of tables."""
         return len(self.families)
-
-    def order(self) -> Sequence[int]:
-        """Numbers of all tables."""
-        return range(self.size)
 
     def describe(self) -> dict[str, Any]:
         """The case, its speeds and temperatures."""

@@ -6,7 +6,7 @@ import io
 import json
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
@@ -299,10 +299,6 @@ class Campaign(Plan):
     def size(self) -> int:
         """Number of simulations."""
         return sum(design.count for design in self.designs)
-
-    def order(self) -> Sequence[int]:
-        """Numbers of all simulations."""
-        return range(self.size)
 
     def part(self, index: int) -> str:
         """What the contact is one of: ``"gear"`` or ``"bearing"``."""

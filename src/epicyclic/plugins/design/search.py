@@ -114,10 +114,6 @@ class DesignPlan(Plan):
         """Number of designs."""
         return len(self.rows)
 
-    def order(self) -> range:
-        """Numbers of all designs."""
-        return range(self.size)
-
     def _solve(self, index: int) -> Row:
         try:
             return Row("converged", numbers=evaluate(read_task(self.task), self.rows[index]))
