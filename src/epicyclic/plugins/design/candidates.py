@@ -474,18 +474,15 @@ def case_tables(task: Task, row: Row, point: int = -1) -> dict[str, Any]:
     common = {"numerics": COARSE} | dict(task.case) | _strength_tables(task, name)
     title = {"title": f"{task.title or 'design'}: {name} {teeth_text(row)}"}
     if name == "pair":
-        own = _set_tables(task, row, "1", ("pinion", "gear"))
+        own = _set_tables(task, row, "1")
         return title | {"kind": "gear_pair", "operation": at} | own | common
     if name == "planetary":
-        own = _set_tables(task, row, "1", ("sun", "planet", "ring"))
+        own = _set_tables(task, row, "1")
         ends = {"input": "sun", "fixed": "ring"}
         return title | {"kind": "planetary", "operation": ends | at} | own | common
     train = title | {"kind": "train", "operation": {"input": "in", "output": "out"} | at}
     if name == "two-stage":
-        sets = {
-            "A": _set_tables(task, row, "1", ("sun", "planet", "ring")),
-            "B": _set_tables(task, row, "2", ("sun2", "planet2", "ring2")),
-        }
+        sets = {"A": _set_tables(task, row, "1"), "B": _set_tables(task, row, "2")}
         shafts = {
             "in": ["A.sun"], "middle": ["A.carrier", "B.sun"], "out": ["B.carrier"],
             "housing": ["A.ring", "B.ring"],
@@ -521,7 +518,8 @@ def teeth_text(row: Row) -> str:
     return "/".join(f"{int(row[gear])}" for gear in gears)
 
 
-def _shared(task: Task, row: Row, stage: str) -> tuple[dict[str, str], BasicRack, float]:
+def _shared(task: Task, row: Row, stage: str) -> tuple[dict[str, str], BasicRack, float, float]:
+    """Keys of all gears of a stage, their rack, centre distance and face width. [m]"""
     module = float(row["module2" if stage == "2" else "module"])
     helix = float(row["helix"])
     distance = float(distances(pd.DataFrame([dict(row)]).dropna(axis=1), stage)[0])
@@ -533,7 +531,9 @@ def _shared(task: Task, row: Row, stage: str) -> tuple[dict[str, str], BasicRack
         "helix_angle": f"{math.degrees(helix):.9g} deg",
         "center_distance": f"{1e3 * distance:.9g} mm",
     }
-    return tables, rack, distance
+    first = next(it.first for it in LAYOUTS[str(row["arrangement"])].meshes if it.set == stage)
+    width = float(row["width_ratio"]) * int(row[first]) * rack.transverse_module
+    return tables, rack, distance, width
 
 
 def _gears(
@@ -577,10 +577,10 @@ def _gears(
 
 
 def _planet_tables(
-    task: Task, row: Row, planet: str, rack: BasicRack, distance: float, width: float
+    task: Task, teeth: int, rack: BasicRack, distance: float, width: float
 ) -> dict[str, Any]:
     """Bearing and carrier, in proportion to planet and centre distance."""
-    root = (int(row[planet]) / 2 - 1.25) * rack.normal_module
+    root = (teeth / 2 - 1.25) * rack.normal_module
     tables: dict[str, Any] = {
         "carrier": {"outer_diameter": _mm(2 * (distance + 0.7 * root)), "width": _mm(1.4 * width)}
     }
@@ -599,20 +599,17 @@ def _planet_tables(
     return tables
 
 
-def _set_tables(task: Task, row: Row, stage: str, gears: tuple[str, ...]) -> dict[str, Any]:
+def _set_tables(task: Task, row: Row, stage: str) -> dict[str, Any]:
     """A pair, or a planetary set."""
-    shared, rack, distance = _shared(task, row, stage)
-    width = float(row["width_ratio"]) * int(row[gears[0]]) * rack.transverse_module
+    shared, rack, distance, width = _shared(task, row, stage)
     made = _gears(task, row, stage, rack, distance, width)
-    plain = [gear.removesuffix("2") for gear in gears]
     tables: dict[str, Any] = {"gears": shared}
-    tables |= {key: made[gear] for key, gear in zip(plain, gears, strict=True)}
-    meshes = ("sun_mesh", "ring_mesh") if len(gears) == 3 else ("mesh",)
-    tables["losses"] = _losses(task, meshes)
-    if len(gears) == 3:
-        tables["planet"]["count"] = int(row["planets"])
-        tables |= _planet_tables(task, row, gears[1], rack, distance, width)
-    return tables
+    tables |= {gear.removesuffix("2"): table for gear, table in made.items()}
+    if "planet" not in tables:
+        return tables | {"losses": _losses(task, ("mesh",))}
+    tables["losses"] = _losses(task, ("sun_mesh", "ring_mesh"))
+    tables["planet"]["count"] = int(row["planets"])
+    return tables | _planet_tables(task, tables["planet"]["teeth"], rack, distance, width)
 
 
 def _losses(task: Task, meshes: tuple[str, ...]) -> dict[str, Any]:
@@ -624,19 +621,18 @@ def _losses(task: Task, meshes: tuple[str, ...]) -> dict[str, Any]:
 def _listed_tables(task: Task, row: Row) -> dict[str, Any]:
     """A stepped or a Wolfrom set."""
     layout = LAYOUTS[str(row["arrangement"])]
-    shared, rack, distance = _shared(task, row, "1")
-    width = float(row["width_ratio"]) * int(row["sun"]) * rack.transverse_module
+    shared, rack, distance, width = _shared(task, row, "1")
     gears: dict[str, Any] = shared | _gears(task, row, "1", rack, distance, width)
     for gear in layout.gears:
         if gear in ("wide", "narrow"):
             gears[gear]["body"] = "planet"
         if "ring" in gear:
             gears[gear]["internal"] = True
-    smaller = min(("wide", "narrow"), key=lambda it: row[it])
+    smaller = min(gears["wide"]["teeth"], gears["narrow"]["teeth"])
     return {
         "planets": int(row["planets"]),
         "meshes": [[mesh.first, mesh.second] for mesh in layout.meshes],
         "gears": gears,
         "losses": _losses(task, tuple(f"{it.first}_{it.second}_mesh" for it in layout.meshes)),
-        **_planet_tables(task, row, smaller, rack, distance, 2 * width),
+        **_planet_tables(task, smaller, rack, distance, 2 * width),
     }
