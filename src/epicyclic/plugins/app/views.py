@@ -380,17 +380,14 @@ class View:
     title: str
 
     def __init__(self) -> None:
-        self._latest = Latest(self._work)
+        # after a change of the case, while it is shown; the last change counts
+        self.follow = Latest(self._work).want
 
     async def show(self) -> None:
         """Make its elements."""
 
     def age(self) -> None:
         """Mark what is of another case than that of the form, if anything is."""
-
-    async def follow(self) -> None:
-        """After a change of the case, while it is shown; the last change counts."""
-        await self._latest.want()
 
     async def _work(self) -> None:
         """Show what follows from the case as it is now, if anything does."""
@@ -684,7 +681,7 @@ class Chapters:
         self._shelf, self._do, self._views, self._want = shelf, do, views, want
         self._tell = tell
         self._turning = TurningView(do)
-        self._sections: dict[str, Section] = {}
+        self._sections: dict[str, str] = {}  # Titles of the chapters by their names.
         self._sheet: Sheet | None = None
         self._groups = ui.tabs(on_change=self._turn).props("dense no-caps align=left")
         self._tabs = ui.tabs(on_change=self._open).props("dense no-caps align=left")
@@ -756,9 +753,8 @@ class Chapters:
 
     def _offer(self, found: Sequence[Section]) -> None:
         """Have tabs for chapters and views, in groups."""
-        sections = {section.name: section for section in found}
-        titles = {name: section.title for name, section in sections.items()}
-        titles |= {name: view.title for name, view in self._views.items()}
+        sections = {section.name: section.title for section in found}
+        titles = sections | {name: view.title for name, view in self._views.items()}
         if list(sections) != list(self._sections):
             groups = dict.fromkeys(_group_of(name) for name in titles)
             self._tabs.clear()
