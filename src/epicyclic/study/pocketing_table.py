@@ -118,6 +118,7 @@ class TablePlan(Plan):
     """Tables to be made: of every mesh, either member driving."""
 
     kind: ClassVar[str] = "pockets-table"
+    batch: ClassVar[int] = 1  # A table takes seconds.
     places: SweepPlan
     flows: tuple[_Flow, ...]
 
@@ -135,11 +136,6 @@ class TablePlan(Plan):
     def source(self) -> str:
         """The file of the case."""
         return self.places.source
-
-    @property
-    def batch(self) -> int:
-        """A table takes seconds."""
-        return 1
 
     @property
     def families(self) -> list[FlowFamily]:

@@ -258,6 +258,7 @@ class Campaign(Plan):
 
     kind: ClassVar[str] = "oil"
     may_fail: ClassVar[bool] = True
+    batch: ClassVar[int] = 1  # A simulation takes up to some seconds.
     # The tables of a line contact that all points share, as JSON: oil, shear stress, spectra.
     settings: str
     designs: tuple[Design, ...]
@@ -289,11 +290,6 @@ class Campaign(Plan):
             campaign.case(first)
             first += design.count
         return campaign
-
-    @property
-    def batch(self) -> int:
-        """A simulation takes up to some seconds."""
-        return 1
 
     @property
     def size(self) -> int:
