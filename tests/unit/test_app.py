@@ -452,7 +452,7 @@ def test_a_port_that_is_taken_and_a_case_that_is_none_are_told():
 class _Here:
     """In place of the worker: does the work here, but for pictures."""
 
-    async def do(self, task, *arguments, progress):
+    async def do(self, task, *arguments, progress=lambda *at: None):
         if task is tasks.picture:
             return [Drawing(arguments[1], f"picture of {arguments[1]}", "<svg></svg>")]
         return task(*arguments, progress)

@@ -209,16 +209,17 @@ def test_micropitting_is_as_printed(
     load = 2 * math.pi * radius * pressure**2 / modulus
     width = 4 * radius * pressure / modulus
     flash = flash_temperature(friction, load, v1 - v2, v1, v2, width, 13.78e3, 13.78e3)
-    own, kelvin = lubricated.FilmOil(oil()), bulk + 273.15
+    kelvin = bulk + 273.15
     printed = 0.02162e-6  # alpha at 38 degC, which Gold's law puts 1.4 % lower
-    scale = printed / float(own.pressure_viscosity(311.15))
+    scale = printed / float(lubricated.film_oil(oil(), 311.15)[1])
+    hot_viscosity, hot_alpha = lubricated.film_oil(oil(), kelvin + flash)
     film = lubricated.film_thickness(
         radius,
         v1 + v2,
         pressure,
         modulus,
-        (viscosity, scale * own.pressure_viscosity(kelvin)),
-        (own.viscosity(kelvin + flash), scale * own.pressure_viscosity(kelvin + flash)),
+        (viscosity, scale * lubricated.film_oil(oil(), kelvin)[1]),
+        (hot_viscosity, scale * hot_alpha),
     )
     assert film / 0.6e-6 / 0.143 == pytest.approx(safety, rel=ROUND)
 

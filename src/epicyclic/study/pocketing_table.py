@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -118,6 +118,7 @@ class TablePlan(Plan):
     """Tables to be made: of every mesh, either member driving."""
 
     kind: ClassVar[str] = "pockets-table"
+    batch: ClassVar[int] = 1  # A table takes seconds.
     places: SweepPlan
     flows: tuple[_Flow, ...]
 
@@ -137,11 +138,6 @@ class TablePlan(Plan):
         return self.places.source
 
     @property
-    def batch(self) -> int:
-        """A table takes seconds."""
-        return 1
-
-    @property
     def families(self) -> list[FlowFamily]:
         """What the tables are of."""
         return list(dict.fromkeys(flow.family for flow in self.flows))
@@ -150,10 +146,6 @@ class TablePlan(Plan):
     def size(self) -> int:
         """Number of tables."""
         return len(self.families)
-
-    def order(self) -> Sequence[int]:
-        """Numbers of all tables."""
-        return range(self.size)
 
     def describe(self) -> dict[str, Any]:
         """The case, its speeds and temperatures."""

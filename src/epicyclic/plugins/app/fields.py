@@ -160,12 +160,8 @@ class Form:
 
     async def _remove(self, key: str) -> None:
         self._desk.remove(key)
-        await self._renew(self._owner(key))
-
-    def _owner(self, key: str) -> str:
-        """The group that holds a key, or its own if that stands outside of groups."""
-        owner = owner_of(key)
-        return owner if owner in self._groups else key
+        owner = owner_of(key)  # none of a table that stands outside of others
+        await self._renew(owner if owner in self._groups else key)
 
     def _ask_rename(self, key: str, name: str) -> None:
         async def rename(new: str) -> str:
@@ -190,7 +186,7 @@ class Form:
         ask_for_new(group, add)
 
     def _field(self, entry: Entry) -> None:
-        with ui.element("div").classes("holder"):
+        with ui.element("div").classes("holder") as holder:
             field = _choice(entry) if entry.choices else _field_line(entry)
             event = "update:model-value" if entry.choices else "change"
             field.on(event, partial(self._take, entry))
@@ -205,19 +201,12 @@ class Form:
                 rename = partial(self._ask_rename, entry.key, entry.name)
                 _icon("edit", rename).tooltip("Rename")
                 _icon("close", partial(self._remove, entry.key)).tooltip("Remove")
-            return
-        if not (entry.choices or entry.is_text) and number_in(entry.text) is not None:
-            self._movable(entry, field)
-
-    def _movable(self, entry: Entry, field: Element) -> None:
-        """A button in a field of a number, for a slider below it."""
-        assert field.parent_slot is not None
-        holder = field.parent_slot.parent
-        with field.add_slot("append"):
-            _icon("tune", partial(self._slider, entry, holder)).mark(f"tune-{entry.key}")
+        elif not (entry.choices or entry.is_text) and number_in(entry.text) is not None:
+            with field.add_slot("append"):
+                _icon("tune", partial(self._slider, entry, holder)).mark(f"tune-{entry.key}")
 
     def _slider(self, entry: Entry, holder: Element) -> None:
-        """Show the slider of an input, or take it away."""
+        """Show the slider of an input below its field, or take it away."""
         sliders = [child for child in holder if isinstance(child, ui.slider)]
         if sliders:
             sliders[0].delete()

@@ -7,20 +7,24 @@ import hmac
 import secrets
 import signal
 import socket
+import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, suppress
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import closing, suppress
 from functools import partial
-from http.cookies import CookieError, SimpleCookie
 from importlib import resources
 from pathlib import Path
-from typing import Any, NoReturn
-from urllib.parse import parse_qs
+from typing import Any
 
 import uvicorn
 from fastapi import FastAPI
 from nicegui import app as nicegui_app
 from nicegui import events, ui
+from starlette.datastructures import MutableHeaders
+from starlette.requests import HTTPConnection
+from starlette.responses import PlainTextResponse, RedirectResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocketClose
 
 from epicyclic import library
 from epicyclic.case.case import Case
@@ -73,27 +77,33 @@ class Guard:
     among the hosts, but leads to this machine, is an attack by rebinding.
     """
 
-    def __init__(self, app: Any, token: str, hosts: Collection[str]) -> None:
+    def __init__(self, app: ASGIApp, token: str, hosts: Collection[str]) -> None:
         self.app, self.token, self.hosts = app, token, frozenset(hosts)
 
-    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse, let in with a cookie, or hand on."""
-        if scope["type"] not in ("http", "websocket"):
-            await self.app(scope, receive, send)
-            return
-        headers: dict[str, str] = {}
-        for name, value in scope["headers"]:  # one given twice is a list, and none of what may be
-            key, text = name.decode("latin-1").lower(), value.decode("latin-1")
-            headers[key] = f"{headers[key]}, {text}" if key in headers else text
-        if not self._is_own(headers):
-            await _refuse(scope, receive, send, _FORBIDDEN, "This is not the address of the app.")
-        elif scope["type"] == "http" and self._has_token(scope):
-            await _answer(send, _SEE_OTHER, "", {"location": "/", "set-cookie": self._cookie()})
-        elif self._has_cookie(headers):
-            await self._hand_on(scope, receive, send, headers)
+        if scope["type"] in ("http", "websocket"):
+            answering = self._answering(HTTPConnection(scope))
+            await answering(scope, _bounded(receive), _with_headers(send))
         else:
+            await self.app(scope, receive, send)
+
+    def _answering(self, asked: HTTPConnection) -> ASGIApp:
+        """The application that answers."""
+        # a header given twice is a list, and none of what may be
+        headers = {name: ", ".join(asked.headers.getlist(name)) for name in asked.headers}
+        if not self._is_own(headers):
+            return _refusal(asked, _FORBIDDEN, "This is not the address of the app.")
+        if asked.scope["type"] == "http" and self._has_token(asked):
+            return RedirectResponse("/", _SEE_OTHER, {"set-cookie": self._cookie()})
+        if not self._is_token(asked.cookies.get(self._name, "")):
             text = "Open the address with its token, as printed by the command."
-            await _refuse(scope, receive, send, _FORBIDDEN, text)
+            return _refusal(asked, _FORBIDDEN, text)
+        length = headers.get("content-length", "0")
+        is_number = length.isdecimal() and len(length) <= _MOST_DIGITS
+        if not is_number or int(length) > LARGEST_BODY:
+            return _refusal(asked, _TOO_LARGE, "This is too large.")
+        return self.app
 
     def _is_own(self, headers: Mapping[str, str]) -> bool:
         """True if the browser has the page from here, as far as it tells."""
@@ -102,16 +112,9 @@ class Guard:
         full = host if ":" in host.rpartition("]")[2] else f"{host}:{_USUAL_PORT}"
         return full in self.hosts and origin in (None, f"http://{host}")
 
-    def _has_cookie(self, headers: Mapping[str, str]) -> bool:
-        try:
-            found = SimpleCookie(headers.get("cookie", "")).get(self._name)
-        except CookieError:
-            return False
-        return found is not None and self._is_token(found.value)
-
-    def _has_token(self, scope: Any) -> bool:
-        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
-        return bool(scope["method"] == "GET" and scope["path"] == "/" and self._is_token(given[0]))
+    def _has_token(self, asked: HTTPConnection) -> bool:
+        is_page = asked.scope["method"] == "GET" and asked.scope["path"] == "/"
+        return is_page and self._is_token(asked.query_params.get("token", ""))
 
     def _is_token(self, given: str) -> bool:
         return hmac.compare_digest(given.encode(), self.token.encode())
@@ -124,22 +127,18 @@ class Guard:
     def _cookie(self) -> str:
         return f"{self._name}={self.token}; Path=/; HttpOnly; SameSite=Strict"
 
-    async def _hand_on(
-        self, scope: Any, receive: Any, send: Any, headers: Mapping[str, str]
-    ) -> None:
-        length = headers.get("content-length", "0")
-        is_number = length.isdecimal() and len(length) <= _MOST_DIGITS
-        if not is_number or int(length) > LARGEST_BODY:
-            await _refuse(scope, receive, send, _TOO_LARGE, "This is too large.")
-            return
-        await self.app(scope, _bounded(receive), _with_headers(send))
+
+def _refusal(asked: HTTPConnection, status: int, text: str) -> ASGIApp:
+    if asked.scope["type"] == "websocket":
+        return WebSocketClose(_CLOSED, text)
+    return PlainTextResponse(text, status)
 
 
-def _bounded(receive: Any) -> Any:
+def _bounded(receive: Receive) -> Receive:
     """Ends a request that turns out too large, whatever it said of its length."""
     total = 0
 
-    async def call() -> Any:
+    async def call() -> Message:
         nonlocal total
         message = await receive()
         if message["type"] == "http.request":
@@ -151,30 +150,14 @@ def _bounded(receive: Any) -> Any:
     return call
 
 
-def _with_headers(send: Any) -> Any:
-    async def call(message: Any) -> None:
+def _with_headers(send: Send) -> Send:
+    async def call(message: Message) -> None:
         if message["type"] == "http.response.start":
-            added = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
-            message = {**message, "headers": [*message.get("headers", ()), *added]}
+            message.setdefault("headers", [])
+            MutableHeaders(scope=message).update(HEADERS)
         await send(message)
 
     return call
-
-
-async def _refuse(scope: Any, receive: Any, send: Any, status: int, text: str) -> None:
-    if scope["type"] == "websocket":
-        await receive()
-        await send({"type": "websocket.close", "code": _CLOSED, "reason": text})
-    else:
-        await _answer(send, status, text, {})
-
-
-async def _answer(send: Any, status: int, text: str, headers: Mapping[str, str]) -> None:
-    body = text.encode()
-    head = HEADERS | {"content-type": "text/plain; charset=utf-8", "content-length": str(len(body))}
-    pairs = [(name.encode(), value.encode()) for name, value in (head | dict(headers)).items()]
-    await send({"type": "http.response.start", "status": status, "headers": pairs})
-    await send({"type": "http.response.body", "body": body})
 
 
 # Opening and saving: files go through the browser, never by a path on the page.
@@ -275,8 +258,10 @@ _GONE = """addEventListener("unhandledrejection", (event) => {
 
 def add_assets() -> None:
     """What the page needs before it is connected."""
-    ui.add_css(_asset("app.css"))
-    ui.add_body_html(f"<script>{_asset('turning.js')}{_GONE}</script>")
+    files = resources.files("epicyclic.plugins.app")
+    style, script = ((files / it).read_text(encoding="utf-8") for it in ("app.css", "turning.js"))
+    ui.add_css(style)
+    ui.add_body_html(f"<script>{script}{_GONE}</script>")
 
 
 class Page:
@@ -324,12 +309,12 @@ class Page:
                         shelf, self._do, views, self._slow.want, self._show_figures
                     )
         self._build_form()
-        ui.timer(0, self._changed, once=True)
+        ui.timer(0, self._follow, once=True)
 
     def _build_form(self) -> None:
         self._form_place.clear()
         with self._form_place:
-            self._form = Form(self.desk, self._changed, self._moved)
+            self._form = Form(self.desk, self._follow, partial(self._follow, is_moving=True))
 
     def _choose(self, then: Any) -> None:
         ask_for_case(self._shelf.folder, then)
@@ -340,7 +325,7 @@ class Page:
         self._chapters.clear()
         self._build_form()
         with self._results:
-            ui.timer(0, self._changed, once=True)
+            ui.timer(0, self._follow, once=True)
 
     def _open_design(self, desk: Desk) -> None:
         """Show what follows from a design, in place of the front that it was chosen from."""
@@ -350,17 +335,9 @@ class Page:
     async def _do(self, *work: Any) -> Any:
         return await self._shelf.slow.do(*work, progress=self._doing.progress)
 
-    async def _changed(self) -> None:
-        """After a change of the case."""
-        self._is_moving = False
-        await self._follow()
-
-    async def _moved(self) -> None:
-        """While an input moves."""
-        self._is_moving = True
-        await self._follow()
-
-    async def _follow(self) -> None:
+    async def _follow(self, *, is_moving: bool = False) -> None:
+        """After a change of the case, or while an input moves."""
+        self._is_moving = is_moving
         self._tell()
         if self.desk.case is not None:
             self._chapters.age(Study(self.desk.case))
@@ -434,11 +411,6 @@ class Page:
         dialog.open()
 
 
-def _asset(name: str) -> str:
-    """A file of the package that goes into the page."""
-    return (resources.files("epicyclic.plugins.app") / name).read_text(encoding="utf-8")
-
-
 # The server of the app: one address on this machine, with a token.
 
 
@@ -460,9 +432,13 @@ def serve(
     token = secrets.token_urlsafe(_TOKEN_BYTES)
     with closing(_listening(host, port)) as listening:
         bound, found = listening.getsockname()[:2]
-        names = names_of(host, bound)
-        hosts = [f"{name}:{found}" for name in names]
-        with _shelves(desk) as shelves:
+        hosts = [f"{name}:{found}" for name in names_of(host, bound)]
+        # else folder and processes would be left
+        signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(TERMINATED))
+        with (
+            tempfile.TemporaryDirectory(prefix="epicyclic-app-") as folder,
+            closing(Shelves(desk, Path(folder))) as shelves,
+        ):
             app = Guard(application(shelves), token, hosts)
             told(f"http://{hosts[0]}/?token={token}")
             config = uvicorn.Config(
@@ -495,22 +471,6 @@ def _own_names() -> list[str]:
     return []
 
 
-@contextmanager
-def _shelves(desk: Desk) -> Iterator[Shelves]:
-    """Processes and a folder that last as long as the server."""
-    signal.signal(signal.SIGTERM, _leave)  # what is below would be skipped
-    with tempfile.TemporaryDirectory(prefix="epicyclic-app-") as folder:
-        shelves = Shelves(desk, Path(folder))
-        try:
-            yield shelves
-        finally:
-            shelves.close()
-
-
-def _leave(number: int, frame: object) -> NoReturn:
-    raise SystemExit(TERMINATED)
-
-
 def _listening(host: str, port: int) -> socket.socket:
     """A socket that listens at an address, before anything else is started."""
     if not host:
@@ -536,13 +496,9 @@ def _not_listening(host: str, port: int, told: str) -> InputError:
 def application(shelves: Shelves) -> FastAPI:
     """The pages, without anything that keeps others away."""
     app = FastAPI(openapi_url=None)
-
-    async def root() -> None:
-        await show(shelves)
-
     ui.run_with(
         app,
-        root=root,
+        root=partial(show, shelves),
         title="Epicyclic",
         show_welcome_message=False,
         binding_refresh_interval=None,

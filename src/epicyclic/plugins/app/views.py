@@ -267,18 +267,13 @@ class Sheet:
             try:
                 drawings = await self._do(tasks.picture, study, place.name, IN_PAGE)
             except EpicyclicError as error:
-                drawings = [_told(str(error))]
+                drawings = [Drawing("", "", items_html(Listing((str(error),))))]
             if place.is_gone:
                 return
             place.show(drawings, study)
             place.age(study)
             if not is_wanted():
                 return
-
-
-def _told(text: str) -> Drawing:
-    """Words in the place of a figure."""
-    return Drawing("", "", items_html(Listing((text,))))
 
 
 def _parts(section: Section) -> Iterator[Part | Drawing]:
@@ -385,17 +380,14 @@ class View:
     title: str
 
     def __init__(self) -> None:
-        self._latest = Latest(self._work)
+        # after a change of the case, while it is shown; the last change counts
+        self.follow = Latest(self._work).want
 
     async def show(self) -> None:
         """Make its elements."""
 
     def age(self) -> None:
         """Mark what is of another case than that of the form, if anything is."""
-
-    async def follow(self) -> None:
-        """After a change of the case, while it is shown; the last change counts."""
-        await self._latest.want()
 
     async def _work(self) -> None:
         """Show what follows from the case as it is now, if anything does."""
@@ -434,16 +426,15 @@ class MapView(View):
 
     def age(self) -> None:
         """Mark a map of another case."""
-        if self._known is not None and self._sheet is not None:
-            now = self._desk().case
-            if now is not None:
-                self._sheet.age(replace(self._known[0], case=now))
+        now = self._desk().case
+        if self._known is not None and self._sheet is not None and now is not None:
+            self._sheet.age(replace(self._known[0], case=now))
 
     async def _save(self, name: str) -> None:
         if self._known is None:
             ui.notify("There is no map yet. Compute one first.")
             return
-        await download(self._do, self._known[0], name, None, "map")
+        await download(self._worker.do, self._known[0], name, None, "map")
 
     def _take(self, axis: str, event: events.ValueChangeEventArguments[str]) -> None:
         self._texts[axis] = event.value or ""
@@ -479,7 +470,7 @@ class MapView(View):
         options = [word for axis, text in values.items() if text for word in (f"--{axis}", text)]
         command = self._desk().command("map", *options, "-o", "map.nc")
         if self._sheet is None or not self._sheet.update(study, answer.sections, answer.wide):
-            self._sheet = sheet = Sheet(self._do, study, answer.wide)
+            self._sheet = sheet = Sheet(self._worker.do, study, answer.wide)
             self._body.clear()
             with self._body:
                 self._command = ui.code(command).classes("wrapped")
@@ -495,9 +486,6 @@ class MapView(View):
         sheet = self._sheet
         sheet.age(study)
         await sheet.draw(lambda: sheet is self._sheet and not self._is_asked)
-
-    async def _do(self, *work: Any) -> Any:
-        return await self._worker.do(*work, progress=lambda done, total: None)
 
 
 def _values(axis: str, part: OperatingValue, text: str) -> str:
@@ -693,7 +681,7 @@ class Chapters:
         self._shelf, self._do, self._views, self._want = shelf, do, views, want
         self._tell = tell
         self._turning = TurningView(do)
-        self._sections: dict[str, Section] = {}
+        self._sections: dict[str, str] = {}  # Titles of the chapters by their names.
         self._sheet: Sheet | None = None
         self._groups = ui.tabs(on_change=self._turn).props("dense no-caps align=left")
         self._tabs = ui.tabs(on_change=self._open).props("dense no-caps align=left")
@@ -765,9 +753,8 @@ class Chapters:
 
     def _offer(self, found: Sequence[Section]) -> None:
         """Have tabs for chapters and views, in groups."""
-        sections = {section.name: section for section in found}
-        titles = {name: section.title for name, section in sections.items()}
-        titles |= {name: view.title for name, view in self._views.items()}
+        sections = {section.name: section.title for section in found}
+        titles = sections | {name: view.title for name, view in self._views.items()}
         if list(sections) != list(self._sections):
             groups = dict.fromkeys(_group_of(name) for name in titles)
             self._tabs.clear()

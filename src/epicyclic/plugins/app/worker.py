@@ -119,7 +119,7 @@ class Worker:
         self,
         task: Callable[..., Any],  # Takes `arguments` and a function that it tells its progress.
         *arguments: Any,
-        progress: Progress,  # Called in this process.
+        progress: Progress = lambda done, total: None,  # Called in this process.
     ) -> Any:
         """What a function of a module returns, computed in the process.
 

@@ -6,7 +6,7 @@ import io
 import json
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
@@ -253,6 +253,7 @@ class Campaign(Plan):
 
     kind: ClassVar[str] = "oil"
     may_fail: ClassVar[bool] = True
+    batch: ClassVar[int] = 1  # A simulation takes up to some seconds.
     # The tables of a line contact that all points share, as JSON: oil, shear stress, spectra.
     settings: str
     designs: tuple[Design, ...]
@@ -286,18 +287,9 @@ class Campaign(Plan):
         return campaign
 
     @property
-    def batch(self) -> int:
-        """A simulation takes up to some seconds."""
-        return 1
-
-    @property
     def size(self) -> int:
         """Number of simulations."""
         return sum(design.count for design in self.designs)
-
-    def order(self) -> Sequence[int]:
-        """Numbers of all simulations."""
-        return range(self.size)
 
     def part(self, index: int) -> str:
         """What the contact is one of: ``"gear"`` or ``"bearing"``."""

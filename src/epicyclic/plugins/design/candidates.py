@@ -10,7 +10,7 @@ import math
 import random
 from collections.abc import Callable, Iterator, Mapping
 from itertools import islice
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -21,6 +21,7 @@ from epicyclic.case.tables.strength import GearStrength, StrengthTable
 from epicyclic.dataclass import dataclass
 from epicyclic.errors import one_problem
 from epicyclic.gears.gear import BasicRack
+from epicyclic.gears.gearing import basic_rack
 from epicyclic.gears.mesh import closing_number, profile_shift_sum
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design.strength import Material, material_of
@@ -358,8 +359,8 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             tip = 2 * tip1 * half * np.cos(helix) / module
             least("tip_thickness", np.clip(tip / max(task.limits.tip_thickness, 1e-9), 0, 10))
             # bounds of loss and strength
-            carried = mesh.torque(z) * np.ones(len(table))
-            turning = mesh.speed(z) * np.ones(len(table))
+            carried = mesh.torque(z)
+            turning = mesh.speed(z)
             # virtual work: the play of a mesh moves the output as its force loads it
             play = task.choices.backlash / np.cos(base_helix)
             backlash += np.abs(carried / (z1 * bases * ratio)) * play
@@ -390,14 +391,15 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
                 lives = [iso.life_factor(cycles, iso.BENDING_LIFE[it.treatment]) for it in bears]
                 best = 2 * 1.1 * max(it.bending for it in bears) * np.maximum(*lives)
                 least("bending", best / bent / task.limits.bending)
-            outside = 2 * (tip2 if not mesh.internal else r2 + module * (1.25 - x2 + 3))
-            if name != "pair" and not mesh.internal:
+            if mesh.internal:
+                outside = 2 * (r2 + module * (1.25 - x2 + 3))
+            elif name == "pair":
+                outside = tip1 + tip2 + distance
+            else:
                 outside = 2 * (distance + tip2)
                 side = 2 * distance * np.sin(math.pi / planets)
                 room = np.where(planets > 1, (side - 0.2 * module) / (2 * tip2), np.inf)
                 least("planets_touch", room)
-            if name == "pair":
-                outside = tip1 + tip2 + distance
             diameter = np.maximum(diameter, outside)
         for gear in layout.gears:
             stage = "2" if gear.endswith("2") else "1"
@@ -405,7 +407,7 @@ def sizes(task: Task, table: pd.DataFrame) -> Sizes:
             radius = z[gear] * module / np.cos(helix) / 2
             x = shifts[gear]
             number = planets if gear.startswith(("planet", "wide", "narrow")) else 1
-            area = radius**2 * np.ones(len(table))
+            area = radius**2
             if "ring" in gear:
                 area = (radius + module * (4.25 - x)) ** 2 - (radius + module * (0.125 - x)) ** 2
             mass += number * math.pi * area * faces[stage] * DENSITY
@@ -436,10 +438,10 @@ def _closing(layout: Layout, stage: str, kind: Any) -> int:
     own = dict(zip(layout.gears, map(int, kind), strict=True))
     meshes = []
     for mesh in layout.meshes:
-        if mesh.set == stage and "sun" in layout.gears:
+        if mesh.set == stage:
             one, two = own[mesh.first], own[mesh.second]
             meshes.append(({"planet": one}, -two) if mesh.internal else ({"planet": two}, one))
-    return closing_number(meshes) if meshes else 0
+    return closing_number(meshes)
 
 
 def _material(table: StrengthTable, gear: str) -> Material:
@@ -472,18 +474,15 @@ def case_tables(task: Task, row: Row, point: int = -1) -> dict[str, Any]:
     common = {"numerics": COARSE} | dict(task.case) | _strength_tables(task, name)
     title = {"title": f"{task.title or 'design'}: {name} {teeth_text(row)}"}
     if name == "pair":
-        own = _set_tables(task, row, "1", ("pinion", "gear"))
+        own = _set_tables(task, row, "1")
         return title | {"kind": "gear_pair", "operation": at} | own | common
     if name == "planetary":
-        own = _set_tables(task, row, "1", ("sun", "planet", "ring"))
+        own = _set_tables(task, row, "1")
         ends = {"input": "sun", "fixed": "ring"}
         return title | {"kind": "planetary", "operation": ends | at} | own | common
     train = title | {"kind": "train", "operation": {"input": "in", "output": "out"} | at}
     if name == "two-stage":
-        sets = {
-            "A": _set_tables(task, row, "1", ("sun", "planet", "ring")),
-            "B": _set_tables(task, row, "2", ("sun2", "planet2", "ring2")),
-        }
+        sets = {"A": _set_tables(task, row, "1"), "B": _set_tables(task, row, "2")}
         shafts = {
             "in": ["A.sun"], "middle": ["A.carrier", "B.sun"], "out": ["B.carrier"],
             "housing": ["A.ring", "B.ring"],
@@ -519,73 +518,69 @@ def teeth_text(row: Row) -> str:
     return "/".join(f"{int(row[gear])}" for gear in gears)
 
 
-def _shared(task: Task, row: Row, stage: str) -> tuple[dict[str, str], BasicRack, float]:
+def _shared(task: Task, row: Row, stage: str) -> tuple[dict[str, str], BasicRack, float, float]:
+    """Keys of all gears of a stage, their rack, centre distance and face width. [m]"""
     module = float(row["module2" if stage == "2" else "module"])
     helix = float(row["helix"])
     distance = float(distances(pd.DataFrame([dict(row)]).dropna(axis=1), stage)[0])
     alpha_n = task.choices.pressure_angle
-    alpha_t = math.atan(math.tan(alpha_n) / math.cos(helix))
-    rack = BasicRack(module / math.cos(helix), alpha_t, helix)
+    rack = basic_rack(helix, module, normal_pressure_angle=alpha_n)
     tables = {
         "normal_module": _mm(module),
         "normal_pressure_angle": f"{math.degrees(alpha_n):.9g} deg",
         "helix_angle": f"{math.degrees(helix):.9g} deg",
         "center_distance": f"{1e3 * distance:.9g} mm",
     }
-    return tables, rack, distance
-
-
-def _shifts(task: Task, row: Row, stage: str, rack: BasicRack, distance: float) -> dict[str, float]:
-    """x of every gear of a stage: that of the sun as chosen, the others close their meshes."""
-    layout = LAYOUTS[str(row["arrangement"])]
-    found: dict[str, float] = {}
-    for mesh in layout.meshes:
-        if mesh.set != stage:
-            continue
-        sign = -1 if mesh.internal else 1
-        one, two = int(row[mesh.first]), int(row[mesh.second])
-        first = found.setdefault(mesh.first, float(row["shift"]))
-        try:
-            total = profile_shift_sum(rack, one + sign * two, distance, task.choices.backlash)
-        except ValueError as error:
-            remedy = "Choose another one."
-            raise one_problem("design", teeth_text(row), str(error), remedy, task.title) from None
-        found.setdefault(mesh.second, total - first)
-    return found
+    first = next(it.first for it in LAYOUTS[str(row["arrangement"])].meshes if it.set == stage)
+    width = float(row["width_ratio"]) * int(row[first]) * rack.transverse_module
+    return tables, rack, distance, width
 
 
 def _gears(
     task: Task, row: Row, stage: str, rack: BasicRack, distance: float, width: float
 ) -> dict[str, dict[str, Any]]:
-    """The tables of the gears of a stage, rings with tips that leave the planets' involutes."""
+    """The tables of the gears of a stage: x of the sun as chosen, the others close their meshes.
+
+    Rings have tips that leave the planets' involutes.
+    """
     module, transverse = rack.normal_module, rack.transverse_module
-    tables: dict[str, dict[str, Any]] = {
+    bases = transverse * math.cos(rack.transverse_pressure_angle) / 2
+    shifts: dict[str, float] = {}
+    tips: dict[str, dict[str, str]] = {}
+    for mesh in LAYOUTS[str(row["arrangement"])].meshes:
+        if mesh.set != stage:
+            continue
+        one, two = int(row[mesh.first]), int(row[mesh.second])
+        teeth = one - two if mesh.internal else one + two
+        first = shifts.setdefault(mesh.first, float(row["shift"]))
+        try:
+            total = profile_shift_sum(rack, teeth, distance, task.choices.backlash)
+        except ValueError as error:
+            remedy = "Choose another one."
+            raise one_problem("design", teeth_text(row), str(error), remedy, task.title) from None
+        second = shifts.setdefault(mesh.second, total - first)
+        if mesh.internal:
+            usual = two * transverse / 2 - module * (1 + round(second, 9))
+            action = math.sqrt(max(0.0, distance**2 - (teeth * bases) ** 2))
+            tip = float(ring_tip(usual, two * bases, action, module))
+            tips[mesh.second] = {"tip_diameter": _mm(2 * tip)}
+    return {
         gear: {
             "teeth": int(row[gear]),
             "face_width": _mm(width),
             "profile_shift_coefficient": round(shift, 9),
             "roughness": task.choices.roughness,
         }
-        for gear, shift in _shifts(task, row, stage, rack, distance).items()
+        | tips.get(gear, {})
+        for gear, shift in shifts.items()
     }
-    for mesh in LAYOUTS[str(row["arrangement"])].meshes:
-        if mesh.internal and mesh.set == stage:
-            one, two = int(row[mesh.first]), int(row[mesh.second])
-            reference = two * transverse / 2
-            bases = transverse * math.cos(rack.transverse_pressure_angle) / 2
-            shift = cast(float, tables[mesh.second]["profile_shift_coefficient"])
-            action = math.sqrt(max(0.0, distance**2 - ((two - one) * bases) ** 2))
-            usual = reference - module * (1 + shift)
-            tip = float(ring_tip(usual, two * bases, action, module))
-            tables[mesh.second]["tip_diameter"] = _mm(2 * tip)
-    return tables
 
 
 def _planet_tables(
-    task: Task, row: Row, planet: str, rack: BasicRack, distance: float, width: float
+    task: Task, teeth: int, rack: BasicRack, distance: float, width: float
 ) -> dict[str, Any]:
     """Bearing and carrier, in proportion to planet and centre distance."""
-    root = (int(row[planet]) / 2 - 1.25) * rack.normal_module
+    root = (teeth / 2 - 1.25) * rack.normal_module
     tables: dict[str, Any] = {
         "carrier": {"outer_diameter": _mm(2 * (distance + 0.7 * root)), "width": _mm(1.4 * width)}
     }
@@ -604,20 +599,17 @@ def _planet_tables(
     return tables
 
 
-def _set_tables(task: Task, row: Row, stage: str, gears: tuple[str, ...]) -> dict[str, Any]:
+def _set_tables(task: Task, row: Row, stage: str) -> dict[str, Any]:
     """A pair, or a planetary set."""
-    shared, rack, distance = _shared(task, row, stage)
-    width = float(row["width_ratio"]) * int(row[gears[0]]) * rack.transverse_module
+    shared, rack, distance, width = _shared(task, row, stage)
     made = _gears(task, row, stage, rack, distance, width)
-    plain = [gear.removesuffix("2") for gear in gears]
     tables: dict[str, Any] = {"gears": shared}
-    tables |= {key: made[gear] for key, gear in zip(plain, gears, strict=True)}
-    meshes = ("sun_mesh", "ring_mesh") if len(gears) == 3 else ("mesh",)
-    tables["losses"] = _losses(task, meshes)
-    if len(gears) == 3:
-        tables["planet"]["count"] = int(row["planets"])
-        tables |= _planet_tables(task, row, gears[1], rack, distance, width)
-    return tables
+    tables |= {gear.removesuffix("2"): table for gear, table in made.items()}
+    if "planet" not in tables:
+        return tables | {"losses": _losses(task, ("mesh",))}
+    tables["losses"] = _losses(task, ("sun_mesh", "ring_mesh"))
+    tables["planet"]["count"] = int(row["planets"])
+    return tables | _planet_tables(task, tables["planet"]["teeth"], rack, distance, width)
 
 
 def _losses(task: Task, meshes: tuple[str, ...]) -> dict[str, Any]:
@@ -629,19 +621,18 @@ def _losses(task: Task, meshes: tuple[str, ...]) -> dict[str, Any]:
 def _listed_tables(task: Task, row: Row) -> dict[str, Any]:
     """A stepped or a Wolfrom set."""
     layout = LAYOUTS[str(row["arrangement"])]
-    shared, rack, distance = _shared(task, row, "1")
-    width = float(row["width_ratio"]) * int(row["sun"]) * rack.transverse_module
+    shared, rack, distance, width = _shared(task, row, "1")
     gears: dict[str, Any] = shared | _gears(task, row, "1", rack, distance, width)
     for gear in layout.gears:
         if gear in ("wide", "narrow"):
             gears[gear]["body"] = "planet"
         if "ring" in gear:
             gears[gear]["internal"] = True
-    smaller = min(("wide", "narrow"), key=lambda it: row[it])
+    smaller = min(gears["wide"]["teeth"], gears["narrow"]["teeth"])
     return {
         "planets": int(row["planets"]),
         "meshes": [[mesh.first, mesh.second] for mesh in layout.meshes],
         "gears": gears,
         "losses": _losses(task, tuple(f"{it.first}_{it.second}_mesh" for it in layout.meshes)),
-        **_planet_tables(task, row, smaller, rack, distance, 2 * width),
+        **_planet_tables(task, smaller, rack, distance, 2 * width),
     }

@@ -231,7 +231,6 @@ def relief(
 
     if output is not None:
         check_output(output)
-    keys = [option.partition("=")[0].strip() for option in vary]
     first = {}
     for option in vary:  # an amount is needed before what belongs to it can be read
         key, _, values = option.partition("=")
@@ -249,7 +248,7 @@ def relief(
     made = Relief(
         loaded,
         name or mesh_keys(loaded)[0],
-        {key: list(texts[key]) for key in keys},
+        texts,
         loads,
         report.parse_length("--tolerance", tolerance),
         objectives,

@@ -40,22 +40,16 @@ MICROPITTING_TORQUES = MappingProxyType({5: 70.0, 6: 98.9, 7: 132.5, 8: 171.6, 9
 """T_1 on the pinion in the load stages of FVA 54/7. [N m]"""
 
 
-@dataclass(frozen=True, slots=True)
-class FilmOil:
-    """The oil as ISO/TS 6336-22 takes it: its viscosity by temperature, its alpha from 38 degC."""
+def film_oil(oil: Oil, temperature: Numbers) -> tuple[FloatArray, FloatArray]:
+    """eta [Pa s], and alpha from that at 38 degC [1/Pa], at temperatures in kelvin.
 
-    oil: Oil
-
-    def viscosity(self, temperature: Numbers) -> FloatArray:
-        """eta, dynamic, at temperatures in kelvin. [Pa s]"""
-        values = np.minimum(np.atleast_1d(temperature), HOTTEST)  # hotter flashes leave no film
-        found = np.array([oil_state(self.oil, it).dynamic_viscosity for it in values])
-        return found.reshape(np.shape(temperature))
-
-    def pressure_viscosity(self, temperature: Numbers) -> FloatArray:
-        """alpha from that at 38 degC. ISO/TS 6336-22, Eq. 9. [1/Pa]"""
-        at38 = oil_state(self.oil, REFERENCE).pressure_viscosity
-        return np.asarray(at38 * (1 + 516 * (1 / np.minimum(temperature, HOTTEST) - 1 / REFERENCE)))
+    ISO/TS 6336-22, Eq. 9.
+    """
+    held = np.minimum(temperature, HOTTEST)  # hotter flashes leave no film
+    viscosity = [oil_state(oil, it).dynamic_viscosity for it in np.atleast_1d(held)]
+    at38 = oil_state(oil, REFERENCE).pressure_viscosity
+    alpha = np.asarray(at38 * (1 + 516 * (1 / held - 1 / REFERENCE)))
+    return np.reshape(viscosity, np.shape(held)), alpha
 
 
 def film_thickness(
@@ -92,8 +86,6 @@ class ReferenceFilm:
     """The film at the point A of the test gears C-GF in a load stage."""
 
     bulk_temperature: float  # [K]
-    contact_temperature: float  # [K]
-    film: float  # [m]
     ratio: float  # lambda_GFT. [1]
 
     @property
@@ -156,16 +148,16 @@ def reference_film(oil: Oil, stage: int) -> ReferenceFilm:
         _TEST_EFFUSIVITY,
         _TEST_EFFUSIVITY,
     )
-    touching, film_oil = bulk + float(flash), FilmOil(oil)
+    touching = bulk + float(flash)
     film = film_thickness(
         own,
         v1 + v2,
         hertz_pressure(load, own, _TEST_MODULUS),
         _TEST_MODULUS,
-        (film_oil.viscosity(bulk), film_oil.pressure_viscosity(bulk)),
-        (film_oil.viscosity(touching), film_oil.pressure_viscosity(touching)),
+        film_oil(oil, bulk),
+        film_oil(oil, touching),
     )
-    return ReferenceFilm(bulk, touching, float(film), float(film) / TEST_ROUGHNESS)
+    return ReferenceFilm(bulk, float(film) / TEST_ROUGHNESS)
 
 
 def scuffing_temperature(stage: int, viscosity: float, lubricant_factor: float) -> float:

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case
 from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import Problem, one_problem, raise_any
@@ -17,7 +16,7 @@ from epicyclic.machine.element import joined_key
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.plugins.design.search import dominated
 from epicyclic.study.sweeps.run import PointList
-from epicyclic.study.sweeps.runner import Rows, Runner
+from epicyclic.study.sweeps.runner import Runner
 
 OBJECTIVES: Mapping[str, str] = {
     "loss": "total",
@@ -81,34 +80,33 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
     """
     raise_any(_problems(relief), "the command")
     variants = [dict(zip(relief.vary, it, strict=True)) for it in product(*relief.vary.values())]
-    points, owners = _points(relief, variants)
-    rows = (runner or Runner()).run(PointList(relief.case, points=tuple(points)))
-    values = _values(relief, rows)  # points by objectives
-    nominal = np.full((len(variants), len(relief.objectives)), np.nan)
-    spread = np.zeros_like(nominal)
-    for variant in range(len(variants)):
-        own = [place for place, (one, shift) in enumerate(owners) if one == variant and shift < 0]
-        nominal[variant] = _over_loads(relief, values[own])
-        for shift in range(len(_amounts(relief))):
-            off = [place for place, it in enumerate(owners) if it == (variant, shift)]
-            if off:
-                spread[variant] += (_over_loads(relief, values[off]) - nominal[variant]) ** 2
-    solved = np.isfinite(nominal).all(axis=1)
+    shifted = [key for key in relief.vary if relief.tolerance and key.split(".")[-1] in TOLERATED]
+    points = tuple(_points(relief, variants, shifted))
+    rows = (runner or Runner()).run(PointList(relief.case, points=points))
+    over_loads = []  # Of each objective: variants, as they are and then with one amount off.
+    for name in relief.objectives:
+        figure = OBJECTIVES[name]
+        key = figure if name == "loss" else f"{relief.mesh.replace('.', '_')}_{figure}"
+        values = rows.numbers(key).reshape(len(variants), len(relief.loads), 1 + len(shifted))
+        over_loads.append(values.mean(axis=1) if name == "loss" else values.max(axis=1))
+    found = np.array(over_loads)
+    nominal = found[..., 0]
+    half = np.sqrt(((found[..., 1:] - found[..., :1]) ** 2).sum(axis=2))
+    solved = np.isfinite(nominal).all(axis=0)
     if not solved.any():
         first = next(iter(rows.failures), "nothing was solved")
         raise one_problem("--vary", "", f"leads to no result: {first}", "Narrow it.")
     front = np.zeros(len(variants), dtype=bool)
-    front[solved] = ~dominated(nominal[solved], nominal[solved])
+    front[solved] = ~dominated(nominal.T[solved], nominal.T[solved])
     data: dict[str, Any] = {
         key: ("variant", [variant[key] for variant in variants]) for key in relief.vary
     }
     for place, name in enumerate(relief.objectives):
         about = {"units": DISPLAY[name]}
-        data[name] = ("variant", nominal[:, place], about)
+        data[name] = ("variant", nominal[place], about)
         if relief.tolerance:
-            half = np.sqrt(spread[:, place])
-            data[f"{name}_low"] = ("variant", nominal[:, place] - half, about)
-            data[f"{name}_high"] = ("variant", nominal[:, place] + half, about)
+            data[f"{name}_low"] = ("variant", nominal[place] - half[place], about)
+            data[f"{name}_high"] = ("variant", nominal[place] + half[place], about)
     data["front"] = ("variant", front)
     data["status"] = ("variant", np.where(solved, "converged", "failed"))
     attributes = {
@@ -120,46 +118,14 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
     return xr.Dataset(data, attrs=attributes)
 
 
-def _amounts(relief: Relief) -> list[str]:
-    """The varied keys that have an amount with a tolerance."""
-    return [key for key in relief.vary if key.split(".")[-1] in TOLERATED]
-
-
 def _points(
-    relief: Relief, variants: Sequence[Mapping[str, str]]
-) -> tuple[list[dict[str, Any]], list[tuple[int, int]]]:
-    """Points to solve, and for each its variant and which amount is off; -1 for none."""
-    points: list[dict[str, Any]] = []
-    owners: list[tuple[int, int]] = []
-    varied = _amounts(relief) if relief.tolerance else []
-    for number, variant in enumerate(variants):
-        case = relief.case.updated(dict(variant)) if varied else relief.case
+    relief: Relief, variants: Sequence[Mapping[str, str]], shifted: Sequence[str]
+) -> Iterator[dict[str, Any]]:
+    """Points to solve, by variant and load: as it is, then with one of `shifted` off."""
+    for variant in variants:
+        case = relief.case.updated(dict(variant)) if shifted else relief.case
         for load in relief.loads:
-            points.append({**variant, **load})
-            owners.append((number, -1))
-            for place, key in enumerate(varied):
+            yield {**variant, **load}
+            for key in shifted:
                 off = f"{(case[key] + relief.tolerance) * 1e6:.9g} um"
-                points.append({**variant, **load, key: off})
-                owners.append((number, place))
-    return points, owners
-
-
-def _values(relief: Relief, rows: Rows) -> FloatArray:
-    """Objectives of every point, in the units of `DISPLAY`."""
-    columns = []
-    for name in relief.objectives:
-        figure = OBJECTIVES[name]
-        key = figure if name == "loss" else f"{relief.mesh.replace('.', '_')}_{figure}"
-        columns.append(rows.numbers(key))
-    return np.array(columns).T
-
-
-def _over_loads(relief: Relief, values: FloatArray) -> FloatArray:
-    """The mean of losses and the largest of the others over the loads."""
-    if not len(values):
-        return np.full(len(relief.objectives), np.nan)
-    found: FloatArray = values.max(axis=0)
-    for place, name in enumerate(relief.objectives):
-        if name == "loss":
-            found[place] = values[:, place].mean()
-    return found
+                yield {**variant, **load, key: off}

@@ -101,22 +101,14 @@ class DesignPlan(Plan):
 
     kind: ClassVar[str] = "designs"
     may_fail: ClassVar[bool] = True
+    batch: ClassVar[int] = 1  # A design takes up to some seconds.
     task: Mapping[str, Any]  # As its file has it.
     rows: tuple[Mapping[str, Any], ...]
-
-    @property
-    def batch(self) -> int:
-        """A design takes up to some seconds."""
-        return 1
 
     @property
     def size(self) -> int:
         """Number of designs."""
         return len(self.rows)
-
-    def order(self) -> range:
-        """Numbers of all designs."""
-        return range(self.size)
 
     def _solve(self, index: int) -> Row:
         try:

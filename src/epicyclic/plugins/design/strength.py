@@ -512,18 +512,15 @@ class _Rating:
             bulk = oil.temperature + rise
         along = path_means(contact, flash)
         scuffed = bulk if warm else oil.temperature + bulk_rise_of_flash(along, lubrication, mates)
-        film_oil = lubricated.FilmOil(self.oil)
         temperatures, place = np.unique(np.round(bulk + flash), return_inverse=True)
+        viscosity, alpha = lubricated.film_oil(self.oil, temperatures)
         film = lubricated.film_thickness(
             contact.radius,
             2 * contact.rolling_speed,
             contact.hertz_pressure,
             duty.gears.flanks.equivalent_modulus,
-            (film_oil.viscosity(bulk), film_oil.pressure_viscosity(bulk)),
-            (
-                film_oil.viscosity(temperatures)[place],
-                film_oil.pressure_viscosity(temperatures)[place],
-            ),
+            lubricated.film_oil(self.oil, bulk),
+            (viscosity[place], alpha[place]),
         )
         roughness = RA_OVER_RQ * (contact.flanks.roughness1 + contact.flanks.roughness2) / 2
         thinnest = int(np.argmin(film))

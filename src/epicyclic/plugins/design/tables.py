@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from epicyclic.case.case import Case
-from epicyclic.plugins.design.mass import Part, parts
+from epicyclic.plugins.design.mass import parts
 from epicyclic.plugins.design.strength import AFTER, MeshRating, Strength, strength
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import Cell, Listing, Table, number
@@ -92,19 +92,15 @@ def _bearings(found: Strength) -> Table:
 def mass_table(case: Case) -> Table:
     """Mass and inertia of every part."""
     found = parts(case)
-
-    def row(part: Part) -> tuple[Cell, ...]:
-        cells = (part.mass, 1e4 * part.inertia, 1e4 * part.carried_inertia)
-        return (
-            Cell(in_words(part.name)),
-            number(part.count, ""),
-            *(number(it, "") for it in cells),
-        )
-
+    rows = (
+        (Cell(in_words(it.name)), number(it.count, ""), number(it.mass, ""),
+         number(1e4 * it.inertia, ""), number(1e4 * it.carried_inertia, ""))
+        for it in found
+    )  # fmt: skip
     total = sum(part.count * part.mass for part in found)
     return Table(
         ("part", "number", "mass, kg", "inertia, kg·cm²", "on the carrier, kg·cm²"),
-        tuple(map(row, found)),
+        tuple(rows),
         "Mass and inertia",
         note=f"Together {total:.4g} kg, without shafts, pins, rollers and housing.",
     )
