@@ -19,7 +19,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.dataclass import asdict, dataclass, replace
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, problems_in, raise_any
 from epicyclic.files import refuse
 from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
 from epicyclic.schema.fields import (
@@ -232,11 +232,8 @@ def columns_of(points: str | Path | pd.DataFrame) -> dict[str, list[Any]]:
     """
     if not isinstance(points, str | Path):
         return _point_columns({str(name): column.tolist() for name, column in points.items()})
-    source = one_line(str(points), 500)
-    try:
+    with problems_in(one_line(str(points), 500)):
         return _point_columns(_read(Path(points)))
-    except InputError as error:
-        raise InputError(error.problems, source) from None
 
 
 def _read(path: Path) -> dict[str, list[str]]:
