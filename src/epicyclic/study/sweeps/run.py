@@ -48,7 +48,7 @@ from epicyclic.study.sweeps.axes import (
     too_many,
     unit_of,
 )
-from epicyclic.study.sweeps.runner import Plan, Progress, Row, Rows, Runner
+from epicyclic.study.sweeps.runner import TEXTS, Plan, Progress, Row, Rows, Runner
 from epicyclic.units import format_number, percent
 
 if TYPE_CHECKING:
@@ -109,15 +109,13 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
 
 def flows_asked(plan: CasePlan, indices: Iterable[int]) -> dict[tuple[Any, ...], dict[str, Any]]:
     """What points change of the pockets, once for all that need the same flows."""
-    return {_flow(changes): changes for changes in _changes(plan, indices)}
-
-
-def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
-    """What the points change of the pockets; those that cannot be made report it themselves."""
+    asked = {}
     for index in indices:
-        with suppress(InputError):
-            changes = plan.changes(index).items()
-            yield {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
+        with suppress(InputError):  # the point reports it
+            every = plan.changes(index).items()
+            changes = {key: value for key, value in every if not _NOT_OF_POCKETS.fullmatch(key)}
+            asked[_flow(changes)] = changes
+    return asked
 
 
 def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -600,13 +598,8 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
         key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
         for key, item in numbers.items()
     }
-    texts = {
-        "status": ("how the point ended", rows.status),
-        "message": ("why the point failed", rows.message),
-        "warnings": ("warnings of the point", rows.warnings),
-    }
-    for key, (label, values) in texts.items():
-        column = np.array(values, dtype=object).reshape(plan.shape)
+    for key, label in TEXTS.items():
+        column = np.array(getattr(rows, key), dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
     with texts_not_copied():
         return with_plain_names(xr.Dataset(variables, coords, _attributes(plan, rows)))

@@ -62,13 +62,21 @@ _MOST_STRANGE_LINES, _LONG = 100, 500_000
 more bytes counts as several."""
 
 
+TEXTS = {
+    "status": "how the point ended",
+    "message": "why the point failed",
+    "warnings": "warnings of the point",
+}
+"""What a point says beside its numbers."""
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One finished point of a study."""
+    """One finished point of a study, with its `TEXTS`."""
 
-    status: str  # How it ended, why it failed, what to know.
-    message: str = ""  # How it ended, why it failed, what to know.
-    warnings: str = ""  # How it ended, why it failed, what to know.
+    status: str
+    message: str = ""
+    warnings: str = ""
     # As `Result.numbers` names them; empty if it failed.
     numbers: dict[str, float] = field(default_factory=dict)
 
@@ -320,10 +328,6 @@ class Plan(ABC):
     @abstractmethod
     def order(self) -> Sequence[int]:
         """Numbers of all points, those next to each other that share most."""
-
-    def solve(self, index: int) -> Row:
-        """Row of one point, as of several."""
-        return self.solve_all([index])[0]
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
         """Rows of points, with the reason if one fails; raises nothing but an interruption."""
