@@ -32,13 +32,16 @@ from epicyclic.study.maps.compute import held_shaft
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import grid_plan, point_of, texts_of
 from epicyclic.study.maps.tables import Lookup, driven_problem, loss_power
+from epicyclic.study.meshes import variable
 from epicyclic.study.operating import AXES, STATE, axis_name
 from epicyclic.study.sweeps.run import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Progress
 from epicyclic.units import (
     CELSIUS,
+    JOULE_PER_KELVIN,
     KELVIN,
     KILOJOULE,
+    NUMBER,
     SECOND,
     WATT,
     Quantity,
@@ -551,38 +554,32 @@ def _to_dataset(
     settled_loss = tables.heat(heating).read(ends)[0].sum()
     capacities = np.array(list(tables.capacities.values()))
     stored = capacities @ (course.temperatures - course.temperatures[:, :1])
-    _, zero = CELSIUS.scale_and_offset()
-    kilo, _ = KILOJOULE.scale_and_offset()
     over, each = ("time",), ("node",)
-    kelvin, energy, watts = CELSIUS.display, KILOJOULE.display, WATT.display
     table = (
-        ("temperature", ("time", "node"), course.temperatures.T + zero, kelvin, "temperature"),
-        ("loss", ("time", "component"), told.losses.T, watts, "power loss"),
-        ("total_loss", over, told.losses.sum(axis=0), watts, "power loss of all components"),
-        ("efficiency", over, told.efficiency, "1", "efficiency"),
-        ("energy_lost", over, course.gained * kilo, energy, "energy lost since the start"),
-        ("energy_given_off", over, course.given_off * kilo, energy,
-         "energy given off to oil inlet, coolant and air since the start"),
-        ("energy_stored", over, stored * kilo, energy, "energy stored since the start"),
-        ("heat_capacity", each, capacities, "J/K", "heat capacity"),
-        ("settled_temperature", each, ends + zero, kelvin, "temperature in the settled state"),
-        ("time_to_90_percent", each, _times_reached(course, ends), SECOND.display,
-         "time to 90 % of the way to the settled state"),
-        ("time_constant", ("order",), constants, SECOND.display,
-         "time constant of small changes about the settled state"),
-        ("energy_lost_settled", (), settled_loss * seconds * kilo, energy,
-         "energy lost if the settled state held from the start"),
+        ("temperature", ("time", "node"), course.temperatures.T, "temperature", CELSIUS),
+        ("loss", ("time", "component"), told.losses.T, "power loss", WATT),
+        ("total_loss", over, told.losses.sum(axis=0), "power loss of all components", WATT),
+        ("efficiency", over, told.efficiency, "efficiency", NUMBER),
+        ("energy_lost", over, course.gained, "energy lost since the start", KILOJOULE),
+        ("energy_given_off", over, course.given_off,
+         "energy given off to oil inlet, coolant and air since the start", KILOJOULE),
+        ("energy_stored", over, stored, "energy stored since the start", KILOJOULE),
+        ("heat_capacity", each, capacities, "heat capacity", JOULE_PER_KELVIN),
+        ("settled_temperature", each, ends, "temperature in the settled state", CELSIUS),
+        ("time_to_90_percent", each, _times_reached(course, ends),
+         "time to 90 % of the way to the settled state", SECOND),
+        ("time_constant", ("order",), constants,
+         "time constant of small changes about the settled state", SECOND),
+        ("energy_lost_settled", (), settled_loss * seconds,
+         "energy lost if the settled state held from the start", KILOJOULE),
     )  # fmt: skip
     coords = {
-        "time": (over, course.times, {"long_name": "time", "units": SECOND.display}),
+        "time": variable("time", course.times, "time", SECOND),
         "node": nodes,
         "component": list(tables.terms),
     }
     return xr.Dataset(
-        {
-            name: (dims, values, {"long_name": label, "units": unit})
-            for name, dims, values, unit, label in table
-        },
+        {name: variable(dims, it, label, unit) for name, dims, it, label, unit in table},
         coords,
         {
             "title": case.title,
