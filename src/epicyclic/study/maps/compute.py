@@ -22,7 +22,7 @@ from epicyclic.messages import did_you_mean, written
 from epicyclic.result.result import Layout, number_fields
 from epicyclic.study.heat import with_network
 from epicyclic.study.load import CaseSource, as_case
-from epicyclic.study.maps.tables import Lookup, check_map, map_case, map_inputs
+from epicyclic.study.maps.tables import SUMS, Lookup, check_map, map_case, map_inputs
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
@@ -290,15 +290,6 @@ def _takes_minutes(case: Case) -> bool:
 
 _SHAFT_KEYS = ("operation.input", "operation.output", "operation.fixed", "operation.second_input")
 """Keys that decide which shaft is the reference, and which the output."""
-_SUMS = (
-    "load_dependent",
-    "load_independent",
-    "total",
-    "input_power",
-    "efficiency",
-    "ratio",
-    "power_ratio",
-)
 _TEMPERATURES = {
     "inlet": "all parts are at the oil inlet temperature",
     "flank": "temperature is that of the oil; the flank temperatures follow from their own losses",
@@ -551,7 +542,7 @@ def _one_ratio(ratio: xr.DataArray) -> xr.DataArray:
 
 def _kept_variables(layout: Layout) -> list[str]:
     """Losses, their sums, efficiency, ratios, speeds and torques of members, temperatures."""
-    kept = {*layout.losses, *_SUMS}
+    kept = {*layout.losses, *SUMS, "efficiency", "ratio", "power_ratio"}
     kept |= {f"{name}_{what}" for name in layout.members for what in ("speed", "torque")}
     kept |= {f"{node}_temperature" for node in layout.nodes}
     return [item.key for item in number_fields(layout) if item.key in kept]
@@ -599,7 +590,7 @@ def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
     if operation.driven:
         text["zero_speed"] = f"no torque loss: a second member is driven while the {reference} "
         text["zero_speed"] += "stands still"
-    chosen = {axis_name(axis.key): axis.coordinate for axis in plan.axes}.get(STATE, ())
+    chosen = coordinates(plan).get(STATE, ())
     left_out = states_left_out(plan.case).items()
     reasons = [f"{name}: {reason}" for name, reason in left_out if name not in chosen]
     if reasons:
