@@ -11,7 +11,6 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
 from functools import partial
-from itertools import groupby
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
@@ -196,13 +195,12 @@ class CasePlan(Plan):
         return size if self.together and size >= FEWEST_TOGETHER else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
-        """Rows of points; those next to each other are solved together."""
+        """Rows of the points of whole blocks; those of each are solved together."""
         if not self.together:
             return Plan.solve_all(self, indices)
-        place = {index: at for at, index in enumerate(self.order())}
         size = self.block
-        blocks = groupby(indices, lambda index: place[index] // size)
-        return [row for _, block in blocks for row in self._solve_block(list(block))]
+        blocks = (indices[first : first + size] for first in range(0, len(indices), size))
+        return [row for block in blocks for row in self._solve_block(block)]
 
     def _solve_block(self, indices: Sequence[int]) -> list[Row]:
         cases: dict[int, Case] = {}

@@ -330,7 +330,10 @@ class Plan(ABC):
         """Numbers of all points, those next to each other that share most."""
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
-        """Rows of points, with the reason if one fails; raises nothing but an interruption."""
+        """Rows of the points of whole blocks, in their order, with the reason if one fails.
+
+        Raises nothing but an interruption.
+        """
         return [self._row(partial(self._solve, index)) for index in indices]
 
     def _row(self, find: Callable[[], Row]) -> Row:
