@@ -484,20 +484,6 @@ class DutyPlan(MapPlan):
     clamp: bool = field(kw_only=True)  # As for `duty_cycle`.
 
     @classmethod
-    def of(
-        cls,
-        case: Case,
-        cycle: Cycle,
-        celsius: tuple[float, ...] | None,
-        *,
-        digest: str,
-        clamp: bool,
-    ) -> Self:
-        """The map of a cycle; raises `InputError` as `cycle_plan`."""
-        plan = cycle_plan(case, cycle, celsius)
-        return cls(plan.case, plan.axes, digest=digest, celsius=celsius, clamp=clamp)
-
-    @classmethod
     def again(cls, content: Mapping[str, Any], source: str) -> Self:
         """The plan that `describe` described."""
         plan, asked = MapPlan.again(content, source), content["duty"]
@@ -508,8 +494,7 @@ class DutyPlan(MapPlan):
 
     def describe(self) -> dict[str, Any]:
         """The map, and what is asked of it."""
-        celsius = None if self.celsius is None else list(self.celsius)
-        duty = {"cycle": self.digest, "celsius": celsius, "clamp": self.clamp}
+        duty = {"cycle": self.digest, "celsius": self.celsius, "clamp": self.clamp}
         return {**MapPlan.describe(self), "duty": duty}
 
 

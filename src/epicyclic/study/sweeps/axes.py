@@ -324,7 +324,7 @@ _OPERATORS: dict[type[ast.AST], Callable[..., Value]] = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
 }
-_KNOWN = f"{', '.join([*FUNCTIONS, _CASE])}"
+_KNOWN = ", ".join([*FUNCTIONS, _CASE])
 
 
 @dataclass(frozen=True, slots=True)

@@ -586,15 +586,14 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
 
     from epicyclic.study.sweeps.names import with_plain_names
 
-    numbers = {item.key: item for item in number_fields(layout_of(plan.case))}
     dims = tuple(axis.key for axis in plan.axes)
     coords = {}
     for key, over, points, unit in _coordinates(plan):
         about = _about("row of the table of points" if key == ROW else key, unit)
         coords[key] = (over, points, about)
     variables = {
-        key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
-        for key, item in numbers.items()
+        it.key: (dims, rows.numbers(it.key).reshape(plan.shape), _about(it.label, it.unit))
+        for it in number_fields(layout_of(plan.case))
     }
     for key, label in TEXTS.items():
         column = np.array(getattr(rows, key), dtype=object).reshape(plan.shape)
