@@ -283,10 +283,6 @@ def _takes_minutes(case: Case) -> bool:
 #
 # A train has its states of brakes and clutches as a further dimension; one whose losses are all
 # given has no oil, and no temperature.
-#
-# The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss
-# over the magnitude of the speed of that shaft. With it the torque that the shaft passes on is the
-# torque on it less the torque loss times the sign of its speed, driving and coasting.
 
 _SHAFT_KEYS = ("operation.input", "operation.output", "operation.fixed", "operation.second_input")
 """Keys that decide which shaft is the reference, and which the output."""

@@ -224,6 +224,7 @@ def texts_of(values: Iterable[float], quantity: Quantity) -> list[str]:
 class Totals:
     """Sums over a cycle; arrays have a row for each of `MODES`, a column for each state or one."""
 
+    sample: Sample  # Of its points.
     node_work: FloatArray  # Angle turned through at each node of the map. [rad]
     duration: FloatArray  # [s]
     energy_in: FloatArray  # [J]
@@ -239,7 +240,6 @@ class Sums:
     celsius: tuple[float, ...] | None  # Temperatures that were asked for.
     clamp: bool
     totals: tuple[Totals, ...]
-    samples: tuple[Sample, ...]
 
 
 def add_up(
@@ -257,15 +257,13 @@ def add_up(
     lookup = make_lookup(data)
     if len(lookup.states) > 1 or (lookup.states and cycle.states):
         check_states(cycle, lookup.states)
-    totals, drawn = [], []
+    totals = []
     for value in _temperatures(lookup, cycle, celsius):
-        sample = Sample(samples)
-        found = _go_through(lookup, cycle, value, sample, progress)
+        found = _go_through(lookup, cycle, value, Sample(samples), progress)
         if found.outside and not clamp:
             raise _outside(lookup, cycle, value, found)
         totals.append(found)
-        drawn.append(sample)
-    return Sums(lookup, celsius, clamp, tuple(totals), tuple(drawn))
+    return Sums(lookup, celsius, clamp, tuple(totals))
 
 
 def make_duty(data: xr.Dataset, cycle: Cycle, sums: Sums, runner: Runner = HERE) -> xr.Dataset:
@@ -274,11 +272,11 @@ def make_duty(data: xr.Dataset, cycle: Cycle, sums: Sums, runner: Runner = HERE)
 
     case = map_case(data, further_values(data))
     results = []
-    for totals, sample in zip(sums.totals, sums.samples, strict=True):
+    for totals in sums.totals:
         error = (
             leave_out(sums.lookup, totals.node_work.sum(axis=0))
             if case is None
-            else solve_sample(case, sums.lookup, sample, runner)
+            else solve_sample(case, sums.lookup, totals.sample, runner)
         )
         results.append(_to_dataset(sums.lookup, totals, error))
     (result, *_) = results
@@ -345,7 +343,7 @@ def _go_through(
 ) -> Totals:
     """All points of a cycle added up, at its own temperatures or at one."""
     modes, nodes, states = len(MODES), lookup.size, max(1, len(lookup.states))
-    totals = Totals(np.zeros((modes, nodes)), *np.zeros((3, modes, states)))
+    totals = Totals(sample, np.zeros((modes, nodes)), *np.zeros((3, modes, states)))
     torque_loss = lookup.total
     done = 0
     for piece in cycle.pieces(celsius):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -81,7 +81,7 @@ def heat_samples(
     points: Sequence[Mapping[str, Any]],  # Keys of the case that each point changes.
     knots: Sequence[float],  # Temperatures. [K]
     flow_tables: FlowTables,  # Tables of flows through pockets.
-    told: Callable[[], None],  # Called after each.
+    progress: Progress | None = None,
 ) -> list[list[HeatSample]]:
     """Samples of operating points at some temperatures.
 
@@ -90,6 +90,7 @@ def heat_samples(
     machines = [build(case.updated(changes), flow_tables) for changes in points]
     samples: list[list[HeatSample]] = [[] for _ in knots]
     last: dict[int, Solution] = {}  # by the number of the machine, at the knot before
+    done = itertools.count(1)
     for row, knot in zip(samples, knots, strict=True):
         # next to each other if they differ in torque only
         for number, built in enumerate(machines):
@@ -104,7 +105,8 @@ def heat_samples(
             links = tuple({link.key: link for link in one.links} for one in networks)
             heat = _heat(built.machine, solution, model.nodes)
             row.append(HeatSample(heat, links, networks[0].given))
-            told()
+            if progress is not None:
+                progress(next(done), len(knots) * len(points))
     return samples
 
 
@@ -466,13 +468,7 @@ def _sampled(
         others = tuple(other for other in drive.plan.axes if other.key != key)
         plan = replace(drive.plan, axes=(*others, axis))
         tables = plan.prepared(range(plan.size), None).flow_tables
-    done, whole = itertools.count(1), len(knots) * len(drive.points)
-
-    def told() -> None:
-        if progress is not None:
-            progress(next(done), whole)
-
-    return heat_samples(case, drive.points, knots, tables, told)
+    return heat_samples(case, drive.points, knots, tables, progress)
 
 
 # --- over time ------------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ import time
 import warnings
 import zlib
 from abc import ABC, abstractmethod
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
@@ -88,7 +88,7 @@ class Rows:
         self.status = [NOT_COMPUTED] * size
         self.message = [""] * size
         self.warnings = [""] * size
-        self._numbers: dict[str, FloatArray] = {}
+        self._numbers = defaultdict[str, FloatArray](partial(np.full, size, np.nan))
 
     def __len__(self) -> int:
         return len(self.status)
@@ -109,8 +109,6 @@ class Rows:
         self.message[point] = sys.intern(row.message)
         self.warnings[point] = sys.intern(row.warnings)  # neighbours often have the same
         for name, value in row.numbers.items():
-            if name not in self._numbers:
-                self._numbers[name] = np.full(len(self), np.nan)
             self._numbers[name][point] = value
 
     def numbers(self, name: str) -> FloatArray:
@@ -276,7 +274,7 @@ def _error(path: Path, allowed: str) -> InputError:
 # Many independent points: in this process while that is quick, else in workers or on a cluster.
 #
 # Finished points are kept in a journal at once, and rows do not depend on order, workers, shards or
-# interruptions as long as `Plan.solve` is a function of the number of the point.
+# interruptions as long as `Plan.solve_all` makes the same of the same block.
 
 Progress = Callable[..., None]
 Batch = list[tuple[int, Row]]
