@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, layout_of, operation_of
+from epicyclic.build.models import set_cases
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
@@ -23,7 +24,7 @@ from epicyclic.result.result import Layout, number_fields
 from epicyclic.study.heat import with_network
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.tables import SUMS, Lookup, check_map, map_case, map_inputs
-from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
+from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name, key_of
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
 from epicyclic.study.sweeps.run import PointList, SweepPlan, by_keys, make_plan, to_dataset
@@ -224,13 +225,8 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     speed = float(speeds[speeds.size // 2])
     line = data.sel(speed=speed).isel(first)
     middles = _checked(torques, line["total"].values)
-    changes = further_values(line) | {
-        part.key: part.text(line[name].item())
-        for name, part in OPERATING.items()
-        if name in ("speed", *first)
-    }
-    if STATE in first:
-        changes[STATE_KEY] = line[STATE].item()
+    fixed = [values for name, values in line.coords.items() if name != "torque"]
+    changes = {key_of(values): written_values(values)[0] for values in fixed}
     torque = OPERATING["torque"]
     points = tuple(changes | {torque.key: torque.text(middle)} for middle in middles.tolist())
     direct = Runner(jobs=1).run(PointList(case, points)).numbers("total")
@@ -274,9 +270,7 @@ def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
 
 
 def _takes_minutes(case: Case) -> bool:
-    tables = case.sets.values() if isinstance(case, TrainCase) else (case,)
-    models = (getattr(table, "models", None) for table in tables)
-    return any(getattr(own, "friction", "") == "ehl-direct" for own in models)
+    return any(own.models.friction == "ehl-direct" for own in set_cases(case).values())
 
 
 # Loss maps: losses, torque loss and efficiency over speed, torque and oil temperature.
