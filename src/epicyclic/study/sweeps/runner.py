@@ -152,14 +152,16 @@ class Journal:
     def points(self) -> Iterator[tuple[int, Row]]:
         """The same one by one, so that they need not all be held."""
         own = strange = 0
+        start = b'{"sweep":"%s"' % self.fingerprint.encode()
         try:
             with _opened(self.path) as file:
                 while line := file.readline(_LONGEST_LINE):
-                    record = _parsed(_RECORD, _record_in(line.rstrip(b"\n")))
+                    text = line.rstrip(b"\n")
+                    record = _parsed(_RECORD, _record_in(text))
                     if record is not None and record.sweep == self.fingerprint:
                         own += 1
                         yield record.point, record.row
-                    if not self._may_be_cut_short(line.rstrip(b"\n")):
+                    if not (text.startswith(start) or start.startswith(text)):  # or cut short
                         strange += 1 + len(line) // _LONG
                     if not own and strange > _MOST_STRANGE_LINES:
                         break
@@ -207,11 +209,6 @@ class Journal:
             remedy = f"Finished points are kept; {first} and give the same command again."
             allowed = f"cannot be written: {reason}."
             raise one_problem("journal", str(self.path), allowed, remedy, "the sweep")
-
-    def _may_be_cut_short(self, line: bytes) -> bool:
-        """True for the start of a line of this study."""
-        mark = b'{"sweep":"%s"' % self.fingerprint.encode()
-        return line.startswith(mark) or mark.startswith(line)
 
 
 def _opened(path: Path) -> BinaryIO:
