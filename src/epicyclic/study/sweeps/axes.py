@@ -490,7 +490,7 @@ class Point:
             return self._allowed(key, parse_expression(text).value(at_point, self._in_case))
         except ZeroDivisionError:
             raise _no_value(key, text, "divides by zero") from None
-        except (ArithmeticError, TypeError, ValueError) as error:
+        except (ArithmeticError, TypeError, ValueError) as error:  # also what quantities refuse
             raise _no_value(key, text, str(error)) from None
 
     def coordinate(self, key: str) -> float | str | None:
@@ -514,21 +514,15 @@ class Point:
         quantity = quantity_of(*_field(self.case, key))
         if quantity is None:
             return _plain_number(key, value)
-        try:
-            return with_unit(quantity.parse(value), quantity.si)
-        except PydanticCustomError as error:
-            raise ValueError(error.message()) from None
+        return with_unit(quantity.parse(value), quantity.si)
 
     def _allowed(self, key: str, value: Any) -> Any:
         annotation, metadata = _field(self.case, key)
         quantity = quantity_of(annotation, metadata)
         if quantity is not None:
-            try:
-                # radians count as numbers, so that a power over a speed is a torque
-                text = quantity.exact_text(in_unit(value, quantity.si))
-                quantity.parse(text)
-            except PydanticCustomError as error:
-                raise ValueError(error.message()) from None
+            # radians count as numbers, so that a power over a speed is a torque
+            text = quantity.exact_text(in_unit(value, quantity.si))
+            quantity.parse(text)
             return text
         number = in_unit(value, "")
         if annotation is not int:
