@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from enum import StrEnum
 from itertools import pairwise
 
@@ -103,6 +104,15 @@ def raise_any(problems: Iterable[Problem], source: str = "") -> None:
     found = tuple(problems)
     if found:
         raise InputError(found, source)
+
+
+@contextmanager
+def problems_in(source: str) -> Iterator[None]:
+    """Where problems that are found are those of `source`."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(error.problems, source) from None
 
 
 class ConvergenceError(EpicyclicError):

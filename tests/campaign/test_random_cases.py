@@ -20,7 +20,7 @@ TABLE = Path(__file__).parents[2] / "docs" / "development" / "campaign.csv"
 def solved(numbers):
     numbers = list(numbers)
     plan = CampaignPlan(max(numbers) + 1)
-    counts = counted((number, plan.solve(number)) for number in numbers)
+    counts = counted(zip(numbers, plan.solve_all(numbers), strict=True))
     for row in counts.rows():
         print(",".join(row))
     return counts
@@ -150,7 +150,7 @@ def test_points_of_a_design_differ_in_operation_only():
 
 def test_a_case_follows_from_its_number_alone():
     plan = CampaignPlan(8)
-    one, two = plan.solve(3), plan.solve(3)
+    one, two = plan.solve_all([3, 3])
     assert one.message == two.message
     assert one.numbers["energy"] == two.numbers["energy"]
 

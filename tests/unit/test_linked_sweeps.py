@@ -296,7 +296,7 @@ def test_a_point_without_a_value_is_a_row(case):
     constant_power = {"operation.torque": "25 * W * planet.count / operation.speed"}
     quick = case.updated({"numerics.mesh_positions": 8, "numerics.contact_segments": 6})
     plan = make_plan(quick, vary, links=constant_power)
-    rows = [plan.solve(index) for index in range(plan.size)]
+    rows = plan.solve_all(range(plan.size))
     assert [row.status for row in rows] == ["failed", "converged"] * 2
     assert "divides by zero" in rows[0].message
     data = to_dataset(plan, Rows(plan.size))
@@ -323,7 +323,7 @@ def test_braces_stand_for_several_keys():
 
 
 def test_a_failed_point_tells_its_first_problem_only(case):
-    row = make_plan(case, {"planet.teeth": [27]}).solve(0)
+    (row,) = make_plan(case, {"planet.teeth": [27]}).solve_all([0])
     assert row.status == "failed"
     assert "too thick for the centre distance" in row.message
     assert " more: 'epicyclic check' with these values shows all." in row.message

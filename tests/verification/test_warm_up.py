@@ -82,7 +82,7 @@ def tables_of(case):
 
     warm = case.updated({"models.temperatures": "network"})
     knots = [293.15 + 20 * number for number in range(8)]
-    return HeatTables(build(warm).thermal, knots, heat_samples(warm, [{}], knots, {}, lambda: None))
+    return HeatTables(build(warm).thermal, knots, heat_samples(warm, [{}], knots, {}))
 
 
 CASES = {

@@ -97,12 +97,13 @@ def duty(
         checked = open_cycle(cycle, progress, form)
     celsius = parse_temperatures(checked, temperatures or None)
     if runner.shard is not None:
-        from epicyclic.study.maps.duty import DutyPlan, digest_of
+        from epicyclic.study.maps.duty import DutyPlan, cycle_plan, digest_of
         from epicyclic.study.table_file import AS_IT_IS
 
         case = load_with(map_or_case, changes)
         digest = digest_of(Path(cycle))
-        plan = DutyPlan.of(case, checked, celsius, digest=digest, clamp=clamp)
+        points = cycle_plan(case, checked, celsius)
+        plan = DutyPlan(points.case, points.axes, digest=digest, celsius=celsius, clamp=clamp)
         file = output or Path(str(json_file))
         how: dict[str, Any] = {"cycle": cycle, "folder": str(Path.cwd())}
         how |= {} if map_file is None else {"map_file": str(map_file)}

@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
 from epicyclic.dataclass import dataclass
-from epicyclic.errors import InputError, Problem, first_of, raise_any, rising_problems
+from epicyclic.errors import InputError, Problem, first_of, problems_in, raise_any, rising_problems
 from epicyclic.files import csv_rows, read_text, refuse
 from epicyclic.losses.ranges import ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.units import CELSIUS, NEWTON, NEWTON_METRE, RPM, WATT, Quantity
@@ -161,10 +161,8 @@ def read_loss_table(
     do not count; the separator is a comma, a semicolon or a tab. Raises `InputError` with every
     mistake in the file.
     """
-    try:
+    with problems_in(str(path)):
         return _parse(read_text(path, "loss table", _LARGEST_FILE), str(path))
-    except InputError as error:
-        raise InputError(error.problems, str(path)) from None
 
 
 def _parse(text: str, source: str) -> LossTable:

@@ -14,7 +14,7 @@ from unicodedata import category
 import numpy as np
 from pydantic import BaseModel
 
-from epicyclic.errors import InputError, Problem
+from epicyclic.errors import InputError, Problem, problems_in
 from epicyclic.files import read_text, refuse
 from epicyclic.messages import dotted, one_line, written
 from epicyclic.schema.fields import to_inputs
@@ -185,13 +185,11 @@ def read_file(
     be checked too. Raises `InputError` if it is not a file, not text, or not TOML that can be read
     around its mistakes.
     """
-    try:
+    with problems_in(one_line(str(path), _LONGEST_PATH)):
         tables, bad_lines = _parse(read_text(path, "case", _LARGEST_FILE), path.suffix.lower())
         if not tables and not bad_lines:
             refuse("is empty.", f"Fill it; {start}")
         return _take_marks(plain(tables), bad_lines)
-    except InputError as error:
-        raise InputError(error.problems, one_line(str(path), _LONGEST_PATH)) from None
 
 
 def _parse(text: str, ending: str) -> tuple[dict[str, Any], list[_BadLine]]:

@@ -15,7 +15,7 @@ from pydantic_core import from_json
 from epicyclic.build.machine import build
 from epicyclic.case.case import Case
 from epicyclic.dataclass import dataclass
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.errors import Problem, one_problem, problems_in, raise_any
 from epicyclic.files import check_place, refuse, whole_file
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.messages import one_line
@@ -513,7 +513,7 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
         If it is not such a file, is damaged, or is too large.
     """
     source = Path(path)
-    try:
+    with problems_in(str(source)):
         fields = read_groups(source)
         root = fields.pop("")
         if root.attrs.get("format") == FORMAT:
@@ -534,9 +534,7 @@ def open_result(path: str | Path) -> ResultRecord | xr.Dataset:
             raise_any(_attribute_problems(root.attrs))
             return root
         allowed = "is neither a stored result nor a loss map nor an uncertainty nor a sweep."
-        refuse(allowed, RUN_AGAIN)
-    except InputError as error:
-        raise InputError(error.problems, str(source)) from None
+        return refuse(allowed, RUN_AGAIN)
 
 
 def open_map(path: str | Path) -> xr.Dataset:

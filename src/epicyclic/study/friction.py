@@ -42,9 +42,9 @@ PARTED = 1.25
 class FrictionComparison:
     """One friction model on one case."""
 
-    name: str  # The model.
-    title: str  # The model.
-    source: str  # The model.
+    name: str  # Of the model.
+    title: str  # Of the model.
+    source: str  # Of the model.
     chosen: bool  # True for the model of the case.
     mean_friction: dict[str, float]  # For each mesh. [1]
     sliding: float  # Sliding loss of all meshes, local along the contact lines. [W]

@@ -59,6 +59,8 @@ def variable(
 
 
 _DIMENSIONS = ("mesh_position", "contact_line", "segment")
+_points = partial(variable, _DIMENSIONS)
+_positions = partial(variable, _DIMENSIONS[:1])
 
 
 def mesh_details(case: CaseSource) -> dict[str, xr.Dataset]:
@@ -113,7 +115,7 @@ def _details(
     lines = loads.lines
     pitch_angle = 2 * math.pi / mesh.gear1.teeth
     variables = {
-        "weight": variable(_DIMENSIONS[:1], lines.weight, "share of the mesh period", NUMBER),
+        "weight": _positions(lines.weight, "share of the mesh period", NUMBER),
         "path_position": _points(
             lines.curvature1 - mesh.pitch_point, "path of contact from the pitch point", MILLIMETRE
         ),
@@ -122,11 +124,8 @@ def _details(
         **_contact(duty, key, fluids, loads),
     }
     coordinates = {
-        "roll_angle": variable(
-            _DIMENSIONS[:1],
-            lines.position * pitch_angle,
-            f"roll angle {of_gear(mesh.gear1.name)}",
-            DEGREE,
+        "roll_angle": _positions(
+            lines.position * pitch_angle, f"roll angle {of_gear(mesh.gear1.name)}", DEGREE
         ),
         "contact_line": np.arange(lines.length.shape[1]),
     }
@@ -163,9 +162,6 @@ def mesh_words(key: str) -> str:
     return f"{name}{': ' if dot else ''}{mesh.replace('_', ' ')}"
 
 
-_points = partial(variable, _DIMENSIONS)
-
-
 def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
     """What the load distribution tells."""
     lines = loads.lines
@@ -184,14 +180,9 @@ def _loads(loads: LineLoads, face_width: float) -> dict[str, Variable]:
             "normal force on the tooth pair",
             NEWTON,
         ),
-        "transmission_error": variable(
-            _DIMENSIONS[:1], error, "loaded transmission error", MICROMETRE
-        ),
-        "mesh_stiffness": variable(
-            _DIMENSIONS[:1],
-            stiffness / face_width,
-            "mesh stiffness per face width",
-            NEWTON_PER_MM_MICROMETRE,
+        "transmission_error": _positions(error, "loaded transmission error", MICROMETRE),
+        "mesh_stiffness": _positions(
+            stiffness / face_width, "mesh stiffness per face width", NEWTON_PER_MM_MICROMETRE
         ),
     }
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 Point = tuple[float, float]  # x and y of a centre. [m]
 Place = tuple[float, float, float]  # x and y of the centre [m], direction of the first tooth [rad].
+_Stand = tuple[str, int]  # A gear and the number of its place.
 UP = math.pi / 2
 HALF = 0.5  # Part of a pitch by which a tooth is away from the space beside it.
 
@@ -44,12 +45,46 @@ class SetPlaces:
     bodies: Mapping[str, str]  # The body of each gear: gears of one body turn together.
 
     def places(self, meshes: Sequence[Mesh]) -> dict[str, list[Place]]:
-        """Centres with the directions of the first teeth, the first gear with a tooth upwards."""
-        directions = tooth_directions(self.centers, self.bodies, meshes)
+        """Centres with directions of teeth so that these stand in spaces, the first one upwards.
+
+        Nothing is checked: whether the set can be assembled so is a matter of the case.
+        """
+        known: dict[_Stand, float] = {}
+        stands = [(name, number) for name, at in self.centers.items() for number in range(len(at))]
+        while left := [stand for stand in stands if stand not in known]:
+            found = next(self._through_meshes(meshes, known), None)
+            if found is None:  # where no mesh decides, the gears of one body point the same way
+                found = next(self._on_known_bodies(left, known), (left[0], UP))
+            stand, turn = found
+            known[stand] = turn
         return {
-            name: [(*center, turn) for center, turn in zip(centers, directions[name], strict=True)]
+            name: [(*center, known[name, number]) for number, center in enumerate(centers)]
             for name, centers in self.centers.items()
         }
+
+    def _through_meshes(
+        self, meshes: Sequence[Mesh], known: Mapping[_Stand, float]
+    ) -> Iterator[tuple[_Stand, float]]:
+        """Gears whose mates are known, with their directions."""
+        centers = self.centers
+        for mesh in meshes:
+            one, two = mesh.gear1.name, mesh.gear2.name
+            for own, other in ((one, two), (two, one)):
+                for number in range(max(len(centers[own]), len(centers[other]))):
+                    ends = [(name, min(number, len(centers[name]) - 1)) for name in (own, other)]
+                    if ends[0] in known and ends[1] not in known:
+                        (px, py), (x, y) = (centers[name][place] for name, place in ends)
+                        angle = math.atan2(y - py, x - px)
+                        yield ends[1], _meshing(mesh, own == one, known[ends[0]], angle)
+
+    def _on_known_bodies(
+        self, left: Sequence[_Stand], known: Mapping[_Stand, float]
+    ) -> Iterator[tuple[_Stand, float]]:
+        """Gears beside which another one of their body is known."""
+        for name, number in left:
+            for (other, place), turn in known.items():
+                if (self.bodies[other], place) == (self.bodies[name], number):
+                    yield (name, number), turn
 
     def relative_speeds(self, meshes: Sequence[Mesh]) -> dict[str, float]:
         """Speed of each gear over that of the first one, seen from the carrier; 0 if unrelated."""
@@ -74,60 +109,6 @@ def places_of(gearing: Gearing) -> SetPlaces | None:
         for name, body in gearing.bodies.items()
     }
     return SetPlaces(gearing.tables, centers, gearing.bodies)
-
-
-# --- how gears are turned -------------------------------------------------------------------------
-
-
-def tooth_directions(
-    centers: Mapping[str, Sequence[Point]],  # By gear. [m]
-    # By gear: where no mesh decides, the gears of one body point the same way.
-    bodies: Mapping[str, str],
-    meshes: Sequence[Mesh],
-) -> dict[str, list[float]]:
-    """Direction of a tooth of every gear at every place, so that teeth stand in spaces.
-
-    Nothing is checked: whether the set can be assembled so is a matter of the case.
-
-    Returns dict of str to list of float: by gear; the first one points upwards. [rad]
-    """
-    known: dict[_Stand, float] = {}
-    stands = [(name, number) for name in centers for number in range(len(centers[name]))]
-    while left := [stand for stand in stands if stand not in known]:
-        found = next(_through_meshes(centers, meshes, known), None)
-        if found is None:
-            found = next(_on_known_bodies(left, bodies, known), (left[0], UP))
-        stand, turn = found
-        known[stand] = turn
-    return {name: [known[name, number] for number in range(len(centers[name]))] for name in centers}
-
-
-_Stand = tuple[str, int]  # A gear and the number of its place.
-
-
-def _through_meshes(
-    centers: Mapping[str, Sequence[Point]], meshes: Sequence[Mesh], known: Mapping[_Stand, float]
-) -> Iterator[tuple[_Stand, float]]:
-    """Gears whose mates are known, with their directions."""
-    for mesh in meshes:
-        one, two = mesh.gear1.name, mesh.gear2.name
-        for own, other in ((one, two), (two, one)):
-            for number in range(max(len(centers[own]), len(centers[other]))):
-                ends = [(name, min(number, len(centers[name]) - 1)) for name in (own, other)]
-                if ends[0] in known and ends[1] not in known:
-                    (px, py), (x, y) = (centers[name][place] for name, place in ends)
-                    angle = math.atan2(y - py, x - px)
-                    yield ends[1], _meshing(mesh, own == one, known[ends[0]], angle)
-
-
-def _on_known_bodies(
-    left: Sequence[_Stand], bodies: Mapping[str, str], known: Mapping[_Stand, float]
-) -> Iterator[tuple[_Stand, float]]:
-    """Gears beside which another one of their body is known."""
-    for name, number in left:
-        for (other, place), turn in known.items():
-            if (bodies[other], place) == (bodies[name], number):
-                yield (name, number), turn
 
 
 def _meshing(

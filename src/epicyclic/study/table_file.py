@@ -23,7 +23,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
 from epicyclic.dataclass import dataclass, field
-from epicyclic.errors import InputError, Problem, first_of, one_problem, raise_any
+from epicyclic.errors import InputError, Problem, first_of, one_problem, problems_in, raise_any
 from epicyclic.files import check_archive, read_bytes, refuse
 from epicyclic.messages import one_line, sentence
 from epicyclic.units import CELSIUS, NEWTON_METRE, NUMBER, RPM, SECOND, WATT, Quantity, one_of
@@ -153,7 +153,7 @@ class Source:
 
     def batches(self, chosen: Sequence[str]) -> Iterator[Piece]:
         """The rows that are asked for, in columns of some headers."""
-        try:
+        with problems_in(self.name):
             for piece in self.pieces(chosen):
                 if self.rows is not None:
                     first, last = self.rows
@@ -162,8 +162,6 @@ class Source:
                     piece = Piece(piece.lines[kept], columns)
                 if piece.lines.size:
                     yield piece
-        except InputError as error:
-            raise InputError(error.problems, self.name) from None
 
 
 def open_table(table: Any, form: TableForm = AS_IT_IS) -> Source:
@@ -175,7 +173,7 @@ def open_table(table: Any, form: TableForm = AS_IT_IS) -> Source:
         return _of_frame(table, form)
     path = Path(table)
     name, suffix = one_line(str(path), 500), path.suffix.lower()
-    try:
+    with problems_in(name):
         if suffix not in SUFFIXES:
             old = "Save it as .xlsx." if suffix in (".xls", ".xlsb", ".ods") else ""
             refuse(f"must end in {', '.join(SUFFIXES)}.", old or "Choose one of these formats.")
@@ -183,8 +181,6 @@ def open_table(table: Any, form: TableForm = AS_IT_IS) -> Source:
             return _of_parquet(path, name, form)
         cells = _Workbook(path, form) if suffix in EXCEL else _Text(path)
         return _of_cells(cells, name, form)
-    except InputError as error:
-        raise InputError(error.problems, name) from None
 
 
 # --- cells of text --------------------------------------------------------------------------------

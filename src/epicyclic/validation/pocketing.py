@@ -30,7 +30,7 @@ from epicyclic.schema.read import plain
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.meshes import variable
 from epicyclic.study.pockets import mesh_duties
-from epicyclic.study.sweeps.runner import HERE, Plan, Progress, Row, Rows, Runner
+from epicyclic.study.sweeps.runner import HERE, TEXTS, Plan, Progress, Row, Rows, Runner
 from epicyclic.units import DEGREE, MILLIMETRE, NUMBER, Quantity
 from epicyclic.validation.compare import open_figures, published_ends
 from epicyclic.validation.compute import NOMINAL_BACKLASH
@@ -505,11 +505,7 @@ def _dataset(plan: StudyPlan, name: str, rows: Rows, own: list[int]) -> xr.Datas
     for key, figure in NUMBERS.items():
         values = rows.numbers(key)[own].reshape(shape)
         variables[key] = variable(dims, values, *FLOW_NUMBERS[figure])
-    for key, label in (
-        ("status", "how the point ended"),
-        ("message", "why the point failed"),
-        ("warnings", "warnings of the point"),
-    ):
+    for key, label in TEXTS.items():
         texts = np.array(getattr(rows, key), dtype=object)[own].reshape(shape)
         variables[key] = (dims, texts, {"long_name": label})
     dataset = xr.Dataset(variables, coordinates, _attributes(plan, name))

@@ -14,7 +14,7 @@ from epicyclic.build.machine import operation_of
 from epicyclic.build.models import SetCase, set_cases
 from epicyclic.case.case import Case, TrainCase, read_case
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ShaftBearingTable
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.errors import Problem, one_problem, problems_in, raise_any
 from epicyclic.files import whole_file
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import CARRIER, HOUSING
@@ -687,12 +687,10 @@ def rexs_bytes(
         document = _described(path, result)
     else:
         document = read_document(Path(original), with_others=True)
-    try:
+    with problems_in(one_line(str(original), 500)):
         model = build_model(document.content)
         chosen = _chosen(model, result, component)
         raise_any(_mismatches(chosen, result))
-    except InputError as error:
-        raise InputError(error.problems, one_line(str(original), 500)) from None
     if isinstance(chosen, Train):
         figures = _of_train(model, chosen, result)
     else:

@@ -14,7 +14,7 @@ from lxml import etree
 from pydantic_core import from_json
 
 from epicyclic.dataclass import dataclass
-from epicyclic.errors import InputError
+from epicyclic.errors import InputError, problems_in
 from epicyclic.files import read_bytes
 from epicyclic.messages import one_line
 from epicyclic.plugins.rexs.model import Attribute, Coded, Component, Relation, refuse
@@ -380,12 +380,10 @@ def read_document(
 
     Raises `InputError` if it is no such file, is too large, or is not sound.
     """
-    try:
+    with problems_in(one_line(str(path), 500)):
         data = read_bytes(path, "REXS", LARGEST)
         is_archive = data.startswith(b"PK")
         return _from_archive(data, with_others) if is_archive else Document(_parse(data))
-    except InputError as error:
-        raise InputError(error.problems, one_line(str(path), 500)) from None
 
 
 def _from_archive(data: bytes, with_others: bool) -> Document:

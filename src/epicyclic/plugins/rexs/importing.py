@@ -9,7 +9,7 @@ from typing import Any
 
 from epicyclic.case.case import Case, build_case, changed_tables
 from epicyclic.dataclass import dataclass, replace
-from epicyclic.errors import InputError, Problem, raise_any
+from epicyclic.errors import InputError, Problem, problems_in, raise_any
 from epicyclic.messages import one_line
 from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
@@ -163,15 +163,13 @@ def read_rexs(
     """
     source = str(path)
     document = read_document(Path(path))
-    try:
+    with problems_in(one_line(source, 500)):
         model = build_model(document.content)
         if load_case is not None:
             model = model.with_load_case(load_case)
         train = chosen_train(model) if component is None else None
         chosen = train or choose(model, component)
         draft = _draft(model, chosen)
-    except InputError as error:
-        raise InputError(error.problems, one_line(source, 500)) from None
     return RexsImport(
         source=source,
         version=model.version,

@@ -274,8 +274,8 @@ def cycle_study(
 
 
 def _energies(sums: Sums, outputs: Outputs) -> Energies:
-    lookup, (totals,), (sample,) = sums.lookup, sums.totals, sums.samples
-    rows, chance = sample.drawn()
+    lookup, (totals,) = sums.lookup, sums.totals
+    rows, chance = totals.sample.drawn()
     if not len(rows):
         raise ConvergenceError("the cycle has no loss, so no uncertainty can be computed.")
     axes = [rows[:, number] for number in range(len(lookup.names))]

@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build, layout_of, operation_of
+from epicyclic.build.models import set_cases
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
@@ -22,8 +23,8 @@ from epicyclic.messages import did_you_mean, written
 from epicyclic.result.result import Layout, number_fields
 from epicyclic.study.heat import with_network
 from epicyclic.study.load import CaseSource, as_case
-from epicyclic.study.maps.tables import Lookup, check_map, map_case, map_inputs
-from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name
+from epicyclic.study.maps.tables import SUMS, Lookup, check_map, map_case, map_inputs
+from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name, key_of
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
 from epicyclic.study.sweeps.run import PointList, SweepPlan, by_keys, make_plan, to_dataset
@@ -224,13 +225,8 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     speed = float(speeds[speeds.size // 2])
     line = data.sel(speed=speed).isel(first)
     middles = _checked(torques, line["total"].values)
-    changes = further_values(line) | {
-        part.key: part.text(line[name].item())
-        for name, part in OPERATING.items()
-        if name in ("speed", *first)
-    }
-    if STATE in first:
-        changes[STATE_KEY] = line[STATE].item()
+    fixed = [values for name, values in line.coords.items() if name != "torque"]
+    changes = {key_of(values): written_values(values)[0] for values in fixed}
     torque = OPERATING["torque"]
     points = tuple(changes | {torque.key: torque.text(middle)} for middle in middles.tolist())
     direct = Runner(jobs=1).run(PointList(case, points)).numbers("total")
@@ -274,31 +270,16 @@ def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
 
 
 def _takes_minutes(case: Case) -> bool:
-    tables = case.sets.values() if isinstance(case, TrainCase) else (case,)
-    models = (getattr(table, "models", None) for table in tables)
-    return any(getattr(own, "friction", "") == "ehl-direct" for own in models)
+    return any(own.models.friction == "ehl-direct" for own in set_cases(case).values())
 
 
 # Loss maps: losses, torque loss and efficiency over speed, torque and oil temperature.
 #
 # A train has its states of brakes and clutches as a further dimension; one whose losses are all
 # given has no oil, and no temperature.
-#
-# The torque loss refers to the input member, `reference_shaft` in the attributes: the power loss
-# over the magnitude of the speed of that shaft. With it the torque that the shaft passes on is the
-# torque on it less the torque loss times the sign of its speed, driving and coasting.
 
 _SHAFT_KEYS = ("operation.input", "operation.output", "operation.fixed", "operation.second_input")
 """Keys that decide which shaft is the reference, and which the output."""
-_SUMS = (
-    "load_dependent",
-    "load_independent",
-    "total",
-    "input_power",
-    "efficiency",
-    "ratio",
-    "power_ratio",
-)
 _TEMPERATURES = {
     "inlet": "all parts are at the oil inlet temperature",
     "flank": "temperature is that of the oil; the flank temperatures follow from their own losses",
@@ -551,7 +532,7 @@ def _one_ratio(ratio: xr.DataArray) -> xr.DataArray:
 
 def _kept_variables(layout: Layout) -> list[str]:
     """Losses, their sums, efficiency, ratios, speeds and torques of members, temperatures."""
-    kept = {*layout.losses, *_SUMS}
+    kept = {*layout.losses, *SUMS, "efficiency", "ratio", "power_ratio"}
     kept |= {f"{name}_{what}" for name in layout.members for what in ("speed", "torque")}
     kept |= {f"{node}_temperature" for node in layout.nodes}
     return [item.key for item in number_fields(layout) if item.key in kept]
@@ -599,7 +580,7 @@ def _attributes(plan: MapPlan, given: Mapping[str, str]) -> dict[str, str]:
     if operation.driven:
         text["zero_speed"] = f"no torque loss: a second member is driven while the {reference} "
         text["zero_speed"] += "stands still"
-    chosen = {axis_name(axis.key): axis.coordinate for axis in plan.axes}.get(STATE, ())
+    chosen = coordinates(plan).get(STATE, ())
     left_out = states_left_out(plan.case).items()
     reasons = [f"{name}: {reason}" for name, reason in left_out if name not in chosen]
     if reasons:

@@ -18,6 +18,7 @@ from epicyclic.messages import one_line
 from epicyclic.study.operating import OPERATING, STATE
 from epicyclic.study.table_file import (
     AS_IT_IS,
+    COLUMNS,
     HEADER,
     Source,
     TableForm,
@@ -27,7 +28,6 @@ from epicyclic.study.table_file import (
     unit_problem,
 )
 from epicyclic.study.table_file import Piece as TablePiece
-from epicyclic.units import SECOND, Quantity
 
 # A cycle is a time series (a column of time) or a histogram (a column of durations or shares). It
 # is read once to check it, which finds every problem, and once more for each use; it is never in
@@ -36,13 +36,7 @@ from epicyclic.units import SECOND, Quantity
 TIME, DURATION, SHARE = "time", "duration", "share"
 _WEIGHTINGS = (TIME, DURATION, SHARE)
 _OPTIONAL = ("temperature", STATE)
-_QUANTITIES: dict[str, Quantity | None] = {
-    **{name: part.quantity for name, part in OPERATING.items()},
-    STATE: None,
-    TIME: SECOND,
-    DURATION: SECOND,
-    SHARE: None,
-}
+_QUANTITIES = {name: COLUMNS[name][0] for name in (*OPERATING, STATE, *_WEIGHTINGS)}
 _NUMBER = r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$"
 _WHOLE = re.compile(r"^(\d+)\.0+$")  # A number as spreadsheets write whole ones.
 _SHOWN_HEADERS, _SHOWN_PARTS = 20, 6

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -29,6 +29,7 @@ from epicyclic.study.maps.compute import (
 )
 from epicyclic.study.maps.cycle import Cycle, Piece, open_cycle
 from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_case
+from epicyclic.study.meshes import Variable, variable
 from epicyclic.study.operating import STATE
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
 from epicyclic.study.table_file import AS_IT_IS, TableForm
@@ -36,6 +37,7 @@ from epicyclic.units import (
     CELSIUS,
     KILOJOULE,
     NEWTON_METRE,
+    NUMBER,
     RPM,
     SECOND,
     Quantity,
@@ -222,6 +224,7 @@ def texts_of(values: Iterable[float], quantity: Quantity) -> list[str]:
 class Totals:
     """Sums over a cycle; arrays have a row for each of `MODES`, a column for each state or one."""
 
+    sample: Sample  # Of its points.
     node_work: FloatArray  # Angle turned through at each node of the map. [rad]
     duration: FloatArray  # [s]
     energy_in: FloatArray  # [J]
@@ -237,7 +240,6 @@ class Sums:
     celsius: tuple[float, ...] | None  # Temperatures that were asked for.
     clamp: bool
     totals: tuple[Totals, ...]
-    samples: tuple[Sample, ...]
 
 
 def add_up(
@@ -255,15 +257,13 @@ def add_up(
     lookup = make_lookup(data)
     if len(lookup.states) > 1 or (lookup.states and cycle.states):
         check_states(cycle, lookup.states)
-    totals, drawn = [], []
+    totals = []
     for value in _temperatures(lookup, cycle, celsius):
-        sample = Sample(samples)
-        found = _go_through(lookup, cycle, value, sample, progress)
+        found = _go_through(lookup, cycle, value, Sample(samples), progress)
         if found.outside and not clamp:
             raise _outside(lookup, cycle, value, found)
         totals.append(found)
-        drawn.append(sample)
-    return Sums(lookup, celsius, clamp, tuple(totals), tuple(drawn))
+    return Sums(lookup, celsius, clamp, tuple(totals))
 
 
 def make_duty(data: xr.Dataset, cycle: Cycle, sums: Sums, runner: Runner = HERE) -> xr.Dataset:
@@ -272,11 +272,11 @@ def make_duty(data: xr.Dataset, cycle: Cycle, sums: Sums, runner: Runner = HERE)
 
     case = map_case(data, further_values(data))
     results = []
-    for totals, sample in zip(sums.totals, sums.samples, strict=True):
+    for totals in sums.totals:
         error = (
             leave_out(sums.lookup, totals.node_work.sum(axis=0))
             if case is None
-            else solve_sample(case, sums.lookup, sample, runner)
+            else solve_sample(case, sums.lookup, totals.sample, runner)
         )
         results.append(_to_dataset(sums.lookup, totals, error))
     (result, *_) = results
@@ -343,7 +343,7 @@ def _go_through(
 ) -> Totals:
     """All points of a cycle added up, at its own temperatures or at one."""
     modes, nodes, states = len(MODES), lookup.size, max(1, len(lookup.states))
-    totals = Totals(np.zeros((modes, nodes)), *np.zeros((3, modes, states)))
+    totals = Totals(sample, np.zeros((modes, nodes)), *np.zeros((3, modes, states)))
     torque_loss = lookup.total
     done = 0
     for piece in cycle.pieces(celsius):
@@ -399,60 +399,48 @@ def _outside(lookup: Lookup, cycle: Cycle, celsius: float | None, totals: Totals
 def _to_dataset(lookup: Lookup, totals: Totals, error: Deviation) -> xr.Dataset:
     import xarray as xr
 
+    components, states = len(lookup.components), len(lookup.states)
     entering, leaving = totals.energy_in.sum(axis=1), totals.energy_out.sum(axis=1)
-    duration = totals.duration.sum(axis=1)
-    by_component = totals.node_work @ lookup.torques.reshape(len(lookup.components), lookup.size).T
-    seconds, energy, pure = SECOND.display, KILOJOULE.display, "1"
-    kilo, _ = KILOJOULE.scale_and_offset()
-    outside = totals.outside / duration.sum()
-    of_mode, of_both = ("mode",), ("mode", "component")
-    table = (
-        ("duration", of_mode, duration, seconds, "duration"),
-        ("energy_in", of_mode, entering * kilo, energy, "energy input"),
-        ("energy_out", of_mode, leaving * kilo, energy, "energy output"),
-        ("energy_lost", of_both, by_component * kilo, energy, "energy lost"),
-        ("efficiency", of_mode, _ratio(leaving, entering), pure, "efficiency"),
-        ("total_efficiency", (), _ratio(leaving.sum(), entering.sum()), pure,
-         "efficiency over the cycle"),
-        ("share_outside", (), outside, pure, "share of the duration outside of the map"),
-        ("interpolation_error", (), error.energy * kilo, energy,
-         "energy lost added by interpolation, estimate"),
-        ("interpolation_standard_error", (), error.standard_error * kilo, energy,
-         "standard error of the estimate"),
-        ("largest_deviation", (), error.largest, pure, "largest deviation of a checked point"),
-        *_of_states(lookup, totals),
-    )  # fmt: skip
+    outside = totals.outside / totals.duration.sum(axis=1).sum()
+    total = _ratio(leaving.sum(), entering.sum())
+    lost = totals.node_work @ lookup.torques.reshape(components, lookup.size).T
+    variables = _sums_over("mode", totals, lost) | {
+        "total_efficiency": variable((), total, "efficiency over the cycle", NUMBER),
+        "share_outside": variable((), outside, "share of the duration outside of the map", NUMBER),
+        "interpolation_error": variable(
+            (), error.energy, "energy lost added by interpolation, estimate", KILOJOULE
+        ),
+        "interpolation_standard_error": variable(
+            (), error.standard_error, "standard error of the estimate", KILOJOULE
+        ),
+        "largest_deviation": variable(
+            (), error.largest, "largest deviation of a checked point", NUMBER
+        ),
+    }
     coords = {"mode": list(MODES), "component": list(lookup.components)}
-    if lookup.states:
+    if states:
         coords[STATE] = list(lookup.states)
-    return xr.Dataset(
-        {
-            name: (dims, values, {"long_name": label, "units": unit})
-            for name, dims, values, unit, label in table
-        },
-        coords,
+        # states are the last axis of the map
+        turned = totals.node_work.sum(axis=0).reshape(-1, states)
+        torques = lookup.torques.reshape(components, -1, states)
+        sums = _sums_over(STATE, totals, np.einsum("ns,cns->sc", turned, torques))
+        variables |= {f"state_{name}": values for name, values in sums.items()}
+    return xr.Dataset(variables, coords)
+
+
+def _sums_over(dimension: str, totals: Totals, lost: FloatArray) -> dict[str, Variable]:
+    """Duration and energies of the modes or states; `lost` is that by component. [J]"""
+    axis = 0 if dimension == STATE else 1
+    duration, entering, leaving = (
+        sums.sum(axis=axis) for sums in (totals.duration, totals.energy_in, totals.energy_out)
     )
-
-
-def _of_states(
-    lookup: Lookup, totals: Totals
-) -> Iterator[tuple[str, tuple[str, ...], FloatArray, str, str]]:
-    """Sums over each state, as `_to_dataset` has the others; none without states."""
-    if not lookup.states:
-        return
-    kilo, _ = KILOJOULE.scale_and_offset()
-    entering, leaving = totals.energy_in.sum(axis=0), totals.energy_out.sum(axis=0)
-    # states are the last axis of the map
-    turned = totals.node_work.sum(axis=0).reshape(-1, len(lookup.states))
-    torques = lookup.torques.reshape(len(lookup.components), -1, len(lookup.states))
-    lost = np.einsum("ns,cns->sc", turned, torques)
-    energy = KILOJOULE.display
-    of_state = (STATE,)
-    yield "state_duration", of_state, totals.duration.sum(axis=0), SECOND.display, "duration"
-    yield "state_energy_in", of_state, entering * kilo, energy, "energy input"
-    yield "state_energy_out", of_state, leaving * kilo, energy, "energy output"
-    yield "state_energy_lost", (STATE, "component"), lost * kilo, energy, "energy lost"
-    yield "state_efficiency", of_state, _ratio(leaving, entering), "1", "efficiency"
+    return {
+        "duration": variable(dimension, duration, "duration", SECOND),
+        "energy_in": variable(dimension, entering, "energy input", KILOJOULE),
+        "energy_out": variable(dimension, leaving, "energy output", KILOJOULE),
+        "energy_lost": variable((dimension, "component"), lost, "energy lost", KILOJOULE),
+        "efficiency": variable(dimension, _ratio(leaving, entering), "efficiency", NUMBER),
+    }
 
 
 def _ratio(part: Any, whole: Any) -> Any:
@@ -494,20 +482,6 @@ class DutyPlan(MapPlan):
     clamp: bool = field(kw_only=True)  # As for `duty_cycle`.
 
     @classmethod
-    def of(
-        cls,
-        case: Case,
-        cycle: Cycle,
-        celsius: tuple[float, ...] | None,
-        *,
-        digest: str,
-        clamp: bool,
-    ) -> Self:
-        """The map of a cycle; raises `InputError` as `cycle_plan`."""
-        plan = cycle_plan(case, cycle, celsius)
-        return cls(plan.case, plan.axes, digest=digest, celsius=celsius, clamp=clamp)
-
-    @classmethod
     def again(cls, content: Mapping[str, Any], source: str) -> Self:
         """The plan that `describe` described."""
         plan, asked = MapPlan.again(content, source), content["duty"]
@@ -518,8 +492,7 @@ class DutyPlan(MapPlan):
 
     def describe(self) -> dict[str, Any]:
         """The map, and what is asked of it."""
-        celsius = None if self.celsius is None else list(self.celsius)
-        duty = {"cycle": self.digest, "celsius": celsius, "clamp": self.clamp}
+        duty = {"cycle": self.digest, "celsius": self.celsius, "clamp": self.clamp}
         return {**MapPlan.describe(self), "duty": duty}
 
 

@@ -172,7 +172,7 @@ def write_parquet(data: xr.Dataset, path: Path) -> None:
 # its share of the torque loss, and not the power. Over the speed it is nearer to a straight line,
 # and its limit at rest is in the map.
 
-_SUMS = ("load_dependent", "load_independent", "total", "input_power")
+SUMS = ("load_dependent", "load_independent", "total", "input_power")
 """Variables in W of a map that are no component."""
 _ROUNDING = 1e-9  # Part of an axis by which a point may leave the map, from conversions of units.
 
@@ -286,7 +286,7 @@ def make_lookup(data: xr.Dataset) -> Lookup:
     components = [
         str(name)
         for name, array in chosen.data_vars.items()
-        if array.attrs.get("units") == WATT.display and name not in _SUMS
+        if array.attrs.get("units") == WATT.display and name not in SUMS
         if not array.isnull().all()  # left out of the case
     ]
     shape = [chosen.sizes[name] for name in names]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,13 +32,16 @@ from epicyclic.study.maps.compute import held_shaft
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import grid_plan, point_of, texts_of
 from epicyclic.study.maps.tables import Lookup, driven_problem, loss_power
+from epicyclic.study.meshes import variable
 from epicyclic.study.operating import AXES, STATE, axis_name
 from epicyclic.study.sweeps.run import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Progress
 from epicyclic.units import (
     CELSIUS,
+    JOULE_PER_KELVIN,
     KELVIN,
     KILOJOULE,
+    NUMBER,
     SECOND,
     WATT,
     Quantity,
@@ -78,7 +81,7 @@ def heat_samples(
     points: Sequence[Mapping[str, Any]],  # Keys of the case that each point changes.
     knots: Sequence[float],  # Temperatures. [K]
     flow_tables: FlowTables,  # Tables of flows through pockets.
-    told: Callable[[], None],  # Called after each.
+    progress: Progress | None = None,
 ) -> list[list[HeatSample]]:
     """Samples of operating points at some temperatures.
 
@@ -87,6 +90,7 @@ def heat_samples(
     machines = [build(case.updated(changes), flow_tables) for changes in points]
     samples: list[list[HeatSample]] = [[] for _ in knots]
     last: dict[int, Solution] = {}  # by the number of the machine, at the knot before
+    done = itertools.count(1)
     for row, knot in zip(samples, knots, strict=True):
         # next to each other if they differ in torque only
         for number, built in enumerate(machines):
@@ -101,7 +105,8 @@ def heat_samples(
             links = tuple({link.key: link for link in one.links} for one in networks)
             heat = _heat(built.machine, solution, model.nodes)
             row.append(HeatSample(heat, links, networks[0].given))
-            told()
+            if progress is not None:
+                progress(next(done), len(knots) * len(points))
     return samples
 
 
@@ -463,13 +468,7 @@ def _sampled(
         others = tuple(other for other in drive.plan.axes if other.key != key)
         plan = replace(drive.plan, axes=(*others, axis))
         tables = plan.prepared(range(plan.size), None).flow_tables
-    done, whole = itertools.count(1), len(knots) * len(drive.points)
-
-    def told() -> None:
-        if progress is not None:
-            progress(next(done), whole)
-
-    return heat_samples(case, drive.points, knots, tables, told)
+    return heat_samples(case, drive.points, knots, tables, progress)
 
 
 # --- over time ------------------------------------------------------------------------------------
@@ -551,38 +550,32 @@ def _to_dataset(
     settled_loss = tables.heat(heating).read(ends)[0].sum()
     capacities = np.array(list(tables.capacities.values()))
     stored = capacities @ (course.temperatures - course.temperatures[:, :1])
-    _, zero = CELSIUS.scale_and_offset()
-    kilo, _ = KILOJOULE.scale_and_offset()
     over, each = ("time",), ("node",)
-    kelvin, energy, watts = CELSIUS.display, KILOJOULE.display, WATT.display
     table = (
-        ("temperature", ("time", "node"), course.temperatures.T + zero, kelvin, "temperature"),
-        ("loss", ("time", "component"), told.losses.T, watts, "power loss"),
-        ("total_loss", over, told.losses.sum(axis=0), watts, "power loss of all components"),
-        ("efficiency", over, told.efficiency, "1", "efficiency"),
-        ("energy_lost", over, course.gained * kilo, energy, "energy lost since the start"),
-        ("energy_given_off", over, course.given_off * kilo, energy,
-         "energy given off to oil inlet, coolant and air since the start"),
-        ("energy_stored", over, stored * kilo, energy, "energy stored since the start"),
-        ("heat_capacity", each, capacities, "J/K", "heat capacity"),
-        ("settled_temperature", each, ends + zero, kelvin, "temperature in the settled state"),
-        ("time_to_90_percent", each, _times_reached(course, ends), SECOND.display,
-         "time to 90 % of the way to the settled state"),
-        ("time_constant", ("order",), constants, SECOND.display,
-         "time constant of small changes about the settled state"),
-        ("energy_lost_settled", (), settled_loss * seconds * kilo, energy,
-         "energy lost if the settled state held from the start"),
+        ("temperature", ("time", "node"), course.temperatures.T, "temperature", CELSIUS),
+        ("loss", ("time", "component"), told.losses.T, "power loss", WATT),
+        ("total_loss", over, told.losses.sum(axis=0), "power loss of all components", WATT),
+        ("efficiency", over, told.efficiency, "efficiency", NUMBER),
+        ("energy_lost", over, course.gained, "energy lost since the start", KILOJOULE),
+        ("energy_given_off", over, course.given_off,
+         "energy given off to oil inlet, coolant and air since the start", KILOJOULE),
+        ("energy_stored", over, stored, "energy stored since the start", KILOJOULE),
+        ("heat_capacity", each, capacities, "heat capacity", JOULE_PER_KELVIN),
+        ("settled_temperature", each, ends, "temperature in the settled state", CELSIUS),
+        ("time_to_90_percent", each, _times_reached(course, ends),
+         "time to 90 % of the way to the settled state", SECOND),
+        ("time_constant", ("order",), constants,
+         "time constant of small changes about the settled state", SECOND),
+        ("energy_lost_settled", (), settled_loss * seconds,
+         "energy lost if the settled state held from the start", KILOJOULE),
     )  # fmt: skip
     coords = {
-        "time": (over, course.times, {"long_name": "time", "units": SECOND.display}),
+        "time": variable("time", course.times, "time", SECOND),
         "node": nodes,
         "component": list(tables.terms),
     }
     return xr.Dataset(
-        {
-            name: (dims, values, {"long_name": label, "units": unit})
-            for name, dims, values, unit, label in table
-        },
+        {name: variable(dims, it, label, unit) for name, dims, it, label, unit in table},
         coords,
         {
             "title": case.title,

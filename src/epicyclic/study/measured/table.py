@@ -15,7 +15,7 @@ from epicyclic.build.machine import build, layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys
 from epicyclic.dataclass import dataclass, field, replace
-from epicyclic.errors import InputError, Problem, first_of, raise_any
+from epicyclic.errors import InputError, Problem, first_of, problems_in, raise_any
 from epicyclic.files import refuse
 from epicyclic.messages import did_you_mean, misspelt, one_line, sentence
 from epicyclic.schema.fields import is_array, is_text, quantity_of
@@ -57,7 +57,7 @@ def read_grid(table: Any, form: TableForm = AS_IT_IS) -> Grid:
     """
     source = open_table(table, form)
     header = source.headers
-    try:
+    with problems_in(source.name):
         if not header:
             refuse("has no columns.", "Give a header such as: speed [rpm],torque [N*m],...")
         if len(header) > _MOST_COLUMNS:
@@ -74,8 +74,6 @@ def read_grid(table: Any, form: TableForm = AS_IT_IS) -> Grid:
                 refuse(f"has more than {MOST_ROWS} rows.", "Average the records of each point.")
         if not rows:
             refuse("has no rows below its header.", "Give one row for each measurement.")
-    except InputError as error:
-        raise InputError(error.problems, source.name) from None
     return Grid(header, tuple(rows), source.name)
 
 

@@ -19,7 +19,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.dataclass import asdict, dataclass, replace
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, problems_in, raise_any
 from epicyclic.files import refuse
 from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
 from epicyclic.schema.fields import (
@@ -232,11 +232,8 @@ def columns_of(points: str | Path | pd.DataFrame) -> dict[str, list[Any]]:
     """
     if not isinstance(points, str | Path):
         return _point_columns({str(name): column.tolist() for name, column in points.items()})
-    source = one_line(str(points), 500)
-    try:
+    with problems_in(one_line(str(points), 500)):
         return _point_columns(_read(Path(points)))
-    except InputError as error:
-        raise InputError(error.problems, source) from None
 
 
 def _read(path: Path) -> dict[str, list[str]]:
@@ -327,7 +324,7 @@ _OPERATORS: dict[type[ast.AST], Callable[..., Value]] = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
 }
-_KNOWN = f"{', '.join([*FUNCTIONS, _CASE])}"
+_KNOWN = ", ".join([*FUNCTIONS, _CASE])
 
 
 @dataclass(frozen=True, slots=True)
@@ -493,7 +490,7 @@ class Point:
             return self._allowed(key, parse_expression(text).value(at_point, self._in_case))
         except ZeroDivisionError:
             raise _no_value(key, text, "divides by zero") from None
-        except (ArithmeticError, TypeError, ValueError) as error:
+        except (ArithmeticError, TypeError, ValueError) as error:  # also what quantities refuse
             raise _no_value(key, text, str(error)) from None
 
     def coordinate(self, key: str) -> float | str | None:
@@ -517,21 +514,15 @@ class Point:
         quantity = quantity_of(*_field(self.case, key))
         if quantity is None:
             return _plain_number(key, value)
-        try:
-            return with_unit(quantity.parse(value), quantity.si)
-        except PydanticCustomError as error:
-            raise ValueError(error.message()) from None
+        return with_unit(quantity.parse(value), quantity.si)
 
     def _allowed(self, key: str, value: Any) -> Any:
         annotation, metadata = _field(self.case, key)
         quantity = quantity_of(annotation, metadata)
         if quantity is not None:
-            try:
-                # radians count as numbers, so that a power over a speed is a torque
-                text = quantity.exact_text(in_unit(value, quantity.si))
-                quantity.parse(text)
-            except PydanticCustomError as error:
-                raise ValueError(error.message()) from None
+            # radians count as numbers, so that a power over a speed is a torque
+            text = quantity.exact_text(in_unit(value, quantity.si))
+            quantity.parse(text)
             return text
         number = in_unit(value, "")
         if annotation is not int:

@@ -11,7 +11,6 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
 from functools import partial
-from itertools import groupby
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
@@ -48,7 +47,7 @@ from epicyclic.study.sweeps.axes import (
     too_many,
     unit_of,
 )
-from epicyclic.study.sweeps.runner import Plan, Progress, Row, Rows, Runner
+from epicyclic.study.sweeps.runner import TEXTS, Plan, Progress, Row, Rows, Runner
 from epicyclic.units import format_number, percent
 
 if TYPE_CHECKING:
@@ -109,15 +108,13 @@ def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = No
 
 def flows_asked(plan: CasePlan, indices: Iterable[int]) -> dict[tuple[Any, ...], dict[str, Any]]:
     """What points change of the pockets, once for all that need the same flows."""
-    return {_flow(changes): changes for changes in _changes(plan, indices)}
-
-
-def _changes(plan: CasePlan, indices: Iterable[int]) -> Iterator[dict[str, Any]]:
-    """What the points change of the pockets; those that cannot be made report it themselves."""
+    asked = {}
     for index in indices:
-        with suppress(InputError):
-            changes = plan.changes(index).items()
-            yield {key: value for key, value in changes if not _NOT_OF_POCKETS.fullmatch(key)}
+        with suppress(InputError):  # the point reports it
+            every = plan.changes(index).items()
+            changes = {key: value for key, value in every if not _NOT_OF_POCKETS.fullmatch(key)}
+            asked[_flow(changes)] = changes
+    return asked
 
 
 def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
@@ -198,13 +195,12 @@ class CasePlan(Plan):
         return size if self.together and size >= FEWEST_TOGETHER else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
-        """Rows of points; those next to each other are solved together."""
+        """Rows of the points of whole blocks; those of each are solved together."""
         if not self.together:
             return Plan.solve_all(self, indices)
-        place = {index: at for at, index in enumerate(self.order())}
         size = self.block
-        blocks = groupby(indices, lambda index: place[index] // size)
-        return [row for _, block in blocks for row in self._solve_block(list(block))]
+        blocks = (indices[first : first + size] for first in range(0, len(indices), size))
+        return [row for block in blocks for row in self._solve_block(block)]
 
     def _solve_block(self, indices: Sequence[int]) -> list[Row]:
         cases: dict[int, Case] = {}
@@ -590,23 +586,17 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
 
     from epicyclic.study.sweeps.names import with_plain_names
 
-    numbers = {item.key: item for item in number_fields(layout_of(plan.case))}
     dims = tuple(axis.key for axis in plan.axes)
     coords = {}
     for key, over, points, unit in _coordinates(plan):
         about = _about("row of the table of points" if key == ROW else key, unit)
         coords[key] = (over, points, about)
     variables = {
-        key: (dims, rows.numbers(key).reshape(plan.shape), _about(item.label, item.unit))
-        for key, item in numbers.items()
+        it.key: (dims, rows.numbers(it.key).reshape(plan.shape), _about(it.label, it.unit))
+        for it in number_fields(layout_of(plan.case))
     }
-    texts = {
-        "status": ("how the point ended", rows.status),
-        "message": ("why the point failed", rows.message),
-        "warnings": ("warnings of the point", rows.warnings),
-    }
-    for key, (label, values) in texts.items():
-        column = np.array(values, dtype=object).reshape(plan.shape)
+    for key, label in TEXTS.items():
+        column = np.array(getattr(rows, key), dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
     with texts_not_copied():
         return with_plain_names(xr.Dataset(variables, coords, _attributes(plan, rows)))

@@ -15,7 +15,7 @@ import time
 import warnings
 import zlib
 from abc import ABC, abstractmethod
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
@@ -62,13 +62,21 @@ _MOST_STRANGE_LINES, _LONG = 100, 500_000
 more bytes counts as several."""
 
 
+TEXTS = {
+    "status": "how the point ended",
+    "message": "why the point failed",
+    "warnings": "warnings of the point",
+}
+"""What a point says beside its numbers."""
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One finished point of a study."""
+    """One finished point of a study, with its `TEXTS`."""
 
-    status: str  # How it ended, why it failed, what to know.
-    message: str = ""  # How it ended, why it failed, what to know.
-    warnings: str = ""  # How it ended, why it failed, what to know.
+    status: str
+    message: str = ""
+    warnings: str = ""
     # As `Result.numbers` names them; empty if it failed.
     numbers: dict[str, float] = field(default_factory=dict)
 
@@ -80,7 +88,7 @@ class Rows:
         self.status = [NOT_COMPUTED] * size
         self.message = [""] * size
         self.warnings = [""] * size
-        self._numbers: dict[str, FloatArray] = {}
+        self._numbers = defaultdict[str, FloatArray](partial(np.full, size, np.nan))
 
     def __len__(self) -> int:
         return len(self.status)
@@ -101,8 +109,6 @@ class Rows:
         self.message[point] = sys.intern(row.message)
         self.warnings[point] = sys.intern(row.warnings)  # neighbours often have the same
         for name, value in row.numbers.items():
-            if name not in self._numbers:
-                self._numbers[name] = np.full(len(self), np.nan)
             self._numbers[name][point] = value
 
     def numbers(self, name: str) -> FloatArray:
@@ -146,14 +152,16 @@ class Journal:
     def points(self) -> Iterator[tuple[int, Row]]:
         """The same one by one, so that they need not all be held."""
         own = strange = 0
+        start = b'{"sweep":"%s"' % self.fingerprint.encode()
         try:
             with _opened(self.path) as file:
                 while line := file.readline(_LONGEST_LINE):
-                    record = _parsed(_RECORD, _record_in(line.rstrip(b"\n")))
+                    text = line.rstrip(b"\n")
+                    record = _parsed(_RECORD, _record_in(text))
                     if record is not None and record.sweep == self.fingerprint:
                         own += 1
                         yield record.point, record.row
-                    if not self._may_be_cut_short(line.rstrip(b"\n")):
+                    if not (text.startswith(start) or start.startswith(text)):  # or cut short
                         strange += 1 + len(line) // _LONG
                     if not own and strange > _MOST_STRANGE_LINES:
                         break
@@ -201,11 +209,6 @@ class Journal:
             remedy = f"Finished points are kept; {first} and give the same command again."
             allowed = f"cannot be written: {reason}."
             raise one_problem("journal", str(self.path), allowed, remedy, "the sweep")
-
-    def _may_be_cut_short(self, line: bytes) -> bool:
-        """True for the start of a line of this study."""
-        mark = b'{"sweep":"%s"' % self.fingerprint.encode()
-        return line.startswith(mark) or mark.startswith(line)
 
 
 def _opened(path: Path) -> BinaryIO:
@@ -268,7 +271,7 @@ def _error(path: Path, allowed: str) -> InputError:
 # Many independent points: in this process while that is quick, else in workers or on a cluster.
 #
 # Finished points are kept in a journal at once, and rows do not depend on order, workers, shards or
-# interruptions as long as `Plan.solve` is a function of the number of the point.
+# interruptions as long as `Plan.solve_all` makes the same of the same block.
 
 Progress = Callable[..., None]
 Batch = list[tuple[int, Row]]
@@ -321,12 +324,11 @@ class Plan(ABC):
         """Numbers of all points; a plan may sort them, so that neighbours share most."""
         return range(self.size)
 
-    def solve(self, index: int) -> Row:
-        """Row of one point, as of several."""
-        return self.solve_all([index])[0]
-
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
-        """Rows of points, with the reason if one fails; raises nothing but an interruption."""
+        """Rows of the points of whole blocks, in their order, with the reason if one fails.
+
+        Raises nothing but an interruption.
+        """
         return [self._row(partial(self._solve, index)) for index in indices]
 
     def _row(self, find: Callable[[], Row]) -> Row:
