@@ -60,18 +60,16 @@ def plot_gear_set(
         front = order[row + 1 :] if hidden else ()
         if hider := next((one for one, it in front if _hides(it, gear)), ""):
             label += f", behind {in_words(hider)}"
-        outline = _whole_outline(gear)
-        inside = bool(gear.attrs["internal"])
+        outline, radius = _whole_outline(gear), float(gear["outside_diameter"]) / 2
         for number in range(gear.sizes["place"]):
             center, turn = _place(gear, number)
-            shape = _path(outline @ _rotation(turn) + center)
-            if inside:
-                rim = _circle(_scalar(gear, "outside_diameter") / 2) + center
-                shape = Path.make_compound_path(_path(rim[::-1]), shape)
+            shape = Path(outline @ _rotation(turn) + center)
+            if gear.attrs["internal"]:
+                rim = _circle(radius) + center
+                shape = Path.make_compound_path(Path(rim[::-1]), shape)
             style = {"fc": fills[name], "ec": "black", "lw": 0.5, "gid": layer_of(name, number)}
             ax.add_patch(PathPatch(shape, label=label if number == 0 else None, **style))
             ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
-            radius = _scalar(gear, "outside_diameter") / 2
             low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
     title = "Gear pair to scale" if "pinion" in gears else "Gear set to scale"
     return _finish(ax, low, high, title)
@@ -81,17 +79,17 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     """Teeth of a mesh touching at the pitch point, with line of action and path of contact."""
     names = [str(name) for name in view["gear"].values]
     module = max(
-        _scalar(gears[name], "reference_diameter") / gears[name].attrs["teeth"] for name in names
+        float(gears[name]["reference_diameter"]) / gears[name].attrs["teeth"] for name in names
     )
     half = SHOWN_MODULES * module
     fills = fills_of(gears)
     for number, name in enumerate(names):
         gear, (center, turn) = gears[name], _place(view, number)
-        shape = _path(_some_teeth(gear, turn, half) + center)
+        shape = Path(_some_teeth(gear, turn, half) + center)
         style = {"fc": fills[name], "ec": "black", "lw": 0.8, "gid": layer_of(name, 0)}
         ax.add_patch(PathPatch(shape, label=in_words(name), **style))
         pitch = _circle(float(view["operating_radius"][number])) + center
-        base = _circle(_scalar(gear, "base_diameter") / 2) + center
+        base = _circle(float(gear["base_diameter"]) / 2) + center
         label = number == 0
         ax.plot(*pitch.T, color="0.35", lw=0.8, ls="-.", label="operating pitch circles" * label)
         ax.plot(*base.T, color="0.35", lw=0.8, ls=":", label="base circles" * label)
@@ -111,20 +109,20 @@ def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
     levels: dict[str, float] = {}
     for name, gear in sorted(gears.items(), key=_is_behind):
-        radius = _scalar(gear, "outside_diameter") / 2
+        radius = float(gear["outside_diameter"]) / 2
         for number, stand in enumerate(_points(gear, "stands")):
-            shape = _path(_circle(radius) + stand)
+            shape = Path(_circle(radius) + stand)
             if gear.attrs["internal"]:
-                inside = _circle(_scalar(gear, "tip_diameter") / 2)[::-1] + stand
-                shape = Path.make_compound_path(shape, _path(inside))
+                inside = _circle(float(gear["tip_diameter"]) / 2)[::-1] + stand
+                shape = Path.make_compound_path(shape, Path(inside))
             label = in_words(name) if number == 0 else None
             ax.add_patch(PathPatch(shape, facecolor=fills[name], edgecolor="black", label=label))
             low, high = np.minimum(low, stand - radius), np.maximum(high, stand + radius)
-            if "oil_depth" in gear and _scalar(gear, "oil_depth") > 0:
-                levels[name] = float(stand[1]) - radius + _scalar(gear, "oil_depth")
+            if "oil_depth" in gear and float(gear["oil_depth"]) > 0:
+                levels[name] = float(stand[1]) - radius + float(gear["oil_depth"])
     pools = []
     for name, level in levels.items():
-        radius = _scalar(gears[name], "outside_diameter") / 2
+        radius = float(gears[name]["outside_diameter"]) / 2
         x, y = _points(gears[name], "stands")[0]
         pools.append((x - radius, x + radius, y - radius, level))
     # one level for all, unless depths were stated gear by gear
@@ -146,13 +144,13 @@ def layer_of(name: str, number: int) -> str:
 def _is_behind(item: tuple[str, xr.Dataset]) -> tuple[bool, float]:
     """Sorts gears from the last to the first that is seen: smaller ones stand before larger."""
     _, gear = item
-    return not gear.attrs["internal"], -_scalar(gear, "tip_diameter")
+    return not gear.attrs["internal"], -float(gear["tip_diameter"])
 
 
 def _hides(front: xr.Dataset, gear: xr.Dataset) -> bool:
     """True if a gear in front of another one leaves at most the teeth of this to be seen."""
-    seen = _scalar(gear, "tip_diameter") - _scalar(front, "tip_diameter")
-    height = _scalar(gear, "tip_diameter") - _scalar(gear, "root_diameter")
+    seen = float(gear["tip_diameter"]) - float(front["tip_diameter"])
+    height = float(gear["tip_diameter"]) - float(gear["root_diameter"])
     behind = np.array_equal(_points(front, "center"), _points(gear, "center"))
     return not gear.attrs["internal"] and seen < height and behind
 
@@ -188,10 +186,6 @@ def _frame(ax: Axes, middle: FloatArray, half: FloatArray) -> None:
     ax.grid(visible=False)
 
 
-def _scalar(gear: xr.Dataset, name: str) -> float:
-    return float(gear[name])
-
-
 def _points(gear: xr.Dataset, what: str) -> FloatArray:
     """Points in rows: ``"center"`` of each place, ``"stands"`` in the housing. [mm]"""
     return np.column_stack([gear[f"{what}_x"], gear[f"{what}_y"]])
@@ -214,14 +208,10 @@ def _circle(radius: float) -> FloatArray:
     return radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def _path(points: FloatArray) -> Path:
-    return Path(points, closed=False)
-
-
 def _whole_outline(gear: xr.Dataset) -> FloatArray:
     """All teeth, of their points one of `SKIPPED_POINTS`; without an outline the tip circle."""
     if "x" not in gear:
-        return _circle(_scalar(gear, "tip_diameter") / 2)
+        return _circle(float(gear["tip_diameter"]) / 2)
     thinned = gear.isel(point=slice(None, None, SKIPPED_POINTS))
     return _teeth(thinned, range(int(gear.attrs["teeth"])))
 
@@ -236,15 +226,15 @@ def _teeth(gear: xr.Dataset, numbers: range) -> FloatArray:
 def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> FloatArray:
     """The teeth within `half` of the origin, closed to a solid, turned by `turn`."""
     if "x" not in gear:
-        return _circle(_scalar(gear, "tip_diameter") / 2)
+        return _circle(float(gear["tip_diameter"]) / 2)
     count = int(gear.attrs["teeth"])
-    radius = _scalar(gear, "reference_diameter") / 2
+    radius = float(gear["reference_diameter"]) / 2
     side = min(count // 2, math.ceil(2 * half / (2 * math.pi * radius / count)))
     outline = _teeth(gear, range(-side, side + 1))
     if gear.attrs["internal"]:
         first, last = np.arctan2(outline[[0, -1], 1], outline[[0, -1], 0]).tolist()
         angle = np.linspace(last, first, CIRCLE_POINTS)
-        outside = _scalar(gear, "outside_diameter") / 2
+        outside = float(gear["outside_diameter"]) / 2
         back = outside * np.column_stack([np.cos(angle), np.sin(angle)])
     else:
         back = np.zeros((1, 2))
