@@ -203,8 +203,8 @@ def _rotation(angle: float) -> FloatArray:
     return np.array([[cosine, sine], [-sine, cosine]])
 
 
-def _circle(radius: float) -> FloatArray:
-    angle = np.linspace(0, 2 * math.pi, CIRCLE_POINTS)
+def _circle(radius: float, first: float = 0.0, last: float = 2 * math.pi) -> FloatArray:
+    angle = np.linspace(first, last, CIRCLE_POINTS)
     return radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
@@ -233,9 +233,7 @@ def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> FloatArray:
     outline = _teeth(gear, range(-side, side + 1))
     if gear.attrs["internal"]:
         first, last = np.arctan2(outline[[0, -1], 1], outline[[0, -1], 0]).tolist()
-        angle = np.linspace(last, first, CIRCLE_POINTS)
-        outside = float(gear["outside_diameter"]) / 2
-        back = outside * np.column_stack([np.cos(angle), np.sin(angle)])
+        back = _circle(float(gear["outside_diameter"]) / 2, last, first)
     else:
         back = np.zeros((1, 2))
     return np.concatenate([outline, back, outline[:1]]) @ _rotation(turn)
