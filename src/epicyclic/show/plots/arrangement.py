@@ -15,7 +15,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING
 from epicyclic.result.result import in_words
-from epicyclic.show.plots.drawing import fills_of, plot_gear_set
+from epicyclic.show.plots.drawing import fills_of, plot_gear_set, points_of
 from epicyclic.show.plots.style import AROUND, PANEL, SMALL_CHARACTERS
 from epicyclic.units import MILLIMETRE
 
@@ -82,7 +82,7 @@ def _centers(
         body = _table(inputs, name).get("body") or name.partition(".")[2]
         member = f"{name.partition('.')[0]}.{body}"
         if gear.sizes["place"] == 1:
-            found[member] = np.array([float(gear["center_x"][0]), float(gear["center_y"][0])])
+            found[member] = points_of(gear, "center")[0]
     return found
 
 
@@ -158,8 +158,7 @@ def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) 
         middle, width = found.middles[name.partition(".")[0]], found.widths[name]
         tip, outside = float(gear["tip_diameter"]) / 2, float(gear["outside_diameter"]) / 2
         ends = ((-outside, -tip), (tip, outside)) if gear.attrs["internal"] else ((-tip, tip),)
-        for x, y in zip(gear["center_x"].values, gear["center_y"].values, strict=True):
-            height = float(np.array([x, y]) @ up)
+        for height in (points_of(gear, "center") @ up).tolist():
             for low, high in ends:
                 _rectangle(ax, (middle, height), (width, low, high), facecolor=colours[name])
     for shaft, members in inputs["shafts"].items():

@@ -17,7 +17,7 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
 from epicyclic.arrays import FloatArray
-from epicyclic.dataclass import dataclass
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.mesh import scale_of
 from epicyclic.show.plots.style import (
@@ -110,7 +110,7 @@ def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     levels: dict[str, float] = {}
     for name, gear in sorted(gears.items(), key=_is_behind):
         radius = float(gear["outside_diameter"]) / 2
-        for number, stand in enumerate(_points(gear, "stands")):
+        for number, stand in enumerate(points_of(gear, "stands")):
             shape = Path(_circle(radius) + stand)
             if gear.attrs["internal"]:
                 inside = _circle(float(gear["tip_diameter"]) / 2)[::-1] + stand
@@ -123,7 +123,7 @@ def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     pools = []
     for name, level in levels.items():
         radius = float(gears[name]["outside_diameter"]) / 2
-        x, y = _points(gears[name], "stands")[0]
+        x, y = points_of(gears[name], "stands")[0]
         pools.append((x - radius, x + radius, y - radius, level))
     # one level for all, unless depths were stated gear by gear
     if len({round(level, SAME_LEVEL) for level in levels.values()}) == 1:
@@ -151,7 +151,7 @@ def _hides(front: xr.Dataset, gear: xr.Dataset) -> bool:
     """True if a gear in front of another one leaves at most the teeth of this to be seen."""
     seen = float(gear["tip_diameter"]) - float(front["tip_diameter"])
     height = float(gear["tip_diameter"]) - float(gear["root_diameter"])
-    behind = np.array_equal(_points(front, "center"), _points(gear, "center"))
+    behind = np.array_equal(points_of(front, "center"), points_of(gear, "center"))
     return not gear.attrs["internal"] and seen < height and behind
 
 
@@ -186,7 +186,7 @@ def _frame(ax: Axes, middle: FloatArray, half: FloatArray) -> None:
     ax.grid(visible=False)
 
 
-def _points(gear: xr.Dataset, what: str) -> FloatArray:
+def points_of(gear: xr.Dataset, what: str) -> FloatArray:
     """Points in rows: ``"center"`` of each place, ``"stands"`` in the housing. [mm]"""
     return np.column_stack([gear[f"{what}_x"], gear[f"{what}_y"]])
 
@@ -258,8 +258,8 @@ class Layer:
     """A gear that turns on paper."""
 
     name: str  # Name of its layer in a picture.
-    x: float  # Its centre, from the left and the top of the picture. [point]
-    y: float  # Its centre, from the left and the top of the picture. [point]
+    x: float  # Its centre, from the left of the picture. [point]
+    y: float  # From its top. [point]
     # How far it is turned against the clock at phase 0 from how it is drawn, and for each mesh
     # period. [deg]
     start: float
@@ -272,18 +272,18 @@ class Turning:
 
     figure: Figure
     ax: Axes  # On which the gears are.
-    # By layer: centre in the coordinates of `ax`, start and rate as of `Layer`.
-    gears: dict[str, tuple[float, float, float, float]]
+    gears: list[Layer]  # With centres in the coordinates of `ax`.
     phases: tuple[float, ...]  # Phases of the positions that are layers, in mesh periods.
 
     def layers(self) -> list[Layer]:
         """The gears where they are on the picture, once that has been written."""
         height = self.figure.get_figheight()
         found = []
-        for name, (x, y, start, rate) in self.gears.items():
-            across, up = (self.ax.transData.transform((x, y)) / self.figure.dpi).tolist()
-            place = POINTS_PER_INCH * across, POINTS_PER_INCH * (height - up)
-            found.append(Layer(name, *place, start, rate))
+        for gear in self.gears:
+            place = self.ax.transData.transform((gear.x, gear.y))
+            across, up = (place / self.figure.dpi).tolist()
+            x, y = POINTS_PER_INCH * across, POINTS_PER_INCH * (height - up)
+            found.append(replace(gear, x=x, y=y))
         return found
 
 
@@ -303,16 +303,11 @@ def turning_set(
     }
     with styled_figure(1, 1, title, size=SET_SIZE, caption=caption) as (figure, axes):
         ax = plot_gear_set(turned, axes[0, 0])
-        layers = {
-            layer_of(name, number): (
-                float(gear["center_x"][number]),
-                float(gear["center_y"][number]),
-                -phase * turns[name],
-                turns[name],
-            )
+        layers = [
+            Layer(layer_of(name, number), x, y, -phase * turns[name], turns[name])
             for name, gear in gears.items()
-            for number in range(gear.sizes["place"])
-        }
+            for number, (x, y) in enumerate(points_of(gear, "center").tolist())
+        ]
     return Turning(figure, ax, layers, ())
 
 
@@ -342,15 +337,11 @@ def turning_mesh(
             _draw_lines(mesh, number, plane)
         teeth.set_xlim(window[0], auto=True)
         teeth.set_ylim(window[1], auto=True)
-        layers = {
-            layer_of(str(name), 0): (
-                float(view["center_x"][number]),
-                float(view["center_y"][number]),
-                turns[number][0] - drawn[number],
-                turns[number][1],
-            )
-            for number, name in enumerate(view["gear"].values)
-        }
+        centers = zip(view["gear"].values, points_of(view, "center").tolist(), strict=True)
+        layers = [
+            Layer(layer_of(str(name), 0), x, y, start - at, rate)
+            for (name, (x, y)), (start, rate), at in zip(centers, turns, drawn, strict=True)
+        ]
     figure.draw_without_rendering()  # labels of the ticks follow from the window, room from them
     return Turning(figure, teeth, layers, tuple(phases.tolist()))
 
