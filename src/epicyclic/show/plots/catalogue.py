@@ -455,7 +455,7 @@ def explorable(ax: Axes) -> dict[str, Any] | None:
     traces += [_steps(patch, labels) for patch in ax.patches if isinstance(patch, StepPatch)]
     if not traces:
         return None
-    layout = _polar_layout() if is_polar else _layout(ax)
+    layout = _layout(ax)
     marks: list[Line2D | Patch] = [*ax.get_lines(), *others]
     for trace in traces:
         trace["showlegend"] = bool(trace.get("name"))
@@ -478,6 +478,10 @@ def _of_axis(label: str) -> str:
 
 
 def _layout(ax: Axes) -> dict[str, Any]:
+    if isinstance(ax, PolarAxes):
+        angular = {"rotation": 90, "direction": "counterclockwise"}
+        # room for the label above
+        return {"polar": {"angularaxis": angular, "domain": {"y": [0.0, 0.92]}}}
     layout: dict[str, Any] = {}
     for name, axis in (("xaxis", ax.xaxis), ("yaxis", ax.yaxis)):
         ends, is_log = axis.get_view_interval(), axis.get_scale() == "log"
@@ -500,12 +504,6 @@ def _bar_labels(ax: Axes) -> dict[float, str]:
         return {}
     texts = [_escaped(label.get_text()) for label in ax.get_yticklabels()]
     return dict(zip(ax.get_yticks().tolist(), texts, strict=True)) if any(texts) else {}
-
-
-def _polar_layout() -> dict[str, Any]:
-    angular = {"rotation": 90, "direction": "counterclockwise"}
-    # room for the label above
-    return {"polar": {"angularaxis": angular, "domain": {"y": [0.0, 0.92]}}}
 
 
 def _shape(ax: Axes, mark: Line2D | Patch) -> dict[str, Any] | None:

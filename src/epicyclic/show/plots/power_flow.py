@@ -171,9 +171,9 @@ def _torque(value: float) -> str:
 
 def _layout(flow: TrainFlow) -> _Layout:
     most = max((abs(link.power) for link in flow.links), default=0.0)
-    busy = {link.line for link in flow.links if abs(link.power) > NO_POWER * most} & set(flow.lines)
-    ends = [key for key, line in flow.lines.items() if line.role in ("input", "output")]
-    lines = [key for key in flow.lines if key in busy or key in ends]
+    busy = {link.line for link in flow.links if abs(link.power) > NO_POWER * most}
+    ends = ("input", "output")
+    lines = [key for key, line in flow.lines.items() if key in busy or line.role in ends]
     stages: list[str] = []
     taps: defaultdict[str, float] = defaultdict(float)
     for stage in flow.stages:
