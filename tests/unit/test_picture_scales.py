@@ -340,8 +340,11 @@ def test_pictures_of_published_figures_have_few_rows():
 
 
 def test_a_result_without_a_value_shows_none_in_the_table_of_bands():
-    assert [_shown(float("nan"), unit).text for unit in ("1", "W", "kJ")] == ["-"] * 3
-    assert _shown(0.98765, "1").text == "98.765"
+    def text(value, unit):
+        return _shown(xr.Dataset({"mean": value, "unit": unit}), "mean").text
+
+    assert [text(np.nan, unit) for unit in ("1", "W", "kJ")] == ["-"] * 3
+    assert text(0.98765, "1") == "98.765"
 
 
 def test_sets_and_shafts_of_a_train_lie_where_the_case_has_them():

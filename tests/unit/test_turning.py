@@ -54,8 +54,8 @@ def test_a_later_phase_is_drawn_as_a_page_would_turn_it(drawn):
     gears, views, meshes = drawn
     mesh = meshes["sun_mesh"]
     still = turning_mesh(views["sun_mesh"], gears, mesh, "", "", phase=0.25)
-    for name, (_, _, start, rate) in still.gears.items():
-        assert start == pytest.approx(-0.25 * rate), name
+    for gear in still.gears:
+        assert gear.start == pytest.approx(-0.25 * gear.rate), gear.name
 
 
 @pytest.mark.slow

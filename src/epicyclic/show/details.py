@@ -11,11 +11,11 @@ from rich.text import Text
 
 from epicyclic.losses.ranges import share_text
 from epicyclic.messages import sentence
-from epicyclic.result.result import Result
+from epicyclic.result.result import Result, in_words
 from epicyclic.show import page
 from epicyclic.show import result_tables as tables
 from epicyclic.show.summary import all_warnings
-from epicyclic.show.terminal import as_on_page, listed, number_table, titled
+from epicyclic.show.terminal import as_on_page, listed, number_table, spaced, titled
 from epicyclic.study.friction import FrictionComparison, recommended
 from epicyclic.study.operating import operating_line
 
@@ -45,9 +45,7 @@ def result_tables(
 
 def _headline(result: Result) -> Group:
     """Operating point and key figures."""
-    found = [
-        f"{one.label} {one.cell.text} {one.unit}".rstrip() for one in tables.key_figures(result)
-    ]
+    found = [f"{one.label} {one.text}" for one in tables.key_figures(result)]
     lines: list[RenderableType] = [
         Text(operating_line(result.inputs["operation"])),
         Columns(found, padding=(0, 3)),
@@ -88,7 +86,7 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     meshes = list(rows[0].mean_friction)
     if all(math.isnan(row.mean_friction[mesh]) for row in rows for mesh in meshes):
         return Text("Without load or motion nothing slides, so there is no friction to compare.")
-    columns = [f"μ {mesh.replace('_', ' ').replace('.', ': ')}" for mesh in meshes]
+    columns = [f"μ {in_words(mesh)}" for mesh in meshes]
     heads = ("sliding W", "quick W", "over chosen", "out of range")
     table = number_table("Friction models", "", *columns, *heads)
     chosen = next((row.sliding for row in rows if row.chosen), 0.0)
@@ -116,13 +114,13 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     advice = Text.assemble(
         ("Recommended: ", "bold"), f"{best.name}, because {why}. {sentence(best.standing)}"
     )
-    lists = [
+    return spaced(
+        Group(table, quick, spread),
+        advice,
         listed("Out of range, and for another oil", [it for row in rows for it in _left(row)]),
         listed("Reliability of the models", [f"{row.name}: {row.standing}" for row in rows]),
         listed("Sources", [f"{row.name}: {row.title}, {row.source}" for row in rows]),
-    ]
-    spaced = (part for item in lists for part in (Text(), item))
-    return Group(table, quick, spread, Text(), advice, *spaced)
+    )
 
 
 def _left(row: FrictionComparison) -> list[str]:

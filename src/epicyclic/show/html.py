@@ -8,7 +8,7 @@ import logging
 from collections.abc import Callable
 from datetime import datetime
 from functools import cache
-from importlib import import_module, resources
+from importlib import import_module
 from types import ModuleType
 from typing import Any
 
@@ -95,17 +95,7 @@ def report_html(
 
 def page_html(**content: Any) -> str:
     """A page of its title, kind, operation, source, key figures and sections."""
-    return (
-        _templates()
-        .get_template("report.html")
-        .render(
-            **content,
-            style=_asset("report.css"),
-            script=_asset("report.js"),
-            explorer=_asset("explorer.js"),
-            library=_library(),
-        )
-    )
+    return _templates().get_template("report.html").render(**content, library=_library())
 
 
 def _result_content(record: ResultRecord, drawings: Drawings) -> dict[str, Any]:
@@ -162,12 +152,6 @@ def _templates() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-
-
-def _asset(name: str) -> Markup:
-    """A file of the package that goes into the page as it is."""
-    files = resources.files("epicyclic.show") / "templates"
-    return Markup((files / name).read_text(encoding="utf-8"))
 
 
 @cache

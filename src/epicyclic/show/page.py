@@ -147,6 +147,11 @@ class KeyFigure:
     unit: str = ""
     band: str = ""  # Ends of its 95 % interval; empty if they are not known.
 
+    @property
+    def text(self) -> str:
+        """The number with its unit."""
+        return f"{self.cell.text} {self.unit}".rstrip()
+
 
 @dataclass(frozen=True, slots=True)
 class Explorer:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from epicyclic.dataclass import dataclass, field, replace
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.gear import HOUSING
 from epicyclic.result.result import Result
 
@@ -48,10 +48,8 @@ class Link:
 class Stage:
     """A set, bearing, seal or drag."""
 
-    key: str
     loss: float  # [W]
-    # Rolling power of its meshes, ``"sun_mesh"``. [W]
-    rolling: Mapping[str, float] = field(default_factory=dict[str, float])
+    rolling: Mapping[str, float]  # Rolling power of its meshes, ``"sun_mesh"``. [W]
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +120,7 @@ def power_flow(result: Result) -> TrainFlow:
         of_meshes.setdefault(stage, {})[name] = power
     return TrainFlow(
         lines,
-        {key: Stage(key, losses.get(key, 0.0), of_meshes.get(key, {})) for key in stages},
+        {key: Stage(losses.get(key, 0.0), of_meshes.get(key, {})) for key in stages},
         _with_loops(links),
     )
 

@@ -294,7 +294,7 @@ _UNCERTAINTY_TEXTS = {
     "driver": ("driver",),
     "sum": ("sum",),
 }
-"""Limits of uncertain inputs, by their dimension."""
+"""Texts that tables of an uncertainty show, by their dimension."""
 _MAY_LACK = {"meshes", "pockets", "uncertainty"}
 """Groups with NaN where nothing touches, or no pocket is; but places are known everywhere."""
 _PLACES = {

@@ -12,6 +12,7 @@ import xarray as xr
 
 from epicyclic.case.case import read_case
 from epicyclic.errors import Status
+from epicyclic.losses.ranges import share_text
 from epicyclic.registry import offered
 from epicyclic.result.result import Result, Train, in_words
 from epicyclic.show import result_tables as tables
@@ -40,7 +41,7 @@ from epicyclic.show.uncertainty_tables import grid_table, uncertainty_items
 from epicyclic.study.friction import methods_of
 from epicyclic.study.maps.tables import map_case, map_inputs, statements
 from epicyclic.study.operating import AXES
-from epicyclic.units import format_number, percent, unit_text
+from epicyclic.units import format_number, unit_text
 
 
 def result_sections(record: ResultRecord, drawings: Drawings) -> list[Section]:
@@ -149,7 +150,7 @@ def _validity(result: Result) -> tuple[Table | Listing, ...]:
                 Cell(_limits(flag.low, flag.high), about="nowrap"),
                 Cell(unit_text(flag.unit), about="nowrap"),
                 Cell(str(flag.use)),
-                aligned("under 1 %" if flag.share < 0.01 else percent(flag.share, 0)),
+                aligned(share_text(flag.share)),
                 Cell(flag.source),
             )
             for flag in sorted(result.flags, key=lambda flag: -flag.share)

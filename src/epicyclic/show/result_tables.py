@@ -556,7 +556,7 @@ def _balance(heat: HeatBalance) -> Table:
 
 def _shared(watts: float, whole: float, key: str) -> tuple[Cell, Cell]:
     share = percent(watts / whole) if whole else ""
-    return tenths(watts, key), Cell(share, math.nan)
+    return tenths(watts, key), aligned(share)
 
 
 def heat_path_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
@@ -664,10 +664,7 @@ def side_by_side(
 ) -> Iterator[Table]:
     """Key figures, losses and inputs of two results."""
     figures = [
-        {
-            it.label: replace(it.cell, text=f"{it.cell.text} {it.unit}".rstrip())
-            for it in key_figures(result)
-        }
+        {it.label: replace(it.cell, text=it.text) for it in key_figures(result)}
         for result in (first, second)
     ]
     rows = tuple(

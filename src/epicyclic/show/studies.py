@@ -459,16 +459,15 @@ def duty_rows(data: xr.Dataset) -> pd.DataFrame:
     """One row for each number: quantity, unit, mode, component, temperature, value."""
     import pandas as pd
 
-    tables = []
-    for name, array in data.data_vars.items():
-        table = (
-            array.to_dataframe(name="value").reset_index()
-            if array.ndim
-            else pd.DataFrame({"value": [array.item()]})
-        )
-        tables.append(table.assign(quantity=str(name), unit=array.attrs["units"]))
-    columns = ["quantity", "unit", *data.dims, "value"]
-    return pd.concat(tables, ignore_index=True)[[str(name) for name in columns]]
+    tables = [
+        array.expand_dims(quantity=[name])
+        .to_dataframe("value")
+        .reset_index()
+        .assign(unit=array.attrs["units"])
+        for name, array in data.data_vars.items()
+    ]
+    columns = ["quantity", "unit", *map(str, data.dims), "value"]
+    return pd.concat(tables, ignore_index=True)[columns]
 
 
 def duty_json(data: xr.Dataset) -> str:

@@ -48,7 +48,7 @@ def head_figures(result: Result, known: Known | None) -> Iterator[KeyFigure]:
     """The numbers at the head of a result, with their bands and as many digits as these leave."""
     ends = {} if known is None else known.ends
     for it in key_figures(result):
-        text, band = f"{it.cell.text} {it.unit}".rstrip(), ""
+        text, band = it.text, ""
         if it.cell.key == "efficiency" and ends.get("efficiency", (0.0, 0.0))[1] > 0:
             own = ends["efficiency"]
             text = efficiency_text(result.efficiency or 0.0, ends=own)
@@ -66,9 +66,8 @@ def headline(result: Result, known: Known | None) -> Iterator[str]:
     for it in head_figures(result, known):
         if it.cell.key in ("load_dependent", "load_independent"):
             continue  # the table has them
-        text = f"{it.cell.text} {it.unit}".rstrip()
         band = f"95 % band {it.band}{limit}" if it.band else ""
-        yield f"{it.label:{_LABEL}}{text:{_VALUE}}{band}".rstrip()
+        yield f"{it.label:{_LABEL}}{it.text:{_VALUE}}{band}".rstrip()
     if result.heat is not None:
         found = result.heat.temperatures
         hottest = max(found, key=lambda node: found[node])

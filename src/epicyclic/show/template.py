@@ -174,15 +174,13 @@ class _Writer:
         )
         if given is not None and not spelt_out:
             return [_line(f"{full} = {toml_value(given)}", about)]
-        if subtable is None:
+        if subtable is None or isinstance(field.default, str):
             return [_line(f"# {full} = {_default(field)}", about)]
         if dict_value(field.annotation) is not None:
             keys = ", ".join(f"{it} = {_default(own)}" for it, own in subtable.model_fields.items())
             return [_line(f"# {full} = {{ NAME = {{ {keys} }} }}", about)]
         if key == "losses":
             return [_line(f"# {name} = {{ include = true, factor = 1.0 }}", "")]
-        if isinstance(field.default, str):
-            return [_line(f"# {full} = {toml_value(field.default)}", about)]
         is_short = bool(self.about) and given is None and not self.tells_of(f"{key}.{full}.")
         if (is_short or name not in _SPELT_OUT) and field.default in (None, PydanticUndefined):
             return [_line(f"# {full} = {{ ... }}", about)]

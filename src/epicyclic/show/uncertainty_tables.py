@@ -23,6 +23,7 @@ from epicyclic.study.bands.advice import (
     main_causes,
     mean_shares,
     measurements_of,
+    unit_of,
 )
 from epicyclic.units import (
     decimals_of,
@@ -260,9 +261,8 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     names = [str(name) for name in data["result"].values]
     for name in names:
         one = data.sel(result=name)
-        unit = str(one["unit"].values)
         cells = (
-            _shown(float(one[key]), unit)
+            _shown(one, key)
             for key in ("first", "second", "difference", "standard_uncertainty", "low", "high")
         )
         same = not one["difference"] and not one["standard_uncertainty"]
@@ -296,13 +296,11 @@ def band_figures(data: xr.Dataset) -> list[KeyFigure]:
     """The ends of the band, for the head of a page."""
     found = []
     for name, label in (("total", "lost"), ("efficiency", "efficiency")):
-        one = data.sel(result=name)
-        unit = str(one["unit"].values)
+        one, unit = data.sel(result=name), unit_of(data, name)
         for key, end in (("low", "from"), ("high", "to")):
-            value = float(one[key])
-            if math.isfinite(value):
+            if np.isfinite(one[key]):
                 shown_unit = "%" if unit == "1" else unit
-                found.append(KeyFigure(f"{label} {end}", _shown(value, unit), shown_unit))
+                found.append(KeyFigure(f"{label} {end}", _shown(one, key), shown_unit))
     return found
 
 
@@ -313,30 +311,26 @@ def _results(data: xr.Dataset) -> Table:
     for name in names:
         one = data.sel(result=name)
         values = (
-            _shown(float(one[key]), str(one["unit"].values), total)
+            _shown(one, key, total)
             for key in ("nominal", "mean", "standard_uncertainty", "expanded_uncertainty",
                         "low", "high", "shortest_low", "shortest_high")
         )  # fmt: skip
         rows.append((Cell(_label(name, data.attrs["grouping"])), *values))
     strong = frozenset({names.index("total"), names.index("efficiency")})
     head = ("", "case", "mean", "u_c", "U", "95 % from", "to", "shortest", "to")
-    what = "Losses" if _unit(data) == "W" else "Energies"
-    note = f"u_c: combined standard uncertainty; U = 2 u_c. {what} in {_unit(data)}."
+    unit = unit_of(data)
+    what = "Losses" if unit == "W" else "Energies"
+    note = f"u_c: combined standard uncertainty; U = 2 u_c. {what} in {unit}."
     return Table(head, tuple(rows), "Results with their uncertainty", strong, note)
 
 
-def _unit(data: xr.Dataset) -> str:
-    """Unit of losses, or of energies lost."""
-    return str(data["unit"].sel(result="total").values)
-
-
-def _shown(value: float, unit: str, total: float = math.inf) -> Cell:
-    """A number as precise as such numbers are, beside a `total` of losses."""
+def _shown(one: xr.Dataset, name: str, total: float = 0.0) -> Cell:
+    """A number of a result as precise as such numbers are, beside a `total` of losses."""
+    value, unit = float(one[name]), str(one["unit"].values)
     if math.isnan(value):
-        return number(None, "")
+        return Cell(MISSING)
     if unit == "W":
-        decimals = max(1, decimals_of(total)) if math.isfinite(total) else 1
-        return number(value, "", text=f"{value:z.{decimals}f}")
+        return number(value, "", text=f"{value:z.{max(1, decimals_of(total))}f}")
     return number(value, "", text=f"{100 * value:z.3f}" if unit == "1" else shown(value, 5))
 
 
@@ -361,11 +355,11 @@ def _budget(data: xr.Dataset) -> Table | Listing:
                     Cell(names[key]),
                     Cell(str(own["distribution"].values)),
                     aligned(f"{shown(float(own['input_value']))} {unit}".rstrip()),
-                    _shown(float(own["contribution"]), _unit(data), float(total["nominal"])),
+                    _shown(own, "contribution", float(total["nominal"])),
                     *(aligned("" if place else text) for text in shares),
                 )
             )
-    heads = ("", "distribution", "value", f"per u_i, {_unit(data)}", "share", "with others")
+    heads = ("", "distribution", "value", f"per u_i, {unit_of(data)}", "share", "with others")
     note = (
         "per u_i: change of the total loss for one standard deviation. Shares of its variance, "
         "alone and with all interactions; correlated values share one share."

@@ -125,7 +125,7 @@ class Result(plain.Result):
         from epicyclic.show.result_tables import key_figures
         from epicyclic.show.summary import first_lists, loss_summary
 
-        figures = (f"{it.label} {it.cell.text} {it.unit}".rstrip() for it in key_figures(self))
+        figures = (f"{it.label} {it.text}" for it in key_figures(self))
         lines = (operating_line(self.inputs["operation"]), ", ".join(figures))
         title = escape(self.title or self.kind.replace("_", " "))
         head = f"<p><strong>{title}</strong><br>{'<br>'.join(map(escape, lines))}</p>"

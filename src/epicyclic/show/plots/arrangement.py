@@ -15,7 +15,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING
 from epicyclic.result.result import in_words
-from epicyclic.show.plots.drawing import fills_of, plot_gear_set
+from epicyclic.show.plots.drawing import fills_of, plot_gear_set, points_of
 from epicyclic.show.plots.style import AROUND, PANEL, SMALL_CHARACTERS
 from epicyclic.units import MILLIMETRE
 
@@ -34,6 +34,7 @@ class Arrangement:
     middles: Mapping[str, float]  # Place of each set along the axes.
     starts: Mapping[str, float]  # Place along the axes from which those on a shaft are counted.
     widths: Mapping[str, float]  # Of the faces of the gears.
+    widest: Mapping[str, float]  # Of the widest gear of each set.
     assumed: tuple[str, ...]  # Sets whose places along the axes are not given.
 
 
@@ -55,7 +56,11 @@ def arrangement_of(
     if sets - origins.keys():
         return None
     widths = {name: _millimetres(_table(inputs, name)["face_width"]) for name in gears}
-    middles, starts, assumed = _along(inputs, list(inputs["sets"]), on, widths)
+    widest: dict[str, float] = {}
+    for name, width in widths.items():
+        own = name.partition(".")[0]
+        widest[own] = max(width, widest.get(own, 0.0))
+    middles, starts, assumed = _along(inputs, on, widest)
     moved = {
         name: gear.assign(
             center_x=gear["center_x"] + origins[own][0], center_y=gear["center_y"] + origins[own][1]
@@ -63,7 +68,7 @@ def arrangement_of(
         for name, gear in gears.items()
         for own in (name.partition(".")[0],)
     }
-    return Arrangement(moved, axes, middles, starts, widths, assumed)
+    return Arrangement(moved, axes, middles, starts, widths, widest, assumed)
 
 
 def _table(inputs: Mapping[str, Any], gear: str) -> Mapping[str, Any]:
@@ -82,7 +87,7 @@ def _centers(
         body = _table(inputs, name).get("body") or name.partition(".")[2]
         member = f"{name.partition('.')[0]}.{body}"
         if gear.sizes["place"] == 1:
-            found[member] = np.array([float(gear["center_x"][0]), float(gear["center_y"][0])])
+            found[member] = points_of(gear, "center")[0]
     return found
 
 
@@ -102,7 +107,7 @@ def _next_to(
 
 
 def _along(
-    inputs: Mapping[str, Any], sets: list[str], on: Mapping[str, str], widths: Mapping[str, float]
+    inputs: Mapping[str, Any], on: Mapping[str, str], widest: Mapping[str, float]
 ) -> tuple[dict[str, float], dict[str, float], tuple[str, ...]]:
     """Places of sets and shafts along the axes; the sets for which none is given, side by side."""
     given = {
@@ -113,7 +118,7 @@ def _along(
     middles: dict[str, float] = {}
     starts: dict[str, float] = {}
     assumed: list[str] = []
-    while left := [name for name in sets if name not in middles]:
+    while left := [name for name in inputs["sets"] if name not in middles]:
         known = len(middles)
         for member, place in given.items():
             name, shaft = member.partition(".")[0], on[member]
@@ -124,13 +129,8 @@ def _along(
             elif name in middles:
                 starts[shaft] = middles[name] - place
         if len(middles) == known:
-            name = left[0]
-            width = max(it for gear, it in widths.items() if gear.startswith(f"{name}."))
-            ends = [
-                middles[gear.partition(".")[0]] + it / 2
-                for gear, it in widths.items()
-                if gear.partition(".")[0] in middles
-            ]
+            name, width = left[0], widest[left[0]]
+            ends = [middle + widest[own] / 2 for own, middle in middles.items()]
             middles[name] = max(ends, default=-width / 2) + GAP * width + width / 2
             assumed.append(name)
     for member, place in given.items():
@@ -158,18 +158,13 @@ def plot_from_the_side(found: Arrangement, inputs: Mapping[str, Any], ax: Axes) 
         middle, width = found.middles[name.partition(".")[0]], found.widths[name]
         tip, outside = float(gear["tip_diameter"]) / 2, float(gear["outside_diameter"]) / 2
         ends = ((-outside, -tip), (tip, outside)) if gear.attrs["internal"] else ((-tip, tip),)
-        for x, y in zip(gear["center_x"].values, gear["center_y"].values, strict=True):
-            height = float(np.array([x, y]) @ up)
+        for height in (points_of(gear, "center") @ up).tolist():
             for low, high in ends:
                 _rectangle(ax, (middle, height), (width, low, high), facecolor=colours[name])
     for shaft, members in inputs["shafts"].items():
         sets = {member.partition(".")[0] for member in members} & found.middles.keys()
-        half = {
-            name: max(it for gear, it in found.widths.items() if gear.startswith(f"{name}.")) / 2
-            for name in sets
-        }
         spans[shaft] = [
-            found.middles[name] + sign * half[name] for name in sets for sign in (-1, 1)
+            found.middles[name] + sign * found.widest[name] / 2 for name in sets for sign in (-1, 1)
         ]
     bores: dict[str, float] = {}
     for table in inputs.get("bearings", {}).values():

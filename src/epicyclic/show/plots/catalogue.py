@@ -6,7 +6,7 @@ import io
 import itertools
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
@@ -141,18 +141,11 @@ def _teeth(record: ResultRecord) -> Iterator[Panel]:
 def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Panels:
     """The panels of a map, all with one scale for `name`."""
     limits = partial(loss_map.limits_of, name=name)
-    return _over_plane({"torque_loss"}, limits, draw, name, *more)
-
-
-def _of_band(
-    draw: Callable[..., Axes], limits: Callable[[xr.Dataset], loss_map.Limits], *more: object
-) -> Panels:
-    """The panels of a map with its uncertainty, all with one scale."""
-    return _over_plane({"torque_loss", "explained"}, limits, draw, *more)
+    return _over_plane("torque_loss", limits, draw, name, *more)
 
 
 def _over_plane(
-    needed: Collection[str],
+    needed: str,  # What a map has, or only one with its uncertainty: ``"explained"``.
     limits: Callable[[xr.Dataset], loss_map.Limits],
     draw: Callable[..., Axes],
     *more: object,
@@ -161,7 +154,7 @@ def _over_plane(
     titles = {"state": "state {}", "temperature": "{:g} °C"}
 
     def panels(stored: Stored) -> list[Panel]:
-        if isinstance(stored, ResultRecord) or not set(needed) <= set(stored):
+        if isinstance(stored, ResultRecord) or needed not in stored:
             return []
         scale, shown = limits(stored), loss_map.shown_panels(stored)
         values = (stored[name].values[places].tolist() for name, places in shown.items())
@@ -315,11 +308,11 @@ PLOTS: dict[str, Plot] = {
     ),
     "loss-band": Plot(
         "How uncertain is the loss over speed and torque?",
-        _of_band(loss_map.plot_half_width, loss_map.limits_of_half_width),
+        _over_plane("explained", loss_map.limits_of_half_width, loss_map.plot_half_width),
     ),
     "loss-band-lines": Plot(
         "How uncertain is the loss along a line?",
-        _of_band(loss_map.plot_band_lines, loss_map.limits_of_band, "torque"),
+        _over_plane("explained", loss_map.limits_of_band, loss_map.plot_band_lines, "torque"),
     ),
     "lines": Plot(
         "How do loss and efficiency depend on the varied keys?",
@@ -462,7 +455,7 @@ def explorable(ax: Axes) -> dict[str, Any] | None:
     traces += [_steps(patch, labels) for patch in ax.patches if isinstance(patch, StepPatch)]
     if not traces:
         return None
-    layout = _polar_layout() if is_polar else _layout(ax)
+    layout = _layout(ax)
     marks: list[Line2D | Patch] = [*ax.get_lines(), *others]
     for trace in traces:
         trace["showlegend"] = bool(trace.get("name"))
@@ -485,6 +478,10 @@ def _of_axis(label: str) -> str:
 
 
 def _layout(ax: Axes) -> dict[str, Any]:
+    if isinstance(ax, PolarAxes):
+        angular = {"rotation": 90, "direction": "counterclockwise"}
+        # room for the label above
+        return {"polar": {"angularaxis": angular, "domain": {"y": [0.0, 0.92]}}}
     layout: dict[str, Any] = {}
     for name, axis in (("xaxis", ax.xaxis), ("yaxis", ax.yaxis)):
         ends, is_log = axis.get_view_interval(), axis.get_scale() == "log"
@@ -507,12 +504,6 @@ def _bar_labels(ax: Axes) -> dict[float, str]:
         return {}
     texts = [_escaped(label.get_text()) for label in ax.get_yticklabels()]
     return dict(zip(ax.get_yticks().tolist(), texts, strict=True)) if any(texts) else {}
-
-
-def _polar_layout() -> dict[str, Any]:
-    angular = {"rotation": 90, "direction": "counterclockwise"}
-    # room for the label above
-    return {"polar": {"angularaxis": angular, "domain": {"y": [0.0, 0.92]}}}
 
 
 def _shape(ax: Axes, mark: Line2D | Patch) -> dict[str, Any] | None:
@@ -671,7 +662,7 @@ def _field(field: QuadMesh | TriMesh, labels: tuple[str, str]) -> dict[str, Any]
         values = field_at(*np.meshgrid(x, y))
     steps, norm, cmap = np.linspace(0, 1, COLOUR_STEPS), field.norm, field.get_cmap()
     low, high = (float(np.asarray(end)) for end in (norm.vmin, norm.vmax))
-    colours = map(to_hex, cmap(norm(low + steps * (high - low))))
+    colours = cmap(norm(low + steps * (high - low)))
     bar = field.colorbar
     label = bar.ax.get_ylabel() if bar else ""
     return {

@@ -17,7 +17,7 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
 from epicyclic.arrays import FloatArray
-from epicyclic.dataclass import dataclass
+from epicyclic.dataclass import dataclass, replace
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.mesh import scale_of
 from epicyclic.show.plots.style import (
@@ -60,18 +60,16 @@ def plot_gear_set(
         front = order[row + 1 :] if hidden else ()
         if hider := next((one for one, it in front if _hides(it, gear)), ""):
             label += f", behind {in_words(hider)}"
-        outline = _whole_outline(gear)
-        inside = bool(gear.attrs["internal"])
+        outline, radius = _whole_outline(gear), float(gear["outside_diameter"]) / 2
         for number in range(gear.sizes["place"]):
             center, turn = _place(gear, number)
-            shape = _path(outline @ _rotation(turn) + center)
-            if inside:
-                rim = _circle(_scalar(gear, "outside_diameter") / 2) + center
-                shape = Path.make_compound_path(_path(rim[::-1]), shape)
+            shape = Path(outline @ _rotation(turn) + center)
+            if gear.attrs["internal"]:
+                rim = _circle(radius) + center
+                shape = Path.make_compound_path(Path(rim[::-1]), shape)
             style = {"fc": fills[name], "ec": "black", "lw": 0.5, "gid": layer_of(name, number)}
             ax.add_patch(PathPatch(shape, label=label if number == 0 else None, **style))
             ax.plot(*center, marker="+", color="black", ms=5, mew=0.6)
-            radius = _scalar(gear, "outside_diameter") / 2
             low, high = np.minimum(low, center - radius), np.maximum(high, center + radius)
     title = "Gear pair to scale" if "pinion" in gears else "Gear set to scale"
     return _finish(ax, low, high, title)
@@ -81,17 +79,17 @@ def plot_teeth(view: xr.Dataset, gears: Mapping[str, xr.Dataset], ax: Axes) -> A
     """Teeth of a mesh touching at the pitch point, with line of action and path of contact."""
     names = [str(name) for name in view["gear"].values]
     module = max(
-        _scalar(gears[name], "reference_diameter") / gears[name].attrs["teeth"] for name in names
+        float(gears[name]["reference_diameter"]) / gears[name].attrs["teeth"] for name in names
     )
     half = SHOWN_MODULES * module
     fills = fills_of(gears)
     for number, name in enumerate(names):
         gear, (center, turn) = gears[name], _place(view, number)
-        shape = _path(_some_teeth(gear, turn, half) + center)
+        shape = Path(_some_teeth(gear, turn, half) + center)
         style = {"fc": fills[name], "ec": "black", "lw": 0.8, "gid": layer_of(name, 0)}
         ax.add_patch(PathPatch(shape, label=in_words(name), **style))
         pitch = _circle(float(view["operating_radius"][number])) + center
-        base = _circle(_scalar(gear, "base_diameter") / 2) + center
+        base = _circle(float(gear["base_diameter"]) / 2) + center
         label = number == 0
         ax.plot(*pitch.T, color="0.35", lw=0.8, ls="-.", label="operating pitch circles" * label)
         ax.plot(*base.T, color="0.35", lw=0.8, ls=":", label="base circles" * label)
@@ -111,21 +109,21 @@ def plot_oil(gears: Mapping[str, xr.Dataset], ax: Axes) -> Axes:
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
     levels: dict[str, float] = {}
     for name, gear in sorted(gears.items(), key=_is_behind):
-        radius = _scalar(gear, "outside_diameter") / 2
-        for number, stand in enumerate(_points(gear, "stands")):
-            shape = _path(_circle(radius) + stand)
+        radius = float(gear["outside_diameter"]) / 2
+        for number, stand in enumerate(points_of(gear, "stands")):
+            shape = Path(_circle(radius) + stand)
             if gear.attrs["internal"]:
-                inside = _circle(_scalar(gear, "tip_diameter") / 2)[::-1] + stand
-                shape = Path.make_compound_path(shape, _path(inside))
+                inside = _circle(float(gear["tip_diameter"]) / 2)[::-1] + stand
+                shape = Path.make_compound_path(shape, Path(inside))
             label = in_words(name) if number == 0 else None
             ax.add_patch(PathPatch(shape, facecolor=fills[name], edgecolor="black", label=label))
             low, high = np.minimum(low, stand - radius), np.maximum(high, stand + radius)
-            if "oil_depth" in gear and _scalar(gear, "oil_depth") > 0:
-                levels[name] = float(stand[1]) - radius + _scalar(gear, "oil_depth")
+            if "oil_depth" in gear and float(gear["oil_depth"]) > 0:
+                levels[name] = float(stand[1]) - radius + float(gear["oil_depth"])
     pools = []
     for name, level in levels.items():
-        radius = _scalar(gears[name], "outside_diameter") / 2
-        x, y = _points(gears[name], "stands")[0]
+        radius = float(gears[name]["outside_diameter"]) / 2
+        x, y = points_of(gears[name], "stands")[0]
         pools.append((x - radius, x + radius, y - radius, level))
     # one level for all, unless depths were stated gear by gear
     if len({round(level, SAME_LEVEL) for level in levels.values()}) == 1:
@@ -146,14 +144,14 @@ def layer_of(name: str, number: int) -> str:
 def _is_behind(item: tuple[str, xr.Dataset]) -> tuple[bool, float]:
     """Sorts gears from the last to the first that is seen: smaller ones stand before larger."""
     _, gear = item
-    return not gear.attrs["internal"], -_scalar(gear, "tip_diameter")
+    return not gear.attrs["internal"], -float(gear["tip_diameter"])
 
 
 def _hides(front: xr.Dataset, gear: xr.Dataset) -> bool:
     """True if a gear in front of another one leaves at most the teeth of this to be seen."""
-    seen = _scalar(gear, "tip_diameter") - _scalar(front, "tip_diameter")
-    height = _scalar(gear, "tip_diameter") - _scalar(gear, "root_diameter")
-    behind = np.array_equal(_points(front, "center"), _points(gear, "center"))
+    seen = float(gear["tip_diameter"]) - float(front["tip_diameter"])
+    height = float(gear["tip_diameter"]) - float(gear["root_diameter"])
+    behind = np.array_equal(points_of(front, "center"), points_of(gear, "center"))
     return not gear.attrs["internal"] and seen < height and behind
 
 
@@ -188,11 +186,7 @@ def _frame(ax: Axes, middle: FloatArray, half: FloatArray) -> None:
     ax.grid(visible=False)
 
 
-def _scalar(gear: xr.Dataset, name: str) -> float:
-    return float(gear[name])
-
-
-def _points(gear: xr.Dataset, what: str) -> FloatArray:
+def points_of(gear: xr.Dataset, what: str) -> FloatArray:
     """Points in rows: ``"center"`` of each place, ``"stands"`` in the housing. [mm]"""
     return np.column_stack([gear[f"{what}_x"], gear[f"{what}_y"]])
 
@@ -209,19 +203,15 @@ def _rotation(angle: float) -> FloatArray:
     return np.array([[cosine, sine], [-sine, cosine]])
 
 
-def _circle(radius: float) -> FloatArray:
-    angle = np.linspace(0, 2 * math.pi, CIRCLE_POINTS)
+def _circle(radius: float, first: float = 0.0, last: float = 2 * math.pi) -> FloatArray:
+    angle = np.linspace(first, last, CIRCLE_POINTS)
     return radius * np.column_stack([np.cos(angle), np.sin(angle)])
-
-
-def _path(points: FloatArray) -> Path:
-    return Path(points, closed=False)
 
 
 def _whole_outline(gear: xr.Dataset) -> FloatArray:
     """All teeth, of their points one of `SKIPPED_POINTS`; without an outline the tip circle."""
     if "x" not in gear:
-        return _circle(_scalar(gear, "tip_diameter") / 2)
+        return _circle(float(gear["tip_diameter"]) / 2)
     thinned = gear.isel(point=slice(None, None, SKIPPED_POINTS))
     return _teeth(thinned, range(int(gear.attrs["teeth"])))
 
@@ -236,16 +226,14 @@ def _teeth(gear: xr.Dataset, numbers: range) -> FloatArray:
 def _some_teeth(gear: xr.Dataset, turn: float, half: float) -> FloatArray:
     """The teeth within `half` of the origin, closed to a solid, turned by `turn`."""
     if "x" not in gear:
-        return _circle(_scalar(gear, "tip_diameter") / 2)
+        return _circle(float(gear["tip_diameter"]) / 2)
     count = int(gear.attrs["teeth"])
-    radius = _scalar(gear, "reference_diameter") / 2
+    radius = float(gear["reference_diameter"]) / 2
     side = min(count // 2, math.ceil(2 * half / (2 * math.pi * radius / count)))
     outline = _teeth(gear, range(-side, side + 1))
     if gear.attrs["internal"]:
         first, last = np.arctan2(outline[[0, -1], 1], outline[[0, -1], 0]).tolist()
-        angle = np.linspace(last, first, CIRCLE_POINTS)
-        outside = _scalar(gear, "outside_diameter") / 2
-        back = outside * np.column_stack([np.cos(angle), np.sin(angle)])
+        back = _circle(float(gear["outside_diameter"]) / 2, last, first)
     else:
         back = np.zeros((1, 2))
     return np.concatenate([outline, back, outline[:1]]) @ _rotation(turn)
@@ -270,8 +258,8 @@ class Layer:
     """A gear that turns on paper."""
 
     name: str  # Name of its layer in a picture.
-    x: float  # Its centre, from the left and the top of the picture. [point]
-    y: float  # Its centre, from the left and the top of the picture. [point]
+    x: float  # Its centre, from the left of the picture. [point]
+    y: float  # From its top. [point]
     # How far it is turned against the clock at phase 0 from how it is drawn, and for each mesh
     # period. [deg]
     start: float
@@ -284,18 +272,18 @@ class Turning:
 
     figure: Figure
     ax: Axes  # On which the gears are.
-    # By layer: centre in the coordinates of `ax`, start and rate as of `Layer`.
-    gears: dict[str, tuple[float, float, float, float]]
+    gears: list[Layer]  # With centres in the coordinates of `ax`.
     phases: tuple[float, ...]  # Phases of the positions that are layers, in mesh periods.
 
     def layers(self) -> list[Layer]:
         """The gears where they are on the picture, once that has been written."""
         height = self.figure.get_figheight()
         found = []
-        for name, (x, y, start, rate) in self.gears.items():
-            across, up = (self.ax.transData.transform((x, y)) / self.figure.dpi).tolist()
-            place = POINTS_PER_INCH * across, POINTS_PER_INCH * (height - up)
-            found.append(Layer(name, *place, start, rate))
+        for gear in self.gears:
+            place = self.ax.transData.transform((gear.x, gear.y))
+            across, up = (place / self.figure.dpi).tolist()
+            x, y = POINTS_PER_INCH * across, POINTS_PER_INCH * (height - up)
+            found.append(replace(gear, x=x, y=y))
         return found
 
 
@@ -315,16 +303,11 @@ def turning_set(
     }
     with styled_figure(1, 1, title, size=SET_SIZE, caption=caption) as (figure, axes):
         ax = plot_gear_set(turned, axes[0, 0])
-        layers = {
-            layer_of(name, number): (
-                float(gear["center_x"][number]),
-                float(gear["center_y"][number]),
-                -phase * turns[name],
-                turns[name],
-            )
+        layers = [
+            Layer(layer_of(name, number), x, y, -phase * turns[name], turns[name])
             for name, gear in gears.items()
-            for number in range(gear.sizes["place"])
-        }
+            for number, (x, y) in enumerate(points_of(gear, "center").tolist())
+        ]
     return Turning(figure, ax, layers, ())
 
 
@@ -354,15 +337,11 @@ def turning_mesh(
             _draw_lines(mesh, number, plane)
         teeth.set_xlim(window[0], auto=True)
         teeth.set_ylim(window[1], auto=True)
-        layers = {
-            layer_of(str(name), 0): (
-                float(view["center_x"][number]),
-                float(view["center_y"][number]),
-                turns[number][0] - drawn[number],
-                turns[number][1],
-            )
-            for number, name in enumerate(view["gear"].values)
-        }
+        centers = zip(view["gear"].values, points_of(view, "center").tolist(), strict=True)
+        layers = [
+            Layer(layer_of(str(name), 0), x, y, start - at, rate)
+            for (name, (x, y)), (start, rate), at in zip(centers, turns, drawn, strict=True)
+        ]
     figure.draw_without_rendering()  # labels of the ticks follow from the window, room from them
     return Turning(figure, teeth, layers, tuple(phases.tolist()))
 

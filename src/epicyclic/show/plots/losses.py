@@ -16,7 +16,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.plots.style import COLOURS, legend_below, write_beside
-from epicyclic.study.bands.advice import in_few_words, mean_shares
+from epicyclic.study.bands.advice import in_few_words, mean_shares, unit_of
 from epicyclic.units import decimals_of, format_number, part_text, percent, power_unit
 
 if TYPE_CHECKING:
@@ -220,20 +220,16 @@ def plot_drivers(
     ax.axvline(0.0, color="black", lw=0.8)
     ax.set(
         title="Causes of the uncertainty of the total loss",
-        xlabel=f"change for one standard deviation up (dark) and down, {_unit(data, 'total')}",
+        xlabel=f"change for one standard deviation up (dark) and down, {unit_of(data)}",
     )
     legend_below(ax, ncols=2)
     return ax
 
 
-def _unit(data: xr.Dataset, name: str) -> str:
-    return str(data["unit"].sel(result=name).values)
-
-
 def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     """Distribution of a result with its 95 % interval and the value of the case."""
     one = data.sel(result=name)
-    unit = _unit(data, name)
+    unit = unit_of(data, name)
     percent = unit == "1"
     scale = 100.0 if percent else 1.0
     if unit == "W":

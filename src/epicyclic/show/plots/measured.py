@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -46,9 +46,8 @@ def measured_figure(comparison: MeasuredComparison) -> Figure:
 def plot_parity(comparison: MeasuredComparison, ax: Axes) -> Axes:
     """Computed over measured loss, with standard uncertainties and lines at ±10 %."""
     measured = comparison.measured
-    for members, style in _series(comparison):
-        computed = style.pop("computed")[members]
-        bars = _bars(comparison, members, style)
+    for state, members, style in _series(comparison):
+        computed, bars = comparison.states[state][members], _bars(comparison, state, members)
         ax.errorbar(measured.loss[members], computed, xerr=bars, **style)
     values = np.concatenate([measured.loss, *comparison.states.values()])
     top = 1.08 * float(np.nanmax(values))
@@ -72,18 +71,16 @@ def plot_points(comparison: MeasuredComparison, ax: Axes) -> Axes:
 
     A fit moves points along thin lines.
     """
-    measured, states = comparison.measured, comparison.states
+    measured = comparison.measured
     weighted = measured.uncertainty is not None
     left = {
         state: comparison.normalised(state) if weighted else comparison.residuals(state)
-        for state in states
+        for state in comparison.states
     }
     place = np.arange(len(measured))
     if len(left) > 1:
         ax.vlines(place, left[AS_GIVEN], left[CALIBRATED], color="0.75", lw=0.9, zorder=0.5)
-    for members, style in _series(comparison):
-        state = AS_GIVEN if style["label"] == AS_GIVEN else list(states)[-1]
-        del style["computed"]
+    for state, members, style in _series(comparison):
         ax.plot(place[members], left[state][members], **style)
     if weighted:
         ax.axhspan(-COVERED, COVERED, color="0.92", zorder=0)
@@ -100,15 +97,14 @@ def plot_residuals(comparison: MeasuredComparison, over: str, ax: Axes) -> Axes:
 
     Series stand a little beside each other, so that none hides another, unless they differ in it.
     """
-    measured = comparison.measured
-    where = measured.conditions[over]
+    where = comparison.measured.conditions[over]
     series = list(_series(comparison))
     values = np.unique(where)
     gap = 0.0 if over == comparison.group else SERIES_GAP * float(np.ptp(where) or 1.0)
-    for number, (members, style) in enumerate(series):
-        error = (style.pop("computed") - measured.loss)[members]
+    for number, (state, members, style) in enumerate(series):
+        error = comparison.residuals(state)[members]
         x = where[members] + gap * (number - (len(series) - 1) / 2)
-        ax.errorbar(x, error, yerr=_bars(comparison, members, style), **style)
+        ax.errorbar(x, error, yerr=_bars(comparison, state, members), **style)
     ax.axhline(0.0, color="black", lw=0.9)
     part = OPERATING[over]
     label = f"{part.label}, {unit_text(part.unit)}"
@@ -120,41 +116,34 @@ def plot_residuals(comparison: MeasuredComparison, over: str, ax: Axes) -> Axes:
     return ax
 
 
-def _bars(
-    comparison: MeasuredComparison, members: BoolArray, style: Mapping[str, Any]
-) -> FloatArray | None:
+def _bars(comparison: MeasuredComparison, state: str, members: BoolArray) -> FloatArray | None:
     """Standard uncertainties of a series; drawn once, not at what stands below in grey."""
     sigma = comparison.measured.uncertainty
-    hidden = comparison.fit is not None and style["label"] == AS_GIVEN
+    hidden = comparison.fit is not None and state == AS_GIVEN
     return None if sigma is None or hidden else sigma[members]
 
 
-def _series(comparison: MeasuredComparison) -> Iterator[tuple[BoolArray, dict[str, Any]]]:
-    """Points and style of each series: as given in grey below what is calibrated."""
-    states = comparison.states
-    state = CALIBRATED if CALIBRATED in states else AS_GIVEN
+def _series(comparison: MeasuredComparison) -> Iterator[tuple[str, BoolArray, dict[str, Any]]]:
+    """State, points and style of each series: as given in grey below what is calibrated."""
+    state = CALIBRATED if CALIBRATED in comparison.states else AS_GIVEN
     if state == CALIBRATED:
         everywhere = np.ones(len(comparison.measured), dtype=bool)
-        grey = {"marker": "o", "label": AS_GIVEN, "computed": states[AS_GIVEN]}
-        yield everywhere, _FADED | grey
+        yield AS_GIVEN, everywhere, _FADED | {"marker": "o", "label": AS_GIVEN}
     labels = np.array(comparison.measured.labels[comparison.group])
     for number, value in enumerate(dict.fromkeys(comparison.measured.labels[comparison.group])):
         for held_out in (False, True):
             members = (labels == value) & (comparison.held_out == held_out)
             if members.any():
                 colour = COLOURS[number % len(COLOURS)]
-                yield (
-                    members,
-                    {
-                        "color": colour,
-                        "marker": MARKERS[number % len(MARKERS)],
-                        "mfc": "white" if held_out else colour,
-                        "ms": 5,
-                        "ls": "none",
-                        "label": _label(comparison, value, state, held_out),
-                        "computed": states[state],
-                    },
-                )
+                style = {
+                    "color": colour,
+                    "marker": MARKERS[number % len(MARKERS)],
+                    "mfc": "white" if held_out else colour,
+                    "ms": 5,
+                    "ls": "none",
+                    "label": _label(comparison, value, state, held_out),
+                }
+                yield state, members, style
 
 
 def _label(comparison: MeasuredComparison, value: str, state: str, held_out: bool) -> str:

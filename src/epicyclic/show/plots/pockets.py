@@ -253,9 +253,8 @@ class Section:
         self._pockets.set_zorder(2)
         for collection in (*self._bodies, self._pockets):
             ax.add_collection(collection)
-        limits = zip(self._low, self._high, strict=True)
-        ax.set(**dict(zip(("xlim", "ylim"), limits, strict=True)), aspect="equal")
-        ax.set(xticks=[], yticks=[])
+        across, up = zip(self._low, self._high, strict=True)
+        ax.set(xlim=across, ylim=up, aspect="equal", xticks=[], yticks=[])
         ax.grid(visible=False)
         ax.spines[["left", "bottom"]].set_visible(False)
         self._draw_scale(ax)

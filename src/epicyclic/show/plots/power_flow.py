@@ -15,7 +15,7 @@ from epicyclic.dataclass import dataclass, replace
 from epicyclic.result.result import Result
 from epicyclic.show.page import shown
 from epicyclic.show.plots.style import COLOURS
-from epicyclic.show.power_flow import Line, Link, TrainFlow, power_flow
+from epicyclic.show.power_flow import NO_POWER, Line, Link, TrainFlow, power_flow
 from epicyclic.units import RPM, known_text, percent, torque_text, unit_text
 
 # Shapes that the slides of power and of heat have in common. Every length is in inches.
@@ -81,7 +81,6 @@ CHARACTER, WORDS = 0.0085, 0.75
 """Width of a character, and part of a card for words beside its bars at most. [inch/point, 1]"""
 WIDEST, THINNEST, SHORTEST = 0.6, 0.02, 0.55
 """Widths of arrows, whatever the power; length below which they have no label."""
-NO_POWER = 1e-9
 MOST_ORDERED = 6  # Sets, and shafts, of which all orders are compared.
 _ARROW = Arrow(reach=(0.09, 0.5), length=(0.16, 0.5), share=0.5)
 _fit = partial(fit, CHARACTER)
@@ -94,11 +93,11 @@ class _Layout:
     """What is drawn where."""
 
     flow: TrainFlow
-    columns: Mapping[str, float]  # x of each set and y of each line that passes power.
-    lanes: Mapping[str, float]  # x of each set and y of each line that passes power.
+    columns: Mapping[str, float]  # x of each set.
+    lanes: Mapping[str, float]  # y of each line that passes power.
     taps: Mapping[str, float]  # Losses of bearings, seals and drags by their line. [W]
-    width: float  # Width of a column, and spacing of lanes.
-    spacing: float  # Width of a column, and spacing of lanes.
+    width: float  # Of a column.
+    spacing: float  # Of the lanes.
     scale: float = 0.0  # Width of an arrow over its power. [inch/W]
 
     @property
@@ -172,9 +171,9 @@ def _torque(value: float) -> str:
 
 def _layout(flow: TrainFlow) -> _Layout:
     most = max((abs(link.power) for link in flow.links), default=0.0)
-    busy = {link.line for link in flow.links if abs(link.power) > NO_POWER * most} & set(flow.lines)
-    ends = [key for key, line in flow.lines.items() if line.role in ("input", "output")]
-    lines = [key for key in flow.lines if key in busy or key in ends]
+    busy = {link.line for link in flow.links if abs(link.power) > NO_POWER * most}
+    ends = ("input", "output")
+    lines = [key for key, line in flow.lines.items() if key in busy or line.role in ends]
     stages: list[str] = []
     taps: defaultdict[str, float] = defaultdict(float)
     for stage in flow.stages:
@@ -213,7 +212,7 @@ def _ordered_stages(flow: TrainFlow, stages: list[str], lines: list[str]) -> lis
             places = [at for at, _ in own]
             left = -1 if ends.get(key, 0.0) > 0 else min(places)
             right = len(order) if ends.get(key, 0.0) < 0 else max(places)
-            total += max(right, *places) - min(left, *places)
+            total += right - left
             total += sum(
                 0.6 for at, power in own for to, more in own if power < 0 < more and to < at
             )
@@ -330,16 +329,11 @@ def _draw_lane(ax: Axes, layout: _Layout, line: Line, y: float, *, striped: bool
 
 
 def _draw_line(ax: Axes, layout: _Layout, line: Line, y: float) -> None:
-    own = {
-        layout.columns[link.stage]
-        for link in layout.flow.of_line(line.key)
-        if link.stage in layout.columns
-    }
-    pieces = list(_pieces(layout, line))
-    for piece in pieces:
-        left = piece.start + (layout.box if piece.start in own else 0.0)
-        right = piece.end - (layout.box if piece.end in own else 0.0)
-        crossed = [x for x in layout.columns.values() if left < x < right]
+    sets, pieces = layout.columns.values(), list(_pieces(layout, line))
+    for piece in pieces:  # from box to box of the sets of this line
+        left = piece.start + (layout.box if piece.start in sets else 0.0)
+        right = piece.end - (layout.box if piece.end in sets else 0.0)
+        crossed = [x for x in sets if left < x < right]
         whole = sum(_widths(layout, piece))
         if crossed and whole:
             low, height = y - whole / 2 - 0.06, whole + 0.12
@@ -355,7 +349,7 @@ def _draw_line(ax: Axes, layout: _Layout, line: Line, y: float) -> None:
     if line.key in layout.taps and pieces:
         piece = pieces[-1] if line.role == "output" else pieces[0]
         # amid the piece as far as the first set that it passes
-        after = min(x for x in (*layout.columns.values(), piece.end) if x > piece.start)
+        after = min(x for x in (*sets, piece.end) if x > piece.start)
         x, edge = (piece.start + after) / 2, y - sum(_widths(layout, piece)) / 2
         _draw_loss(ax, (x, edge), edge - 0.28, THINNEST)
         style: Any = {"va": "center", "fontsize": 10, "color": LOST, "zorder": 6}

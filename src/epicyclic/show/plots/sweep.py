@@ -17,6 +17,7 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 
 from epicyclic.arrays import FloatArray
+from epicyclic.errors import first_of
 from epicyclic.show.plots.loss_map import draw_lines
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
@@ -276,7 +277,5 @@ def _value(value: xr.DataArray) -> str:
 
 def _span(values: xr.DataArray) -> str:
     if not _is_number(values):
-        names = list(dict.fromkeys(map(str, values.values)))
-        more = len(names) - MOST_NAMES
-        return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+        return first_of(list(dict.fromkeys(map(str, values.values))), MOST_NAMES)
     return span_text(values)

@@ -66,7 +66,7 @@ def known_of(data: xr.Dataset) -> Known:
     own = data["first_order"].sel(sum="total").clip(0.0, 1.0)
     ends = zip(data["low"].values.tolist(), data["high"].values.tolist(), strict=True)
     return Known(
-        unit=str(data["unit"].sel(result="total").values),
+        unit=unit_of(data),
         nominal=dict(zip(results, data["nominal"].values.tolist(), strict=True)),
         ends=dict(zip(results, ends, strict=True)),
         draws=dict(zip(results, data["value"].values, strict=True)),
@@ -75,6 +75,11 @@ def known_of(data: xr.Dataset) -> Known:
         advice=dict(zip(inputs, map(str, data["input_advice"].values), strict=True)),
         remarks=tuple(str(data.attrs["remarks"]).splitlines()),
     )
+
+
+def unit_of(data: xr.Dataset, result: str = "total") -> str:
+    """Unit of a result of such a dataset: of losses, of energies lost, of the efficiency."""
+    return str(data["unit"].sel(result=result).values)
 
 
 def mean_shares(data: xr.Dataset) -> xr.DataArray:
