@@ -10,7 +10,7 @@ from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import Problem
 from epicyclic.messages import key_parts, path_of
 from epicyclic.plugins.rexs.model import Attribute, Component, Model, oil_kind, term
-from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, fixed_by, rigid_parts
+from epicyclic.plugins.rexs.sets import GEARS, SetParts, fixed_by, rigid_parts
 from epicyclic.schema.read import with_value
 from epicyclic.units import format_number
 
@@ -265,11 +265,11 @@ def temperature(draft: Draft, model: Model, stages: Sequence[Component]) -> None
 _WATTS = {"W": 1.0, "kW": 1e3}
 
 
-def planetary_operation(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+def planetary_operation(draft: Draft, model: Model, planetary: SetParts) -> None:
     """Input and fixed member, or two members of given speed; torque and speed of the input."""
     members = {
-        name: rigid_parts(model, [*planetary.shafts[name], *own])
-        for name, own in (("sun", [planetary.sun]), ("ring", [planetary.ring]), ("carrier", []))
+        name: rigid_parts(model, [*planetary.shafts[name], *planetary.alike.get(name, ())])
+        for name in ("sun", "ring", "carrier")
     }
     shafts = {name: planetary.shafts[name] for name in members}
     joints = {name: fixed_by(model, parts) for name, parts in members.items()}
@@ -308,11 +308,12 @@ def _second_speed(
     return False
 
 
-def pair_operation(draft: Draft, model: Model, pair: Pair) -> None:
+def pair_operation(draft: Draft, model: Model, pair: SetParts) -> None:
     """Torque and speed of the pinion."""
-    shafts = model.partners(pair.pinion.id, "assembly", "part", "assembly", "shaft")
-    parts = rigid_parts(model, [pair.pinion, *shafts])
-    gears = [part for part in parts if part.type in ("cylindrical_gear", "ring_gear")]
+    pinion = pair.gears["pinion"]
+    shafts = model.partners(pinion.id, "assembly", "part", "assembly", "shaft")
+    parts = rigid_parts(model, [pinion, *shafts])
+    gears = [part for part in parts if part.type in GEARS]
     loads = parts if len(gears) == 1 else [item for item in parts if item.type != "external_load"]
     speed_and_torque(draft, loads, shafts)
 

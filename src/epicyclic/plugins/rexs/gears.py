@@ -15,7 +15,7 @@ from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import involute
 from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text
 from epicyclic.plugins.rexs.model import IN_MILLIMETRES, Component, Model, vector
-from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, is_internal, rigid_parts
+from epicyclic.plugins.rexs.sets import SetParts, Train, is_internal, rigid_parts
 from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
 
 # Gears of a REXS file to tables of a case.
@@ -346,7 +346,7 @@ _CLEARANCES = (
 _LEFT_OUT = "Without the bearing's data its loss is left out."
 
 
-def planet_bearings(model: Model, planetary: PlanetaryParts) -> list[Component]:
+def planet_bearings(model: Model, planetary: SetParts) -> list[Component]:
     """All bearings between planets and their pins, or between their shafts and the carrier."""
     planets = {part.id for part in rigid_parts(model, planetary.shafts["planet"])}
     carried = {part.id for part in rigid_parts(model, planetary.shafts["pin"])}
@@ -361,7 +361,7 @@ def planet_bearings(model: Model, planetary: PlanetaryParts) -> list[Component]:
     return list(found.values())
 
 
-def bearing_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+def bearing_table(draft: Draft, model: Model, planetary: SetParts) -> None:
     """The planet bearing; every key of it that the file does not give is noted."""
     key = "planet_bearing"
     bearings = planet_bearings(model, planetary)
@@ -398,10 +398,10 @@ def _has_rollers(bearing: Component) -> bool:
 
 
 def _rows(
-    draft: Draft, planetary: PlanetaryParts, rolling: list[Component], rows: list[Component]
+    draft: Draft, planetary: SetParts, rolling: list[Component], rows: list[Component]
 ) -> None:
     """Rows of all bearings of one planet together."""
-    count = len(rows) / len(planetary.planets)
+    count = len(rows) / len(planetary.alike["planet"])
     if count and count.is_integer():
         several = f" of {len(rolling)} bearings" if len(rolling) > 1 else ""
         draft.give("planet_bearing.rows", int(count), f"counted: rolling_bearing_row{several}")
@@ -423,7 +423,7 @@ def _pin(draft: Draft, rows: list[Component], roller: float | None) -> None:
     draft.give(key, diameter, f"computed: {pitch.origin} less the roller diameter")
 
 
-def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+def carrier_table(draft: Draft, model: Model, planetary: SetParts) -> None:
     """The carrier as a disc: the largest side plate, as wide as all of them stand."""
     stage = planetary.component.id
     carriers = model.partners(stage, "assembly", "assembly", "part", "planet_carrier")
@@ -459,7 +459,7 @@ def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
     draft.give("carrier.width", width, origin)
 
 
-def planet_angles(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+def planet_angles(draft: Draft, model: Model, planetary: SetParts) -> None:
     """Positions of the planets, if they are not spaced equally."""
     shafts = [*planetary.shafts["sun"][:1], *planetary.shafts["planet"]]
     places = [place for shaft in shafts if (place := model.place(shaft)) is not None]
@@ -487,7 +487,7 @@ AGREES = 1e-3  # Relative difference up to which figures of two programs agree.
 SHIFT_AGREES = 0.02  # Difference of profile shifts that allowances for backlash can make.
 
 
-def file_notes(chosen: PlanetaryParts | Pair) -> Iterator[str]:
+def file_notes(chosen: SetParts) -> Iterator[str]:
     """Contradictions within the file: hands of helices."""
     said: set[bool] = set()
     for mesh in chosen.meshes:
@@ -500,9 +500,7 @@ def file_notes(chosen: PlanetaryParts | Pair) -> Iterator[str]:
         yield f"{mesh.gears[0]} and {mesh.gears[1]} should have {hands}: check the helix angles."
 
 
-def geometry_notes(
-    case: Case, chosen: PlanetaryParts | Pair | Train, model: Model
-) -> Iterator[str]:
+def geometry_notes(case: Case, chosen: SetParts | Train, model: Model) -> Iterator[str]:
     """Figures of the file that differ from those of the case's geometry."""
     for mesh, components, stage in _all_computed(case, chosen):
         for gear, component in zip((mesh.gear1, mesh.gear2), components, strict=True):
@@ -522,7 +520,7 @@ _Computed = Iterator[tuple[geometry.Mesh, tuple[Component, Component], Component
 """Meshes as they are computed here, each with its gears and its stage in the file."""
 
 
-def _all_computed(case: Case, chosen: PlanetaryParts | Pair | Train) -> _Computed:
+def _all_computed(case: Case, chosen: SetParts | Train) -> _Computed:
     """Every mesh; of a train those of its sets whose losses are computed."""
     for name, one in (chosen.sets if isinstance(chosen, Train) else {"": chosen}).items():
         gearing, gears = case.gearings.get(name), one.gears
@@ -608,39 +606,29 @@ ROUNDING = 1e-3
 _SHIFT = "profile_shift_coefficient"
 
 
-def set_tables(draft: Draft, model: Model, chosen: PlanetaryParts | Pair, place: str = "") -> None:
+def set_tables(draft: Draft, model: Model, chosen: SetParts, place: str = "") -> None:
     """What describes a set or a pair; `place` is where its tables stand in the case."""
-    if isinstance(chosen, Pair):
-        _pair(draft, model, chosen, place)
-    else:
-        _planetary(draft, model, chosen, place)
-
-
-def _planetary(draft: Draft, model: Model, chosen: PlanetaryParts, place: str) -> None:
-    gears = [chosen.sun, *chosen.planets, chosen.ring]
+    gears = [gear for own in chosen.alike.values() for gear in own]
     shared_table(draft, model, gears, [mesh.stage for mesh in chosen.meshes])
-    for key, own in (("sun", [chosen.sun]), ("planet", chosen.planets), ("ring", [chosen.ring])):
+    for key, own in chosen.alike.items():
         gear_table(draft, model, key, own)
         micro_geometry(draft, model, key, own)
-    draft.give("planet.count", len(chosen.planets), f"counted: planets of {chosen.component}")
-    draft.take("planet.mass", "mass_of_component", chosen.planets, None)
+    if chosen.is_pair:
+        gear = chosen.gears["gear"]
+        if is_internal(gear):
+            draft.give("gear.internal", True, f"{gear}")
+        _shifts(draft, place, "pinion", "gear", "gear")
+        return
+    planets = chosen.alike["planet"]
+    draft.give("planet.count", len(planets), f"counted: planets of {chosen.component}")
+    draft.take("planet.mass", "mass_of_component", planets, None)
     _shifts(draft, place, "sun", "planet", "sun")
     _shifts(draft, place, "planet", "ring", "ring")
     planet_angles(draft, model, chosen)
     bearing_table(draft, model, chosen)
     carrier_table(draft, model, chosen)
-    rims = model.partners(chosen.ring.id, "assembly", "assembly", "part", "gear_body")
+    rims = model.partners(chosen.gears["ring"].id, "assembly", "assembly", "part", "gear_body")
     draft.take("ring.rim_thickness", "gear_body_rim_thickness", rims, None)
-
-
-def _pair(draft: Draft, model: Model, chosen: Pair, place: str) -> None:
-    shared_table(draft, model, [chosen.pinion, chosen.gear], [chosen.mesh.stage])
-    for key, own in (("pinion", [chosen.pinion]), ("gear", [chosen.gear])):
-        gear_table(draft, model, key, own)
-        micro_geometry(draft, model, key, own)
-    if is_internal(chosen.gear):
-        draft.give("gear.internal", True, f"{chosen.gear}")
-    _shifts(draft, place, "pinion", "gear", "gear")
 
 
 def _shifts(draft: Draft, place: str, member1: str, member2: str, changed: str) -> None:

@@ -23,7 +23,7 @@ from epicyclic.plugins.rexs.draft import (
 from epicyclic.plugins.rexs.files import read_document
 from epicyclic.plugins.rexs.gears import set_tables
 from epicyclic.plugins.rexs.model import Model, build_model, check_places
-from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, choose, chosen_train
+from epicyclic.plugins.rexs.sets import SetParts, Train, choose, chosen_train
 from epicyclic.plugins.rexs.train import train_draft
 from epicyclic.show.template import case_text
 
@@ -62,7 +62,7 @@ class RexsImport:
     missing: tuple[Lack, ...]
     notes: tuple[str, ...]
     _model: Model
-    _chosen: PlanetaryParts | Pair | Train
+    _chosen: SetParts | Train
 
     def case(
         self,
@@ -186,7 +186,7 @@ def read_rexs(
     )
 
 
-def _draft(model: Model, chosen: PlanetaryParts | Pair | Train) -> Draft:
+def _draft(model: Model, chosen: SetParts | Train) -> Draft:
     draft = train_draft(model, chosen) if isinstance(chosen, Train) else _set_draft(model, chosen)
     if cases := model.known_load_cases:
         draft.notes.append(f"The file has load cases: {cases}. Choose one with --load-case.")
@@ -194,14 +194,12 @@ def _draft(model: Model, chosen: PlanetaryParts | Pair | Train) -> Draft:
     return draft
 
 
-def _set_draft(model: Model, chosen: PlanetaryParts | Pair) -> Draft:
+def _set_draft(model: Model, chosen: SetParts) -> Draft:
     title = chosen.component.name.strip()
-    is_pair = isinstance(chosen, Pair)
-    draft = Draft({"kind": "gear_pair" if is_pair else "planetary", "title": one_line(title)})
-    if isinstance(chosen, Pair):
-        pair_operation(draft, model, chosen)
-    else:
-        planetary_operation(draft, model, chosen)
+    kind = "gear_pair" if chosen.is_pair else "planetary"
+    draft = Draft({"kind": kind, "title": one_line(title)})
+    operation = pair_operation if chosen.is_pair else planetary_operation
+    operation(draft, model, chosen)
     set_tables(draft, model, chosen)
     stages = [mesh.stage for mesh in chosen.meshes]
     temperature(draft, model, stages)

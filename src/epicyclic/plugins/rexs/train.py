@@ -32,7 +32,7 @@ from epicyclic.plugins.rexs.model import (
     Model,
     vector,
 )
-from epicyclic.plugins.rexs.sets import Joint, Pair, PlanetaryParts, Shaft, Train
+from epicyclic.plugins.rexs.sets import Joint, SetParts, Shaft, Train
 
 # Where gears stand along the shafts of a train, and the rolling bearings of the shafts.
 
@@ -54,7 +54,7 @@ def shaft_parts(draft: Draft, model: Model, train: Train) -> None:
     places = _Places(draft, model, train)
     borne = _bearings(draft, model, train, places)
     for name, one in train.sets.items():
-        if isinstance(one, Pair):
+        if one.is_pair:
             _pair(draft, train, places, (name, one), borne)
 
 
@@ -155,11 +155,11 @@ def _amount(number: float, origin: str) -> Amount:
 
 
 def _pair(
-    draft: Draft, train: Train, places: _Places, named: tuple[str, Pair], borne: set[str]
+    draft: Draft, train: Train, places: _Places, named: tuple[str, SetParts], borne: set[str]
 ) -> None:
     """Positions of the gears of a pair, and where the gear lies from the pinion."""
     name, pair = named
-    for member, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
+    for member, gear in pair.gears.items():
         shaft = train.shaft_of(gear.id)
         key = f'positions."{name}.{member}"'
         place = places.along(shaft, gear) if shaft is not None else None
@@ -167,10 +167,10 @@ def _pair(
             draft.give(key, place.text, place.origin)
         elif shaft is not None and shaft.name in borne:
             draft.need(key, "support_vector or u_coordinate_on_shaft", [gear], _ABOUT_FORCE)
-    shafts = [train.shaft_of(gear.id) for gear in (pair.pinion, pair.gear)]
+    shafts = [train.shaft_of(gear.id) for gear in pair.gears.values()]
     ends = [
         [*(shaft.components if shaft is not None else ()), gear]
-        for shaft, gear in zip(shafts, (pair.pinion, pair.gear), strict=True)
+        for shaft, gear in zip(shafts, pair.gears.values(), strict=True)
     ]
     angle = places.direction(*ends)
     key = f"sets.{name}.direction"
@@ -301,7 +301,7 @@ def _supports(draft: Draft, train: Train, shaft: Shaft, names: Sequence[str]) ->
     A single one is enough for gears that planets stand around.
     """
     owners = [train.sets[member.partition(".")[0]] for member in shaft.members]
-    is_pushed = any(isinstance(one, Pair) for one in owners)
+    is_pushed = any(one.is_pair for one in owners)
     tables = draft.tables["bearings"]
 
     def place(name: str) -> float:
@@ -538,9 +538,9 @@ def train_draft(model: Model, train: Train) -> Draft:
     return draft
 
 
-def _hand(draft: Draft, one: PlanetaryParts | Pair) -> None:
+def _hand(draft: Draft, one: SetParts) -> None:
     """Hand of the helix of the sun or pinion: positive angles are right-handed, ISO 21771."""
-    gear = one.pinion if isinstance(one, Pair) else one.sun
+    gear = next(iter(one.gears.values()))
     helix = draft.read(_HELIX, [gear])
     if helix is not None and helix.number != 0:
         draft.give("hand", "right" if helix.number > 0 else "left", f"sign of {helix.origin}")
@@ -562,10 +562,12 @@ def _notes(model: Model, train: Train) -> Iterator[str]:
     for kind in _OTHER_STAGES:
         for stage in model.of_type(kind)[:4]:
             yield f"{stage} is left out: cylindrical and planetary stages can be read."
-    sets = train.sets.values()
-    gears = [gear for one in sets for gear in ((one.pinion, one.gear) if isinstance(one, Pair)
-             else (one.sun, one.ring))]  # fmt: skip
-    counts = Counter(gear.id for gear in gears)
+    counts = Counter(
+        gear.id
+        for one in train.sets.values()
+        for name, gear in one.gears.items()
+        if name != "planet"
+    )
     for number, count in counts.items():
         if count > 1:
             yield f"{model.components[number]} appears in {count} sets, with its drag in each."
