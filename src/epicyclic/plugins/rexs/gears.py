@@ -15,7 +15,7 @@ from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import involute
 from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text
 from epicyclic.plugins.rexs.model import IN_MILLIMETRES, Component, Model, vector
-from epicyclic.plugins.rexs.sets import SetParts, Train, is_internal, rigid_parts
+from epicyclic.plugins.rexs.sets import SetParts, Train, is_internal, joints, rigid_parts
 from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
 
 # Gears of a REXS file to tables of a case.
@@ -352,12 +352,9 @@ def planet_bearings(model: Model, planetary: SetParts) -> list[Component]:
     carried = {part.id for part in rigid_parts(model, planetary.shafts["pin"])}
     carried |= {part.id for part in rigid_parts(model, planetary.shafts["carrier"])}
     found: dict[int, Component] = {}
-    for relation in model.relations:
-        if relation.type == "side":
-            sides = {*relation.partners("inner_part"), *relation.partners("outer_part")}
-            joints = [model.components[number] for number in relation.partners("assembly")]
-            if sides & planets and sides & carried:
-                found |= {item.id: item for item in joints if "bearing" in item.type}
+    for item, *sides in joints(model):
+        if planets.intersection(sides) and carried.intersection(sides) and "bearing" in item.type:
+            found[item.id] = item
     return list(found.values())
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
-from epicyclic.plugins.rexs.model import Component, Model, refuse, types_of
+from epicyclic.plugins.rexs.model import Component, Model, Relation, refuse, types_of
 
 # Which gear sets a REXS file holds, and the components that each consists of.
 
@@ -212,17 +212,13 @@ def rigid_links(model: Model, *, switched: bool = True) -> Iterator[tuple[int, i
     """Parts that turn as one, two by two; without clutches that are `switched` if that is False."""
     owners = ("shaft", "planet_carrier")
     for relation in model.relations:
-        sides: Sequence[int] = ()
+        joint = _joint(model, relation)
+        if joint is not None and is_rigid(joint.component, switched=switched):
+            yield joint.inner, joint.outer
         if relation.type == "assembly":
             sides = [*relation.partners("assembly"), *relation.partners("part")]
-            if model.components[sides[0]].type not in owners if sides else True:
-                sides = ()
-        elif relation.type == "side" and is_rigid(
-            model, relation.partners("assembly"), switched=switched
-        ):
-            sides = [*relation.partners("inner_part"), *relation.partners("outer_part")]
-        if len(sides) == 2:
-            yield sides[0], sides[1]
+            if len(sides) == 2 and model.components[sides[0]].type in owners:
+                yield sides[0], sides[1]
 
 
 class Joint(NamedTuple):
@@ -235,12 +231,19 @@ class Joint(NamedTuple):
 
 def joints(model: Model) -> Iterator[Joint]:
     """Everything that stands between two parts."""
-    for relation in model.relations:
-        if relation.type == "side":
-            roles = (relation.partners(role) for role in ("assembly", "inner_part", "outer_part"))
-            joint, inner, outer = (next(parts, None) for parts in roles)
-            if joint is not None and inner is not None and outer is not None:
-                yield Joint(model.components[joint], inner, outer)
+    found = (_joint(model, relation) for relation in model.relations)
+    return (joint for joint in found if joint is not None)
+
+
+def _joint(model: Model, relation: Relation) -> Joint | None:
+    """What a relation puts between two parts; None if it is of another type."""
+    if relation.type != "side":
+        return None
+    roles = ("assembly", "inner_part", "outer_part")
+    joint, inner, outer = (next(relation.partners(role), None) for role in roles)
+    if joint is None or inner is None or outer is None:
+        return None
+    return Joint(model.components[joint], inner, outer)
 
 
 def is_switched(joint: Component) -> bool:
@@ -248,32 +251,29 @@ def is_switched(joint: Component) -> bool:
     return joint.type == "switchable_coupling" and joint.get("is_engaged") is not None
 
 
-def is_rigid(model: Model, parts: Iterable[int], *, switched: bool = True) -> bool:
-    """True if the joint of a relation, the first of `parts`, makes its sides turn as one.
+def is_rigid(joint: Component, *, switched: bool = True) -> bool:
+    """True if a joint makes its sides turn as one.
 
     A clutch with several positions does if it is closed in all; none does if `switched` is False.
     """
-    for number in parts:
-        joint = model.components[number]
-        engaged = joint.get("is_engaged")
-        if not switched and is_switched(joint):
-            return False
-        try:
-            return joint.type in _RIGID and (engaged is None or engaged.flag())
-        except ValueError:
-            return False
-    return False
+    engaged = joint.get("is_engaged")
+    if not switched and is_switched(joint):
+        return False
+    try:
+        return joint.type in _RIGID and (engaged is None or engaged.flag())
+    except ValueError:
+        return False
 
 
-def fixed_by(model: Model, parts: Iterable[Component]) -> Component | None:
-    """The joint that holds one of `parts` to the casing; None if none does."""
+def fixed_by(
+    model: Model, parts: Iterable[Component], *, switched: bool = True
+) -> Component | None:
+    """The joint that holds one of `parts` to the casing, as `is_rigid`; None if none does."""
     numbers = {part.id for part in parts}
-    for relation in model.relations:
-        if relation.type == "side" and is_rigid(model, relation.partners("assembly")):
-            sides = [*relation.partners("inner_part"), *relation.partners("outer_part")]
-            to_casing = any(model.components[side].type == "gear_casing" for side in sides)
-            if to_casing and numbers & set(sides):
-                return model.components[next(relation.partners("assembly"))]
+    for joint, *sides in joints(model):
+        to_casing = any(model.components[side].type == "gear_casing" for side in sides)
+        if to_casing and numbers.intersection(sides) and is_rigid(joint, switched=switched):
+            return joint
     return None
 
 
@@ -429,11 +429,12 @@ def _shafts(model: Model, sets: Mapping[str, SetParts], names: Names) -> dict[st
     for number, (member, parts) in enumerate(owned.items()):
         body = bodies[parts[0].id] if parts else -1 - number
         members.setdefault(body, []).append(member)
-    held = _held(model, bodies)
     found: dict[str, Shaft] = {}
     for body, joined in members.items():
         turning = {part: model.components[part] for part, root in bodies.items() if root == body}
-        shaft = Shaft(joined[0], turning, tuple(joined), held.get(body))
+        loose = (part for part in turning.values() if part.type != "gear_casing")
+        held = fixed_by(model, loose, switched=False)
+        shaft = Shaft(joined[0], turning, tuple(joined), held)
         if shaft.is_listed:
             own = shaft.components
             named = names.of(own[0], "shaft") if own else names.free("shaft", abs(body))
@@ -466,20 +467,6 @@ def _bodies(model: Model, joined: Iterable[list[Component]]) -> dict[int, int]:
                 bodies[part] = start
                 waiting += neighbours[part]
     return bodies
-
-
-def _held(model: Model, bodies: Mapping[int, int]) -> dict[int, Component]:
-    """Bodies that something joins to the casing, and what does."""
-    held: dict[int, Component] = {}
-    for joint in joints(model):
-        sides = {side: model.components[side].type for side in (joint.inner, joint.outer)}
-        if "gear_casing" in sides.values() and is_rigid(
-            model, [joint.component.id], switched=False
-        ):
-            for side, kind in sides.items():
-                if kind != "gear_casing" and side in bodies:
-                    held.setdefault(bodies[side], joint.component)
-    return held
 
 
 def _bearings(model: Model, sets: Mapping[str, SetParts]) -> Iterator[Joint]:
