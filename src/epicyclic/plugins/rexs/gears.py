@@ -237,39 +237,29 @@ class _Form:
     type: str
     key: str
     amounts: tuple[str, ...]
-    extents: tuple[tuple[str, str], ...] = ()
-    has_shape: bool = False
-    over: str = ""
+    over: str = ""  # Where a crown is; a relief has a shape and the diameter where it begins.
 
 
 _TAKEN = (
-    _Form("tip_relief", "tip_relief", ("tip_relief_depth",),
-          (("tip_relief_diameter", "tip_relief_datum_diameter"),), has_shape=True),
-    _Form("root_relief", "root_relief", ("root_relief_depth",),
-          (("root_relief_diameter", "root_relief_datum_diameter"),), has_shape=True),
+    _Form("tip_relief", "tip_relief", ("tip_relief_depth",)),
+    _Form("root_relief", "root_relief", ("root_relief_depth",)),
     _Form("profile_crowning", "profile_crown",
-          ("profile_crowning_at_tip", "profile_crowning_at_root"),
-          over=", over the active profile"),
+          ("profile_crowning_at_tip", "profile_crowning_at_root"), ", over the active profile"),
     _Form("helix_crowning", "lead_crown",
           ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
-          over=", over the face width"),
+          ", over the face width"),
 )  # fmt: skip
 _NOT_TAKEN = {
-    "profile_slope": "profile_slope",
-    "helix_slope": "lead_slope",
-    "end_relief_datum_face": "end_relief",
-    "end_relief_non_datum_face": "end_relief",
-    "topographical_modification": "topography",
-    "triangular_tip_relief": "topography",
-    "triangular_root_relief": "topography",
-    "profile_twist": "topography",
+    "profile_slope": ("profile_slope", "profile_slope"),
+    "helix_slope": ("lead_slope", "helix_slope"),
+    "end_relief_datum_face": ("end_relief", "end_relief_depth_datum_face"),
+    "end_relief_non_datum_face": ("end_relief", "end_relief_depth_non_datum_face"),
+    "topographical_modification": ("topography", None),
+    "triangular_tip_relief": ("topography", None),
+    "triangular_root_relief": ("topography", None),
+    "profile_twist": ("topography", None),
 }
-_AMOUNTS = {
-    "profile_slope": "profile_slope",
-    "helix_slope": "helix_slope",
-    "end_relief_datum_face": "end_relief_depth_datum_face",
-    "end_relief_non_datum_face": "end_relief_depth_non_datum_face",
-}
+"""By type the key, and the attribute that holds the amount, if it is a single one."""
 _SHAPES = ("linear", "parabolic")
 
 
@@ -280,9 +270,9 @@ def micro_geometry(draft: Draft, model: Model, key: str, gears: Sequence[Compone
         items = _of_type(model, flanks, form.type)
         if items and any(_amount(item, name) != 0 for item in items for name in form.amounts):
             _take(draft, key, form, items, len(flanks))
-    for kind, name in _NOT_TAKEN.items():
+    for kind, (name, amount) in _NOT_TAKEN.items():
         items = _of_type(model, flanks, kind)
-        if items and (kind not in _AMOUNTS or any(_amount(i, _AMOUNTS[kind]) != 0 for i in items)):
+        if items and (amount is None or any(_amount(item, amount) != 0 for item in items)):
             _leave(draft, key, name, items, "its sign or shape is not supported here")
 
 
@@ -292,7 +282,7 @@ def _of_type(model: Model, flanks: Sequence[Component], kind: str) -> list[Compo
 
 def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flanks: int) -> None:
     amounts = {_amount(item, name) for item in items for name in form.amounts}
-    shapes = {_shape(item) for item in items} if form.has_shape else {"parabolic"}
+    shapes = {"parabolic"} if form.over else {_shape(item) for item in items}
     (amount, *others), (shape, *_) = amounts, shapes
     if len(items) < flanks or others or amount is None or amount <= 0:
         _leave(draft, key, form.key, items, "it is not the same positive amount on all flanks")
@@ -305,10 +295,9 @@ def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flank
     found = draft.read(form.amounts[0], items)
     assert found is not None
     draft.give(f"{start}{form.key}", found.text, f"{found.origin}{form.over}")
-    if form.has_shape:
+    if not form.over:
         draft.give(f"{start}{form.key}_shape", shape, f"shape_of_relief of {items[0]}")
-    for name, attribute in form.extents:
-        draft.take(f"{start}{name}", attribute, items)
+        draft.take(f"{start}{form.key}_diameter", f"{form.type}_datum_diameter", items)
 
 
 def _leave(draft: Draft, key: str, name: str, items: Sequence[Component], reason: str) -> None:
