@@ -10,7 +10,6 @@ import numpy as np
 
 from epicyclic.case.case import Case
 from epicyclic.dataclass import dataclass, replace
-from epicyclic.gears import mesh as geometry
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import involute
 from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text
@@ -488,33 +487,21 @@ def file_notes(chosen: SetParts) -> Iterator[str]:
 
 def geometry_notes(case: Case, chosen: SetParts | Train, model: Model) -> Iterator[str]:
     """Figures of the file that differ from those of the case's geometry."""
-    for mesh, components, stage in _all_computed(case, chosen):
-        for gear, component in zip((mesh.gear1, mesh.gear2), components, strict=True):
-            reference, base = 2 * gear.reference_radius, 2 * gear.base_radius
-            yield from _compared(
-                component, "reference_diameter_cylindrical_gear", reference, MILLIMETRE
-            )
-            yield from _compared(component, "base_diameter", base, MILLIMETRE)
-        yield from _compared(stage, "radial_contact_ratio", mesh.transverse_contact_ratio)
-        yield from _compared(stage, "overlap_contact_ratio", mesh.overlap_ratio)
-        for data in model.partners(stage.id, "stage_gear_data", "stage", "stage_gear_data"):
-            name = "operating_pressure_angle_in_the_transverse_section"
-            yield from _compared(data, name, mesh.operating_pressure_angle, DEGREE)
-
-
-_Computed = Iterator[tuple[geometry.Mesh, tuple[Component, Component], Component]]
-"""Meshes as they are computed here, each with its gears and its stage in the file."""
-
-
-def _all_computed(case: Case, chosen: SetParts | Train) -> _Computed:
-    """Every mesh; of a train those of its sets whose losses are computed."""
     for name, one in (chosen.sets if isinstance(chosen, Train) else {"": chosen}).items():
         gearing, gears = case.gearings.get(name), one.gears
         if gearing is None or gearing.tables.keys() != gears.keys():
-            continue
+            continue  # of a train, a set whose losses are not computed
         for drawn, mesh in zip(gearing.meshes, gearing.geometries, strict=True):
             stage = one.meshes_by_key[drawn.key][0].stage
-            yield mesh, (gears[drawn.first], gears[drawn.second]), stage
+            for gear, member in ((mesh.gear1, drawn.first), (mesh.gear2, drawn.second)):
+                part, d = gears[member], 2 * gear.reference_radius
+                yield from _compared(part, "reference_diameter_cylindrical_gear", d, MILLIMETRE)
+                yield from _compared(part, "base_diameter", 2 * gear.base_radius, MILLIMETRE)
+            yield from _compared(stage, "radial_contact_ratio", mesh.transverse_contact_ratio)
+            yield from _compared(stage, "overlap_contact_ratio", mesh.overlap_ratio)
+            for data in model.partners(stage.id, "stage_gear_data", "stage", "stage_gear_data"):
+                angle = "operating_pressure_angle_in_the_transverse_section"
+                yield from _compared(data, angle, mesh.operating_pressure_angle, DEGREE)
 
 
 def _compared(
@@ -560,30 +547,11 @@ def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> floa
 
 def _signed_teeth(tables: Mapping[str, Any], name: str) -> int:
     """Number of teeth as in ISO 21771: negative for internal gears."""
-    table = tables[name]
-    sign = -1 if name == "ring" or table.get("internal") else 1
-    return sign * int(table["teeth"])
+    return (-1 if _is_internal(tables, name) else 1) * int(tables[name]["teeth"])
 
 
-def shift_notes(
-    tables: Mapping[str, Any], member1: str, member2: str, place: str = ""
-) -> Iterator[str]:
-    """A note if the profile shift of an internal gear seems to count the other way.
-
-    `place` is where `tables` stand in the case.
-    """
-    table = tables.get(member2, {})
-    shift = table.get("profile_shift_coefficient")
-    is_ring = member2 == "ring" or table.get("internal", False)
-    closing = closing_shift(tables, member1, member2) if is_ring else None
-    if closing is None or not isinstance(shift, float) or abs(shift) < SHIFT_AGREES:
-        return
-    if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):
-        yield (
-            f"The profile shift {format_number(shift)} of the {member2} fits the centre distance "
-            "only with the other sign. If that is correct, set "
-            f"{place}{member2}.profile_shift_coefficient = {format_number(-shift)}."
-        )
+def _is_internal(tables: Mapping[str, Any], name: str) -> bool:
+    return name == "ring" or bool(tables[name].get("internal"))
 
 
 ROUNDING = 1e-3
@@ -620,23 +588,28 @@ def set_tables(draft: Draft, model: Model, chosen: SetParts, place: str = "") ->
 def _shifts(draft: Draft, place: str, member1: str, member2: str, changed: str) -> None:
     """Look at the profile shifts of a mesh.
 
-    Say which one would close it if one is lacking, and if one seems to have the wrong sign. Shifts
-    of a mesh without backlash may overlap by the last digit that is printed of them; the one of
-    `changed` is then reduced.
+    Say which one would close it if one is lacking, and if that of an internal gear seems to count
+    the other way. Shifts of a mesh without backlash may overlap by the last digit that is printed
+    of them; the one of `changed` is then reduced.
     """
-    draft.notes += shift_notes(draft.tables, member1, member2, place)
     for own, other in ((member2, member1), (member1, member2)):
-        key = f"{own}.profile_shift_coefficient"
+        key = f"{own}.{_SHIFT}"
         closing = closing_shift(draft.tables, other, own)
         if closing is None:
             continue
+        shift = draft.tables[own].get(_SHIFT)
+        if own == member2 and isinstance(shift, float) and _is_internal(draft.tables, own):
+            is_other_sign = abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing)
+            if is_other_sign and abs(shift) >= SHIFT_AGREES:
+                draft.notes.append(
+                    f"The profile shift {format_number(shift)} of the {own} fits the centre "
+                    "distance only with the other sign. If that is correct, set "
+                    f"{place}{key} = {format_number(-shift)}."
+                )
         shown = math.floor(closing * 1e6) / 1e6 + 0.0
         if key in draft.lacks:
             text = f"With the {other}, {format_number(shown)} leaves no backlash."
             draft.lacks[key] = replace(draft.lacks[key], instead=text)
-            continue
-        shift = draft.tables[own].get(_SHIFT)
-        is_too_much = isinstance(shift, float) and 0 < shift - shown <= ROUNDING
-        if own == changed and is_too_much:
+        elif own == changed and isinstance(shift, float) and 0 < shift - shown <= ROUNDING:
             origin = f"{draft.origins[key]}: {shift}, less the excess of the printed digits"
             draft.give(key, shown, origin)
