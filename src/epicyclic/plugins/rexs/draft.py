@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import Problem
 from epicyclic.messages import key_parts, path_of
-from epicyclic.plugins.rexs.model import Attribute, Component, Model, oil_kind, term
+from epicyclic.plugins.rexs.model import Attribute, Component, Model, term, vocabulary
 from epicyclic.plugins.rexs.sets import GEARS, SetParts, fixed_by, rigid_parts
 from epicyclic.schema.read import with_value
 from epicyclic.units import format_number
@@ -214,7 +214,7 @@ def lubricant_table(draft: Draft, model: Model, stages: Sequence[Component]) -> 
 def _kind(draft: Draft, oil: Component) -> None:
     for attribute in _KINDS:
         found = oil.get(attribute)
-        kind = None if found is None else oil_kind(found.text())
+        kind = None if found is None else vocabulary()["oil_kinds"].get(found.text())
         if found is not None and kind is not None:
             draft.give("lubricant.oil.kind", kind, f'{found.id} "{found.text()}" of {oil}')
             return
