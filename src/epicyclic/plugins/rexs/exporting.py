@@ -41,6 +41,7 @@ from epicyclic.plugins.rexs.model import (
     written,
 )
 from epicyclic.plugins.rexs.sets import Mesh, SetParts, Train, choose, chosen_train
+from epicyclic.plugins.rexs.train import BEARING_TYPES
 from epicyclic.result.result import Result
 from epicyclic.units import RPM, format_number
 
@@ -334,12 +335,7 @@ def _bearing(builder: Builder, bearing: PlanetBearing, pin: int, shaft: int, nam
         builder.relate("ordered_assembly", 1, assembly=row, part=roller)
 
 
-_TYPES = {
-    "deep-groove": "radial_grooved_ball_bearing",
-    "cylindrical": "radial_roller_bearing",
-    "needle": "radial_needle_roller_bearing",
-    "tapered": "radial_tapered_roller_bearing",
-}
+_TYPES = {kind: name for name, kind in BEARING_TYPES.items()}
 
 Place = tuple[float, float]  # Where an axis lies across its direction. [m]
 

@@ -11,7 +11,6 @@ from epicyclic.case.case import Case, build_case, changed_tables
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem, raise_any
 from epicyclic.messages import one_line
-from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
     Draft,
     Lack,
@@ -21,7 +20,7 @@ from epicyclic.plugins.rexs.draft import (
     temperature,
 )
 from epicyclic.plugins.rexs.files import read_document
-from epicyclic.plugins.rexs.gears import set_tables
+from epicyclic.plugins.rexs.gears import file_notes, geometry_notes, set_tables
 from epicyclic.plugins.rexs.model import Model, build_model, check_places
 from epicyclic.plugins.rexs.sets import SetParts, Train, choose, chosen_train
 from epicyclic.plugins.rexs.train import train_draft
@@ -125,7 +124,7 @@ class RexsImport:
 
     def geometry_notes(self, case: Case) -> tuple[str, ...]:
         """Figures of the file, such as base diameters, that differ from those of `case`."""
-        return tuple(checks.geometry_notes(case, self._chosen, self._model))
+        return tuple(geometry_notes(case, self._chosen, self._model))
 
     def _explained(self, problem: Problem) -> Problem:
         """A problem of a key that the file lacks, with what the file should have."""
@@ -204,5 +203,5 @@ def _set_draft(model: Model, chosen: SetParts) -> Draft:
     stages = [mesh.stage for mesh in chosen.meshes]
     temperature(draft, model, stages)
     lubricant_table(draft, model, stages)
-    draft.notes += checks.file_notes(chosen)
+    draft.notes += file_notes(chosen)
     return draft

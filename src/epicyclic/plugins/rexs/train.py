@@ -11,7 +11,6 @@ import numpy as np
 from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import one_line
-from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
     Amount,
     Draft,
@@ -23,7 +22,7 @@ from epicyclic.plugins.rexs.draft import (
     stated_load,
     temperature,
 )
-from epicyclic.plugins.rexs.gears import set_tables
+from epicyclic.plugins.rexs.gears import file_notes, set_tables
 from epicyclic.plugins.rexs.model import (
     IN_MILLIMETRES,
     ROUNDED,
@@ -37,14 +36,13 @@ from epicyclic.plugins.rexs.sets import Joint, SetParts, Shaft, Train
 # Where gears stand along the shafts of a train, and the rolling bearings of the shafts.
 
 
-_TYPES = {
+BEARING_TYPES = {
     "radial_grooved_ball_bearing": "deep-groove",
     "radial_roller_bearing": "cylindrical",
     "radial_needle_roller_bearing": "needle",
     "radial_tapered_roller_bearing": "tapered",
 }
-_SENSES = {"both_directions": "both", "positive": "positive", "negative": "negative"}
-_OPPOSITE = {"both": "both", "positive": "negative", "negative": "positive"}
+_OPPOSITE = {"positive": "negative", "negative": "positive"}
 _ABOUT_FORCE = "Needed for the forces on the bearings; or give their radial_force."
 _SUPPORTS = 2  # Bearings of a shaft whose forces statics gives.
 
@@ -120,21 +118,12 @@ class _Places:
         """Position from the start of the shaft, of the middle of a part. [mm]"""
         is_gear = part.get("number_of_teeth") is not None
         name = "u_coordinate_on_shaft" if is_gear else "u_coordinate_on_shaft_inner_side"
-        try:
-            found = part.amount(name)
-            width = part.amount("face_width")
-        except ValueError:
+        place, width = _millimetres(part, name), _millimetres(part, "face_width")
+        if not is_gear or self.model.version != "1.0":
+            return None if place is None else (place, f"{name} of {part}")
+        if place is None or width is None:
             return None
-        scale = IN_MILLIMETRES.get("" if found is None else found[1])
-        if found is None or scale is None:
-            return None
-        if is_gear and self.model.version == "1.0":
-            whole = None if width is None else IN_MILLIMETRES.get(width[1])
-            if width is None or whole is None:
-                return None
-            place = scale * found[0] + whole * width[0] / 2
-            return place, f"{name} of {part} plus half its face width"
-        return scale * found[0], f"{name} of {part}"
+        return place + width / 2, f"{name} of {part} plus half its face width"
 
     def direction(self, first: Iterable[Component], second: Iterable[Component]) -> float | None:
         """Angle from the axis of the first to that of the second, about the axis. [deg]"""
@@ -148,6 +137,15 @@ class _Places:
 
     def _first_point(self, parts: Iterable[Component]) -> FloatArray | None:
         return next((point for part in parts if (point := self._point(part)) is not None), None)
+
+
+def _millimetres(part: Component, name: str) -> float | None:
+    """A length of a part; None if it has none that can be read."""
+    try:
+        found = part.amount(name)
+        return None if found is None else found[0] * IN_MILLIMETRES[found[1]]
+    except (KeyError, ValueError):
+        return None
 
 
 def _amount(number: float, origin: str) -> Amount:
@@ -266,7 +264,7 @@ def _bearing(
 
 def _type(draft: Draft, key: str, bearing: Component) -> str | None:
     stated = bearing.get("bearing_type")
-    kind = None if stated is None else _TYPES.get(stated.text())
+    kind = None if stated is None else BEARING_TYPES.get(stated.text())
     if stated is not None and kind is not None:
         draft.give(f"{key}.type", kind, f"bearing_type {stated.text()} of {bearing}")
     else:
@@ -281,7 +279,7 @@ def _locating(draft: Draft, key: str, bearing: Component, sense: float) -> None:
     name = "axial_force_absorption"
     stated = bearing.get(name)
     text = "" if stated is None else stated.text()
-    if stated is None or (text not in _SENSES and text != "no_direction"):
+    if stated is None or text not in ("no_direction", "both_directions", *_OPPOSITE):
         instead = (
             "Default: it takes no axial force, unless it is the first on a shaft without "
             "locating bearing."
@@ -289,10 +287,9 @@ def _locating(draft: Draft, key: str, bearing: Component, sense: float) -> None:
         draft.lack(f"{key}.locating", name, [bearing], instead)
         return
     origin = f"{name} {text} of {bearing}"
-    draft.give(f"{key}.locating", text in _SENSES, origin)
-    if text in ("positive", "negative"):
-        held = _SENSES[text] if sense >= 0 else _OPPOSITE[text]
-        draft.give(f"{key}.axial_sense", held, origin)
+    draft.give(f"{key}.locating", text != "no_direction", origin)
+    if text in _OPPOSITE:
+        draft.give(f"{key}.axial_sense", text if sense >= 0 else _OPPOSITE[text], origin)
 
 
 def _supports(draft: Draft, train: Train, shaft: Shaft, names: Sequence[str]) -> None:
@@ -528,7 +525,7 @@ def train_draft(model: Model, train: Train) -> Draft:
         own = Draft({})
         set_tables(own, model, one, f"sets.{name}.")
         _hand(own, one)
-        own.notes += checks.file_notes(one)
+        own.notes += file_notes(one)
         draft.adopt(own, name)
     shaft_parts(draft, model, train)
     stages = [mesh.stage for mesh in train.meshes]
