@@ -135,7 +135,7 @@ def _map_data(lookup: Lookup, guid: str, lumped: Mapping[str, float]) -> Iterato
     yield f"static const double *const axis_values[] = {{{names}}};"
     yield f"static const int axis_sizes[] = {{{', '.join(str(axis.size) for axis in axes)}}};"
     yield f"static const double slack[] = {{{_numbers([slack(axis) for axis in axes])}}};"
-    yield f"static const double start[] = {{{_numbers(_start(lookup.names, axes, lumped))}}};"
+    yield f"static const double start[] = {{{_numbers(_start(lookup, lumped))}}};"
     yield "static const double torque_losses[][NODES] = {"
     for torques in lookup.torques:
         yield f"    {{{_numbers(torques.ravel())}}},"
@@ -157,20 +157,18 @@ def _si_axes(lookup: Lookup) -> list[Any]:
     return list(axes.values())
 
 
-def _start(names: Sequence[str], axes: Sequence[Any], lumped: Mapping[str, float]) -> list[float]:
+def _start(lookup: Lookup, lumped: Mapping[str, float]) -> list[float]:
     """Rest without torque, or what of the map is next to it; lowest temperature, first state.
 
     A temperature that follows from the losses starts as that of the surroundings.
     """
-    if lumped:
-        axes = [
-            np.array([lumped[SURROUNDINGS]]) if name == "temperature" else axis
-            for name, axis in zip(names, axes, strict=True)
-        ]
-    return [
+    start = [
         float(np.clip(0, axis[0], axis[-1])) if name in PLANE else float(axis[0])
-        for name, axis in zip(names, axes, strict=True)
+        for name, axis in zip(lookup.names, _si_axes(lookup), strict=True)
     ]
+    if lumped:
+        start[lookup.names.index("temperature")] = lumped[SURROUNDINGS]
+    return start
 
 
 def _compile(folder: Path) -> None:
@@ -254,7 +252,7 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
     about |= {name: f"loss: {name.replace('_', ' ')}" for name in lookup.components}
     if lumped:
         about["temperature"] = "temperature of the gearbox, computed from its losses"
-    start = _start(lookup.names, axes, lumped)
+    start = _start(lookup, lumped)
     variables = []
     for number, (name, text) in enumerate(about.items()):
         unit, shown, _ = _VARIABLES.get(name, _VARIABLES["power_loss"])
