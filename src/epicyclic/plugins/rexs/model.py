@@ -75,10 +75,9 @@ def unit_of(name: str) -> str | None:
 def rexs_unit(unit: str) -> str:
     """The unit of REXS in which a number with a unit of this package is written."""
     data = vocabulary()
-    if unit in data["written"]:
-        return str(data["written"][unit])
-    names: list[str] = [name for name, here in data["units"].items() if here == unit]
-    return names[-1]
+    names: dict[str, str] = {here: name for name, here in data["units"].items()}
+    names |= data["written"]
+    return names[unit]
 
 
 def written(value: float, unit: str, name: str) -> float:
