@@ -277,12 +277,14 @@ def planetary_operation(draft: Draft, model: Model, planetary: SetParts) -> None
     if fixed is not None:
         draft.give("operation.fixed", fixed, f"{joints[fixed]} to the casing")
     free = {name: parts for name, parts in members.items() if name != fixed}
-    member = _driven_by_load(draft, free)
+    loaded = {name: origin for name, parts in free.items() if (origin := stated_load(parts))}
+    member = next(iter(loaded), None)  # the sun before the ring before the carrier
     if member is None:
         every = [shaft for name in free for shaft in shafts[name]]
         draft.lack("operation.input", "external_load with torque_around_u_axis or power", every)
         speed_and_torque(draft, [], every)
     else:
+        draft.give("operation.input", member, loaded[member])
         speed_and_torque(draft, members[member], shafts[member])
     if fixed is None and not _second_speed(draft, members, member):
         draft.lack("operation.fixed", "coupling to a gear_casing, or speed of a second member,", [])
@@ -318,32 +320,22 @@ def pair_operation(draft: Draft, model: Model, pair: SetParts) -> None:
     speed_and_torque(draft, loads, shafts)
 
 
-def _driven_by_load(draft: Draft, members: Mapping[str, Sequence[Component]]) -> str | None:
-    """The member with the load that states torque or power; sun before ring before carrier."""
-    for name, parts in members.items():
-        origin = stated_load(parts)
-        if origin:
-            draft.give("operation.input", name, origin)
-            return name
-    return None
-
-
 def stated_load(parts: Sequence[Component]) -> str:
     """Which torque or power of a load on `parts` is stated and not zero; nothing if none is."""
     for load in parts:
         for attribute in ("torque_around_u_axis", "power"):
-            stated = load.type == "external_load" and load.get(attribute)
-            if stated and _nonzero(load, attribute):
+            if load.type == "external_load" and number_of(load, attribute) != 0:
                 return f"{attribute} of {load}"
     return ""
 
 
-def _nonzero(load: Component, attribute: str) -> bool:
+def number_of(item: Component, attribute: str) -> float | None:
+    """The number of an attribute; 0 if it is not given, None if it cannot be read."""
     try:
-        amount = load.amount(attribute)
-    except ValueError:
-        return True  # told when the value is read
-    return amount is not None and amount[0] != 0.0
+        found = item.amount(attribute)
+    except ValueError:  # told when the value is read
+        return None
+    return 0.0 if found is None else found[0]
 
 
 def speed_of(draft: Draft, parts: Sequence[Component]) -> Amount | None:

@@ -12,7 +12,7 @@ from epicyclic.case.case import Case
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import involute
-from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text
+from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text, number_of
 from epicyclic.plugins.rexs.model import IN_MILLIMETRES, Component, Model, vector
 from epicyclic.plugins.rexs.sets import SetParts, Train, is_internal, joints, rigid_parts
 from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
@@ -267,11 +267,11 @@ def micro_geometry(draft: Draft, model: Model, key: str, gears: Sequence[Compone
     flanks = flanks_of(model, gears)
     for form in _TAKEN:
         items = _of_type(model, flanks, form.type)
-        if items and any(_amount(item, name) != 0 for item in items for name in form.amounts):
+        if items and any(number_of(item, name) != 0 for item in items for name in form.amounts):
             _take(draft, key, form, items, len(flanks))
     for kind, (name, amount) in _NOT_TAKEN.items():
         items = _of_type(model, flanks, kind)
-        if items and (amount is None or any(_amount(item, amount) != 0 for item in items)):
+        if items and (amount is None or any(number_of(item, amount) != 0 for item in items)):
             _leave(draft, key, name, items, "its sign or shape is not supported here")
 
 
@@ -280,7 +280,7 @@ def _of_type(model: Model, flanks: Sequence[Component], kind: str) -> list[Compo
 
 
 def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flanks: int) -> None:
-    amounts = {_amount(item, name) for item in items for name in form.amounts}
+    amounts = {number_of(item, name) for item in items for name in form.amounts}
     shapes = {"parabolic"} if form.over else {_shape(item) for item in items}
     (amount, *others), (shape, *_) = amounts, shapes
     if len(items) < flanks or others or amount is None or amount <= 0:
@@ -303,15 +303,6 @@ def _leave(draft: Draft, key: str, name: str, items: Sequence[Component], reason
     instead = "It was not imported; set the key yourself."
     what = f"{items[0]} is there, but {reason}"
     draft.lack(f"{key}.micro_geometry.{name}", what, [], instead)
-
-
-def _amount(item: Component, name: str) -> float | None:
-    """The amount of a modification; 0 if it is not given, None if it cannot be read."""
-    try:
-        found = item.amount(name)
-    except ValueError:
-        return None
-    return 0.0 if found is None else found[0]
 
 
 def _shape(item: Component) -> str:

@@ -157,25 +157,24 @@ def _pair(
 ) -> None:
     """Positions of the gears of a pair, and where the gear lies from the pinion."""
     name, pair = named
+    ends: list[list[Component]] = []
+    is_borne = False
     for member, gear in pair.gears.items():
-        shaft = train.shaft_of(gear.id)
+        shaft = next(it for it in train.shafts.values() if f"{name}.{member}" in it.members)
         key = f'positions."{name}.{member}"'
-        place = places.along(shaft, gear) if shaft is not None else None
+        place = places.along(shaft, gear)
         if place is not None:
             draft.give(key, place.text, place.origin)
-        elif shaft is not None and shaft.name in borne:
+        elif shaft.name in borne:
             draft.need(key, "support_vector or u_coordinate_on_shaft", [gear], _ABOUT_FORCE)
-    shafts = [train.shaft_of(gear.id) for gear in pair.gears.values()]
-    ends = [
-        [*(shaft.components if shaft is not None else ()), gear]
-        for shaft, gear in zip(shafts, pair.gears.values(), strict=True)
-    ]
+        ends.append([*shaft.components, gear])
+        is_borne |= shaft.name in borne
     angle = places.direction(*ends)
     key = f"sets.{name}.direction"
     if angle is not None:
         origin = f"computed from support_vector of {ends[0][0]} and {ends[1][0]}"
         draft.give(key, f"{angle:z.6f} deg", origin)
-    elif any(shaft is not None and shaft.name in borne for shaft in shafts):
+    elif is_borne:
         draft.lack(key, "support_vector", [end[0] for end in ends], "Default: 0 deg.")
 
 
