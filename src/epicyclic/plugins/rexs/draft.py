@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import Problem
 from epicyclic.messages import key_parts, path_of
-from epicyclic.plugins.rexs.model import Attribute, Component, Model, oil_kind, term
-from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, fixed_by, rigid_parts
+from epicyclic.plugins.rexs.model import Attribute, Component, Model, term, vocabulary
+from epicyclic.plugins.rexs.sets import GEARS, SetParts, fixed_by, rigid_parts
 from epicyclic.schema.read import with_value
 from epicyclic.units import format_number
 
@@ -214,7 +214,7 @@ def lubricant_table(draft: Draft, model: Model, stages: Sequence[Component]) -> 
 def _kind(draft: Draft, oil: Component) -> None:
     for attribute in _KINDS:
         found = oil.get(attribute)
-        kind = None if found is None else oil_kind(found.text())
+        kind = None if found is None else vocabulary()["oil_kinds"].get(found.text())
         if found is not None and kind is not None:
             draft.give("lubricant.oil.kind", kind, f'{found.id} "{found.text()}" of {oil}')
             return
@@ -265,11 +265,11 @@ def temperature(draft: Draft, model: Model, stages: Sequence[Component]) -> None
 _WATTS = {"W": 1.0, "kW": 1e3}
 
 
-def planetary_operation(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+def planetary_operation(draft: Draft, model: Model, planetary: SetParts) -> None:
     """Input and fixed member, or two members of given speed; torque and speed of the input."""
     members = {
-        name: rigid_parts(model, [*planetary.shafts[name], *own])
-        for name, own in (("sun", [planetary.sun]), ("ring", [planetary.ring]), ("carrier", []))
+        name: rigid_parts(model, [*planetary.shafts[name], *planetary.alike.get(name, ())])
+        for name in ("sun", "ring", "carrier")
     }
     shafts = {name: planetary.shafts[name] for name in members}
     joints = {name: fixed_by(model, parts) for name, parts in members.items()}
@@ -277,12 +277,14 @@ def planetary_operation(draft: Draft, model: Model, planetary: PlanetaryParts) -
     if fixed is not None:
         draft.give("operation.fixed", fixed, f"{joints[fixed]} to the casing")
     free = {name: parts for name, parts in members.items() if name != fixed}
-    member = _driven_by_load(draft, free)
+    loaded = {name: origin for name, parts in free.items() if (origin := stated_load(parts))}
+    member = next(iter(loaded), None)  # the sun before the ring before the carrier
     if member is None:
         every = [shaft for name in free for shaft in shafts[name]]
         draft.lack("operation.input", "external_load with torque_around_u_axis or power", every)
         speed_and_torque(draft, [], every)
     else:
+        draft.give("operation.input", member, loaded[member])
         speed_and_torque(draft, members[member], shafts[member])
     if fixed is None and not _second_speed(draft, members, member):
         draft.lack("operation.fixed", "coupling to a gear_casing, or speed of a second member,", [])
@@ -308,41 +310,32 @@ def _second_speed(
     return False
 
 
-def pair_operation(draft: Draft, model: Model, pair: Pair) -> None:
+def pair_operation(draft: Draft, model: Model, pair: SetParts) -> None:
     """Torque and speed of the pinion."""
-    shafts = model.partners(pair.pinion.id, "assembly", "part", "assembly", "shaft")
-    parts = rigid_parts(model, [pair.pinion, *shafts])
-    gears = [part for part in parts if part.type in ("cylindrical_gear", "ring_gear")]
+    pinion = pair.gears["pinion"]
+    shafts = model.partners(pinion.id, "assembly", "part", "assembly", "shaft")
+    parts = rigid_parts(model, [pinion, *shafts])
+    gears = [part for part in parts if part.type in GEARS]
     loads = parts if len(gears) == 1 else [item for item in parts if item.type != "external_load"]
     speed_and_torque(draft, loads, shafts)
-
-
-def _driven_by_load(draft: Draft, members: Mapping[str, Sequence[Component]]) -> str | None:
-    """The member with the load that states torque or power; sun before ring before carrier."""
-    for name, parts in members.items():
-        origin = stated_load(parts)
-        if origin:
-            draft.give("operation.input", name, origin)
-            return name
-    return None
 
 
 def stated_load(parts: Sequence[Component]) -> str:
     """Which torque or power of a load on `parts` is stated and not zero; nothing if none is."""
     for load in parts:
         for attribute in ("torque_around_u_axis", "power"):
-            stated = load.type == "external_load" and load.get(attribute)
-            if stated and _nonzero(load, attribute):
+            if load.type == "external_load" and number_of(load, attribute) != 0:
                 return f"{attribute} of {load}"
     return ""
 
 
-def _nonzero(load: Component, attribute: str) -> bool:
+def number_of(item: Component, attribute: str) -> float | None:
+    """The number of an attribute; 0 if it is not given, None if it cannot be read."""
     try:
-        amount = load.amount(attribute)
-    except ValueError:
-        return True  # told when the value is read
-    return amount is not None and amount[0] != 0.0
+        found = item.amount(attribute)
+    except ValueError:  # told when the value is read
+        return None
+    return 0.0 if found is None else found[0]
 
 
 def speed_of(draft: Draft, parts: Sequence[Component]) -> Amount | None:

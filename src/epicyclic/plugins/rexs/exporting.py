@@ -40,7 +40,8 @@ from epicyclic.plugins.rexs.model import (
     versions,
     written,
 )
-from epicyclic.plugins.rexs.sets import Mesh, Pair, PlanetaryParts, Train, choose, chosen_train
+from epicyclic.plugins.rexs.sets import Mesh, SetParts, Train, choose, chosen_train
+from epicyclic.plugins.rexs.train import BEARING_TYPES
 from epicyclic.result.result import Result
 from epicyclic.units import RPM, format_number
 
@@ -334,12 +335,7 @@ def _bearing(builder: Builder, bearing: PlanetBearing, pin: int, shaft: int, nam
         builder.relate("ordered_assembly", 1, assembly=row, part=roller)
 
 
-_TYPES = {
-    "deep-groove": "radial_grooved_ball_bearing",
-    "cylindrical": "radial_roller_bearing",
-    "needle": "radial_needle_roller_bearing",
-    "tapered": "radial_tapered_roller_bearing",
-}
+_TYPES = {kind: name for name, kind in BEARING_TYPES.items()}
 
 Place = tuple[float, float]  # Where an axis lies across its direction. [m]
 
@@ -499,7 +495,7 @@ def _absorption(table: ShaftBearingTable) -> str:
 # are written anew each time.
 
 
-def _mismatches(chosen: PlanetaryParts | Pair | Train, result: Result) -> Iterator[Problem]:
+def _mismatches(chosen: SetParts | Train, result: Result) -> Iterator[Problem]:
     """What tells that a result is not of the gears of a file: names of sets, numbers of teeth."""
     if not isinstance(chosen, Train):
         yield from _differences(chosen, result.inputs, "")
@@ -514,9 +510,7 @@ def _mismatches(chosen: PlanetaryParts | Pair | Train, result: Result) -> Iterat
         yield Problem(f"sets.{name}", "", f"is not in {where}.", remedy)
 
 
-def _differences(
-    chosen: PlanetaryParts | Pair, tables: Mapping[str, Any], place: str
-) -> Iterator[Problem]:
+def _differences(chosen: SetParts, tables: Mapping[str, Any], place: str) -> Iterator[Problem]:
     """Numbers of teeth that are not those of the file."""
     for name, component in chosen.gears.items():
         stated = component.get("number_of_teeth")
@@ -530,7 +524,7 @@ def _differences(
 
 
 def _of_set(
-    model: Model, chosen: PlanetaryParts | Pair, result: Result
+    model: Model, chosen: SetParts, result: Result
 ) -> Iterator[tuple[Component, Attribute]]:
     stage = chosen.component
     yield stage, Attribute(f"{CUSTOM}version", "none", version("epicyclic"))
@@ -576,13 +570,13 @@ def _known(result: Result) -> Iterator[Figure]:
 
 
 def _meshes(
-    model: Model, chosen: PlanetaryParts | Pair, result: Result, place: str
+    model: Model, chosen: SetParts, result: Result, place: str
 ) -> Iterator[tuple[Component, Attribute]]:
     """Results of the meshes and planet bearings of a set, whose figures begin with `place`."""
     for key, meshes in chosen.meshes_by_key.items():
         for mesh in meshes:
             yield from _mesh(model, mesh, result, f"{place}{key}", len(meshes))
-    if isinstance(chosen, PlanetaryParts):
+    if not chosen.is_pair:
         yield from _bearing_results(model, chosen, result, f"{place}planet_bearing")
 
 
@@ -604,7 +598,7 @@ def _mesh(
 
 
 def _bearing_results(
-    model: Model, chosen: PlanetaryParts, result: Result, name: str
+    model: Model, chosen: SetParts, result: Result, name: str
 ) -> Iterator[tuple[Component, Attribute]]:
     """Results of each planet bearing: an equal part of the loss of all, and its torque."""
     bearings, figures = planet_bearings(model, chosen), result.bearings.get(name)
@@ -700,7 +694,7 @@ def rexs_bytes(
     return document.to_bytes()
 
 
-def _chosen(model: Model, result: Result, component: int | None) -> PlanetaryParts | Pair | Train:
+def _chosen(model: Model, result: Result, component: int | None) -> SetParts | Train:
     """What a result belongs to in a file."""
     if result.train is None:
         return choose(model, component)

@@ -10,12 +10,11 @@ import numpy as np
 
 from epicyclic.case.case import Case
 from epicyclic.dataclass import dataclass, replace
-from epicyclic.gears import mesh as geometry
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import involute
-from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text
+from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text, number_of
 from epicyclic.plugins.rexs.model import IN_MILLIMETRES, Component, Model, vector
-from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, is_internal, rigid_parts
+from epicyclic.plugins.rexs.sets import SetParts, Train, is_internal, joints, rigid_parts
 from epicyclic.units import DEGREE, MILLIMETRE, Quantity, format_number
 
 # Gears of a REXS file to tables of a case.
@@ -237,39 +236,29 @@ class _Form:
     type: str
     key: str
     amounts: tuple[str, ...]
-    extents: tuple[tuple[str, str], ...] = ()
-    has_shape: bool = False
-    over: str = ""
+    over: str = ""  # Where a crown is; a relief has a shape and the diameter where it begins.
 
 
 _TAKEN = (
-    _Form("tip_relief", "tip_relief", ("tip_relief_depth",),
-          (("tip_relief_diameter", "tip_relief_datum_diameter"),), has_shape=True),
-    _Form("root_relief", "root_relief", ("root_relief_depth",),
-          (("root_relief_diameter", "root_relief_datum_diameter"),), has_shape=True),
+    _Form("tip_relief", "tip_relief", ("tip_relief_depth",)),
+    _Form("root_relief", "root_relief", ("root_relief_depth",)),
     _Form("profile_crowning", "profile_crown",
-          ("profile_crowning_at_tip", "profile_crowning_at_root"),
-          over=", over the active profile"),
+          ("profile_crowning_at_tip", "profile_crowning_at_root"), ", over the active profile"),
     _Form("helix_crowning", "lead_crown",
           ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face"),
-          over=", over the face width"),
+          ", over the face width"),
 )  # fmt: skip
 _NOT_TAKEN = {
-    "profile_slope": "profile_slope",
-    "helix_slope": "lead_slope",
-    "end_relief_datum_face": "end_relief",
-    "end_relief_non_datum_face": "end_relief",
-    "topographical_modification": "topography",
-    "triangular_tip_relief": "topography",
-    "triangular_root_relief": "topography",
-    "profile_twist": "topography",
+    "profile_slope": ("profile_slope", "profile_slope"),
+    "helix_slope": ("lead_slope", "helix_slope"),
+    "end_relief_datum_face": ("end_relief", "end_relief_depth_datum_face"),
+    "end_relief_non_datum_face": ("end_relief", "end_relief_depth_non_datum_face"),
+    "topographical_modification": ("topography", None),
+    "triangular_tip_relief": ("topography", None),
+    "triangular_root_relief": ("topography", None),
+    "profile_twist": ("topography", None),
 }
-_AMOUNTS = {
-    "profile_slope": "profile_slope",
-    "helix_slope": "helix_slope",
-    "end_relief_datum_face": "end_relief_depth_datum_face",
-    "end_relief_non_datum_face": "end_relief_depth_non_datum_face",
-}
+"""By type the key, and the attribute that holds the amount, if it is a single one."""
 _SHAPES = ("linear", "parabolic")
 
 
@@ -278,11 +267,11 @@ def micro_geometry(draft: Draft, model: Model, key: str, gears: Sequence[Compone
     flanks = flanks_of(model, gears)
     for form in _TAKEN:
         items = _of_type(model, flanks, form.type)
-        if items and any(_amount(item, name) != 0 for item in items for name in form.amounts):
+        if items and any(number_of(item, name) != 0 for item in items for name in form.amounts):
             _take(draft, key, form, items, len(flanks))
-    for kind, name in _NOT_TAKEN.items():
+    for kind, (name, amount) in _NOT_TAKEN.items():
         items = _of_type(model, flanks, kind)
-        if items and (kind not in _AMOUNTS or any(_amount(i, _AMOUNTS[kind]) != 0 for i in items)):
+        if items and (amount is None or any(number_of(item, amount) != 0 for item in items)):
             _leave(draft, key, name, items, "its sign or shape is not supported here")
 
 
@@ -291,8 +280,8 @@ def _of_type(model: Model, flanks: Sequence[Component], kind: str) -> list[Compo
 
 
 def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flanks: int) -> None:
-    amounts = {_amount(item, name) for item in items for name in form.amounts}
-    shapes = {_shape(item) for item in items} if form.has_shape else {"parabolic"}
+    amounts = {number_of(item, name) for item in items for name in form.amounts}
+    shapes = {"parabolic"} if form.over else {_shape(item) for item in items}
     (amount, *others), (shape, *_) = amounts, shapes
     if len(items) < flanks or others or amount is None or amount <= 0:
         _leave(draft, key, form.key, items, "it is not the same positive amount on all flanks")
@@ -305,25 +294,15 @@ def _take(draft: Draft, key: str, form: _Form, items: Sequence[Component], flank
     found = draft.read(form.amounts[0], items)
     assert found is not None
     draft.give(f"{start}{form.key}", found.text, f"{found.origin}{form.over}")
-    if form.has_shape:
+    if not form.over:
         draft.give(f"{start}{form.key}_shape", shape, f"shape_of_relief of {items[0]}")
-    for name, attribute in form.extents:
-        draft.take(f"{start}{name}", attribute, items)
+        draft.take(f"{start}{form.key}_diameter", f"{form.type}_datum_diameter", items)
 
 
 def _leave(draft: Draft, key: str, name: str, items: Sequence[Component], reason: str) -> None:
     instead = "It was not imported; set the key yourself."
     what = f"{items[0]} is there, but {reason}"
     draft.lack(f"{key}.micro_geometry.{name}", what, [], instead)
-
-
-def _amount(item: Component, name: str) -> float | None:
-    """The amount of a modification; 0 if it is not given, None if it cannot be read."""
-    try:
-        found = item.amount(name)
-    except ValueError:
-        return None
-    return 0.0 if found is None else found[0]
 
 
 def _shape(item: Component) -> str:
@@ -346,22 +325,19 @@ _CLEARANCES = (
 _LEFT_OUT = "Without the bearing's data its loss is left out."
 
 
-def planet_bearings(model: Model, planetary: PlanetaryParts) -> list[Component]:
+def planet_bearings(model: Model, planetary: SetParts) -> list[Component]:
     """All bearings between planets and their pins, or between their shafts and the carrier."""
     planets = {part.id for part in rigid_parts(model, planetary.shafts["planet"])}
     carried = {part.id for part in rigid_parts(model, planetary.shafts["pin"])}
     carried |= {part.id for part in rigid_parts(model, planetary.shafts["carrier"])}
     found: dict[int, Component] = {}
-    for relation in model.relations:
-        if relation.type == "side":
-            sides = {*relation.partners("inner_part"), *relation.partners("outer_part")}
-            joints = [model.components[number] for number in relation.partners("assembly")]
-            if sides & planets and sides & carried:
-                found |= {item.id: item for item in joints if "bearing" in item.type}
+    for item, *sides in joints(model):
+        if planets.intersection(sides) and carried.intersection(sides) and "bearing" in item.type:
+            found[item.id] = item
     return list(found.values())
 
 
-def bearing_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+def bearing_table(draft: Draft, model: Model, planetary: SetParts) -> None:
     """The planet bearing; every key of it that the file does not give is noted."""
     key = "planet_bearing"
     bearings = planet_bearings(model, planetary)
@@ -398,10 +374,10 @@ def _has_rollers(bearing: Component) -> bool:
 
 
 def _rows(
-    draft: Draft, planetary: PlanetaryParts, rolling: list[Component], rows: list[Component]
+    draft: Draft, planetary: SetParts, rolling: list[Component], rows: list[Component]
 ) -> None:
     """Rows of all bearings of one planet together."""
-    count = len(rows) / len(planetary.planets)
+    count = len(rows) / len(planetary.alike["planet"])
     if count and count.is_integer():
         several = f" of {len(rolling)} bearings" if len(rolling) > 1 else ""
         draft.give("planet_bearing.rows", int(count), f"counted: rolling_bearing_row{several}")
@@ -423,7 +399,7 @@ def _pin(draft: Draft, rows: list[Component], roller: float | None) -> None:
     draft.give(key, diameter, f"computed: {pitch.origin} less the roller diameter")
 
 
-def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+def carrier_table(draft: Draft, model: Model, planetary: SetParts) -> None:
     """The carrier as a disc: the largest side plate, as wide as all of them stand."""
     stage = planetary.component.id
     carriers = model.partners(stage, "assembly", "assembly", "part", "planet_carrier")
@@ -459,7 +435,7 @@ def carrier_table(draft: Draft, model: Model, planetary: PlanetaryParts) -> None
     draft.give("carrier.width", width, origin)
 
 
-def planet_angles(draft: Draft, model: Model, planetary: PlanetaryParts) -> None:
+def planet_angles(draft: Draft, model: Model, planetary: SetParts) -> None:
     """Positions of the planets, if they are not spaced equally."""
     shafts = [*planetary.shafts["sun"][:1], *planetary.shafts["planet"]]
     places = [place for shaft in shafts if (place := model.place(shaft)) is not None]
@@ -487,7 +463,7 @@ AGREES = 1e-3  # Relative difference up to which figures of two programs agree.
 SHIFT_AGREES = 0.02  # Difference of profile shifts that allowances for backlash can make.
 
 
-def file_notes(chosen: PlanetaryParts | Pair) -> Iterator[str]:
+def file_notes(chosen: SetParts) -> Iterator[str]:
     """Contradictions within the file: hands of helices."""
     said: set[bool] = set()
     for mesh in chosen.meshes:
@@ -500,37 +476,23 @@ def file_notes(chosen: PlanetaryParts | Pair) -> Iterator[str]:
         yield f"{mesh.gears[0]} and {mesh.gears[1]} should have {hands}: check the helix angles."
 
 
-def geometry_notes(
-    case: Case, chosen: PlanetaryParts | Pair | Train, model: Model
-) -> Iterator[str]:
+def geometry_notes(case: Case, chosen: SetParts | Train, model: Model) -> Iterator[str]:
     """Figures of the file that differ from those of the case's geometry."""
-    for mesh, components, stage in _all_computed(case, chosen):
-        for gear, component in zip((mesh.gear1, mesh.gear2), components, strict=True):
-            reference, base = 2 * gear.reference_radius, 2 * gear.base_radius
-            yield from _compared(
-                component, "reference_diameter_cylindrical_gear", reference, MILLIMETRE
-            )
-            yield from _compared(component, "base_diameter", base, MILLIMETRE)
-        yield from _compared(stage, "radial_contact_ratio", mesh.transverse_contact_ratio)
-        yield from _compared(stage, "overlap_contact_ratio", mesh.overlap_ratio)
-        for data in model.partners(stage.id, "stage_gear_data", "stage", "stage_gear_data"):
-            name = "operating_pressure_angle_in_the_transverse_section"
-            yield from _compared(data, name, mesh.operating_pressure_angle, DEGREE)
-
-
-_Computed = Iterator[tuple[geometry.Mesh, tuple[Component, Component], Component]]
-"""Meshes as they are computed here, each with its gears and its stage in the file."""
-
-
-def _all_computed(case: Case, chosen: PlanetaryParts | Pair | Train) -> _Computed:
-    """Every mesh; of a train those of its sets whose losses are computed."""
     for name, one in (chosen.sets if isinstance(chosen, Train) else {"": chosen}).items():
         gearing, gears = case.gearings.get(name), one.gears
         if gearing is None or gearing.tables.keys() != gears.keys():
-            continue
+            continue  # of a train, a set whose losses are not computed
         for drawn, mesh in zip(gearing.meshes, gearing.geometries, strict=True):
             stage = one.meshes_by_key[drawn.key][0].stage
-            yield mesh, (gears[drawn.first], gears[drawn.second]), stage
+            for gear, member in ((mesh.gear1, drawn.first), (mesh.gear2, drawn.second)):
+                part, d = gears[member], 2 * gear.reference_radius
+                yield from _compared(part, "reference_diameter_cylindrical_gear", d, MILLIMETRE)
+                yield from _compared(part, "base_diameter", 2 * gear.base_radius, MILLIMETRE)
+            yield from _compared(stage, "radial_contact_ratio", mesh.transverse_contact_ratio)
+            yield from _compared(stage, "overlap_contact_ratio", mesh.overlap_ratio)
+            for data in model.partners(stage.id, "stage_gear_data", "stage", "stage_gear_data"):
+                angle = "operating_pressure_angle_in_the_transverse_section"
+                yield from _compared(data, angle, mesh.operating_pressure_angle, DEGREE)
 
 
 def _compared(
@@ -576,30 +538,11 @@ def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> floa
 
 def _signed_teeth(tables: Mapping[str, Any], name: str) -> int:
     """Number of teeth as in ISO 21771: negative for internal gears."""
-    table = tables[name]
-    sign = -1 if name == "ring" or table.get("internal") else 1
-    return sign * int(table["teeth"])
+    return (-1 if _is_internal(tables, name) else 1) * int(tables[name]["teeth"])
 
 
-def shift_notes(
-    tables: Mapping[str, Any], member1: str, member2: str, place: str = ""
-) -> Iterator[str]:
-    """A note if the profile shift of an internal gear seems to count the other way.
-
-    `place` is where `tables` stand in the case.
-    """
-    table = tables.get(member2, {})
-    shift = table.get("profile_shift_coefficient")
-    is_ring = member2 == "ring" or table.get("internal", False)
-    closing = closing_shift(tables, member1, member2) if is_ring else None
-    if closing is None or not isinstance(shift, float) or abs(shift) < SHIFT_AGREES:
-        return
-    if abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing):
-        yield (
-            f"The profile shift {format_number(shift)} of the {member2} fits the centre distance "
-            "only with the other sign. If that is correct, set "
-            f"{place}{member2}.profile_shift_coefficient = {format_number(-shift)}."
-        )
+def _is_internal(tables: Mapping[str, Any], name: str) -> bool:
+    return name == "ring" or bool(tables[name].get("internal"))
 
 
 ROUNDING = 1e-3
@@ -608,61 +551,56 @@ ROUNDING = 1e-3
 _SHIFT = "profile_shift_coefficient"
 
 
-def set_tables(draft: Draft, model: Model, chosen: PlanetaryParts | Pair, place: str = "") -> None:
+def set_tables(draft: Draft, model: Model, chosen: SetParts, place: str = "") -> None:
     """What describes a set or a pair; `place` is where its tables stand in the case."""
-    if isinstance(chosen, Pair):
-        _pair(draft, model, chosen, place)
-    else:
-        _planetary(draft, model, chosen, place)
-
-
-def _planetary(draft: Draft, model: Model, chosen: PlanetaryParts, place: str) -> None:
-    gears = [chosen.sun, *chosen.planets, chosen.ring]
+    gears = [gear for own in chosen.alike.values() for gear in own]
     shared_table(draft, model, gears, [mesh.stage for mesh in chosen.meshes])
-    for key, own in (("sun", [chosen.sun]), ("planet", chosen.planets), ("ring", [chosen.ring])):
+    for key, own in chosen.alike.items():
         gear_table(draft, model, key, own)
         micro_geometry(draft, model, key, own)
-    draft.give("planet.count", len(chosen.planets), f"counted: planets of {chosen.component}")
-    draft.take("planet.mass", "mass_of_component", chosen.planets, None)
+    if chosen.is_pair:
+        gear = chosen.gears["gear"]
+        if is_internal(gear):
+            draft.give("gear.internal", True, f"{gear}")
+        _shifts(draft, place, "pinion", "gear", "gear")
+        return
+    planets = chosen.alike["planet"]
+    draft.give("planet.count", len(planets), f"counted: planets of {chosen.component}")
+    draft.take("planet.mass", "mass_of_component", planets, None)
     _shifts(draft, place, "sun", "planet", "sun")
     _shifts(draft, place, "planet", "ring", "ring")
     planet_angles(draft, model, chosen)
     bearing_table(draft, model, chosen)
     carrier_table(draft, model, chosen)
-    rims = model.partners(chosen.ring.id, "assembly", "assembly", "part", "gear_body")
+    rims = model.partners(chosen.gears["ring"].id, "assembly", "assembly", "part", "gear_body")
     draft.take("ring.rim_thickness", "gear_body_rim_thickness", rims, None)
-
-
-def _pair(draft: Draft, model: Model, chosen: Pair, place: str) -> None:
-    shared_table(draft, model, [chosen.pinion, chosen.gear], [chosen.mesh.stage])
-    for key, own in (("pinion", [chosen.pinion]), ("gear", [chosen.gear])):
-        gear_table(draft, model, key, own)
-        micro_geometry(draft, model, key, own)
-    if is_internal(chosen.gear):
-        draft.give("gear.internal", True, f"{chosen.gear}")
-    _shifts(draft, place, "pinion", "gear", "gear")
 
 
 def _shifts(draft: Draft, place: str, member1: str, member2: str, changed: str) -> None:
     """Look at the profile shifts of a mesh.
 
-    Say which one would close it if one is lacking, and if one seems to have the wrong sign. Shifts
-    of a mesh without backlash may overlap by the last digit that is printed of them; the one of
-    `changed` is then reduced.
+    Say which one would close it if one is lacking, and if that of an internal gear seems to count
+    the other way. Shifts of a mesh without backlash may overlap by the last digit that is printed
+    of them; the one of `changed` is then reduced.
     """
-    draft.notes += shift_notes(draft.tables, member1, member2, place)
     for own, other in ((member2, member1), (member1, member2)):
-        key = f"{own}.profile_shift_coefficient"
+        key = f"{own}.{_SHIFT}"
         closing = closing_shift(draft.tables, other, own)
         if closing is None:
             continue
+        shift = draft.tables[own].get(_SHIFT)
+        if own == member2 and isinstance(shift, float) and _is_internal(draft.tables, own):
+            is_other_sign = abs(shift - closing) > SHIFT_AGREES >= abs(-shift - closing)
+            if is_other_sign and abs(shift) >= SHIFT_AGREES:
+                draft.notes.append(
+                    f"The profile shift {format_number(shift)} of the {own} fits the centre "
+                    "distance only with the other sign. If that is correct, set "
+                    f"{place}{key} = {format_number(-shift)}."
+                )
         shown = math.floor(closing * 1e6) / 1e6 + 0.0
         if key in draft.lacks:
             text = f"With the {other}, {format_number(shown)} leaves no backlash."
             draft.lacks[key] = replace(draft.lacks[key], instead=text)
-            continue
-        shift = draft.tables[own].get(_SHIFT)
-        is_too_much = isinstance(shift, float) and 0 < shift - shown <= ROUNDING
-        if own == changed and is_too_much:
+        elif own == changed and isinstance(shift, float) and 0 < shift - shown <= ROUNDING:
             origin = f"{draft.origins[key]}: {shift}, less the excess of the printed digits"
             draft.give(key, shown, origin)

@@ -11,7 +11,6 @@ from epicyclic.case.case import Case, build_case, changed_tables
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import InputError, Problem, problems_in, raise_any
 from epicyclic.messages import one_line
-from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
     Draft,
     Lack,
@@ -21,9 +20,9 @@ from epicyclic.plugins.rexs.draft import (
     temperature,
 )
 from epicyclic.plugins.rexs.files import read_document
-from epicyclic.plugins.rexs.gears import set_tables
+from epicyclic.plugins.rexs.gears import file_notes, geometry_notes, set_tables
 from epicyclic.plugins.rexs.model import Model, build_model, check_places
-from epicyclic.plugins.rexs.sets import Pair, PlanetaryParts, Train, choose, chosen_train
+from epicyclic.plugins.rexs.sets import SetParts, Train, choose, chosen_train
 from epicyclic.plugins.rexs.train import train_draft
 from epicyclic.show.template import case_text
 
@@ -62,7 +61,7 @@ class RexsImport:
     missing: tuple[Lack, ...]
     notes: tuple[str, ...]
     _model: Model
-    _chosen: PlanetaryParts | Pair | Train
+    _chosen: SetParts | Train
 
     def case(
         self,
@@ -125,7 +124,7 @@ class RexsImport:
 
     def geometry_notes(self, case: Case) -> tuple[str, ...]:
         """Figures of the file, such as base diameters, that differ from those of `case`."""
-        return tuple(checks.geometry_notes(case, self._chosen, self._model))
+        return tuple(geometry_notes(case, self._chosen, self._model))
 
     def _explained(self, problem: Problem) -> Problem:
         """A problem of a key that the file lacks, with what the file should have."""
@@ -184,7 +183,7 @@ def read_rexs(
     )
 
 
-def _draft(model: Model, chosen: PlanetaryParts | Pair | Train) -> Draft:
+def _draft(model: Model, chosen: SetParts | Train) -> Draft:
     draft = train_draft(model, chosen) if isinstance(chosen, Train) else _set_draft(model, chosen)
     if cases := model.known_load_cases:
         draft.notes.append(f"The file has load cases: {cases}. Choose one with --load-case.")
@@ -192,17 +191,15 @@ def _draft(model: Model, chosen: PlanetaryParts | Pair | Train) -> Draft:
     return draft
 
 
-def _set_draft(model: Model, chosen: PlanetaryParts | Pair) -> Draft:
+def _set_draft(model: Model, chosen: SetParts) -> Draft:
     title = chosen.component.name.strip()
-    is_pair = isinstance(chosen, Pair)
-    draft = Draft({"kind": "gear_pair" if is_pair else "planetary", "title": one_line(title)})
-    if isinstance(chosen, Pair):
-        pair_operation(draft, model, chosen)
-    else:
-        planetary_operation(draft, model, chosen)
+    kind = "gear_pair" if chosen.is_pair else "planetary"
+    draft = Draft({"kind": kind, "title": one_line(title)})
+    operation = pair_operation if chosen.is_pair else planetary_operation
+    operation(draft, model, chosen)
     set_tables(draft, model, chosen)
     stages = [mesh.stage for mesh in chosen.meshes]
     temperature(draft, model, stages)
     lubricant_table(draft, model, stages)
-    draft.notes += checks.file_notes(chosen)
+    draft.notes += file_notes(chosen)
     return draft

@@ -30,17 +30,12 @@ class Term:
     id: str  # As in the newest version.
     type: str  # Value type, ``"floating_point"``.
     unit: str  # Name of the unit in REXS; ``"none"`` for pure numbers and text.
-    former: tuple[tuple[str, str], ...]  # Earlier ids, each with the version that brought it.
-    since: str  # The version that brought `id`.
-
-    @property
-    def ids(self) -> tuple[str, ...]:
-        """Every id that the attribute has had, the newest first."""
-        return (self.id, *(name for name, _ in reversed(self.former)))
+    ids: Mapping[str, str]  # All that it has had, the newest first, with the version of each.
 
 
 @cache
-def _file() -> dict[str, Any]:
+def vocabulary() -> dict[str, Any]:
+    """What this package uses of REXS: versions, names of units, ids."""
     text = resources.files(__package__).joinpath("vocabulary.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 
@@ -48,58 +43,47 @@ def _file() -> dict[str, Any]:
 @cache
 def term(name: str) -> Term:
     """The attribute with the newest id `name`; KeyError if it is not in use here."""
-    entry = _file()["attributes"][name]
-    former = tuple((item["id"], item["since"]) for item in entry.get("former", ()))
-    return Term(name, entry["type"], entry.get("unit", "none"), former, entry["since"])
+    entry = vocabulary()["attributes"][name]
+    ids = {name: entry["since"]}
+    ids |= {item["id"]: item["since"] for item in reversed(entry.get("former", ()))}
+    return Term(name, entry["type"], entry.get("unit", "none"), ids)
 
 
 def versions() -> tuple[str, ...]:
     """The versions that can be read, the newest last."""
-    return tuple(_file()["versions"])
+    return tuple(vocabulary()["versions"])
 
 
 def id_in(name: str, version: str) -> str | None:
     """The id of attribute `name` in a version of the standard; None if it was not there yet."""
-    known = term(name)
-    order = versions().index(version)
-    found = None
-    for candidate, since in (*known.former, (known.id, known.since)):
-        if versions().index(since) <= order:
-            found = candidate
-    return found
+    there = versions()[: versions().index(version) + 1]
+    return next((found for found, since in term(name).ids.items() if since in there), None)
 
 
 def types_of(component_type: str) -> tuple[str, ...]:
     """Every name that a type of component has had."""
-    entry = _file()["components"].get(component_type, {})
+    entry = vocabulary()["components"].get(component_type, {})
     return (component_type, *entry.get("former", ()))
 
 
 def unit_of(name: str) -> str | None:
     """The unit of this package for a unit of REXS; None if it is not known."""
-    unit: str | None = _file()["units"].get(name)
+    unit: str | None = vocabulary()["units"].get(name)
     return unit
 
 
 def rexs_unit(unit: str) -> str:
     """The unit of REXS in which a number with a unit of this package is written."""
-    data = _file()
-    if unit in data["written"]:
-        return str(data["written"][unit])
-    names: list[str] = [name for name, here in data["units"].items() if here == unit]
-    return names[-1]
+    data = vocabulary()
+    names: dict[str, str] = {here: name for name, here in data["units"].items()}
+    names |= data["written"]
+    return names[unit]
 
 
 def written(value: float, unit: str, name: str) -> float:
     """A number in a unit of this package, as one in a unit of REXS of that `name`."""
-    here = _file()["units"][name]
+    here = vocabulary()["units"][name]
     return value if unit == here else Quantity("a number", here, here).parse(f"{value!r} {unit}")
-
-
-def oil_kind(text: str) -> str | None:
-    """The kind of oil that a text of a file names; None if it names none."""
-    kind: str | None = _file()["oil_kinds"].get(text)
-    return kind
 
 
 # What a REXS file holds, whichever form it has: components, their attributes and relations.
@@ -107,10 +91,6 @@ def oil_kind(text: str) -> str | None:
 
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _CODES = {"float64": "<f8", "float32": "<f4", "int32": "<i4"}
-
-
-class _KindError(ValueError):
-    """A value of another type than the attribute needs."""
 
 
 def refuse(allowed: str, remedy: str) -> InputError:
@@ -153,9 +133,9 @@ class Attribute:
         """The value as an array of numbers; ValueError with what is wrong if it is none."""
         if isinstance(self.value, Coded):
             return self.value.numbers()
-        if not isinstance(self.value, tuple):
-            raise _KindError("is not an array")
-        return tuple(map(_number, self.value))
+        if isinstance(self.value, tuple):
+            return tuple(map(_number, self.value))
+        raise ValueError("is not an array")
 
     def flags(self) -> tuple[bool, ...]:
         """The value, or those of an array, as true or false; ValueError if it is neither."""
@@ -180,8 +160,9 @@ def _number(value: Any) -> float:
         if _NUMBER.fullmatch(value.strip()) is None:
             raise ValueError("is not a finite number")
         value = float(value)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise _KindError("is not a number")
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not is_number:
+        raise ValueError("is not a number")
     try:
         number = float(value)
     except OverflowError:  # a whole number of hundreds of digits

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from epicyclic.dataclass import dataclass, replace
+from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
-from epicyclic.plugins.rexs.model import Component, Model, refuse, types_of
+from epicyclic.plugins.rexs.model import Component, Model, Relation, refuse, types_of
 
 # Which gear sets a REXS file holds, and the components that each consists of.
 
@@ -37,60 +37,29 @@ class Mesh:
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
-    """Two gears that mesh; the pinion is the smaller one, and the external one of two."""
+class SetParts:
+    """A pair of gears, or a planetary set of one sun, planets that are all alike, and one ring."""
 
-    mesh: Mesh
-    pinion: Component
-    gear: Component
-
-    @property
-    def component(self) -> Component:
-        """The component that stands for the whole."""
-        return self.mesh.stage
+    component: Component  # That stands for the whole: the stage.
+    alike: dict[str, tuple[Component, ...]]  # Gears by their names in a case, with every planet.
+    meshes_by_key: dict[str, tuple[Mesh, ...]]  # By their names in a case, of every planet.
+    # Of a planetary set the shafts of sun, ring, carrier, planet and pin.
+    shafts: dict[str, tuple[Component, ...]] = field(default_factory=dict)
 
     @property
-    def gears(self) -> dict[str, Component]:
-        """The gears by their names in a case."""
-        return {"pinion": self.pinion, "gear": self.gear}
-
-    @property
-    def meshes_by_key(self) -> dict[str, tuple[Mesh, ...]]:
-        """The mesh by its name in a case."""
-        return {"mesh": (self.mesh,)}
-
-    @property
-    def meshes(self) -> tuple[Mesh, ...]:
-        """Every mesh."""
-        return (self.mesh,)
-
-
-@dataclass(frozen=True, slots=True)
-class PlanetaryParts:
-    """One sun, planets that are all alike, one ring."""
-
-    component: Component  # The planetary stage.
-    sun: Component
-    ring: Component
-    planets: tuple[Component, ...]
-    sun_meshes: tuple[Mesh, ...]  # One for each planet.
-    ring_meshes: tuple[Mesh, ...]  # One for each planet.
-    shafts: dict[str, tuple[Component, ...]]  # Shafts of sun, ring, carrier, planet and pin.
+    def is_pair(self) -> bool:
+        """True for two gears; the pinion is the smaller one, and the external one of two."""
+        return "pinion" in self.alike
 
     @property
     def gears(self) -> dict[str, Component]:
         """The gears by their names in a case; of the planets, which are alike, the first."""
-        return {"sun": self.sun, "planet": self.planets[0], "ring": self.ring}
-
-    @property
-    def meshes_by_key(self) -> dict[str, tuple[Mesh, ...]]:
-        """The meshes of every planet by their names in a case."""
-        return {"sun_mesh": self.sun_meshes, "ring_mesh": self.ring_meshes}
+        return {name: own[0] for name, own in self.alike.items()}
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
         """Every mesh."""
-        return (*self.sun_meshes, *self.ring_meshes)
+        return tuple(mesh for own in self.meshes_by_key.values() for mesh in own)
 
 
 def is_internal(gear: Component) -> bool:
@@ -109,7 +78,7 @@ def gear_sets(model: Model) -> list[Component]:
     return [*planetary, *(stage for stage in cylindrical if stage.id not in inside)]
 
 
-def choose(model: Model, component: int | None) -> PlanetaryParts | Pair:
+def choose(model: Model, component: int | None) -> SetParts:
     """The gear set of a component, or the only one.
 
     Raises `InputError` if there is none, if there are several to choose from, or if it is of a
@@ -129,7 +98,7 @@ def choose(model: Model, component: int | None) -> PlanetaryParts | Pair:
     return read_stage(model, chosen)
 
 
-def read_stage(model: Model, stage: Component) -> PlanetaryParts | Pair:
+def read_stage(model: Model, stage: Component) -> SetParts:
     """The gear set of a stage; InputError if it is of a kind that is not covered."""
     return _planetary_set(model, stage) if stage.type == "planetary_stage" else _pair(model, stage)
 
@@ -162,7 +131,7 @@ def _planet_meshes(model: Model, stage: Component) -> list[Mesh]:
     return [mesh for mesh in _meshes(model) if any(gear.id in planets for gear in mesh.gears)]
 
 
-def _planetary_set(model: Model, stage: Component) -> PlanetaryParts:
+def _planetary_set(model: Model, stage: Component) -> SetParts:
     shafts = {
         "planet": model.partners(stage.id, "planet_shaft", "planetary_stage", "shaft"),
         "pin": model.partners(stage.id, "planet_pin", "planetary_stage", "shaft"),
@@ -190,18 +159,20 @@ def _planetary_set(model: Model, stage: Component) -> PlanetaryParts:
     for name, gear in (("sun", sun), ("ring", ring)):
         own = [shaft for shaft in central if gear.id in {g.id for g in gears_on(model, [shaft])}]
         shafts[name] = own or model.partners(gear.id, "assembly", "part", "assembly", "shaft")
-    return PlanetaryParts(
+    return SetParts(
         stage,
-        sun,
-        ring,
-        tuple(planets.values()),
-        tuple(mesh for mesh in meshes if sun.id in (gear.id for gear in mesh.gears)),
-        tuple(mesh for mesh in meshes if ring.id in (gear.id for gear in mesh.gears)),
+        {"sun": (sun,), "planet": tuple(planets.values()), "ring": (ring,)},
+        {
+            f"{name}_mesh": tuple(
+                mesh for mesh in meshes if central.id in (gear.id for gear in mesh.gears)
+            )
+            for name, central in (("sun", sun), ("ring", ring))
+        },
         {name: tuple(found) for name, found in shafts.items()},
     )
 
 
-def _pair(model: Model, stage: Component) -> Pair:
+def _pair(model: Model, stage: Component) -> SetParts:
     meshes = [mesh for mesh in _meshes(model) if mesh.stage.id == stage.id]
     if len(meshes) != 1:
         allowed = f"has {len(meshes)} relations of type stage with two gears."
@@ -211,7 +182,7 @@ def _pair(model: Model, stage: Component) -> Pair:
         return is_internal(gear), abs(gear.number("number_of_teeth"))
 
     pinion, gear = sorted(meshes[0].gears, key=size)
-    return Pair(meshes[0], pinion, gear)
+    return SetParts(stage, {"pinion": (pinion,), "gear": (gear,)}, {"mesh": (meshes[0],)})
 
 
 def rigid_parts(model: Model, start: Iterable[Component]) -> list[Component]:
@@ -241,17 +212,13 @@ def rigid_links(model: Model, *, switched: bool = True) -> Iterator[tuple[int, i
     """Parts that turn as one, two by two; without clutches that are `switched` if that is False."""
     owners = ("shaft", "planet_carrier")
     for relation in model.relations:
-        sides: Sequence[int] = ()
+        joint = _joint(model, relation)
+        if joint is not None and is_rigid(joint.component, switched=switched):
+            yield joint.inner, joint.outer
         if relation.type == "assembly":
             sides = [*relation.partners("assembly"), *relation.partners("part")]
-            if model.components[sides[0]].type not in owners if sides else True:
-                sides = ()
-        elif relation.type == "side" and is_rigid(
-            model, relation.partners("assembly"), switched=switched
-        ):
-            sides = [*relation.partners("inner_part"), *relation.partners("outer_part")]
-        if len(sides) == 2:
-            yield sides[0], sides[1]
+            if len(sides) == 2 and model.components[sides[0]].type in owners:
+                yield sides[0], sides[1]
 
 
 class Joint(NamedTuple):
@@ -264,12 +231,19 @@ class Joint(NamedTuple):
 
 def joints(model: Model) -> Iterator[Joint]:
     """Everything that stands between two parts."""
-    for relation in model.relations:
-        if relation.type == "side":
-            roles = (relation.partners(role) for role in ("assembly", "inner_part", "outer_part"))
-            joint, inner, outer = (next(parts, None) for parts in roles)
-            if joint is not None and inner is not None and outer is not None:
-                yield Joint(model.components[joint], inner, outer)
+    found = (_joint(model, relation) for relation in model.relations)
+    return (joint for joint in found if joint is not None)
+
+
+def _joint(model: Model, relation: Relation) -> Joint | None:
+    """What a relation puts between two parts; None if it is of another type."""
+    if relation.type != "side":
+        return None
+    roles = ("assembly", "inner_part", "outer_part")
+    joint, inner, outer = (next(relation.partners(role), None) for role in roles)
+    if joint is None or inner is None or outer is None:
+        return None
+    return Joint(model.components[joint], inner, outer)
 
 
 def is_switched(joint: Component) -> bool:
@@ -277,32 +251,29 @@ def is_switched(joint: Component) -> bool:
     return joint.type == "switchable_coupling" and joint.get("is_engaged") is not None
 
 
-def is_rigid(model: Model, parts: Iterable[int], *, switched: bool = True) -> bool:
-    """True if the joint of a relation, the first of `parts`, makes its sides turn as one.
+def is_rigid(joint: Component, *, switched: bool = True) -> bool:
+    """True if a joint makes its sides turn as one.
 
     A clutch with several positions does if it is closed in all; none does if `switched` is False.
     """
-    for number in parts:
-        joint = model.components[number]
-        engaged = joint.get("is_engaged")
-        if not switched and is_switched(joint):
-            return False
-        try:
-            return joint.type in _RIGID and (engaged is None or engaged.flag())
-        except ValueError:
-            return False
-    return False
+    engaged = joint.get("is_engaged")
+    if not switched and is_switched(joint):
+        return False
+    try:
+        return joint.type in _RIGID and (engaged is None or engaged.flag())
+    except ValueError:
+        return False
 
 
-def fixed_by(model: Model, parts: Iterable[Component]) -> Component | None:
-    """The joint that holds one of `parts` to the casing; None if none does."""
+def fixed_by(
+    model: Model, parts: Iterable[Component], *, switched: bool = True
+) -> Component | None:
+    """The joint that holds one of `parts` to the casing, as `is_rigid`; None if none does."""
     numbers = {part.id for part in parts}
-    for relation in model.relations:
-        if relation.type == "side" and is_rigid(model, relation.partners("assembly")):
-            sides = [*relation.partners("inner_part"), *relation.partners("outer_part")]
-            to_casing = any(model.components[side].type == "gear_casing" for side in sides)
-            if to_casing and numbers & set(sides):
-                return model.components[next(relation.partners("assembly"))]
+    for joint, *sides in joints(model):
+        to_casing = any(model.components[side].type == "gear_casing" for side in sides)
+        if to_casing and numbers.intersection(sides) and is_rigid(joint, switched=switched):
+            return joint
     return None
 
 
@@ -353,7 +324,7 @@ class Train:
     """The stages of a file and the shafts between them."""
 
     unit: Component  # The gear unit, or the first stage if the file has none.
-    sets: dict[str, PlanetaryParts | Pair]  # By their names in the case, as shafts and bearings.
+    sets: dict[str, SetParts]  # By their names in the case, as shafts and bearings.
     shafts: dict[str, Shaft]
     switches: tuple[Switch, ...]
     bearings: dict[str, Joint]  # All but those of planets.
@@ -401,7 +372,7 @@ def chosen_train(model: Model) -> Train | None:
         raise _too_many(f"{len(stages)} stages", MOST_STAGES)
     order = list(model.components)
     names = Names()
-    sets: dict[str, PlanetaryParts | Pair] = {}
+    sets: dict[str, SetParts] = {}
     problems: list[Problem] = []
     for stage in sorted(stages, key=lambda stage: order.index(stage.id)):
         try:
@@ -448,9 +419,7 @@ class Names:
         return text
 
 
-def _shafts(
-    model: Model, sets: Mapping[str, PlanetaryParts | Pair], names: Names
-) -> dict[str, Shaft]:
+def _shafts(model: Model, sets: Mapping[str, SetParts], names: Names) -> dict[str, Shaft]:
     """The shafts of all sets, in the order of the sets."""
     owned = {
         f"{name}.{member}": parts for name, one in sets.items() for member, parts in _members(one)
@@ -460,11 +429,12 @@ def _shafts(
     for number, (member, parts) in enumerate(owned.items()):
         body = bodies[parts[0].id] if parts else -1 - number
         members.setdefault(body, []).append(member)
-    held = _held(model, bodies)
     found: dict[str, Shaft] = {}
     for body, joined in members.items():
         turning = {part: model.components[part] for part, root in bodies.items() if root == body}
-        shaft = Shaft(joined[0], turning, tuple(joined), held.get(body))
+        loose = (part for part in turning.values() if part.type != "gear_casing")
+        held = fixed_by(model, loose, switched=False)
+        shaft = Shaft(joined[0], turning, tuple(joined), held)
         if shaft.is_listed:
             own = shaft.components
             named = names.of(own[0], "shaft") if own else names.free("shaft", abs(body))
@@ -473,15 +443,10 @@ def _shafts(
     return found
 
 
-def _members(one: PlanetaryParts | Pair) -> Iterator[tuple[str, list[Component]]]:
+def _members(one: SetParts) -> Iterator[tuple[str, list[Component]]]:
     """The members of a set, each with parts that turn with it."""
-    if isinstance(one, Pair):
-        yield "pinion", [one.pinion]
-        yield "gear", [one.gear]
-    else:
-        yield "sun", [one.sun, *one.shafts["sun"]]
-        yield "carrier", list(one.shafts["carrier"])
-        yield "ring", [one.ring, *one.shafts["ring"]]
+    for name in ("pinion", "gear") if one.is_pair else ("sun", "carrier", "ring"):
+        yield name, [*one.alike.get(name, ()), *one.shafts.get(name, ())]
 
 
 def _bodies(model: Model, joined: Iterable[list[Component]]) -> dict[int, int]:
@@ -504,24 +469,12 @@ def _bodies(model: Model, joined: Iterable[list[Component]]) -> dict[int, int]:
     return bodies
 
 
-def _held(model: Model, bodies: Mapping[int, int]) -> dict[int, Component]:
-    """Bodies that something joins to the casing, and what does."""
-    held: dict[int, Component] = {}
-    for joint in joints(model):
-        sides = {side: model.components[side].type for side in (joint.inner, joint.outer)}
-        if "gear_casing" in sides.values() and is_rigid(
-            model, [joint.component.id], switched=False
-        ):
-            for side, kind in sides.items():
-                if kind != "gear_casing" and side in bodies:
-                    held.setdefault(bodies[side], joint.component)
-    return held
-
-
-def _bearings(model: Model, sets: Mapping[str, PlanetaryParts | Pair]) -> Iterator[Joint]:
+def _bearings(model: Model, sets: Mapping[str, SetParts]) -> Iterator[Joint]:
     """The bearings of the file but for those of planets, each once."""
-    planetary = [one for one in sets.values() if isinstance(one, PlanetaryParts)]
-    planets = {part.id for one in planetary for part in (*one.planets, *one.shafts["planet"])}
+    planetary = [one for one in sets.values() if not one.is_pair]
+    planets = {
+        part.id for one in planetary for part in (*one.alike["planet"], *one.shafts["planet"])
+    }
     seen: set[int] = set()
     for joint in joints(model):
         number = joint.component.id

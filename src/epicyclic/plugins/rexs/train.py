@@ -11,7 +11,6 @@ import numpy as np
 from epicyclic.arrays import FloatArray
 from epicyclic.gears.gear import HOUSING
 from epicyclic.messages import one_line
-from epicyclic.plugins.rexs import gears as checks
 from epicyclic.plugins.rexs.draft import (
     Amount,
     Draft,
@@ -23,7 +22,7 @@ from epicyclic.plugins.rexs.draft import (
     stated_load,
     temperature,
 )
-from epicyclic.plugins.rexs.gears import set_tables
+from epicyclic.plugins.rexs.gears import file_notes, set_tables
 from epicyclic.plugins.rexs.model import (
     IN_MILLIMETRES,
     ROUNDED,
@@ -32,19 +31,18 @@ from epicyclic.plugins.rexs.model import (
     Model,
     vector,
 )
-from epicyclic.plugins.rexs.sets import Joint, Pair, PlanetaryParts, Shaft, Train
+from epicyclic.plugins.rexs.sets import Joint, SetParts, Shaft, Train
 
 # Where gears stand along the shafts of a train, and the rolling bearings of the shafts.
 
 
-_TYPES = {
+BEARING_TYPES = {
     "radial_grooved_ball_bearing": "deep-groove",
     "radial_roller_bearing": "cylindrical",
     "radial_needle_roller_bearing": "needle",
     "radial_tapered_roller_bearing": "tapered",
 }
-_SENSES = {"both_directions": "both", "positive": "positive", "negative": "negative"}
-_OPPOSITE = {"both": "both", "positive": "negative", "negative": "positive"}
+_OPPOSITE = {"positive": "negative", "negative": "positive"}
 _ABOUT_FORCE = "Needed for the forces on the bearings; or give their radial_force."
 _SUPPORTS = 2  # Bearings of a shaft whose forces statics gives.
 
@@ -54,7 +52,7 @@ def shaft_parts(draft: Draft, model: Model, train: Train) -> None:
     places = _Places(draft, model, train)
     borne = _bearings(draft, model, train, places)
     for name, one in train.sets.items():
-        if isinstance(one, Pair):
+        if one.is_pair:
             _pair(draft, train, places, (name, one), borne)
 
 
@@ -120,21 +118,12 @@ class _Places:
         """Position from the start of the shaft, of the middle of a part. [mm]"""
         is_gear = part.get("number_of_teeth") is not None
         name = "u_coordinate_on_shaft" if is_gear else "u_coordinate_on_shaft_inner_side"
-        try:
-            found = part.amount(name)
-            width = part.amount("face_width")
-        except ValueError:
+        place, width = _millimetres(part, name), _millimetres(part, "face_width")
+        if not is_gear or self.model.version != "1.0":
+            return None if place is None else (place, f"{name} of {part}")
+        if place is None or width is None:
             return None
-        scale = IN_MILLIMETRES.get("" if found is None else found[1])
-        if found is None or scale is None:
-            return None
-        if is_gear and self.model.version == "1.0":
-            whole = None if width is None else IN_MILLIMETRES.get(width[1])
-            if width is None or whole is None:
-                return None
-            place = scale * found[0] + whole * width[0] / 2
-            return place, f"{name} of {part} plus half its face width"
-        return scale * found[0], f"{name} of {part}"
+        return place + width / 2, f"{name} of {part} plus half its face width"
 
     def direction(self, first: Iterable[Component], second: Iterable[Component]) -> float | None:
         """Angle from the axis of the first to that of the second, about the axis. [deg]"""
@@ -150,34 +139,42 @@ class _Places:
         return next((point for part in parts if (point := self._point(part)) is not None), None)
 
 
+def _millimetres(part: Component, name: str) -> float | None:
+    """A length of a part; None if it has none that can be read."""
+    try:
+        found = part.amount(name)
+        return None if found is None else found[0] * IN_MILLIMETRES[found[1]]
+    except (KeyError, ValueError):
+        return None
+
+
 def _amount(number: float, origin: str) -> Amount:
     return Amount(round(number, 6), "mm", origin)
 
 
 def _pair(
-    draft: Draft, train: Train, places: _Places, named: tuple[str, Pair], borne: set[str]
+    draft: Draft, train: Train, places: _Places, named: tuple[str, SetParts], borne: set[str]
 ) -> None:
     """Positions of the gears of a pair, and where the gear lies from the pinion."""
     name, pair = named
-    for member, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
-        shaft = train.shaft_of(gear.id)
+    ends: list[list[Component]] = []
+    is_borne = False
+    for member, gear in pair.gears.items():
+        shaft = next(it for it in train.shafts.values() if f"{name}.{member}" in it.members)
         key = f'positions."{name}.{member}"'
-        place = places.along(shaft, gear) if shaft is not None else None
+        place = places.along(shaft, gear)
         if place is not None:
             draft.give(key, place.text, place.origin)
-        elif shaft is not None and shaft.name in borne:
+        elif shaft.name in borne:
             draft.need(key, "support_vector or u_coordinate_on_shaft", [gear], _ABOUT_FORCE)
-    shafts = [train.shaft_of(gear.id) for gear in (pair.pinion, pair.gear)]
-    ends = [
-        [*(shaft.components if shaft is not None else ()), gear]
-        for shaft, gear in zip(shafts, (pair.pinion, pair.gear), strict=True)
-    ]
+        ends.append([*shaft.components, gear])
+        is_borne |= shaft.name in borne
     angle = places.direction(*ends)
     key = f"sets.{name}.direction"
     if angle is not None:
         origin = f"computed from support_vector of {ends[0][0]} and {ends[1][0]}"
         draft.give(key, f"{angle:z.6f} deg", origin)
-    elif any(shaft is not None and shaft.name in borne for shaft in shafts):
+    elif is_borne:
         draft.lack(key, "support_vector", [end[0] for end in ends], "Default: 0 deg.")
 
 
@@ -266,7 +263,7 @@ def _bearing(
 
 def _type(draft: Draft, key: str, bearing: Component) -> str | None:
     stated = bearing.get("bearing_type")
-    kind = None if stated is None else _TYPES.get(stated.text())
+    kind = None if stated is None else BEARING_TYPES.get(stated.text())
     if stated is not None and kind is not None:
         draft.give(f"{key}.type", kind, f"bearing_type {stated.text()} of {bearing}")
     else:
@@ -281,7 +278,7 @@ def _locating(draft: Draft, key: str, bearing: Component, sense: float) -> None:
     name = "axial_force_absorption"
     stated = bearing.get(name)
     text = "" if stated is None else stated.text()
-    if stated is None or (text not in _SENSES and text != "no_direction"):
+    if stated is None or text not in ("no_direction", "both_directions", *_OPPOSITE):
         instead = (
             "Default: it takes no axial force, unless it is the first on a shaft without "
             "locating bearing."
@@ -289,10 +286,9 @@ def _locating(draft: Draft, key: str, bearing: Component, sense: float) -> None:
         draft.lack(f"{key}.locating", name, [bearing], instead)
         return
     origin = f"{name} {text} of {bearing}"
-    draft.give(f"{key}.locating", text in _SENSES, origin)
-    if text in ("positive", "negative"):
-        held = _SENSES[text] if sense >= 0 else _OPPOSITE[text]
-        draft.give(f"{key}.axial_sense", held, origin)
+    draft.give(f"{key}.locating", text != "no_direction", origin)
+    if text in _OPPOSITE:
+        draft.give(f"{key}.axial_sense", text if sense >= 0 else _OPPOSITE[text], origin)
 
 
 def _supports(draft: Draft, train: Train, shaft: Shaft, names: Sequence[str]) -> None:
@@ -301,7 +297,7 @@ def _supports(draft: Draft, train: Train, shaft: Shaft, names: Sequence[str]) ->
     A single one is enough for gears that planets stand around.
     """
     owners = [train.sets[member.partition(".")[0]] for member in shaft.members]
-    is_pushed = any(isinstance(one, Pair) for one in owners)
+    is_pushed = any(one.is_pair for one in owners)
     tables = draft.tables["bearings"]
 
     def place(name: str) -> float:
@@ -528,7 +524,7 @@ def train_draft(model: Model, train: Train) -> Draft:
         own = Draft({})
         set_tables(own, model, one, f"sets.{name}.")
         _hand(own, one)
-        own.notes += checks.file_notes(one)
+        own.notes += file_notes(one)
         draft.adopt(own, name)
     shaft_parts(draft, model, train)
     stages = [mesh.stage for mesh in train.meshes]
@@ -538,9 +534,9 @@ def train_draft(model: Model, train: Train) -> Draft:
     return draft
 
 
-def _hand(draft: Draft, one: PlanetaryParts | Pair) -> None:
+def _hand(draft: Draft, one: SetParts) -> None:
     """Hand of the helix of the sun or pinion: positive angles are right-handed, ISO 21771."""
-    gear = one.pinion if isinstance(one, Pair) else one.sun
+    gear = next(iter(one.gears.values()))
     helix = draft.read(_HELIX, [gear])
     if helix is not None and helix.number != 0:
         draft.give("hand", "right" if helix.number > 0 else "left", f"sign of {helix.origin}")
@@ -562,10 +558,12 @@ def _notes(model: Model, train: Train) -> Iterator[str]:
     for kind in _OTHER_STAGES:
         for stage in model.of_type(kind)[:4]:
             yield f"{stage} is left out: cylindrical and planetary stages can be read."
-    sets = train.sets.values()
-    gears = [gear for one in sets for gear in ((one.pinion, one.gear) if isinstance(one, Pair)
-             else (one.sun, one.ring))]  # fmt: skip
-    counts = Counter(gear.id for gear in gears)
+    counts = Counter(
+        gear.id
+        for one in train.sets.values()
+        for name, gear in one.gears.items()
+        if name != "planet"
+    )
     for number, count in counts.items():
         if count > 1:
             yield f"{model.components[number]} appears in {count} sets, with its drag in each."

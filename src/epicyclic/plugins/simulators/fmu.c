@@ -8,6 +8,11 @@
 #include "fmi2Functions.h"
 #include "map_data.h"
 
+/* FMI gives many functions more than they need here. */
+#if defined(__GNUC__) || defined(__clang__)
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+
 enum { SPEED, TORQUE }; /* temperature and state follow, where the map has them */
 enum { TORQUE_LOSS = AXES, POWER_LOSS, EFFICIENCY, FIRST_COMPONENT };
 enum { OWN_TEMPERATURE = FIRST_COMPONENT + COMPONENTS, REALS = OWN_TEMPERATURE + HEATED };
@@ -23,9 +28,6 @@ typedef struct {
 
 #ifdef _WIN32
 int DllMainCRTStartup(void *module, unsigned long reason, void *reserved) {
-    (void)module;
-    (void)reason;
-    (void)reserved;
     return 1;
 }
 #endif
@@ -176,10 +178,6 @@ const char *fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
                                const fmi2String categories[]) {
-    (void)c;
-    (void)on;
-    (void)count;
-    (void)categories;
     return fmi2OK;
 }
 
@@ -197,10 +195,6 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                               const fmi2CallbackFunctions *callbacks, fmi2Boolean visible,
                               fmi2Boolean logging) {
     Instance *it;
-    (void)type;
-    (void)resources;
-    (void)visible;
-    (void)logging;
     if (!callbacks || !callbacks->allocateMemory || !callbacks->freeMemory) {
         return NULL;
     }
@@ -228,12 +222,6 @@ void fmi2FreeInstance(fmi2Component c) {
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
                                fmi2Real begin, fmi2Boolean has_end, fmi2Real end) {
-    (void)c;
-    (void)has_tolerance;
-    (void)tolerance;
-    (void)begin;
-    (void)has_end;
-    (void)end;
     return fmi2OK;
 }
 
@@ -286,8 +274,6 @@ fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference refs[], size
 /* Functions for variables and abilities that this FMU does not have: nothing to do, or an error. */
 #define NONE(name, type)                                                                           \
     fmi2Status name(fmi2Component c, const fmi2ValueReference refs[], size_t count, type) {        \
-        (void)refs;                                                                                \
-        (void)values;                                                                              \
         return count ? fail(c, #name ": there are no such variables.") : fmi2OK;                   \
     }
 
@@ -299,10 +285,6 @@ NONE(fmi2SetString, const fmi2String values[])
 
 #define UNABLE(name, ...)                                                                          \
     fmi2Status name(fmi2Component c, __VA_ARGS__) { return fail(c, #name ": cannot be done."); }
-
-#if defined(__GNUC__) || defined(__clang__)
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#endif
 
 UNABLE(fmi2GetFMUstate, fmi2FMUstate *state)
 UNABLE(fmi2SetFMUstate, fmi2FMUstate state)

@@ -45,25 +45,17 @@ _TARGETS = {
 _OPTIONS = ("-shared", "-std=c99", "-O2", "-s", "-nostdlib", "-fno-sanitize=all", "-Wall")
 _HEADERS = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 _MODEL = "loss_map"
-_ABOUT = {
-    "speed": "speed of the {shaft}",
-    "torque": "torque on the {shaft}; coasting if against the speed",
-    "temperature": "oil inlet temperature",
-    STATE: "number of the state",
-    "torque_loss": "power loss over the magnitude of the speed of the {shaft}",
-    "power_loss": "loss of the whole gear set",
-    "efficiency": "output power over input power; 0 without output power",
+_VARIABLES = {
+    "speed": ("rad/s", "rpm", "speed of the {shaft}"),
+    "torque": ("N.m", None, "torque on the {shaft}; coasting if against the speed"),
+    "temperature": ("K", "degC", "oil inlet temperature"),
+    SURROUNDINGS: ("K", "degC", "temperature of the heat sink"),
+    STATE: ("1", None, "number of the state"),
+    "torque_loss": ("N.m", None, "power loss over the magnitude of the speed of the {shaft}"),
+    "power_loss": ("W", None, "loss of the whole gear set"),
+    "efficiency": ("1", None, "output power over input power; 0 without output power"),
 }
-_UNITS = {
-    "speed": ("rad/s", "rpm"),
-    "torque": ("N.m", None),
-    "temperature": ("K", "degC"),
-    STATE: ("1", None),
-    SURROUNDINGS: ("K", "degC"),
-    "torque_loss": ("N.m", None),
-    "power_loss": ("W", None),
-    "efficiency": ("1", None),
-}
+"""Unit, unit to be shown, and what it is, of all but the losses of components."""
 _INSIDE = "inside_map"
 
 
@@ -143,7 +135,7 @@ def _map_data(lookup: Lookup, guid: str, lumped: Mapping[str, float]) -> Iterato
     yield f"static const double *const axis_values[] = {{{names}}};"
     yield f"static const int axis_sizes[] = {{{', '.join(str(axis.size) for axis in axes)}}};"
     yield f"static const double slack[] = {{{_numbers([slack(axis) for axis in axes])}}};"
-    yield f"static const double start[] = {{{_numbers(_start(lookup.names, axes, lumped))}}};"
+    yield f"static const double start[] = {{{_numbers(_start(lookup, lumped))}}};"
     yield "static const double torque_losses[][NODES] = {"
     for torques in lookup.torques:
         yield f"    {{{_numbers(torques.ravel())}}},"
@@ -165,20 +157,18 @@ def _si_axes(lookup: Lookup) -> list[Any]:
     return list(axes.values())
 
 
-def _start(names: Sequence[str], axes: Sequence[Any], lumped: Mapping[str, float]) -> list[float]:
+def _start(lookup: Lookup, lumped: Mapping[str, float]) -> list[float]:
     """Rest without torque, or what of the map is next to it; lowest temperature, first state.
 
     A temperature that follows from the losses starts as that of the surroundings.
     """
-    if lumped:
-        axes = [
-            np.array([lumped[SURROUNDINGS]]) if name == "temperature" else axis
-            for name, axis in zip(names, axes, strict=True)
-        ]
-    return [
+    start = [
         float(np.clip(0, axis[0], axis[-1])) if name in PLANE else float(axis[0])
-        for name, axis in zip(names, axes, strict=True)
+        for name, axis in zip(lookup.names, _si_axes(lookup), strict=True)
     ]
+    if lumped:
+        start[lookup.names.index("temperature")] = lumped[SURROUNDINGS]
+    return start
 
 
 def _compile(folder: Path) -> None:
@@ -251,23 +241,21 @@ def _variables(data: xr.Dataset, lookup: Lookup) -> list[Any]:
     from fmpy.model_description import ModelVariable
 
     axes, lumped = _si_axes(lookup), _lumped(data)
+    inputs = [SURROUNDINGS if lumped and it == "temperature" else it for it in lookup.names]
+    shaft = one_line(data.attrs["reference_shaft"])
     about = {
-        SURROUNDINGS if lumped and name == "temperature" else name: text.format(
-            shaft=one_line(data.attrs["reference_shaft"])
-        )
-        for name, text in _ABOUT.items()
-        if name in lookup.names or name not in ("temperature", STATE)
+        name: _VARIABLES[name][-1].format(shaft=shaft)
+        for name in (*inputs, "torque_loss", "power_loss", "efficiency")
     }
     if lookup.states:
         about[STATE] += f": {_states_text(data)}"
     about |= {name: f"loss: {name.replace('_', ' ')}" for name in lookup.components}
     if lumped:
-        about[SURROUNDINGS] = "temperature of the heat sink"
         about["temperature"] = "temperature of the gearbox, computed from its losses"
-    start = _start(lookup.names, axes, lumped)
+    start = _start(lookup, lumped)
     variables = []
     for number, (name, text) in enumerate(about.items()):
-        unit, shown = _UNITS.get(name, _UNITS["power_loss"])
+        unit, shown, _ = _VARIABLES.get(name, _VARIABLES["power_loss"])
         variable = ModelVariable(
             name=name,
             valueReference=number,
@@ -331,7 +319,7 @@ def _write_documentation(folder: Path, data: xr.Dataset) -> None:
     folder.mkdir()
     rows = "".join(
         f"<dt>{html.escape(key)}</dt><dd>{html.escape(text)}</dd>\n"
-        for key, text in stated(data, tuple(_UNITS)).items()
+        for key, text in stated(data, tuple(_VARIABLES)).items()
     )
     page = f'<!DOCTYPE html>\n<meta charset="utf-8">\n<title>Loss map</title>\n<dl>\n{rows}</dl>\n'
     (folder / "index.html").write_text(page, encoding="utf-8")

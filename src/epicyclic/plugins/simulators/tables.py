@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -147,10 +146,9 @@ def write_gem(data: xr.Dataset, path: Path) -> None:
     """Power loss in kW over input speed and torque, with the digits of 40 CFR 1037.565(g)."""
     with path.open("w", encoding="utf-8", newline="") as file:
         file.writelines(f"# {name}: {text}\n" for name, text in stated(data).items())
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(["Input Speed [r/min]", "Input Torque [N*m]", "Power Loss [kW]"])
+        file.write("Input Speed [r/min],Input Torque [N*m],Power Loss [kW]\n")
         for speed, torque, watts in _points(data, "total"):
-            table.writerow([f"{speed:.1f}", f"{torque:.2f}", f"{watts / 1000:.4f}"])
+            file.write(f"{speed:.1f},{torque:.2f},{watts / 1000:.4f}\n")
 
 
 # --- Modelica -------------------------------------------------------------------------------------
