@@ -186,6 +186,16 @@ def test_missing_quotes_are_mended_and_told(write, line, remedy):
     assert problem.remedy == remedy
 
 
+def test_missing_quotes_in_an_array_of_tables_are_mended_and_told(write):
+    array = "[[lubricant.oil.density]]\ntemperature = '40 degC'\nvalue = 871 kg/m^3\n"
+    text = TALBOT.replace('oil = "atf-talbot-2012"', "", 1) + "\n" + array
+    found = problems_of(read_case, write(text))
+    (problem,) = (it for it in found if "is not TOML" in it.allowed)
+    assert problem.key == "lubricant.oil.density[0].value"
+    assert problem.remedy == 'Put the value in quotes: value = "871 kg/m^3".'
+    assert not any("\ue000" in str(it) for it in found)
+
+
 @pytest.mark.parametrize(
     ("line", "remedy"),
     [

@@ -64,7 +64,7 @@ def test_a_worker_that_cannot_go_on_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr(ProcessPoolExecutor, "submit", once)
     (tmp_path / "another").touch()
     with pytest.raises(OSError, match="cannot allocate memory"):
-        Runner(jobs=2).run(meeting(tmp_path, pause=0.2))
+        Runner(jobs=2).run(meeting(tmp_path, pause=1.0))
 
 
 def test_a_process_without_children_goes_on_alone(tmp_path, monkeypatch):

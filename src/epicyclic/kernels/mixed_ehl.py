@@ -174,7 +174,7 @@ def rolling_loss_number(
 ) -> float:
     """Dimensionless rolling loss of Talbot (2012) Eq. 5.10, branches blended. Theory (R3). [1]
 
-    Without the prefactor printed in the source, 1e5 W/m: `oilmodel.regressions.rolling_scale`.
+    Without the prefactor printed in the source, 1e5 W/m: `fitted_models.rolling_scale`.
     """
     groups = (s, u, g, p, r, s_co, s_eq, lam)
     film = blend_weight(lam, ROLLING_LIMIT)

@@ -261,11 +261,16 @@ def _take_marks(
     return tables, [_problem(line, keys.get(line.number, "")) for line in bad_lines]
 
 
-def _marked(tables: Any, path: tuple[str, ...]) -> Iterator[tuple[int, tuple[str, ...]]]:
+def _marked(
+    tables: Any, path: tuple[str | int, ...]
+) -> Iterator[tuple[int, tuple[str | int, ...]]]:
     """Line number and path of each mended value."""
     if isinstance(tables, dict):
         for key, value in tables.items():
             yield from _marked(value, (*path, key))
+    elif isinstance(tables, tuple):
+        for number, value in enumerate(tables):
+            yield from _marked(value, (*path, number))
     elif isinstance(tables, str) and tables.startswith(_MARK):
         yield int(tables.split(_MARK)[1]), path
 

@@ -543,10 +543,7 @@ class CompareView(View):
         if self._body.is_deleted or now.case is None:
             return
         if other is None or other.case is None:
-            told = _TOLD if other is None else "The other case has problems."
-            self._body.clear()
-            with self._body:
-                ui.label(told).classes("soft")
+            self._say(_TOLD if other is None else "The other case has problems.", "soft")
             return
         study, cases = Study(now.case), (other.case, now.case)
         try:
@@ -554,9 +551,7 @@ class CompareView(View):
             drawings = await self._do(tasks.beside, *cases, _NAMES, IN_PAGE)
         except EpicyclicError as error:
             if not self._body.is_deleted:
-                self._body.clear()
-                with self._body:
-                    ui.label(str(error)).classes("problem")
+                self._say(str(error), "problem")
             return
         if self._body.is_deleted or other is not self._other:
             return
@@ -567,6 +562,13 @@ class CompareView(View):
         assert sheet is not None
         self._place.show(drawings, study)
         self.age()
+
+    def _say(self, text: str, style: str) -> None:
+        """Words in place of both cases."""
+        self._sheet = None
+        self._body.clear()
+        with self._body:
+            ui.label(text).classes(style)
 
     def _build(self, study: Study, tables: list[Table], other: Desk) -> None:
         """Places for both cases."""

@@ -594,8 +594,9 @@ class CampaignFolder:
         wrong = [name for name in numbers if numbers[name].dtype.kind not in "fiu"]
         wrong += [
             name
-            for name in set(numbers) - set(wrong)
-            if np.isinf(numbers[name]).any() or (name in known and numbers[name].isna().any())
+            for name in numbers
+            if name not in wrong
+            and (np.isinf(numbers[name]).any() or (name in known and numbers[name].isna().any()))
         ]
         if wrong:
             raise _folder_error(self.table, f"must hold finite numbers in {', '.join(wrong)}.")

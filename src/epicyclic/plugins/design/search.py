@@ -393,7 +393,7 @@ def _judge(found: Found, batch: list[int], rows: Rows) -> None:
     for place, number in enumerate(batch):
         if rows.status[place] != "converged":
             text = rows.message[place]
-            found.table.loc[number, "fate"] = text.splitlines()[0][:100] or "no solution"
+            found.table.loc[number, "fate"] = [*text.splitlines(), "no solution"][0][:100]
             continue
         fate = "feasible"
         for name in ("loss", "transmission_error", *SAFETIES):
