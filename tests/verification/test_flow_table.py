@@ -25,7 +25,7 @@ from epicyclic.machine.pocket_flow import flow_family, flow_request
 from epicyclic.oil.oil import MixtureState
 from epicyclic.study.solve import pocket_flow_numbers
 from epicyclic.study.sweeps import run as sweeps
-from epicyclic.study.sweeps.run import make_plan
+from epicyclic.study.sweeps.run import flows_asked, make_plan
 
 COARSE = {
     "numerics.pocket_slices": 4,
@@ -166,7 +166,7 @@ def test_what_points_change_of_the_pockets(key, value, matters):
     changed = pocket_flow_numbers(case.updated({key: value})) != pocket_flow_numbers(case)
     plan = make_plan(case, {key: [value]})
     assert changed is matters
-    assert list(sweeps._changes(plan, [0])) == [{key: value} if matters else {}]
+    assert [*flows_asked(plan, [0]).values()] == [{key: value} if matters else {}]
 
 
 def test_a_wider_gear_keeps_pockets_of_the_same_common_face_and_sections_of_all():
