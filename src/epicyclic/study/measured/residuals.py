@@ -111,8 +111,8 @@ class Computed:
     """Computed losses."""
 
     loss: FloatArray  # Computed loss where one was measured; NaN where the point failed. [W]
-    messages: tuple[str, ...]  # Why a point failed, and what to know about it.
-    warnings: tuple[str, ...]  # Why a point failed, and what to know about it.
+    messages: tuple[str, ...]  # Why a point failed.
+    warnings: tuple[str, ...]  # What to know about it.
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,7 +252,8 @@ class Residuals:
         behind = np.where(both, -STEP, 0.0)
         steps = np.concatenate([np.diag(ahead), np.diag(behind)])
         moved = np.array(self.at([scaled + step for step in steps]))
-        table = (moved[: scaled.size] - moved[scaled.size :]) / (ahead - behind)[:, None]
+        span = (ahead - behind)[:, None]
+        table: FloatArray = (moved[: scaled.size] - moved[scaled.size :]) / span
         if not np.isfinite(table).all():
             raise ConvergenceError(
                 f"near {self.settings(scaled)} points cannot be computed; fit fewer keys, or "

@@ -399,8 +399,9 @@ class _Stated:
         if STATE not in self.columns:
             return self.conditions["speed"] * _ratio(self.case)
         states = self.columns[STATE].cells
-        ratios = {name: _ratio(self.case, name) for name in dict.fromkeys(states)}
-        return self.conditions["speed"] * np.array([ratios[name] for name in states])
+        known = {name: _ratio(self.case, name) for name in dict.fromkeys(states)}
+        ratios: FloatArray = np.array([known[name] for name in states])
+        return self.conditions["speed"] * ratios
 
 
 def _ratio(case: Case, state: str = "") -> float:
@@ -499,14 +500,18 @@ def _check_repeats(grid: Grid, problems: _Problems) -> None:
         problems.found.append(Problem("rows", first_of(repeats), "appear twice.", remedy))
 
 
+def beside_point(changes: Mapping[str, Any]) -> dict[str, Any]:
+    """What a row sets of the case, apart from its operating point."""
+    return {key: value for key, value in changes.items() if key not in AXES.values()}
+
+
 def _refused(
     case: Case, changes: tuple[Mapping[str, Any], ...], lines: tuple[int, ...]
 ) -> list[Problem]:
     """What the case refuses of the keys that rows set, apart from its operating point."""
     first: dict[str, int] = {}
     for row, change in enumerate(changes):
-        keys = {key: value for key, value in change.items() if key not in AXES.values()}
-        first.setdefault(repr(keys), row)
+        first.setdefault(repr(beside_point(change)), row)
     problems = []
     for row in first.values():
         try:
