@@ -505,13 +505,13 @@ def nearby_at(
     )
     rows = runner.run(plan)
     losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, len(rows)).T
-    powers = np.array([rows.numbers(INPUT_POWER), rows.numbers(SHAFT_POWER)]).T.tolist()
-    found, first = [], 0
-    for own, those in zip(values, changes, strict=True):
-        part = slice(first + 1, first + len(those))
-        found.append(nearby_of(own, outputs, losses[first], powers[first], losses[part]))
-        first += len(those)
-    return tuple(found)
+    powers = np.array([rows.numbers(INPUT_POWER), rows.numbers(SHAFT_POWER)]).T
+    last = np.cumsum([len(own) for own in changes])[:-1]
+    parts = zip(values, np.split(losses, last), np.split(powers, last), strict=True)
+    return tuple(
+        nearby_of(own, outputs, lost[0], tuple(power[0].tolist()), lost[1:])
+        for own, lost, power in parts
+    )
 
 
 def values_at(

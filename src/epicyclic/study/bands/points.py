@@ -138,14 +138,14 @@ class MapStudy(Study):
 
     def _with_torque_loss(self, results: FloatArray) -> FloatArray:
         """Results of all points, shape (p, s, m), and the torque loss; at rest without power."""
-        (speeds,) = (axis for axis in self.grid.axes if axis.key == AXES["speed"])
-        place = self.grid.axes.index(speeds)
-        rpm = np.array(speeds.coordinate, float)
-        to_rpm, _ = RPM.scale_and_offset()
+        place = [axis.key for axis in self.grid.axes].index(AXES["speed"])
         number = np.unravel_index(np.arange(self.grid.size), self.grid.shape)[place]
-        own = np.abs(rpm[number])[:, None, None] / to_rpm
+        rpm = np.array(self.grid.axes[place].coordinate, float)[number]
+        to_rpm, _ = RPM.scale_and_offset()
+        own = np.abs(rpm)[:, None, None] / to_rpm
         with np.errstate(divide="ignore", invalid="ignore"):
             torque_loss = np.where(own > 0, results[:, -2:-1] / own, np.nan)
+        # the plan creeps where the map is at rest
         resting = self.data["speed"].values[number] == 0
         results[resting, :-1] *= 0.0  # all but the efficiency; failed samples stay so
         return np.concatenate([results, torque_loss], axis=1)

@@ -61,7 +61,7 @@ LABELS = {
     "shortest_low": "low end of the shortest 95 % interval",
     "shortest_high": "high end of the shortest 95 % interval",
 }
-"""Units of the fields of `Summary`."""
+"""What the fields of `Summary` are called."""
 assert [one.name for one in fields(Summary)] == list(LABELS)
 
 
@@ -317,15 +317,13 @@ def quick_band(nearby: Nearby) -> Band:
     rng = np.random.default_rng(SEED)
     drawn = _correlated(values, np.array([_drawn(value, rng) for value in values]))
     shifts = np.array([_parabola(nearby, number, row) for number, row in enumerate(drawn)])
-    factors = factors_of(values, np.array([
-        value.spread[0] ** row if value.is_model_form else row
-        for value, row in zip(values, drawn, strict=True)
-    ]))  # fmt: skip
+    points = np.array([at_deviations(value, row) for value, row in zip(values, drawn, strict=True)])
+    factors = factors_of(values, points)
     losses = np.maximum(nearby.losses[:, None] + shifts.sum(axis=0), 0.0)
     shaft = nearby.powers.shaft
-    for value, row in zip(values, drawn, strict=True):
+    for value, row in zip(values, points, strict=True):
         if value.key in OF_SHAFT_POWER and value.value:
-            shaft = shaft * at_deviations(value, row) / value.value
+            shaft = shaft * row / value.value
     results = outputs.of(losses, nearby.powers, factors, shaft)
     return Band(nearby, results, _parts(nearby, shifts, factors))
 

@@ -18,6 +18,7 @@ from epicyclic.dataclass import asdict, dataclass, field, replace
 from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.messages import did_you_mean
 from epicyclic.study.bands.inputs import factors_of_kind
+from epicyclic.study.bands.plan import without_table
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.measured.comparison import (
     AS_GIVEN,
@@ -74,8 +75,7 @@ class Question:
     def points(self, runner: Runner = HERE) -> MeasuredPoints:
         """The case at the measured points."""
         # what is uncertain changes no loss, and takes time to be checked at every point
-        plain = self.case.updated({"uncertainty": None}) if self.case.uncertainty else self.case
-        return MeasuredPoints(plain, self.table, runner, self.load_dependent)
+        return MeasuredPoints(without_table(self.case), self.table, runner, self.load_dependent)
 
     def answer(
         self,

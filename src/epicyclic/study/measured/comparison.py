@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from pydantic_core import to_jsonable_python
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.result import NOT_INCLUDED
@@ -309,7 +310,7 @@ class MeasuredComparison:
             "case": self.case.inputs(),
             "versions": versions(),
         }
-        clean: dict[str, Any] = _without_nan(content)
+        clean: dict[str, Any] = to_jsonable_python(content, inf_nan_mode="null")
         return clean
 
     def to_json(self) -> str:
@@ -368,13 +369,3 @@ def _fit_dict(fit: Fit) -> dict[str, Any]:
         "evaluations": fit.evaluations,
         "warnings": list(fit.warnings),
     }
-
-
-def _without_nan(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_without_nan(item) for item in value]
-    if isinstance(value, float):
-        return None if not math.isfinite(value) else value
-    return value

@@ -111,8 +111,8 @@ class Computed:
     """Computed losses."""
 
     loss: FloatArray  # Computed loss where one was measured; NaN where the point failed. [W]
-    messages: tuple[str, ...]  # Why a point failed, and what to know about it.
-    warnings: tuple[str, ...]  # Why a point failed, and what to know about it.
+    messages: tuple[str, ...]  # Why a point failed.
+    warnings: tuple[str, ...]  # What to know about it.
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +213,7 @@ class Residuals:
         if self.scatter is not None:
             return self.scatter if self.known else None
         whole = self.points.measured.uncertainty
-        return None if whole is None or not self.known else whole[self.used]
+        return None if whole is None else whole[self.used]
 
     @property
     def weight(self) -> FloatArray | float:
@@ -246,24 +246,14 @@ class Residuals:
 
         By differences to one side, or to both, `central`, where bounds leave room for them.
         """
-        ahead = [
-            -STEP if z + STEP > high else STEP
-            for z, (_, high) in zip(scaled, self.bounds, strict=True)
-        ]
-        behind = [
-            -STEP if central and step > 0 and z - STEP >= low else 0.0
-            for z, step, (low, _) in zip(scaled, ahead, self.bounds, strict=True)
-        ]
-        unit = np.eye(scaled.size)
-        moved = self.at(
-            [
-                scaled + step * one
-                for steps in (ahead, behind)
-                for step, one in zip(steps, unit, strict=True)
-            ]
-        )
-        span = np.subtract(ahead, behind)
-        table = (np.array(moved[: scaled.size]) - moved[scaled.size :]) / span[:, None]
+        low, high = self.bounds.T
+        ahead = np.where(scaled + STEP > high, -STEP, STEP)
+        both = central & (ahead > 0) & (scaled - STEP >= low)
+        behind = np.where(both, -STEP, 0.0)
+        steps = np.concatenate([np.diag(ahead), np.diag(behind)])
+        moved = np.array(self.at([scaled + step for step in steps]))
+        span = (ahead - behind)[:, None]
+        table: FloatArray = (moved[: scaled.size] - moved[scaled.size :]) / span
         if not np.isfinite(table).all():
             raise ConvergenceError(
                 f"near {self.settings(scaled)} points cannot be computed; fit fewer keys, or "

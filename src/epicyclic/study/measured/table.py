@@ -21,6 +21,7 @@ from epicyclic.messages import did_you_mean, misspelt, one_line, sentence
 from epicyclic.schema.fields import is_array, is_text, quantity_of
 from epicyclic.schema.read import parse_value
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY
+from epicyclic.study.sweeps.axes import known_field
 from epicyclic.study.table_file import (
     AS_IT_IS,
     HEADER,
@@ -183,7 +184,7 @@ def parse_measurements(
     problems = _Problems(tuple(line for line, _ in grid.rows))
     columns = _columns(grid, case, problems)
     conditions = {
-        name: _numbers(columns.get(name), quantity_of(*_field(case, key)), problems)
+        name: _numbers(columns.get(name), quantity_of(*known_field(case, key)), problems)
         for name, key in _conditions(case).items()
     }
     stated = _Stated(columns, conditions, case, problems)
@@ -199,7 +200,9 @@ def parse_measurements(
         for name, column in columns.items()
         if name in own or "." in name
     }
-    values = {key: _values(column, *_field(case, key), problems) for key, column in keys.items()}
+    values = {
+        key: _values(column, *known_field(case, key), problems) for key, column in keys.items()
+    }
     _check_repeats(grid, problems)
     changes = tuple(
         {key: column[row] for key, column in values.items()} for row in range(len(grid.rows))
@@ -292,12 +295,6 @@ def _name_problem(column: _Column, case: Case) -> Problem | None:
     if is_array(known[0]):
         return Problem(shown, "", "is a list in the case.", "Compare one table for each list.")
     return None
-
-
-def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
-    found = field_at(case, key)
-    assert found is not None
-    return found
 
 
 def _numbers(column: _Column | None, quantity: Quantity | None, problems: _Problems) -> FloatArray:
@@ -399,23 +396,22 @@ class _Stated:
         """Of the output. [rpm]"""
         if _SPEED_OUT in self.columns:
             return _numbers(self.columns[_SPEED_OUT], RPM, self.problems)
-        return self.conditions["speed"] * _ratios(
-            self.columns.get(STATE), self.case, len(self.problems.lines)
-        )
+        if STATE not in self.columns:
+            return self.conditions["speed"] * _ratio(self.case)
+        states = self.columns[STATE].cells
+        known = {name: _ratio(self.case, name) for name in dict.fromkeys(states)}
+        ratios: FloatArray = np.array([known[name] for name in states])
+        return self.conditions["speed"] * ratios
 
 
-def _ratios(states: _Column | None, case: Case, count: int) -> FloatArray:
-    """Speed of the output over that of the input in every row; NaN in states that are none."""
-    known: dict[str, float] = {}
-    for name in dict.fromkeys(states.cells) if states else ("",):
-        try:
-            built = build(case.updated({STATE_KEY: name}) if name else case)
-        except InputError:  # told where the state stands
-            known[name] = math.nan
-            continue
-        speeds, ends = built.state().speeds, built.operation
-        known[name] = speeds[ends.output] / speeds[ends.input]
-    return np.array([known[name] for name in (states.cells if states else [""] * count)])
+def _ratio(case: Case, state: str = "") -> float:
+    """Speed of the output over that of the input; NaN in a state that is none."""
+    try:
+        built = build(case.updated({STATE_KEY: state}) if state else case)
+    except InputError:  # told where the state stands
+        return math.nan
+    speeds, ends = built.state().speeds, built.operation
+    return speeds[ends.output] / speeds[ends.input]
 
 
 def _with_unit(column: _Column, cell: str) -> str:
@@ -504,14 +500,18 @@ def _check_repeats(grid: Grid, problems: _Problems) -> None:
         problems.found.append(Problem("rows", first_of(repeats), "appear twice.", remedy))
 
 
+def beside_point(changes: Mapping[str, Any]) -> dict[str, Any]:
+    """What a row sets of the case, apart from its operating point."""
+    return {key: value for key, value in changes.items() if key not in AXES.values()}
+
+
 def _refused(
     case: Case, changes: tuple[Mapping[str, Any], ...], lines: tuple[int, ...]
 ) -> list[Problem]:
     """What the case refuses of the keys that rows set, apart from its operating point."""
     first: dict[str, int] = {}
     for row, change in enumerate(changes):
-        keys = {key: value for key, value in change.items() if key not in AXES.values()}
-        first.setdefault(repr(keys), row)
+        first.setdefault(repr(beside_point(change)), row)
     problems = []
     for row in first.values():
         try:

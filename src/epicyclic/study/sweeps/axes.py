@@ -496,13 +496,13 @@ class Point:
     def coordinate(self, key: str) -> float | str | None:
         """The value of a linked key in its display unit; None if it has none here."""
         try:
-            return coordinate_of(self.value(key), quantity_of(*_field(self.case, key)))
+            return coordinate_of(self.value(key), quantity_of(*known_field(self.case, key)))
         except (InputError, PydanticCustomError):
             return None
 
     def _in_case(self, key: str) -> Any:
         value = value_of(self.case, key)
-        quantity = quantity_of(*_field(self.case, key))
+        quantity = quantity_of(*known_field(self.case, key))
         if value is None:
             raise ValueError(f"uses {key}, which has no value in the case")
         if quantity is not None:
@@ -511,13 +511,13 @@ class Point:
 
     def _number(self, key: str, value: Any) -> Any:
         """A value as a case file has it as a number, with its unit."""
-        quantity = quantity_of(*_field(self.case, key))
+        quantity = quantity_of(*known_field(self.case, key))
         if quantity is None:
             return _plain_number(key, value)
         return with_unit(quantity.parse(value), quantity.si)
 
     def _allowed(self, key: str, value: Any) -> Any:
-        annotation, metadata = _field(self.case, key)
+        annotation, metadata = known_field(self.case, key)
         quantity = quantity_of(annotation, metadata)
         if quantity is not None:
             # radians count as numbers, so that a power over a speed is a torque
@@ -557,7 +557,7 @@ def _problem_of(case: Case, key: str, text: str, varied: set[str]) -> Problem | 
         return unsuitable
     if key in varied:
         return Problem(key, "", "is both varied and linked.", "Either vary or link it.")
-    field = _field(case, key)
+    field = known_field(case, key)
     if field[0] is not int and not is_continuous(field, quantity_of(*field)):
         remedy = "Link numbers only; vary this key together with others."
         return Problem(key, "", "is not a number.", remedy)
@@ -578,7 +578,8 @@ def keys_behind(key: str, links: Links) -> set[str]:
     return direct.union(*(keys_behind(name, links) for name in direct if name in links))
 
 
-def _field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
+def known_field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
+    """Annotation and metadata of a key; raises `ValueError` if there is no such key."""
     field = field_at(case, key)
     if field is None:
         raise ValueError(f"uses {key}, which is not a known key")
