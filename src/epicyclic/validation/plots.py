@@ -429,7 +429,7 @@ def scores_figure(scores: Sequence[Score]) -> Figure:
                 own.measured / mean, score.computed / mean, spread, across, elinewidth=0.5, **style
             )
             known = score.speeds is not None
-            places = (score.speeds, 100 * score.errors) if known else ([], [])
+            places: tuple[Any, Any] = (score.speeds, 100 * score.errors) if known else ([], [])
             right.plot(*places, label=own.name, **style)
         ends = np.array([0.2, 5.0])
         for share in (-NEAR, 0, NEAR):

@@ -169,9 +169,9 @@ RESAMPLES = 200  # Resamples for the confidence intervals of indices.
 class Summary:
     """A result as a distribution."""
 
-    mean: float  # The last for k = 2.
-    standard_uncertainty: float  # The last for k = 2.
-    expanded_uncertainty: float  # The last for k = 2.
+    mean: float
+    standard_uncertainty: float
+    expanded_uncertainty: float  # For k = 2.
     low: float  # Ends of the probabilistically symmetric interval.
     high: float  # Ends of the probabilistically symmetric interval.
     shortest_low: float  # Ends of the shortest one.

@@ -61,7 +61,7 @@ LABELS = {
     "shortest_low": "low end of the shortest 95 % interval",
     "shortest_high": "high end of the shortest 95 % interval",
 }
-"""Units of the fields of `Summary`."""
+"""What the fields of `Summary` are called."""
 assert [one.name for one in fields(Summary)] == list(LABELS)
 
 
