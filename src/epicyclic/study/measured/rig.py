@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +11,13 @@ from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import first_of, one_problem
 from epicyclic.messages import one_line
 from epicyclic.study.measured.comparison import near_values
-from epicyclic.study.measured.table import LOAD_DEPENDENT, SENSOR, Grid, Measurements
+from epicyclic.study.measured.table import (
+    LOAD_DEPENDENT,
+    SENSOR,
+    Grid,
+    Measurements,
+    beside_operation,
+)
 from epicyclic.study.operating import AXES, STATE_KEY
 
 EQUAL = {"speed": (0.01, 0.0), "torque": (0.02, 0.1), "temperature": (0.0, 2.0)}
@@ -118,7 +123,7 @@ def _less(
     """
     loss, known = table.loss.copy(), table.uncertainty
     squares = None if known is None else known**2
-    shown = [_case_of(it) if alike else it.get(STATE_KEY) for it in table.changes]
+    shown = [beside_operation(it) if alike else it.get(STATE_KEY) for it in table.changes]
     lacking = []
     for row in map(int, np.flatnonzero(rows)):
         own = others & _agree(table, row, equal) & np.array([it == shown[row] for it in shown])
@@ -144,8 +149,3 @@ def _agree(table: Measurements, row: int, equal: tuple[str, ...]) -> BoolArray:
             relative, absolute = EQUAL[name]
             found &= np.abs(values - values[row]) <= relative * abs(values[row]) + absolute
     return found
-
-
-def _case_of(changes: Any) -> dict[str, Any]:
-    """What a row sets of the case, apart from its operating point."""
-    return {key: value for key, value in changes.items() if key not in AXES.values()}

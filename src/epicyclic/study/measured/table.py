@@ -506,14 +506,18 @@ def _check_repeats(grid: Grid, problems: _Problems) -> None:
         problems.found.append(Problem("rows", first_of(repeats), "appear twice.", remedy))
 
 
+def beside_operation(changes: Mapping[str, Any]) -> dict[str, Any]:
+    """What a row sets of the case, apart from its operating point."""
+    return {key: value for key, value in changes.items() if key not in AXES.values()}
+
+
 def _refused(
     case: Case, changes: tuple[Mapping[str, Any], ...], lines: tuple[int, ...]
 ) -> list[Problem]:
     """What the case refuses of the keys that rows set, apart from its operating point."""
     first: dict[str, int] = {}
     for row, change in enumerate(changes):
-        keys = {key: value for key, value in change.items() if key not in AXES.values()}
-        first.setdefault(repr(keys), row)
+        first.setdefault(repr(beside_operation(change)), row)
     problems = []
     for row in first.values():
         try:
