@@ -59,18 +59,12 @@ def family_figure(family: Family) -> Figure:
             ax.remove()
         for ax, part in zip(axes.flat, places, strict=False):
             curves, over = map(str, part.dims)
-            for index in range(part.sizes[curves]):
-                if np.isnan(part.isel({curves: index})).all():
+            for index, curve in enumerate(part):
+                if np.isnan(curve).all():
                     continue
-                ax.plot(
-                    part[over],
-                    part.isel({curves: index}),
-                    marker=MARKERS[index % len(MARKERS)],
-                    color=COLOURS[index % len(COLOURS)],
-                    ls=LINE_STYLES[index % len(LINE_STYLES)],
-                    ms=4,
-                    label=_value(part[curves][index]),
-                )
+                colour = COLOURS[index % len(COLOURS)]
+                style = LINE_STYLES[index % len(LINE_STYLES)]
+                _plot_curve(ax, curve, index, _value(curve[curves]), color=colour, ls=style)
             held = [part[name] for name in part.coords if part[name].ndim == 0]
             _mark(family.marks, part, held, ax)
             title = ", ".join(map(_described, held)) or str(part.attrs["long_name"])
@@ -143,6 +137,11 @@ def roller_figure(figure_name: str, cases: Sequence[tuple[str, xr.Dataset]]) -> 
             ax.grid(visible=False)
         figure.colorbar(drawn, ax=axes.ravel().tolist(), label=label_of(cases[0][1]["line_load"]))
     return figure
+
+
+def _plot_curve(ax: Axes, curve: xr.DataArray, number: int, label: str, **style: Any) -> None:
+    marker = MARKERS[number % len(MARKERS)]
+    ax.plot(curve[curve.dims[0]], curve, marker=marker, ms=4, label=label, **style)
 
 
 def _grid(panels: int) -> tuple[int, int]:
@@ -238,15 +237,8 @@ def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) ->
     """One panel: all other parameters of `study` but the last two have one value."""
     loss = study["pocketing_loss"]
     curves, over = map(str, loss.dims)
-    for number in range(loss.sizes[curves]):
-        curve = loss.isel({curves: number})
-        ax.plot(
-            loss[over],
-            curve,
-            marker=MARKERS[number % len(MARKERS)],
-            ms=4,
-            label=_value(loss[curves][number]),
-        )
+    for number, curve in enumerate(loss):
+        _plot_curve(ax, curve, number, _value(curve[curves]))
     own = {} if published is None else published.own
     for mark in () if published is None else published.marks:
         if not all(_has(loss, place, own) for place in (mark.place, mark.base) if place):
@@ -278,15 +270,10 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
     """Loss over speed in logarithms, with the slope of each curve."""
     loss = study["pocketing_loss"]
     curves = str(loss.dims[0])
-    for number in range(loss.sizes[curves]):
+    ax.set(xscale="log", yscale="log")
+    for number, curve in enumerate(loss):
         slope = float(study["speed_exponent"][number])
-        ax.loglog(
-            loss["speed"],
-            loss[number],
-            marker=MARKERS[number % len(MARKERS)],
-            ms=4,
-            label=f"{_value(loss[curves][number])}: {slope:.2f}",
-        )
+        _plot_curve(ax, curve, number, f"{_value(curve[curves])}: {slope:.2f}")
     known = published.exponents if published is not None and curves == "helix_angle" else {}
     for (angle, exponent), style in zip(known.items(), ("--", ":"), strict=False):
         if angle not in loss[curves]:
@@ -295,7 +282,7 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
         # through the middle of the curve in logarithms, where lines of all slopes cross
         scale = np.exp(np.log(curve).mean() - exponent * np.log(speed).mean())
         label = f"{SOURCE}, {angle:g} deg: {exponent:.2f}"
-        ax.loglog(speed, float(scale) * speed**exponent, color="black", ls=style, label=label)
+        ax.plot(speed, float(scale) * speed**exponent, color="black", ls=style, label=label)
     label_logarithms(ax.xaxis, ax.yaxis)
     ax.set(title="Exponent of the speed", xlabel=label_of(loss["speed"]))
     ax.set_ylabel("pocketing loss, W")
