@@ -273,7 +273,6 @@ class MeasuredFigure:
 
     what: str
     unit: str
-    source: str
     measured: float
     computed: float
     low: float  # Ends of the 95 % band.
@@ -302,10 +301,9 @@ def measured_figures(runner: Runner = HERE) -> tuple[MeasuredFigure, ...]:
         band = sample_summary(np.array(drawn))
         found.append(
             MeasuredFigure(
-                figure["what"], figure["unit"], figure["source"], figure["value"], nominal,
-                band.low, band.high,
+                figure["what"], figure["unit"], figure["value"], nominal, band.low, band.high
             )
-        )  # fmt: skip
+        )
     return tuple(found)
 
 
