@@ -19,16 +19,15 @@ from epicyclic.arrays import FloatArray
 from epicyclic.build.machine import build
 from epicyclic.build.models import fluids_of
 from epicyclic.dataclass import dataclass
-from epicyclic.errors import ConvergenceError
 from epicyclic.study.maps.warm_up import warm_up
 from epicyclic.study.meshes import bearing_details
 from epicyclic.study.solve import solve
-from epicyclic.study.sweeps.run import PointList
 from epicyclic.study.sweeps.runner import HERE, Runner
-from epicyclic.units import CELSIUS, NUMBER, WATT, unit_text
-from epicyclic.validation.compare import published_figures
+from epicyclic.units import CELSIUS, unit_text
+from epicyclic.validation.compare import published_figures, rows_of_all
 from epicyclic.validation.compute import (
     TEST_SPEEDS,
+    TEST_TORQUES,
     WITHOUT_FLOW,
     data_file,
     helical,
@@ -101,7 +100,7 @@ def _key(key: str, unit: str) -> Callable[[Any], dict[str, Any]]:
     return lambda value: {key: f"{value} {unit}"}
 
 
-def _speed(values: Sequence[float] = (1000, 2000, 3000, 4000)) -> Lever:
+def _speed(values: Sequence[float] = TEST_SPEEDS) -> Lever:
     return Lever("speed", "speed of the sun", "rpm", tuple(values), _key("operation.speed", "rpm"))
 
 
@@ -143,14 +142,14 @@ _CURVES = {
     "helix": Lever("helix_angle", "helix angle", "deg", (0, 13.124, 20, 30), helical),
 }  # fmt: skip
 _BEARING_STUDIES = {
-    "3.4": ("oil inlet temperature", _TEMPERATURE, _speed((3000, 4000))),
-    "3.5": ("composite roughness", _CURVES["roughness"], _speed()),
-    "3.6": ("roller diameter", _CURVES["roller"], _speed()),
-    "3.8": ("diametral clearance", _CURVES["clearance"], _speed()),
-    "3.10": ("roller length", _CURVES["length"], _speed()),
-    "3.11": ("helix angle", _CURVES["helix"], _speed()),
+    "3.4": (_TEMPERATURE, _speed((3000, 4000))),
+    "3.5": (_CURVES["roughness"], _speed()),
+    "3.6": (_CURVES["roller"], _speed()),
+    "3.8": (_CURVES["clearance"], _speed()),
+    "3.10": (_CURVES["length"], _speed()),
+    "3.11": (_CURVES["helix"], _speed()),
 }
-"""Figures of chapter 3 over the torque on a branch: what each is about, its curves and panels."""
+"""Figures of chapter 3 over the torque on a branch: the curves and panels of each."""
 ROLLER_FIGURES = {
     "3.3": (_BRANCH, (42, 100, 333)),
     "3.7": (_CURVES["roller"], _CURVES["roller"].values),
@@ -168,18 +167,19 @@ def bearing_families(figures: Sequence[str], runner: Runner = HERE) -> list[Fami
     wanted = [figure for figure in figures if figure in _BEARING_STUDIES]
     points: list[dict[str, Any]] = []
     for figure in wanted:
-        _, curves, panels = _BEARING_STUDIES[figure]
+        curves, panels = _BEARING_STUDIES[figure]
         points += (WITHOUT_FLOW | point for point in _points(panels, curves, _BRANCH))
-    losses = iter(_numbers(points, ("planet_bearing_mechanical",), runner)[0] / PLANETS)
+    rows = rows_of_all(points, runner)
+    losses = iter(rows.numbers("planet_bearing_mechanical") / PLANETS)
     families = []
     for figure in wanted:
-        about, curves, panels = _BEARING_STUDIES[figure]
+        curves, panels = _BEARING_STUDIES[figure]
         held = "" if curves is _TEMPERATURE else f", {_oil()}"
         shape = tuple(len(lever.values) for lever in (panels, curves, _BRANCH))
         values = np.array(list(itertools.islice(losses, math.prod(shape)))).reshape(shape)
         data = _dataset({"bearing_loss": values}, (panels, curves, _BRANCH))
-        data["bearing_loss"].attrs = {"long_name": "loss of one planet bearing", "units": "W"}
-        families.append(Family(figure, f"loss of a planet bearing, {about}{held}", data))
+        data["bearing_loss"].attrs = _about("loss of one planet bearing", "W")
+        families.append(Family(figure, f"loss of a planet bearing, {curves.label}{held}", data))
     return families
 
 
@@ -215,7 +215,6 @@ def joined(cases: Sequence[tuple[str, xr.Dataset]]) -> xr.Dataset:
 
 # --- chapters 2 and 5 -----------------------------------------------------------------------------
 
-_TORQUES = (0, 250, 500, 750, 1000)
 _SETS = {
     "3 shaved": (3, "shaved"),
     "4 shaved": (4, "shaved"),
@@ -227,7 +226,9 @@ _SET = Lever(
     "set", "planets", "", tuple(_SETS),
     lambda name: {"planet.count": _SETS[name][0], "planet.roughness": _SETS[name][1]},
 )  # fmt: skip
-_TORQUE = Lever("torque", "torque on the sun", "N*m", _TORQUES, _key("operation.torque", "N*m"))
+_TORQUE = Lever(
+    "torque", "torque on the sun", "N*m", (0, *TEST_TORQUES), _key("operation.torque", "N*m")
+)
 
 
 def loaded_and_unloaded(runner: Runner = HERE) -> xr.Dataset:
@@ -238,10 +239,8 @@ def loaded_and_unloaded(runner: Runner = HERE) -> xr.Dataset:
     levers = (_SET, _TEMPERATURE, _TORQUE, _speed())
     names = ("total", "load_dependent", "load_independent", "input_power")
     shape = tuple(len(lever.values) for lever in levers)
-    found = _numbers(list(_points(*levers)), names, runner)
-    return _dataset(
-        {name: values.reshape(shape) for name, values in zip(names, found, strict=True)}, levers
-    )
+    rows = rows_of_all(_points(*levers), runner)
+    return _dataset({name: rows.numbers(name).reshape(shape) for name in names}, levers)
 
 
 def set_families(figures: Sequence[str], runner: Runner = HERE) -> list[Family]:
@@ -262,7 +261,7 @@ def _drawn(**values: tuple[xr.DataArray, str, str]) -> xr.Dataset:
         {name: array.reset_coords(drop=True) for name, (array, *_) in values.items()}
     )
     for name, (_, label, unit) in values.items():
-        found[name].attrs = {"long_name": label, "units": unit}
+        found[name].attrs = _about(label, unit)
     return found
 
 
@@ -302,7 +301,7 @@ def _by_temperature(figure: str, data: xr.Dataset) -> Family:
 
 def _saved(figure: str, data: xr.Dataset) -> Family:
     temperature = {"2.18": 90, "2.19": 60, "2.20": 40}[figure]
-    total = data["total"].sel(temperature=temperature, torque=list(_TORQUES[1:]))
+    total = data["total"].sel(temperature=temperature, torque=list(TEST_TORQUES))
     saved = total.sel(set="6 shaved") - total.sel(set="6 polished")
     found = _drawn(saved=(saved / 1e3, "loss that polished planets save", "kW"))
     return Family(figure, f"6 shaved less 6 polished planets, {temperature} °C", found)
@@ -330,13 +329,13 @@ def _branch_spin(figure: str, data: xr.Dataset) -> Family:
 def _loaded(figure: str, data: xr.Dataset) -> Family:
     temperature = dict(zip(("5.3", "5.4", "5.5"), _TEMPERATURE.values, strict=True))[figure]
     own = data["load_dependent"].sel(temperature=temperature, set=_SHAVED)
-    own = own.sel(torque=list(_TORQUES[1:])).transpose("set", "torque", "speed") / 1e3
+    own = own.sel(torque=list(TEST_TORQUES)).transpose("set", "torque", "speed") / 1e3
     title = f"{_LOADED}, shaved, {temperature} °C"
     return Family(figure, title, _drawn(loss=(own, _LOADED, "kW")))
 
 
 def _polished(figure: str, data: xr.Dataset) -> Family:
-    own = data["load_dependent"].sel(set="6 polished", torque=list(_TORQUES[1:])) / 1e3
+    own = data["load_dependent"].sel(set="6 polished", torque=list(TEST_TORQUES)) / 1e3
     own = own.transpose("temperature", "torque", "speed")
     return Family(figure, f"{_LOADED}, 6 polished planets", _drawn(loss=(own, _LOADED, "kW")))
 
@@ -351,7 +350,7 @@ def _branches(figure: str, data: xr.Dataset) -> Family:
     own = data.sel(
         temperature=temperature,
         set=_SHAVED if number < 3 else list(_SETS)[4:],
-        torque=list(_TORQUES[1:]),
+        torque=list(TEST_TORQUES),
     )
     over = (
         (own["torque"] / own["planets"], "torque on a branch", "N*m")
@@ -390,17 +389,13 @@ def warm_up_families(figures: Sequence[str]) -> Iterator[Family]:
             found.append(course["temperature"].sel(node=["oil", "ring"]).drop_duplicates("time"))
         data = xr.concat(found, dim="temperature").transpose("temperature", "node", "time")
         data = data.assign_coords(
-            temperature=("temperature", list(_TEMPERATURE.values), _unit("oil inlet", "degC")),
-            node=("node", ["outlet", "ring"], _unit("temperature", "1")),
-            time=("time", data["time"].values, _unit("time", "s")),
+            temperature=("temperature", list(_TEMPERATURE.values), _about("oil inlet", "degC")),
+            node=("node", ["outlet", "ring"], _about("temperature", "1")),
+            time=("time", data["time"].values, _about("time", "s")),
         )
         drawn = _drawn(part_temperature=(data, "temperature", "degC"))
         title = f"temperatures of 6 shaved planets at {WARM_UPS[figure]} N·m"
         yield Family(figure, title, drawn)
-
-
-def _unit(label: str, unit: str) -> dict[str, str]:
-    return {"long_name": label, "units": unit}
 
 
 def _speed_steps(torque: float) -> dict[str, list[float]]:
@@ -429,16 +424,13 @@ _OF_TESTS: dict[str, Callable[[str, xr.Dataset], Family]] = {
     **dict.fromkeys((f"5.{number}" for number in range(7, 13)), _branches),
 }
 """Figures of chapters 2 and 5, and what makes them from the tests."""
+_FIGURES = sorted(
+    {*_OF_TESTS, *WARM_UPS, *ROLLER_FIGURES, *_BEARING_STUDIES, *FIGURES_AGAIN},
+    key=lambda it: int(it[2:]),
+)
 CHAPTERS = {
-    "2": tuple(
-        sorted(
-            {*WARM_UPS, *(figure for figure in _OF_TESTS if figure.startswith("2."))},
-            key=lambda it: int(it[2:]),
-        )
-    ),
-    "3": tuple(sorted({*ROLLER_FIGURES, *_BEARING_STUDIES}, key=lambda it: int(it[2:]))),
-    "4": tuple(FIGURES_AGAIN),
-    "5": tuple(figure for figure in _OF_TESTS if figure.startswith("5.")),
+    chapter: tuple(figure for figure in _FIGURES if figure.startswith(f"{chapter}."))
+    for chapter in ("2", "3", "4", "5")
 }
 """The figures of each chapter that are computed again."""
 TOPICS = {
@@ -516,38 +508,21 @@ def _points(*levers: Lever) -> Iterator[dict[str, Any]]:
         yield point
 
 
-def _numbers(
-    points: Sequence[Mapping[str, Any]], names: Sequence[str], runner: Runner
-) -> list[FloatArray]:
-    """Numbers of the results of the example with other keys."""
-    rows = runner.run(PointList(source_case(), tuple(map(dict, points))))
-    if rows.failures:
-        raise ConvergenceError(
-            f"{len(rows.failures)} of {len(rows)} points cannot be computed: {rows.failures[0]}"
-        )
-    return [rows.numbers(name) for name in names]
-
-
 def _dataset(values: Mapping[str, FloatArray], levers: Sequence[Lever]) -> xr.Dataset:
     dims = tuple(lever.name for lever in levers)
     coordinates: dict[str, Any] = {
-        lever.name: (
-            lever.name,
-            list(lever.values),
-            {"long_name": lever.label, "units": lever.unit or NUMBER.display or "1"},
-        )
+        lever.name: (lever.name, list(lever.values), _about(lever.label, lever.unit or "1"))
         for lever in levers
     }
     if _SET in levers:
-        coordinates["planets"] = (
-            _SET.name, [_SETS[name][0] for name in _SETS],
-            {"long_name": "number of planets", "units": "1"},
-        )  # fmt: skip
-    watts = {"units": WATT.display}
-    return xr.Dataset(
-        {
-            name: (dims, array, {"long_name": name.replace("_", " "), **watts})
-            for name, array in values.items()
-        },
-        coordinates,
-    )
+        planets = [count for count, _ in _SETS.values()]
+        coordinates["planets"] = (_SET.name, planets, _about("number of planets", "1"))
+    variables = {
+        name: (dims, array, _about(name.replace("_", " "), "W")) for name, array in values.items()
+    }
+    return xr.Dataset(variables, coordinates)
+
+
+def _about(label: str, unit: str) -> dict[str, str]:
+    """The attributes of an array."""
+    return {"long_name": label, "units": unit}

@@ -18,7 +18,7 @@ from epicyclic.study.bands.samples import sample_summary
 from epicyclic.study.bands.study import quick_band
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.run import PointList, as_tested, with_unloaded
-from epicyclic.study.sweeps.runner import HERE, Runner
+from epicyclic.study.sweeps.runner import HERE, Rows, Runner
 from epicyclic.validation.compute import (
     FIGURES,
     LoadedTest,
@@ -273,7 +273,6 @@ class MeasuredFigure:
 
     what: str
     unit: str
-    source: str
     measured: float
     computed: float
     low: float  # Ends of the 95 % band.
@@ -302,10 +301,9 @@ def measured_figures(runner: Runner = HERE) -> tuple[MeasuredFigure, ...]:
         band = sample_summary(np.array(drawn))
         found.append(
             MeasuredFigure(
-                figure["what"], figure["unit"], figure["source"], figure["value"], nominal,
-                band.low, band.high,
+                figure["what"], figure["unit"], figure["value"], nominal, band.low, band.high
             )
-        )  # fmt: skip
+        )
     return tuple(found)
 
 
@@ -341,8 +339,7 @@ def _drawn_tests(figures: Iterable[Mapping[str, Any]], runner: Runner) -> list[_
     nearby = nearby_at(case, solve(case), list(conditions.values()), runner)
     for key, own in zip(conditions, nearby, strict=True):
         drawn = quick_band(own).results[:, :DRAWS]
-        nominal = own.outputs.of(own.losses[:, None], own.powers, {})
-        losses = np.concatenate([nominal, drawn], axis=1)[-4:-2]
+        losses = np.column_stack([own.nominal, drawn])[-4:-2]
         for tests, loss in zip(draws, losses.T.tolist(), strict=True):
             tests[key] = LoadedTest(float(own.powers.entering[0]), *loss)
     return draws
@@ -409,11 +406,7 @@ def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
     conditions = _conditions(figures)
     tested = ({**test, **own} for own in settings for test in conditions.values())
     points, unloaded = with_unloaded(list(tested))
-    rows = runner.run(PointList(source_case(), points))
-    if rows.failures:
-        raise ConvergenceError(
-            f"{len(rows.failures)} of {len(rows)} tests cannot be computed: {rows.failures[0]}"
-        )
+    rows = rows_of_all(points, runner, "tests")
     loss = as_tested(rows, unloaded)
     tests = list(map(LoadedTest, rows.numbers("input_power")[: loss.size].tolist(), loss.tolist()))
     count = len(conditions)
@@ -444,6 +437,19 @@ def _settled_figures() -> list[dict[str, Any]]:
         for figure in published_figures()
         if figure.get("compute") in _OF_TESTS and figure["with"].get("part") not in _OTHER_PARTS
     ]
+
+
+def rows_of_all(points: Iterable[Mapping[str, Any]], runner: Runner, what: str = "points") -> Rows:
+    """Rows of the set of the dissertation with other keys.
+
+    Raises `ConvergenceError` if one of the points, called `what` then, cannot be computed.
+    """
+    rows = runner.run(PointList(source_case(), tuple(points)))
+    if rows.failures:
+        raise ConvergenceError(
+            f"{len(rows.failures)} of {len(rows)} {what} cannot be computed: {rows.failures[0]}"
+        )
+    return rows
 
 
 def _by_tests(figure: Mapping[str, Any], tests: LoadedTests) -> float:

@@ -217,10 +217,6 @@ def planet_bearing(built: Built) -> RollerBearing:
     return planet.bearing.bearing
 
 
-def _published_case(**changes: object) -> Case:
-    return source_case().updated({key.replace("__", "."): value for key, value in changes.items()})
-
-
 class LoadedTest(NamedTuple):
     """What of a `Result` a test of the dissertation under load is about. [W]"""
 
@@ -334,7 +330,7 @@ def azimuth_of_gained_rollers(low: int, high: int, couple: bool) -> float:
 
 def _loaded_rollers(branch_torque: int, couple: bool) -> BoolArray:
     """Which rollers carry load in either row."""
-    built = build(_published_case(operation__torque=f"{3 * branch_torque} N*m"))
+    built = build(source_case().updated({"operation.torque": f"{3 * branch_torque} N*m"}))
     load = built.planet_loads()["planet_bearing"]
     moments = (load.moment_x, load.moment_y) if couple else (0.0, 0.0)
     loads = roller_loads(planet_bearing(built), load.force, 0.0, *moments)
@@ -344,13 +340,14 @@ def _loaded_rollers(branch_torque: int, couple: bool) -> BoolArray:
 
 def mixture_density(temperature: str) -> float:
     """Density of the mixture at the case's oil share. [kg/m^3]"""
-    return fluids_of(_published_case(operation__oil_inlet_temperature=temperature)).mixture.density
+    warm = source_case().updated({"operation.oil_inlet_temperature": temperature})
+    return fluids_of(warm).mixture.density
 
 
 def mixture_viscosity(temperature: str) -> float:
     """Dynamic viscosity of the mixture. [mPa s]"""
-    fluids = fluids_of(_published_case(operation__oil_inlet_temperature=temperature))
-    return fluids.mixture.dynamic_viscosity * 1e3
+    warm = source_case().updated({"operation.oil_inlet_temperature": temperature})
+    return fluids_of(warm).mixture.dynamic_viscosity * 1e3
 
 
 def composite_roughness(planet: str, others: str) -> float:
@@ -361,18 +358,14 @@ def composite_roughness(planet: str, others: str) -> float:
 
 
 def branch_slope(
-    temperature: str,
-    finish: str,
-    planets: list[int],
-    line: str = "with intercept",
-    tests: LoadedTests = _computed_tests,
+    temperature: str, finish: str, planets: list[int], tests: LoadedTests = _computed_tests
 ) -> float:
-    """Slope of P_LD/n over P_in/n through all tests, `line` or ``"through the origin"``. [%]"""
+    """Slope of P_LD/n over P_in/n through all tests, of a line with intercept. [%]"""
     results = tests(temperature, finish, planets)
     counts = np.repeat(planets, len(TEST_TORQUES) * len(TEST_SPEEDS))
     power = np.array([result.input_power for result in results]) / counts
     loss = np.array([result.load_dependent for result in results]) / counts
-    return 100 * slopes(power, loss)[line]
+    return 100 * slopes(power, loss)["with intercept"]
 
 
 def slopes(over: FloatArray, values: FloatArray) -> dict[str, float]:
@@ -482,14 +475,6 @@ def branch_spin_exponent(temperature: str, tests: LoadedTests = _computed_tests)
     return float(np.polyfit(np.log(TEST_SPEEDS), np.log(losses), 1)[0])
 
 
-@cache
-def pair_pocketing(**changes: str | float) -> float:
-    """Pocketing loss of the example pair with its keys changed. [W]"""
-    case = read_case("talbot-2012-pair")
-    updated = case.updated({key.replace("__", "."): value for key, value in changes.items()})
-    return solve(updated).losses["mesh_pocketing"]
-
-
 NOMINAL_BACKLASH = 0.1  # Of the example pair. Table 4.1. [mm]
 
 
@@ -516,6 +501,7 @@ def pocketing_figure(
     return 100 * (ratio - 1) if unit == "%" else ratio
 
 
+@cache
 def _pocketing(
     model: str,
     helix_angle: str,
@@ -525,17 +511,15 @@ def _pocketing(
     backlash: float = NOMINAL_BACKLASH,  # [mm]
 ) -> float:
     thickness = f"{math.pi - backlash / 2:.4f} mm"  # of both, at the operating circles. Table 4.1
-    return pair_pocketing(
-        gears__helix_angle=helix_angle,
-        operation__speed=speed,
-        surroundings__oil_air_ratio=oil_air_ratio,
-        models__pocketing=model,
-        **{
-            f"{gear}__{key}": value
-            for gear in ("pinion", "gear")
-            for key, value in (("face_width", face_width), ("tooth_thickness", thickness))
-        },
-    )
+    case = read_case("talbot-2012-pair").updated({
+        "gears.helix_angle": helix_angle,
+        "operation.speed": speed,
+        "surroundings.oil_air_ratio": oil_air_ratio,
+        "models.pocketing": model,
+        **dict.fromkeys(("pinion.face_width", "gear.face_width"), face_width),
+        **dict.fromkeys(("pinion.tooth_thickness", "gear.tooth_thickness"), thickness),
+    })  # fmt: skip
+    return solve(case).losses["mesh_pocketing"]
 
 
 def single_stiffness(teeth1: int, teeth2: int, internal: bool) -> float:

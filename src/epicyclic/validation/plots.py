@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -52,28 +53,18 @@ def family_figure(family: Family) -> Figure:
         for index in range(array.shape[0] if array.ndim > 2 else 1)
     ]
     count = len(places)
-    columns = _columns(count)
-    rows = -(-count // columns)
     panel = PANEL if count > 1 else ALONE
-    with styled_figure(rows, columns, _title(family), panel=panel) as (figure, axes):
-        for number, ax in enumerate(axes.ravel()):
-            if number >= count:
-                ax.remove()
-                continue
-            part = places[number]
+    with styled_figure(*_grid(count), _title(family), panel=panel) as (figure, axes):
+        for ax in axes.flat[count:]:
+            ax.remove()
+        for ax, part in zip(axes.flat, places, strict=False):
             curves, over = map(str, part.dims)
-            for index in range(part.sizes[curves]):
-                if np.isnan(part.isel({curves: index})).all():
+            for index, curve in enumerate(part):
+                if np.isnan(curve).all():
                     continue
-                ax.plot(
-                    part[over],
-                    part.isel({curves: index}),
-                    marker=MARKERS[index % len(MARKERS)],
-                    color=COLOURS[index % len(COLOURS)],
-                    ls=LINE_STYLES[index % len(LINE_STYLES)],
-                    ms=4,
-                    label=_value(part[curves][index]),
-                )
+                colour = COLOURS[index % len(COLOURS)]
+                style = LINE_STYLES[index % len(LINE_STYLES)]
+                _plot_curve(ax, curve, index, _value(curve[curves]), color=colour, ls=style)
             held = [part[name] for name in part.coords if part[name].ndim == 0]
             _mark(family.marks, part, held, ax)
             title = ", ".join(map(_described, held)) or str(part.attrs["long_name"])
@@ -127,9 +118,7 @@ def roller_figure(figure_name: str, cases: Sequence[tuple[str, xr.Dataset]]) -> 
     """Line load along every roller of both rows, a panel for each case."""
     highest = max(float(data["line_load"].max()) for _, data in cases)
     title = f"{SOURCE}, Fig. {figure_name}: loads on the rollers"
-    columns = _columns(len(cases))
-    rows = len(cases) // columns
-    with styled_figure(rows, columns, title, panel=(3.6, 3.2)) as (figure, axes):
+    with styled_figure(*_grid(len(cases)), title, panel=(3.6, 3.2)) as (figure, axes):
         for ax, (label, data) in zip(axes.ravel(), cases, strict=True):
             races, rollers, slices = data["line_load"].shape
             turned = (data["azimuth"].values + 180.0) % 360.0 - 180.0
@@ -150,8 +139,15 @@ def roller_figure(figure_name: str, cases: Sequence[tuple[str, xr.Dataset]]) -> 
     return figure
 
 
-def _columns(panels: int) -> int:
-    return panels if panels <= MOST_COLUMNS else 2
+def _plot_curve(ax: Axes, curve: xr.DataArray, number: int, label: str, **style: Any) -> None:
+    marker = MARKERS[number % len(MARKERS)]
+    ax.plot(curve[curve.dims[0]], curve, marker=marker, ms=4, label=label, **style)
+
+
+def _grid(panels: int) -> tuple[int, int]:
+    """Rows and columns of a figure of some panels."""
+    columns = panels if panels <= MOST_COLUMNS else 2
+    return math.ceil(panels / columns), columns
 
 
 def _title(family: Family) -> str:
@@ -220,13 +216,11 @@ def study_figure(
     places = list(itertools.product(*(range(study.sizes[panel]) for panel in panels)))
     exponents = "speed_exponent" in study
     count = len(places) + exponents
-    columns = _columns(count)
-    rows = -(-count // columns)
     # what all points have in common beside the gears
     oil = json.loads(study.attrs["case"])["operation"]["oil_inlet_temperature"]
     held = unit_text(f"pocketing {study.attrs['model']}, oil at {oil}")
     title = str(study.attrs["title"])
-    with styled_figure(rows, columns, title, caption=held) as (figure, axes):
+    with styled_figure(*_grid(count), title, caption=held) as (figure, axes):
         flat = axes.ravel()
         for ax, place in zip(flat, places, strict=False):
             _plot_loss(study.isel(dict(zip(panels, place, strict=True))), ax, published)
@@ -243,19 +237,11 @@ def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) ->
     """One panel: all other parameters of `study` but the last two have one value."""
     loss = study["pocketing_loss"]
     curves, over = map(str, loss.dims)
-    for number in range(loss.sizes[curves]):
-        curve = loss.isel({curves: number})
-        ax.plot(
-            loss[over],
-            curve,
-            marker=MARKERS[number % len(MARKERS)],
-            ms=4,
-            label=_value(loss[curves][number]),
-        )
+    for number, curve in enumerate(loss):
+        _plot_curve(ax, curve, number, _value(curve[curves]))
     own = {} if published is None else published.own
     for mark in () if published is None else published.marks:
-        places = [mark.place, *([] if mark.base is None else [mark.base])]
-        if not all(_has(loss, place, own) for place in places):
+        if not all(_has(loss, place, own) for place in (mark.place, mark.base) if place):
             continue
         of = 1.0 if mark.base is None else _at(loss, mark.base)
         low, high = (of * end for end in mark.ends)
@@ -284,15 +270,10 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
     """Loss over speed in logarithms, with the slope of each curve."""
     loss = study["pocketing_loss"]
     curves = str(loss.dims[0])
-    for number in range(loss.sizes[curves]):
+    ax.set(xscale="log", yscale="log")
+    for number, curve in enumerate(loss):
         slope = float(study["speed_exponent"][number])
-        ax.loglog(
-            loss["speed"],
-            loss[number],
-            marker=MARKERS[number % len(MARKERS)],
-            ms=4,
-            label=f"{_value(loss[curves][number])}: {slope:.2f}",
-        )
+        _plot_curve(ax, curve, number, f"{_value(curve[curves])}: {slope:.2f}")
     known = published.exponents if published is not None and curves == "helix_angle" else {}
     for (angle, exponent), style in zip(known.items(), ("--", ":"), strict=False):
         if angle not in loss[curves]:
@@ -301,7 +282,7 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
         # through the middle of the curve in logarithms, where lines of all slopes cross
         scale = np.exp(np.log(curve).mean() - exponent * np.log(speed).mean())
         label = f"{SOURCE}, {angle:g} deg: {exponent:.2f}"
-        ax.loglog(speed, float(scale) * speed**exponent, color="black", ls=style, label=label)
+        ax.plot(speed, float(scale) * speed**exponent, color="black", ls=style, label=label)
     label_logarithms(ax.xaxis, ax.yaxis)
     ax.set(title="Exponent of the speed", xlabel=label_of(loss["speed"]))
     ax.set_ylabel("pocketing loss, W")
@@ -434,17 +415,14 @@ def scores_figure(scores: Sequence[Score]) -> Figure:
             left.errorbar(
                 own.measured / mean, score.computed / mean, spread, across, elinewidth=0.5, **style
             )
-            speeds = score.speeds
-            if speeds is not None:
-                right.plot(speeds, 100 * score.errors, label=own.name, **style)
-            else:
-                right.plot([], [], label=own.name, **style)
+            known = score.speeds is not None
+            places: tuple[Any, Any] = (score.speeds, 100 * score.errors) if known else ([], [])
+            right.plot(*places, label=own.name, **style)
         ends = np.array([0.2, 5.0])
         for share in (-NEAR, 0, NEAR):
-            left.plot(
-                ends, ends * (1 + share / 100), color="0.5", lw=0.8, ls="--" if share else "-"
-            )
-            right.axhline(share, color="0.5", lw=0.8, ls="--" if share else "-")
+            style = {"color": "0.5", "lw": 0.8, "ls": "--" if share else "-"}
+            left.plot(ends, ends * (1 + share / 100), **style)
+            right.axhline(share, **style)
         left.set(
             xlim=ends,
             ylim=ends,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -281,7 +282,8 @@ class StudyPlan(Plan):
 
     def order(self) -> list[int]:
         """Those of the same geometry next to each other."""
-        return sorted(range(self.size), key=lambda index: _geometry(self.points[index]))
+        geometry = attrgetter("teeth", "backlash", "helix_angle", "face_width")
+        return sorted(range(self.size), key=lambda index: geometry(self.points[index]))
 
     def describe(self) -> dict[str, Any]:
         """The case, and what was asked for."""
@@ -293,10 +295,6 @@ class StudyPlan(Plan):
         figures = flow_figures(flow)
         numbers = {name: getattr(figures, own) for name, own in NUMBERS.items()}
         return Row(str(Status.CONVERGED), warnings=warning, numbers=numbers)
-
-    def variants(self, name: str) -> Iterator[PocketVariant]:
-        """All points of study `name`, its last axis fastest."""
-        return _variants(base_variant(self.duty), self.axes[name])
 
 
 def make_study(
@@ -427,13 +425,9 @@ def _axis(duty: MeshDuty, name: str, values: tuple[float, ...]) -> StudyAxis:
 
 
 def _variants(base: PocketVariant, axes: Sequence[StudyAxis]) -> Iterator[PocketVariant]:
+    """All points of a study, its last axis fastest."""
     for values in product(*(axis.variants for axis in axes)):
         yield replace(base, **dict(zip((axis.field for axis in axes), values, strict=True)))
-
-
-def _geometry(point: PocketVariant) -> tuple[Any, ...]:
-    """Equal for points of the same geometry."""
-    return (point.teeth, point.backlash, point.helix_angle, point.face_width)
 
 
 def pocketing_study(
@@ -486,9 +480,10 @@ def pocketing_study(
 def study_datasets(plan: StudyPlan, rows: Rows) -> dict[str, xr.Dataset]:
     """The rows of all points over the axes of each study."""
     place = {point: index for index, point in enumerate(plan.points)}
+    base = base_variant(plan.duty)
     return {
-        name: _dataset(plan, name, rows, [place[point] for point in plan.variants(name)])
-        for name in plan.axes
+        name: _dataset(plan, name, rows, [place[point] for point in _variants(base, axes)])
+        for name, axes in plan.axes.items()
     }
 
 
@@ -576,19 +571,16 @@ FIGURES_AGAIN = {study.figure.removeprefix("Fig. "): name for name, study in STU
 """Figures of section 4.4, and the study behind each."""
 
 
-AS_IN_THE_SOURCE = {"models.pocketing": "talbot-2012"}
-"""The flow that is meant for this comparison."""
-
-
 def study_again(
     figures: Sequence[str], runner: Runner = HERE
 ) -> tuple[Case, dict[str, xr.Dataset]]:
     """The example of the source, and the studies of its figures by their numbers."""
-    case = read_case(EXAMPLE).updated(AS_IN_THE_SOURCE)
+    # with the flow that is meant for this comparison
+    case = read_case(EXAMPLE).updated({"models.pocketing": "talbot-2012"})
     names = {FIGURES_AGAIN[figure]: figure for figure in figures if figure in FIGURES_AGAIN}
     if not names:
         return case, {}
-    plan = make_study(case, names, mesh=None, ranges={}, levels={})
+    plan = make_study(case, names, ranges={}, levels={})
     found = study_datasets(plan, runner.run(plan))
     return case, {names[name]: data for name, data in found.items()}
 

@@ -387,19 +387,12 @@ def scoreboard(
 def scored(
     own: MeasuredSet, run: str, keys: Keys, runner: Runner = HERE, *, banded: bool = False
 ) -> Score:
-    """One set with changed keys; `run` is what that is called."""
-    case = own.case.updated(keys) if keys else own.case
-    return Score(own, run, *_computed(own, case, runner, banded=banded))
-
-
-def _computed(
-    own: MeasuredSet, case: Case, runner: Runner, *, banded: bool
-) -> tuple[FloatArray, FloatArray]:
-    """What is computed at each point, and the ends of its band.
+    """One set with changed keys; `run` is what that is called.
 
     The band of a slope is as wide as that of the last of its tests: what is uncertain is off by the
     same in all of them, and nothing averages out.
     """
+    case = own.case.updated(keys) if keys else own.case
     parts, count = parts_of(own.table.component), max(1, len(own.tests))
     tests = [{**point, **test} for point in own.points for test in own.tests or ({},)]
     loss, power = _solved(case, tests, parts, runner)
@@ -426,7 +419,7 @@ def _computed(
                 else own.convert(factors * loss[number], power[number], speed[number])
             )
             band[:, number] = found.low, found.high
-    return computed, band
+    return Score(own, run, computed, band)
 
 
 def _solved(

@@ -15,11 +15,8 @@ from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.errors import ConvergenceError, one_problem
 from epicyclic.result.result import Result, versions
 from epicyclic.study.bands.plan import (
-    INPUT_POWER,
-    SHAFT_POWER,
     Outputs,
     Point,
-    Powers,
     SamplePlan,
     check_samples,
     factors_of,
@@ -152,17 +149,11 @@ def _evaluate(
         drawn=tuple(own[inputs] for own in drawn),
         points=tuple(changes),
     )
-    rows = runner.run(plan)
-    shape = len(changes), drawn.shape[-1]
-    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, *shape)
-    power, shaft = (rows.numbers(name).reshape(shape) for name in (INPUT_POWER, SHAFT_POWER))
-    found, entering = [], []
-    for point in range(len(changes)):
-        own = losses[:, point]
-        powers = Powers(power[point], shaft[point], own[: len(outputs.losses)].sum(axis=0))
-        found.append(outputs.of(own, powers, factors_of(values[point], drawn[point])))
-        entering.append(powers.with_loss(found[-1][-2]))
-    return outputs, _over_time(np.array(found), np.array(entering), weights)
+    losses, powers = plan.found(runner.run(plan))
+    # factors of models are those of a kind, whatever the operating point
+    results = outputs.of(losses, powers, factors_of(values[0], np.moveaxis(drawn, 1, 0)))
+    entering = powers.with_loss(results[-2])
+    return outputs, _over_time(np.moveaxis(results, 1, 0), entering, weights)
 
 
 def _over_time(results: FloatArray, entering: FloatArray, weights: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from itertools import chain
@@ -49,6 +49,9 @@ class Powers:
     entering: FloatArray
     shaft: FloatArray  # Of the shaft whose torque is stated.
     loss: FloatArray
+
+    def __getitem__(self, place: Any) -> Powers:
+        return Powers(self.entering[place], self.shaft[place], self.loss[place])
 
     def with_loss(self, loss: FloatArray, shaft: FloatArray | None = None) -> FloatArray:
         """Power that enters with another loss, and another power of the shaft. Theory (U7)."""
@@ -103,7 +106,7 @@ class Outputs:
         with np.errstate(divide="ignore", invalid="ignore"):
             efficiency = np.where(power > 0, np.maximum(0.0, 1 - total / power), np.nan)
             efficiency[power - total <= NO_POWER * power] = 0.0
-        return np.vstack([scaled, total - independent, independent, total, efficiency])
+        return np.concatenate([scaled, [total - independent, independent, total, efficiency]])
 
 
 def outputs_of(case: Case, result: Result) -> Outputs:
@@ -237,7 +240,8 @@ def look_nearby(case: Case, result: Result) -> Nearby:
     moved = [number for number, it in enumerate(changes) if not _without_effect(plain, it)]
     stepped = np.tile(losses, (len(changes), 1))
     stepped[moved] = _losses(plain, [changes[number] for number in moved], outputs, flows)
-    powers = (result.input_power, shaft_power(case))
+    own = (result.input_power, shaft_power(case), losses[: len(outputs.losses)].sum())
+    powers = Powers(*map(np.atleast_1d, own))
     return nearby_of(values, outputs, losses, powers, stepped)
 
 
@@ -255,15 +259,14 @@ def nearby_of(
     values: tuple[UncertainValue, ...],
     outputs: Outputs,
     losses: FloatArray,
-    powers: tuple[float, float],  # That enters, and of the stated shaft.
+    powers: Powers,
     stepped: FloatArray,
 ) -> Nearby:
     """What the losses of all `steps`, shape (2 d, t), say; models leave them as they are."""
     inputs = np.array([not value.is_model_form for value in values], dtype=bool)
     ends = np.tile(losses, (len(values), 2, 1))
     ends[inputs] = stepped.reshape(inputs.sum(), 2, losses.size)
-    own = Powers(*(np.array([it]) for it in (*powers, losses[: len(outputs.losses)].sum())))
-    return Nearby(values, outputs, losses, own, ends)
+    return Nearby(values, outputs, losses, powers, ends)
 
 
 def _without_effect(case: Case, changes: Mapping[str, Any]) -> bool:
@@ -342,6 +345,15 @@ class SamplePlan(CasePlan):
         own = {it.key: it.stated(number) for it, number in zip(self.inputs, column, strict=True)}
         return {**self.points[point], **own}
 
+    def found(self, rows: Rows) -> tuple[FloatArray, Powers]:
+        """`Outputs.numbers`, shape (t, operating points, samples), and the powers."""
+        power, shaft, *every = (
+            rows.numbers(name).reshape(-1, self.samples)
+            for name in (INPUT_POWER, SHAFT_POWER, *self.outputs.numbers)
+        )
+        losses = np.array(every).reshape(-1, *power.shape)
+        return losses, Powers(power, shaft, losses[: len(self.outputs.losses)].sum(axis=0))
+
     def order(self) -> list[int]:
         """Indices of all cases: sets differ in one group of inputs, operating points in none."""
         numbers = np.arange(self.size).reshape(len(self.points), -1, self.count)
@@ -403,19 +415,13 @@ class SampledCase:
 
         In the order of `Outputs.names`.
         """
-        outputs = self.plan.outputs
-        power, shaft, *every = (
-            rows.numbers(name).reshape(len(self.samples), -1, self.plan.count)
-            for name in (INPUT_POWER, SHAFT_POWER, *outputs.numbers)
-        )
-        losses = np.array(every).reshape(len(every), *power.shape)
-        lost = losses[: len(outputs.losses)].sum(axis=0)
+        losses, powers = self.plan.found(rows)
         return np.array(
             [
                 [
-                    outputs.of(
+                    self.plan.outputs.of(
                         losses[:, point, solved],
-                        Powers(power[point, solved], shaft[point, solved], lost[point, solved]),
+                        powers[point, solved],
                         factors_of(own.values, drawn),
                     )
                     for solved, drawn in self._sets(own, mixed)
@@ -435,13 +441,14 @@ class SampledCase:
         status, message = zip(*found, strict=True)
         return list(status), list(message)
 
-    def _sets(self, own: Samples, mixed: bool) -> list[tuple[int, FloatArray]]:
-        """Number of the solved set, and the values, of A, B and mixtures."""
+    def _sets(self, own: Samples, mixed: bool) -> Iterator[tuple[slice, FloatArray]]:
+        """The solved samples, and the values, of A, B and mixtures."""
         sets = [(0, own.a), (1, own.b)]
         for group in range(len(own.groups)) if mixed else ():
             solved = self.groups.index(group) + 2 if group in self.groups else 0
             sets.append((solved, own.mixed(group)))
-        return sets
+        count = self.plan.count
+        return ((slice(solved * count, (solved + 1) * count), drawn) for solved, drawn in sets)
 
 
 def sampled_case(
@@ -503,15 +510,14 @@ def nearby_at(
     plan = SamplePlan(
         without_table(case), outputs, drawn=(np.empty((0, 1)),) * len(every), points=every
     )
-    rows = runner.run(plan)
-    losses = np.array([rows.numbers(name) for name in outputs.numbers]).reshape(-1, len(rows)).T
-    powers = np.array([rows.numbers(INPUT_POWER), rows.numbers(SHAFT_POWER)]).T
-    last = np.cumsum([len(own) for own in changes])[:-1]
-    parts = zip(values, np.split(losses, last), np.split(powers, last), strict=True)
-    return tuple(
-        nearby_of(own, outputs, lost[0], tuple(power[0].tolist()), lost[1:])
-        for own, lost, power in parts
-    )
+    losses, powers = plan.found(runner.run(plan))
+    found, first = [], 0
+    for own, those in zip(values, changes, strict=True):
+        part = slice(first + 1, first + len(those))
+        stepped = losses[:, part, 0].T
+        found.append(nearby_of(own, outputs, losses[:, first, 0], powers[first], stepped))
+        first += len(those)
+    return tuple(found)
 
 
 def values_at(

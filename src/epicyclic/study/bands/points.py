@@ -311,7 +311,7 @@ class CycleStudy(Study):
         results = self.sampled.results(rows, mixed=False)
         sets = np.array([energies.of(results[:, number]) for number in (0, 1)])
         both = np.moveaxis(results, 1, 2).reshape(len(results), results.shape[2], -1)
-        nominal = np.array([it.outputs.of(it.losses[:, None], it.powers, {}) for it in self.nearby])
+        nominal = np.array([it.nominal for it in self.nearby])[:, :, None]
         data = sample_variables(
             sets, energies.of(nominal)[:, 0], self._contributions(nominal), self.sampled, rows, "kJ"
         )

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, FloatArray, IntArray
+from epicyclic.arrays import TINY, BoolArray, FloatArray, IntArray
 from epicyclic.case.case import Case
 from epicyclic.case.keys import Parameter
 from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
@@ -388,7 +388,6 @@ class Fit:
 # fitted.
 
 NAMED = 0.2  # Component of a direction, over the largest, from which an input is named. [1]
-TINY = 1e-300  # In place of a scatter of nothing.
 
 
 @dataclass(frozen=True, slots=True)

@@ -92,7 +92,7 @@ class NearbyPoints(PointList):
 
     def prepared(self, indices: Sequence[int], jobs: int | None) -> Self:
         """With tables of the flows that the points `indices` read."""
-        tables = self.lattice.tables(self._cases(indices), jobs if jobs and jobs > 0 else None)
+        tables = self.lattice.tables(self._cases(indices), jobs)
         return replace(self, flow_tables=tables, lattice=FlowLattice())
 
     def _cases(self, indices: Sequence[int]) -> Iterable[Case]:
