@@ -582,7 +582,9 @@ class NetworkModel:
         given = {INLET: own.inlet, AMBIENT: own.ambient, COOLANT: own.coolant}
         met = {node for link in links for node in (link.hot, link.cold, link.target)}
         network = Network(self.nodes, {node: given[node] for node in given if node in met}, links)
-        self._check_names(network)
+        raise_any(_no_such("thermal.jet_shares", "part", own.jet_shares, self.wetted))
+        paths = [link.key for link in links]
+        raise_any(_no_such("thermal.conductances", "heat path", own.changes, paths))
         left = network.cut_off()
         if any(node == OIL or heat.get(node) for node in left):
             lost, power = sum(heat.values()) + own.cooler_power, own.cooler_power
@@ -620,8 +622,7 @@ class NetworkModel:
             around, jet = oil if wet.bath else mixture, wet.effectiveness * carried
             return Wetting(around, wet.bath, jet, shares, own.press_fit)
 
-        paths = (*self._of_parts(solution, wetting), *self._of_shafts(), *self._of_oil(carried))
-        return tuple(map(self._changed, paths))
+        return tuple(map(self._changed, self._paths(solution, wetting, carried)))
 
     def capacities(self) -> dict[str, float]:
         """Heat that each node stores for a kelvin. Theory (W35). [J/K]
@@ -640,8 +641,7 @@ class NetworkModel:
         found[OIL] = oil.density * oil.heat_capacity * volume if volume else None
         found[HOUSING] = mass * STEEL.heat_capacity if mass else None
         known = {node: found[node] for node in self.nodes}
-        strangers = own.capacity_changes.keys() - known.keys()
-        problems = _no_such("thermal.capacities", "part", strangers, known)
+        problems = _no_such("thermal.capacities", "part", own.capacity_changes, known)
         for node in own.capacity_changes.keys() & known:
             change, computed = own.capacity_changes[node], known[node]
             if change.value is not None or computed is not None:
@@ -674,7 +674,9 @@ class NetworkModel:
                 elsewhere.add(own.key)
         return tuple(node for node in self.wetted if node not in elsewhere) or self.wetted
 
-    def _of_parts(self, solution: Solution, wetting: Callable[[Wet], Wetting]) -> Iterator[Link]:
+    def _paths(
+        self, solution: Solution, wetting: Callable[[Wet], Wetting], carried: float
+    ) -> Iterator[Link]:
         housing = self.settings.housing is not None
         for own in self.machine.elements:
             if isinstance(own, GearSet):
@@ -686,13 +688,9 @@ class NetworkModel:
             else:
                 continue
             yield from (link for link in found if housing or link.cold != HOUSING)
-
-    def _of_shafts(self) -> Iterator[Link]:
         how = self.settings.shaft, "along the shaft", "given"
         for shaft, nodes in self.shafts.items():
             yield from (Link(f"{node}-{shaft}", node, shaft, *how) for node in nodes)
-
-    def _of_oil(self, carried: float) -> Iterator[Link]:
         if carried:
             yield Link(OUTFLOW, OIL, INLET, carried, "flow of oil", "energy balance")
         if self.settings.cooler:
@@ -701,14 +699,6 @@ class NetworkModel:
     def _changed(self, link: Link) -> Link:
         change = self.settings.changes.get(link.key)
         return link if change is None else replace(link, conductance=change(link.conductance))
-
-    def _check_names(self, network: Network) -> None:
-        """Names of the case that are not known here are errors."""
-        strangers = set(self.settings.jet_shares) - set(self.wetted)
-        raise_any(_no_such("thermal.jet_shares", "part", strangers, self.wetted))
-        known = [link.key for link in network.links]
-        unknown = set(self.settings.changes) - set(known)
-        raise_any(_no_such("thermal.conductances", "heat path", unknown, known))
 
 
 _OUTLET_REMEDY = (
@@ -742,9 +732,9 @@ def _seats(own: object) -> Iterator[tuple[str, str]]:
         yield from ((body, own.key) for body in own.between)
 
 
-def _no_such(table: str, noun: str, unknown: Iterable[str], known: Iterable[str]) -> list[Problem]:
+def _no_such(table: str, noun: str, given: Iterable[str], known: Iterable[str]) -> list[Problem]:
     allowed = f"is not a {noun} here; these are {', '.join(known)}."
     return [
         Problem(f"{table}.{name}", "", allowed, "Use one of these names.")
-        for name in sorted(unknown)
+        for name in sorted({*given} - {*known})
     ]

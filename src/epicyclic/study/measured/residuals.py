@@ -151,29 +151,23 @@ class MeasuredPoints:
 
     def losses(self, rows: Rows, unloaded: IntArray) -> list[Computed]:
         """The losses for each of the settings, of the rows of all points that were `asked` for."""
-        count = len(self.measured)
-        return [self._computed(rows, unloaded, i) for i in range(0, unloaded.size, count)]
-
-    def _computed(self, rows: Rows, unloaded: IntArray, first: int) -> Computed:
-        """The points of one of the settings, from number `first` on."""
-        component = self.measured.component
-        own = slice(first, first + len(component))
-        losses = np.array(
-            [
-                sum(float(self._loss(rows, unloaded, name)[point]) for name in parts_of(names))
-                for point, names in enumerate(component, first)
+        parts = [parts_of(names) for names in self.measured.component]
+        columns = {name: rows.numbers(name) for own in parts for name in own}
+        if LOAD_DEPENDENT in columns and self.load_dependent == AS_TESTED:
+            columns[LOAD_DEPENDENT] = as_tested(rows, unloaded)
+        found = []
+        for first in range(0, unloaded.size, len(parts)):
+            losses = [
+                sum(float(columns[name][point]) for name in own)
+                for point, own in enumerate(parts, first)
             ]
-        )
-        messages = (
-            rows.message[point] or rows.message[unloaded[point]] * math.isnan(loss)
-            for point, loss in enumerate(losses, first)
-        )
-        return Computed(losses, tuple(messages), tuple(rows.warnings[own]))
-
-    def _loss(self, rows: Rows, unloaded: IntArray, name: str) -> FloatArray:
-        if name == LOAD_DEPENDENT and self.load_dependent == AS_TESTED:
-            return as_tested(rows, unloaded)
-        return rows.numbers(name)
+            messages = (
+                rows.message[point] or rows.message[unloaded[point]] * math.isnan(loss)
+                for point, loss in enumerate(losses, first)
+            )
+            warnings = tuple(rows.warnings[first : first + len(parts)])
+            found.append(Computed(np.array(losses), tuple(messages), warnings))
+        return found
 
 
 STEP = 1e-2
