@@ -56,9 +56,9 @@ ADDED_TO_CASE = {
 }
 """Lines of what was added since the house was built, which the changelog counts apart."""
 CEILINGS = {
-    "lines": 69_985 + sum(ADDED.values()),
-    "lines of the core": 54_130 + sum(ADDED_TO_THE_CORE.values()),
-    "lines of case": 4_390 + sum(ADDED_TO_CASE.values()),
+    "lines": 68_845 + sum(ADDED.values()),
+    "lines of the core": 53_510 + sum(ADDED_TO_THE_CORE.values()),
+    "lines of case": 4_305 + sum(ADDED_TO_CASE.values()),
     "files": 260,
     "longest chain of imports": 25,
     "modules loaded by epicyclic.case.case": 45,

@@ -12,6 +12,8 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.gears.flanks import RA_OVER_RQ
+from epicyclic.plugins.rexs.draft import Draft
+from epicyclic.plugins.rexs.gears import _shifts
 from epicyclic.plugins.rexs.model import id_in, term, versions
 from rexs_files import (
     CASING,
@@ -143,6 +145,24 @@ def test_lacking_profile_shift_says_which_one_closes_the_mesh(read):
     case = found.case({**ROUGH, "ring.profile_shift_coefficient": closing})
     backlash = meshes(case)[1].backlash
     assert 0 <= backlash < 2e-9  # the shift has six decimals: 2 m_n tan(alpha) 1e-6
+
+
+@pytest.mark.parametrize("teeth", [(15, 23), (17, 31), (21, 44), (12, 69)])
+def test_shifts_that_close_a_mesh_stay_as_they_are(teeth):
+    given = {
+        "gears.normal_module": "2.5 mm",
+        "gears.normal_pressure_angle": "20 deg",
+        "gears.helix_angle": "0 deg",
+        "gears.center_distance": f"{2.5 * sum(teeth) / 2!r} mm",
+    }
+    for gear, number in zip(("pinion", "gear"), teeth, strict=True):
+        given |= {f"{gear}.teeth": number, f"{gear}.profile_shift_coefficient": 0.0}
+    draft = Draft({"kind": "gear_pair"})
+    for key, value in given.items():
+        draft.give(key, value, "file")
+    _shifts(draft, "", "pinion", "gear", "gear")
+    assert draft.tables["gear"]["profile_shift_coefficient"] == 0.0
+    assert not draft.notes
 
 
 def test_shift_of_the_ring_with_the_other_sign_is_noticed(read):

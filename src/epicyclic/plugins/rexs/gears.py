@@ -597,7 +597,7 @@ def _shifts(draft: Draft, place: str, member1: str, member2: str, changed: str) 
                     "distance only with the other sign. If that is correct, set "
                     f"{place}{key} = {format_number(-shift)}."
                 )
-        shown = math.floor(closing * 1e6) / 1e6 + 0.0
+        shown = math.floor(round(closing * 1e6, 3)) / 1e6 + 0.0  # what is rounding is no excess
         if key in draft.lacks:
             text = f"With the {other}, {format_number(shown)} leaves no backlash."
             draft.lacks[key] = replace(draft.lacks[key], instead=text)
