@@ -6,6 +6,7 @@ once: nothing has been begun, and libraries may swallow or wrap an exception.
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
 import signal
@@ -18,6 +19,7 @@ from epicyclic.files import look_seldom
 def main() -> None:
     """Run the command."""
     signal.signal(signal.SIGINT, _end)
+    atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)  # last: what is done stays done
     look_seldom()
     from epicyclic.cli.main import main as run
 

@@ -146,3 +146,16 @@ def test_imports_are_left_at_once(module):
 def test_the_command_is_the_module():
     (command,) = (point for point in entry_points(group="console_scripts", name="epicyclic"))
     assert command.value == "epicyclic.__main__:main"
+
+
+def test_ctrl_c_after_the_work_changes_nothing():
+    """What was registered before the command runs after all that it does at its end."""
+    program = """
+import atexit, os, signal, sys
+atexit.register(os.kill, os.getpid(), signal.SIGINT)
+sys.argv = ["epicyclic", "check", "talbot-2012"]
+from epicyclic.__main__ import main
+main()
+"""
+    run = subprocess.run([sys.executable, "-c", program], check=False, capture_output=True)
+    assert (run.returncode, run.stderr) == (0, b"")
