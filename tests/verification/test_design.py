@@ -490,6 +490,13 @@ ALONE = {
 }
 
 
+def test_relief_under_no_load_is_an_input_error():
+    vary = {"sun.micro_geometry.tip_relief": ["15 um"]}
+    with pytest.raises(InputError) as caught:
+        relief_front(Relief(load_case("talbot-2012"), "sun_mesh", vary, loads=[]), Runner(1))
+    assert [problem.key for problem in caught.value.problems] == ["loads"]
+
+
 @pytest.mark.slow
 def test_relief_of_the_test_article():
     """As this package computed it before; the loss there has 122 W of pocketing on top."""

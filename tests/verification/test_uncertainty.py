@@ -317,7 +317,8 @@ def test_a_cycle_is_compared_with_the_same_draw_at_all_its_points(case):
     weights = np.array(times) / sum(times)
     for name in ("first", "second", "difference"):
         apart = np.array([it[name].sel(result="total") for it in alone])
-        assert float(whole[name].sel(result="total")) == pytest.approx(weights @ apart, rel=1e-12)
+        # Points that are solved together agree with single ones to LOSS_AGREEMENT, 1e-7.
+        assert float(whole[name].sel(result="total")) == pytest.approx(weights @ apart, rel=1e-7)
     spreads = np.array([it.standard_uncertainty.sel(result="total") for it in alone])
     known = float(whole.standard_uncertainty.sel(result="total"))
     assert np.hypot.reduce(weights * spreads) < known <= weights @ spreads * (1 + 1e-9)

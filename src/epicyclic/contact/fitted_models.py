@@ -21,20 +21,9 @@ from epicyclic.contact.line_contact import CONDITIONS, LineContacts, contacts_at
 from epicyclic.dataclass import dataclass
 from epicyclic.errors import InputError, Problem
 from epicyclic.files import read_text, sealed, unsealed
+from epicyclic.kernels import mixed_ehl as talbot
 from epicyclic.kernels.interpolation import covariance_sums, covariances
 from epicyclic.kernels.line_contact import eyring_means, pan_hamrock_central_film
-from epicyclic.kernels.mixed_ehl import (
-    BLEND_HALF_WIDTH,
-    FRICTION_BOUNDARY_LIMIT,
-    FRICTION_FULL_FILM_LIMIT,
-    ROLLING_LIMIT,
-    log_mu_boundary,
-    log_mu_full_film,
-    log_mu_mixed,
-    log_needle_loss,
-    log_rolling_film,
-    log_rolling_mixed,
-)
 from epicyclic.oil.oil import Oil
 
 # The regressions of Talbot (2012) as forms: his formulas, with coefficients to be fitted.
@@ -107,7 +96,8 @@ class Regression:
 
 def _blend(ratio: FloatArray, limit: float) -> FloatArray:
     """Weight of the branch above `limit`. Theory (F4)."""
-    t = np.clip((np.log(ratio / limit) + BLEND_HALF_WIDTH) / (2 * BLEND_HALF_WIDTH), 0, 1)
+    width = talbot.BLEND_HALF_WIDTH
+    t = np.clip((np.log(ratio / limit) + width) / (2 * width), 0, 1)
     return t * t * (3 - 2 * t)
 
 
@@ -175,16 +165,24 @@ def _needle_contact(states: LineContacts) -> Sequence[Any]:
 
 FRICTION_REGRESSION = Regression(
     "regression", "form of Talbot (2012), Eq. 5.8",
-    ((log_mu_boundary, 12), (log_mu_mixed, 12), (log_mu_full_film, 13)),
-    (FRICTION_BOUNDARY_LIMIT, FRICTION_FULL_FILM_LIMIT), lambda _: 1.0, _groups,
+    (
+        (talbot.log_mu_boundary, len(talbot.FRICTION_BOUNDARY)),
+        (talbot.log_mu_mixed, len(talbot.FRICTION_MIXED)),
+        (talbot.log_mu_full_film, len(talbot.FRICTION_FULL_FILM)),
+    ),
+    (talbot.FRICTION_BOUNDARY_LIMIT, talbot.FRICTION_FULL_FILM_LIMIT), lambda _: 1.0, _groups,
 )  # fmt: skip
 ROLLING_REGRESSION = Regression(
     "regression", "form of Talbot (2012), Eq. 5.10",
-    ((log_rolling_mixed, 11), (log_rolling_film, 11)), (ROLLING_LIMIT,), rolling_scale, _groups,
+    (
+        (talbot.log_rolling_mixed, len(talbot.ROLLING_MIXED)),
+        (talbot.log_rolling_film, len(talbot.ROLLING_FILM)),
+    ),
+    (talbot.ROLLING_LIMIT,), rolling_scale, _groups,
 )  # fmt: skip
 NEEDLE_REGRESSION = Regression(
-    "regression", "form of Talbot (2012), Eq. 3.5", ((log_needle_loss, 11),), (), lambda _: 1.0,
-    _needle_contact,
+    "regression", "form of Talbot (2012), Eq. 3.5",
+    ((talbot.log_needle_loss, len(talbot.NEEDLE_FILM)),), (), lambda _: 1.0, _needle_contact,
 )  # fmt: skip
 
 
@@ -227,9 +225,9 @@ class Structured:
     name: str
     title: str
     labels: tuple[str, ...]  # What each coefficient is.
-    start: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
-    low: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
-    high: tuple[float, ...]  # Where the fit begins, and its bounds, which keep the form monotone.
+    start: tuple[float, ...]  # Where the fit begins.
+    low: tuple[float, ...]  # Bounds of the fit, which keep the form monotone.
+    high: tuple[float, ...]  # See `low`.
     # From conditions and coefficients to the quantity at every contact, shape (n,).
     value: Callable[[LineContacts, FloatArray], FloatArray]
 

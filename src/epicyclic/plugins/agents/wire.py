@@ -70,19 +70,18 @@ class _Messages(io.BufferedIOBase):
         except (ValueError, RecursionError):
             self._refuse(None, PARSE_ERROR, "The message is not JSON.")
             return False
-        number = found.get("id", "none") if isinstance(found, dict) else None
+        number = found.get("id") if isinstance(found, dict) else None
         try:
             jsonrpc_message_adapter.validate_json(line, by_name=False)
-            is_message = isinstance(number, str | int) and not isinstance(number, bool)
+            is_message = "id" not in found or type(number) in (str, int)  # No bool.
         except ValueError:
             is_message = False
         if not is_message:
-            number = None if number == "none" else number
             self._refuse(number, INVALID_REQUEST, "This is no message of JSON-RPC 2.0.")
         return is_message
 
     def _refuse(self, number: object, code: int, reason: str) -> None:
-        known = number if isinstance(number, str | int) and not isinstance(number, bool) else None
+        known = number if type(number) in (str, int) else None
         answer = {"jsonrpc": "2.0", "id": known, "error": {"code": code, "message": reason}}
         self._sink.write(json.dumps(answer).encode() + b"\n")
         self._sink.flush()

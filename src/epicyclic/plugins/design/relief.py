@@ -56,6 +56,8 @@ def _problems(relief: Relief) -> Iterator[Problem]:
             allowed = "is no key of micro-geometry."
             remedy = 'For example "sun.micro_geometry.tip_relief=5:45:5 um".'
             yield Problem("--vary", key, allowed, remedy)
+    if not relief.loads:
+        yield Problem("loads", "none", "must hold one load at least.", "For example loads=[{}].")
     keys = mesh_keys(relief.case)
     if relief.mesh not in keys:
         allowed = f"must be one of {', '.join(keys)}."

@@ -231,15 +231,15 @@ def without_table(case: Case) -> Case:
 def look_nearby(case: Case, result: Result) -> Nearby:
     """Solve a case with each of its uncertain inputs changed."""
     values, outputs = known_values(case, result), outputs_of(case, result)
-    plain = without_table(case)
-    flows = flows_around(plain, SAME_FLOW)
+    alone = without_table(case)
+    flows = flows_around(alone, SAME_FLOW)
     losses = np.array([result.losses[name] for name in outputs.losses])
     if outputs.tested:
-        (losses,) = _losses(plain, [{}], outputs, flows)
+        (losses,) = _losses(alone, [{}], outputs, flows)
     changes = steps(values)
-    moved = [number for number, it in enumerate(changes) if not _without_effect(plain, it)]
+    moved = [number for number, it in enumerate(changes) if not _without_effect(alone, it)]
     stepped = np.tile(losses, (len(changes), 1))
-    stepped[moved] = _losses(plain, [changes[number] for number in moved], outputs, flows)
+    stepped[moved] = _losses(alone, [changes[number] for number in moved], outputs, flows)
     own = (result.input_power, shaft_power(case), losses[: len(outputs.losses)].sum())
     powers = Powers(*map(np.atleast_1d, own))
     return nearby_of(values, outputs, losses, powers, stepped)
