@@ -440,8 +440,8 @@ def solve_machines(
                 trails = trail.parts(range(len(rows)))
         else:
             try:
-                one = _together([wanted[row] for row in rows])
-                solution, agree = solve_machine(one, trail)
+                together = _together([wanted[row] for row in rows])
+                solution, agree = solve_machine(together, trail)
             except Apart as parting:
                 left += _parted(rows, parting.rows, trail)
                 continue
@@ -452,7 +452,12 @@ def solve_machines(
                 if is_interrupt(error):
                     raise KeyboardInterrupt from error
             else:
-                each = taken(solution, range(len(rows)), final=True)
+                results = solution.results
+                if not (agree or wanted[rows[0]].whole):  # what is a step on the way nobody reads
+                    results = {key: replace(it, flags=(), notes=()) for key, it in results.items()}
+                state = replace(solution.state, fluids=fluids)
+                one = replace(solution, results=results, state=state)
+                each = taken(one, range(len(rows)), final=True)
                 for row, own in zip(rows, each, strict=True):
                     state = replace(own.state, fluids=wanted[row].fluids)
                     found[row] = replace(own, state=state), agree

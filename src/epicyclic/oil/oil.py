@@ -235,6 +235,9 @@ class Oil(_Data):
             self.__dict__["lubricant_factor"] = LUBRICANT_FACTORS[self.kind]
         return self
 
+    def __hash__(self) -> int:  # of what tells oils apart: it is asked for at each temperature
+        return hash((self.name, *(point.value for point in self.kinematic_viscosity)))
+
 
 def _neighbours(points: Sequence[ViscosityPoint | DensityPoint]) -> Iterator[tuple[int, int]]:
     """Indices of points next to each other in temperature, the colder one first."""
@@ -376,13 +379,18 @@ def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
 
 def extrapolated_viscosity(oil: Oil, temperature: float) -> float:
     """ASTM D341 between neighbouring points, and beyond the outermost two. Theory (L1). [m^2/s]"""
+    y = _piecewise_line(math.log10(temperature), *_viscosity_line(oil))
+    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
+
+
+@lru_cache(maxsize=64)
+def _viscosity_line(oil: Oil) -> tuple[list[float], list[float]]:
+    """Viscosities as ASTM D341 draws them: lg T in K, lg lg(nu + 0.7) with nu in mm^2/s."""
     points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
-    y = _piecewise_line(
-        math.log10(temperature),
+    return (
         [math.log10(point.temperature) for point in points],
         [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points],
     )
-    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
 
 
 def _density(oil: Oil, temperature: float) -> float:
@@ -404,15 +412,16 @@ def _pressure_viscosity(oil: Oil, temperature: float, nu: float, mu: float) -> t
     if isinstance(law, GoldLaw):
         return law.s * math.pow(nu / MM2_PER_S, law.t) * 1e-9, law.t
     # z, linear between the points of the law and constant beyond them: (L5)
-    index = float(np.interp(temperature, *_roelands_points(oil, law)))
+    index = float(np.interp(temperature, *_roelands_points(oil)))
     # alpha/z = (ln mu + 9.67)/1.96e8 with mu in Pa s
     slope = math.log(mu) + ROELANDS_OFFSET
     return index * (slope / ROELANDS_PRESSURE), 1 / slope
 
 
 @lru_cache(maxsize=64)
-def _roelands_points(oil: Oil, law: RoelandsLaw) -> tuple[list[float], list[float]]:
+def _roelands_points(oil: Oil) -> tuple[list[float], list[float]]:
     """Temperatures and indices z of the points of an oil. Theory (L5)."""
+    law = cast(RoelandsLaw, oil.pressure_viscosity)
     points = sorted(law.point, key=lambda point: point.temperature)
     index = []
     for point in points:
