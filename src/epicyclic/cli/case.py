@@ -13,7 +13,7 @@ import click
 
 from epicyclic.cli.common import (
     beside,
-    case_argument,
+    case_options,
     check_ending,
     draw,
     echo,
@@ -25,7 +25,6 @@ from epicyclic.cli.common import (
     point_of,
     print_tables,
     progress_bar,
-    set_option,
     show,
     tell_given,
     working,
@@ -43,8 +42,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @json_option
 @file_option(
     "--save", help="Keep the result with all its fields in FILE.nc, for reports and plots."
@@ -104,8 +102,7 @@ def telling_contacts(case: Case) -> Iterator[None]:
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 def check(case: str, changes: tuple[str, ...]) -> None:
     """Check a case and show what follows from it, as a data sheet, without computing losses.
 
@@ -133,8 +130,7 @@ def check(case: str, changes: tuple[str, ...]) -> None:
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @plot_option("Draw the sliding loss with every model to FILE (.png, .svg, .pdf).")
 def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Compare all friction models on a case, with their ranges and a recommendation."""
@@ -154,8 +150,7 @@ def friction(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf.")
 def mesh(case: str, changes: tuple[str, ...], plot: Path | None) -> None:
     """Show the tooth contact: load, transmission error, stiffness, pressure, friction power."""
@@ -177,8 +172,7 @@ QUANTITIES = (AS_GIVEN, "cooler_power", "oil_flow", "input_power")
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @click.option(
     "--solve",
     "quantity",
@@ -265,8 +259,7 @@ def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:
 
 
 @click.command("warm-up")
-@case_argument
-@set_option
+@case_options
 @click.option("--for", "duration", metavar="TIME", required=True, help='Duration, as in "2 h".')
 @click.option(
     "--from",

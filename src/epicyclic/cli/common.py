@@ -388,6 +388,11 @@ set_option = set_option_for("the case", "operation.torque=500 N*m")
 contact_set_option = set_option_for("the contact", "lubricant.eyring_stress=8 MPa")
 
 
+def case_options(command: Callable[..., None]) -> Any:
+    """A CASE with its option --set: the command gets a `case` and its `changes`."""
+    return case_argument(set_option(command))
+
+
 def plot_option(text: str, endings: Sequence[str] = PICTURES) -> Callable[[Any], Any]:
     """The option --plot, with its help."""
     return file_option("--plot", endings=endings, help=text)

@@ -10,7 +10,7 @@ import click
 from pydantic_core import PydanticCustomError
 
 from epicyclic.cli.common import (
-    case_argument,
+    case_options,
     draw,
     journal_option,
     json_option,
@@ -20,7 +20,6 @@ from epicyclic.cli.common import (
     print_tables,
     progress_bar,
     runner_options,
-    set_option,
     shard_option,
     show,
     table_options,
@@ -41,9 +40,8 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@case_argument
+@case_options
 @click.argument("measured", metavar="MEASURED", type=click.Path(path_type=Path))
-@set_option
 @click.option(
     "--component",
     metavar="NAME",

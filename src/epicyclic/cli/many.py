@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from epicyclic.cli.common import (
-    case_argument,
+    case_options,
     echo,
     file_option,
     load_with,
@@ -66,8 +66,7 @@ SHOWN_FAILURES = 10
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @click.option(
     "--vary",
     metavar="KEY=VALUES",

@@ -9,7 +9,7 @@ import click
 
 from epicyclic.cli.common import (
     beside,
-    case_argument,
+    case_options,
     check_ending,
     draw,
     echo,
@@ -21,7 +21,6 @@ from epicyclic.cli.common import (
     print_tables,
     progress_bar,
     runner_options,
-    set_option,
     shard_option,
     temperature_option,
     working,
@@ -36,8 +35,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @plot_option("Draw each mesh to FILE-MESH.png, .svg or .pdf, and its section to FILE-MESH-section.")
 @file_option(
     "--animate",
@@ -79,8 +77,7 @@ FORMATS = (".nc", ".csv")
 
 
 @click.command("pockets-table")
-@case_argument
-@set_option
+@case_options
 @click.option(
     "--speed",
     metavar="VALUES",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.common import (
-    case_argument,
+    case_options,
     check_page,
     draw,
     echo,
@@ -21,7 +21,6 @@ from epicyclic.cli.common import (
     plot_option,
     progress_bar,
     runner_options,
-    set_option,
     shard_option,
     show,
     write_page,
@@ -201,8 +200,7 @@ STUDY = "study"  # With which files of unfinished studies begin in their folder.
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @click.option(
     "--what",
     metavar="NAMES",

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from epicyclic.cli.common import (
-    case_argument,
+    case_options,
     draw,
     echo,
     file_option,
@@ -22,7 +22,6 @@ from epicyclic.cli.common import (
     plot_option,
     point_of,
     runner_options,
-    set_option,
     show,
     tell,
     tell_given,
@@ -34,8 +33,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @json_option
 @file_option(
     "--rotor-dynamics",
@@ -171,8 +169,7 @@ def design(
 
 
 @click.command()
-@case_argument
-@set_option
+@case_options
 @click.option(
     "--vary",
     multiple=True,
