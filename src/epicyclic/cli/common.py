@@ -240,19 +240,12 @@ def parse_size(text: str) -> tuple[float, float]:
 
 def draw(figure: Figure, path: Path, caption: str = "") -> None:
     """Write a picture, with its operating point below if it has none yet."""
+    from epicyclic.show.plots.style import caption_below, figure_bytes
+
     if caption:
-        from epicyclic.show.plots.style import caption_below
-
         caption_below(figure, caption)
-    write_file(path, picture_bytes(figure, path))
+    write_file(path, figure_bytes(figure, path.suffix[1:]))
     echo(f"Wrote {path}.")
-
-
-def picture_bytes(figure: Figure, path: Path) -> bytes:
-    """What a file of the type of `path` holds of a figure."""
-    from epicyclic.show.plots.style import figure_bytes
-
-    return figure_bytes(figure, path.suffix[1:])
 
 
 def check_page(path: Path) -> None:

@@ -16,9 +16,9 @@ from epicyclic.cli.common import (
     json_option,
     load_with,
     output_option,
-    picture_bytes,
     picture_option,
     plot_option,
+    print_tables,
     progress_bar,
     runner_options,
     shard_option,
@@ -78,7 +78,7 @@ def validate(
     epicyclic validate reproduce CHAPTER     a chapter of the dissertation, computed again
     """
     # computing and drawing are loaded by those who ask for them: the command line starts quickly
-    from epicyclic.show.terminal import as_on_page, terminal
+    from epicyclic.show.terminal import as_on_page
     from epicyclic.study.sweeps.runner import Runner
     from epicyclic.validation import compare, pages
 
@@ -103,7 +103,7 @@ def validate(
                 shown = pages.settled_table(settled, compare.estimates())
             else:
                 shown = pages.bands_table(compare.measured_figures(runner))
-        terminal().print(shown)
+        print_tables(shown)
         return
     if output is not None:
         check_page(output)
@@ -112,8 +112,8 @@ def validate(
     with progress_bar("closures of the flow through pockets") as progress:
         closures = compare.closure_figures(progress)
     if output is None:
-        terminal().print(as_on_page(pages.closure_table(closures)))
-        terminal().print(pages.validation_table(rows, closures))
+        print_tables(as_on_page(pages.closure_table(closures)))
+        print_tables(pages.validation_table(rows, closures))
         return
     with progress_bar("pictures") as progress:
         page = pages.validation_html(rows, closures, progress)
@@ -162,7 +162,8 @@ def reproduce(
     epicyclic reproduce 5 -o chapter-5
     epicyclic reproduce 3 --figure 3.4 --figure 3.5 -o bearings
     """
-    from epicyclic.show.terminal import as_on_page, terminal
+    from epicyclic.show.plots.style import figure_bytes
+    from epicyclic.show.terminal import as_on_page
     from epicyclic.study.sweeps.run import write_dataset
     from epicyclic.validation.chapters import CHAPTERS, TOPICS
     from epicyclic.validation.compare import compare_published, summary
@@ -185,14 +186,14 @@ def reproduce(
             for suffix in (".nc", ".csv"):
                 write_dataset(item.data, output / f"fig-{item.number}{suffix}")
             path = output / f"fig-{item.number}.{picture}"
-            write_file(path, picture_bytes(item.picture, path))
+            write_file(path, figure_bytes(item.picture, picture))
             echo(f"Wrote {path}, .nc and .csv.")
     with progress_bar("figures") as progress:
         rows = compare_published(progress, *TOPICS[chapter])
     found.sort(key=lambda item: known.index(item.number))
     write_page(output / PAGE, chapter_html(chapter, found, rows))
     if (table := influence_table(found)).rows:
-        terminal().print(as_on_page(table))
+        print_tables(as_on_page(table))
     echo(summary(rows))
 
 
@@ -259,6 +260,7 @@ def study(
 
 def study_writer(plan: StudyPlan, folder: Path, picture: str) -> Write:
     """Writes tables and figures to a folder; raises `InputError` if there can be none."""
+    from epicyclic.show.plots.style import figure_bytes
     from epicyclic.study.sweeps.run import write_dataset
     from epicyclic.validation.plots import study_figure
     from epicyclic.validation.pocketing import published_study, study_datasets
@@ -273,8 +275,7 @@ def study_writer(plan: StudyPlan, folder: Path, picture: str) -> Write:
                 written.append(folder / f"{name}{suffix}")
                 write_dataset(dataset, written[-1])
             written.append(folder / f"{name}.{picture}")
-            figure = study_figure(dataset, published)
-            write_file(written[-1], picture_bytes(figure, written[-1]))
+            write_file(written[-1], figure_bytes(study_figure(dataset, published), picture))
         return "\n".join(f"Wrote {path}." for path in written)
 
     return write

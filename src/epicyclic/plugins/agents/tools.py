@@ -18,7 +18,7 @@ from mcp.server.mcpserver import MCPServer
 from mcp_types import CallToolResult, TextContent, ToolAnnotations
 from pydantic import Field
 
-from epicyclic.cli.common import echo, load_with
+from epicyclic.cli.common import echo, load_with, print_tables
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.messages import did_you_mean, key_parts, one_line, written
 from epicyclic.registry import offered
@@ -151,7 +151,6 @@ def run(case: Case, changes: Changes = (), details: bool = False) -> dict[str, A
     from epicyclic.show.details import result_tables
     from epicyclic.show.result_tables import remarks
     from epicyclic.show.summary import first_screen
-    from epicyclic.show.terminal import terminal
     from epicyclic.show.uncertainty_tables import band_texts, result_json
     from epicyclic.study.bands.study import quick_known
     from epicyclic.study.solve import solve
@@ -159,7 +158,7 @@ def run(case: Case, changes: Changes = (), details: bool = False) -> dict[str, A
     loaded = load_with(case, changes)
     result = solve(loaded)
     known = quick_known(loaded, result)
-    terminal().print(
+    print_tables(
         result_tables(result, tuple(remarks(loaded, result)), band_texts(known))
         if details
         else first_screen(result, known)
@@ -208,26 +207,24 @@ def uncertainty(
     case: Case, changes: Changes = (), samples: int = 256, seed: int = 1
 ) -> dict[str, Any]:
     """95 % bands of losses and efficiency from samples, and what causes them."""
-    from epicyclic.show.terminal import terminal
     from epicyclic.show.uncertainty_tables import uncertainty_tables
     from epicyclic.study.bands.points import uncertainty as compute
 
     _check_samples(samples)
     data = compute(load_with(case, changes), samples=samples, seed=seed, progress=_go_on)
-    terminal().print(uncertainty_tables(data))
+    print_tables(uncertainty_tables(data))
     return _numbers(data, ("nominal", "low", "high", "standard_uncertainty"))
 
 
 def compare_cases(first: Case, second: Case, samples: int = 256, seed: int = 1) -> dict[str, Any]:
     """Whether the second case loses less than the first, and with what confidence."""
-    from epicyclic.show.terminal import terminal
     from epicyclic.show.uncertainty_tables import pair_tables
     from epicyclic.study.bands.compare_cases import compare_cases as compute
 
     _check_samples(samples)
     cases = [load_with(name, ()) for name in (first, second)]
     data = compute(cases[0], cases[1], samples=samples, seed=seed, progress=_go_on)
-    terminal().print(pair_tables(data))
+    print_tables(pair_tables(data))
     return _numbers(data, ("first", "second", "difference", "low", "high", "probability"))
 
 

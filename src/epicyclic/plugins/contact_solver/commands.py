@@ -18,8 +18,8 @@ from epicyclic.cli.common import (
     json_option,
     output_option,
     parse_changes,
-    picture_bytes,
     plot_option,
+    print_tables,
     progress_bar,
     runner_options,
     shard_option,
@@ -90,6 +90,7 @@ def contact(
         contact_tables,
     )
     from epicyclic.schema.read import parse_value
+    from epicyclic.show.plots.style import figure_bytes
 
     given = {
         CONTACT_OPTIONS[name][0]: parse_value(text)
@@ -105,7 +106,7 @@ def contact(
         if plot.suffix == ANIMATION and result.rough is not None:
             write_file(plot, contact_animation(result))
         else:
-            write_file(plot, picture_bytes(contact_figure(result), plot))
+            write_file(plot, figure_bytes(contact_figure(result), plot.suffix[1:]))
         echo(f"Wrote {plot}.", err=json_file == "-")
     if result.status is not Status.CONVERGED:
         sys.exit(EXIT_NO_SOLUTION)
@@ -240,19 +241,17 @@ def show_model(model: Path) -> None:
     """Show what a fitted MODEL file holds, and its errors."""
     from epicyclic.contact.fitted_models import read_oil_model
     from epicyclic.plugins.contact_solver.show import oil_model_tables
-    from epicyclic.show.terminal import terminal
 
-    terminal().print(oil_model_tables(read_oil_model(model)))
+    print_tables(oil_model_tables(read_oil_model(model)))
 
 
 def _fit(folders: Sequence[CampaignFolder], output: Path, plot: Path | None) -> None:
     """Fit, write and show the models."""
     from epicyclic.plugins.contact_solver.fit import fit_and_write, simulated_quantities
     from epicyclic.plugins.contact_solver.show import oil_model_figure, oil_model_tables
-    from epicyclic.show.terminal import terminal
 
     model = fit_and_write(folders, output)
-    terminal().print(oil_model_tables(model))
+    print_tables(oil_model_tables(model))
     echo(f"Wrote {output}.")
     if plot is not None:
         draw(oil_model_figure(model, simulated_quantities(folders)), plot)

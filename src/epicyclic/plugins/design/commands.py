@@ -21,6 +21,7 @@ from epicyclic.cli.common import (
     output_option,
     plot_option,
     point_of,
+    print_tables,
     runner_options,
     show,
     tell,
@@ -223,7 +224,7 @@ def relief(
     """
     from epicyclic.plugins.design import report
     from epicyclic.plugins.design.relief import Relief, mesh_keys, relief_front
-    from epicyclic.show.terminal import as_on_page, terminal
+    from epicyclic.show.terminal import as_on_page
     from epicyclic.study.sweeps.run import check_output, parse_vary, write_dataset
 
     if output is not None:
@@ -254,6 +255,6 @@ def relief(
     if output is not None:
         write_dataset(data, output, lambda found: found.to_dataframe())
         echo(f"Wrote {output}.")
-    terminal().print(as_on_page(report.variants_table(data)))
+    print_tables(as_on_page(report.variants_table(data)))
     if plot is not None:
         draw(report.relief_figure(data), plot, point_of(loaded))

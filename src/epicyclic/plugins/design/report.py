@@ -16,7 +16,6 @@ from matplotlib.figure import Figure
 from pydantic import TypeAdapter, ValidationError
 from rich.console import Console, RenderableType
 
-from epicyclic.cli.common import picture_bytes
 from epicyclic.dataclass import dataclass
 from epicyclic.errors import one_problem
 from epicyclic.files import whole_file, write_file
@@ -37,7 +36,7 @@ from epicyclic.plugins.design.task import read_task, task_tables
 from epicyclic.show.data_sheet import data_sheet
 from epicyclic.show.page import Cell, Drawing, Listing, Table, number
 from epicyclic.show.plots.catalogue import Panel, drawing
-from epicyclic.show.plots.style import styled_figure
+from epicyclic.show.plots.style import figure_bytes, styled_figure
 from epicyclic.show.terminal import as_on_page, spaced
 from epicyclic.study.maps.cycle import SUMS_TO_ONE, shares_text
 from epicyclic.study.sweeps.run import write_netcdf
@@ -145,7 +144,7 @@ def write_all(found: Found, sentences: Sequence[str], folder: Path) -> Iterator[
     path = folder / "front.png"
     with styled_figure(1, 1, found.task.title or "Designs") as (figure, axes):
         draw_front(found, axes[0, 0])
-    write_file(path, picture_bytes(figure, path))
+    write_file(path, figure_bytes(figure, "png"))
     yield path
     for place in found.chosen:
         path = folder / f"design-{place}.toml"

@@ -18,6 +18,7 @@ from epicyclic.cli.common import (
     load_with,
     output_option,
     parse_changes,
+    print_tables,
     set_option,
 )
 from epicyclic.errors import EXIT_INCOMPLETE, InputError, Problem, one_problem
@@ -92,7 +93,6 @@ def import_(
     from epicyclic.plugins.rexs.files import stem
     from epicyclic.plugins.rexs.importing import read_rexs
     from epicyclic.schema.fields import find_field
-    from epicyclic.show.terminal import terminal
 
     target = output or Path(f"{stem(file)}.toml")
     if target.exists():
@@ -109,7 +109,7 @@ def import_(
         notes = found.geometry_notes(found.case(parsed))
     except InputError as error:
         problems = error.problems
-    terminal().print(import_tables(found, parsed, problems, notes))
+    print_tables(import_tables(found, parsed, problems, notes))
     echo(f"Wrote {target}.")
     if problems:
         echo(f"Set what is missing, then: epicyclic run {target}", err=True)
