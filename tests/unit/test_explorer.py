@@ -16,7 +16,7 @@ import xarray as xr
 import epicyclic as ep
 from epicyclic.show import explorer
 from epicyclic.show.explorer import explorer_items
-from epicyclic.show.html import report_pdf
+from epicyclic.show.html import page_bytes
 from epicyclic.show.page import Explorer, Listing
 from epicyclic.show.plots.catalogue import panels_of
 from epicyclic.show.plots.loss_map import map_line, shown_panels
@@ -235,7 +235,7 @@ def test_like_warnings_are_counted_together(data, page):
 
 def test_a_report_of_a_sweep_prints_as_pdf(page):
     pytest.importorskip("weasyprint", reason="optional")
-    assert report_pdf(page).startswith(b"%PDF")
+    assert page_bytes(page, ".pdf").startswith(b"%PDF")
 
 
 ASK = """<script>

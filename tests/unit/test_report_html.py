@@ -232,9 +232,9 @@ def test_figures_have_the_size_that_is_asked_for(pair_map, map_page):
 
 def test_a_report_prints_as_pdf(map_page):
     pytest.importorskip("weasyprint", reason="optional")
-    from epicyclic.show.html import report_pdf
+    from epicyclic.show.html import page_bytes
 
-    pdf = report_pdf(map_page)
+    pdf = page_bytes(map_page, ".pdf")
     assert pdf.startswith(b"%PDF")
     assert pdf.rstrip().endswith(b"%%EOF")
 

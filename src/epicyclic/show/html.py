@@ -179,17 +179,12 @@ def check_pdf() -> ModuleType:
 
 
 def page_bytes(page: str, ending: str) -> bytes:
-    """What a file holds of a page: the page itself, or a ``".pdf"`` of it."""
-    return report_pdf(page) if ending == ".pdf" else page.encode()
+    """What a file holds of a page: the page itself, or a ``".pdf"`` of it with its still figures.
 
-
-def report_pdf(
-    page: str,  # As `report_html` returns it.
-) -> bytes:
-    """A page as PDF, of its still figures.
-
-    Raises `InputError` if WeasyPrint cannot be used.
+    Raises `InputError` if WeasyPrint is needed and cannot be used.
     """
+    if ending != ".pdf":
+        return page.encode()
     weasyprint = check_pdf()
     # it reports every property of style sheets for screens
     logging.getLogger("weasyprint").setLevel(logging.CRITICAL)
