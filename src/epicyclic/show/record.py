@@ -306,7 +306,6 @@ _PLACES = {
     "station_position",
     "period_angle",
 }
-_MAP_NUMBERS = ("torque_loss", "total", "efficiency")
 _TEXTS = ("status", "message", "warnings")
 
 
@@ -340,29 +339,26 @@ def map_problems(data: xr.Dataset) -> Iterator[Problem]:
             yield Problem(axis, "", "is not an axis of the map.", RUN_AGAIN)
         else:
             yield from _number_problems(axis, data, axis, (axis,))
-    for name in _MAP_NUMBERS:
-        yield from _number_problems(name, data, name, tuple(map(str, dims)))
-    yield from _text_problems(data)
-    yield from _label_problems("", data)
+    yield from _point_problems(data, "torque_loss", "total", "efficiency")
 
 
-def _text_problems(data: xr.Dataset) -> Iterator[Problem]:
-    """What points of maps and sweeps say of themselves."""
+def _point_problems(data: xr.Dataset, first: str, *others: str) -> Iterator[Problem]:
+    """Numbers over all points of a map or sweep, what these say of themselves, and labels."""
+    dims = tuple(map(str, data[first].dims))
+    for name in (first, *others):
+        yield from _number_problems(name, data, name, dims)
     for name in _TEXTS:
         if name not in data or data[name].dtype.kind not in "OU":
             yield Problem(name, "", "must have a text for every point.", RUN_AGAIN)
+    yield from _label_problems("", data)
 
 
 def sweep_problems(data: xr.Dataset) -> Iterator[Problem]:
     """What plots would miss in a sweep."""
-    dims = tuple(map(str, data["total"].dims))
-    for dim in dims:
+    for dim in map(str, data["total"].dims):
         if dim not in data.coords or data[dim].dtype.kind not in "fiuOU":
             yield Problem(dim, "", "must be numbers or names.", RUN_AGAIN)
-    for name in ("total", "efficiency"):
-        yield from _number_problems(name, data, name, dims)
-    yield from _text_problems(data)
-    yield from _label_problems("", data)
+    yield from _point_problems(data, "total", "efficiency")
 
 
 def _number_problems(
