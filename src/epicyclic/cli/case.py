@@ -62,15 +62,13 @@ def run(
 
     loaded = load_with(case, changes)
     if save is not None:
-        from epicyclic.show.record import check_result_output
+        from epicyclic.show.record import check_result_output, record, save_result
 
         check_result_output(save)
     with telling_contacts(loaded):
         result = solve(loaded)
     known = quick_known(loaded, result)
     if save is not None:
-        from epicyclic.show.record import record, save_result
-
         save_result(record(loaded, result=result), save)
 
     def tables() -> RenderableType:

@@ -28,7 +28,7 @@ from epicyclic.units import (
     KILOGRAM_PER_CUBIC_METRE,
     PER_GIGAPASCAL,
     SQUARE_MM_PER_SECOND,
-    Quantity,
+    celsius_text,
     format_number,
     unit_text,
 )
@@ -281,20 +281,15 @@ def oil_sheet(name: str) -> RenderableType:
         ("density", KILOGRAM_PER_CUBIC_METRE, oil.density),
     ):
         for point in points:
-            at = f"{label} at {_text(CELSIUS, point.temperature, 4)}"
-            table.add_row(at, _text(unit, point.value), point.source)
+            at = f"{label} at {celsius_text(point.temperature, 4)}"
+            table.add_row(at, unit_text(unit.text(point.value)), point.source)
     law = oil.pressure_viscosity
     calibrated = " (calibrated)" if law.calibrated else ""
     table.add_row(
         f"pressure-viscosity coefficient at 40 °C, {law.law} law{calibrated}",
-        _text(PER_GIGAPASCAL, _state(oil, "40 degC").pressure_viscosity, 4),
+        unit_text(PER_GIGAPASCAL.text(_state(oil, "40 degC").pressure_viscosity, 4)),
         law.source,
     )
     factor = oil.lubricant_factor
     table.add_row("lubricant factor X_L", f"{factor.value:g}", factor.source)
     return Group(Text(oil.description), table)
-
-
-def _text(kind: Quantity, value: float, digits: int = 6) -> str:
-    """An SI `value` with its unit, as tables show them."""
-    return f"{shown(kind.to_display(value), digits)} {unit_text(kind.display)}"

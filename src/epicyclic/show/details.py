@@ -38,9 +38,7 @@ def result_tables(
     parts += map(as_on_page, (*tables.oil_table(result), *tables.planets_table(result)))
     parts += map(as_on_page, more)
     parts += [as_on_page(_methods(result)), listed("Warnings", all_warnings(result))]
-    return titled(
-        result.title or result.kind, *parts, as_on_page(page.Listing(result.sources, "Sources"))
-    )
+    return titled(result.title or result.kind, *parts, listed("Sources", result.sources))
 
 
 def _headline(result: Result) -> Group:

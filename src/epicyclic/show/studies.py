@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from rich.console import Group, JustifyMethod, RenderableType
+from rich.console import Group, RenderableType
 from rich.table import Column, Table
 from rich.text import Text
 
@@ -87,7 +87,7 @@ def _over_period(mesh: xr.Dataset) -> Table:
 
 def _figures(mesh: xr.Dataset) -> Table:
     """Means over the period, and extremes with the place where they occur."""
-    table = _table("Figures", "", "value", "unit", "at")
+    table = _table("Figures", "at")
     for label, value, name in _means(mesh):
         table.add_row(label, shown(value), _unit(mesh, name), "")
     for name in _EXTREMES:
@@ -163,7 +163,7 @@ def pocket_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
 
 
 def _balance(mesh: xr.Dataset) -> Table:
-    table = _table("Figures", "", "value", "unit")
+    table = _table("Figures")
     for name in _BALANCE:
         value = float(mesh[name])
         text = error_text(value) if name in _ERRORS else shown(value, 5)
@@ -176,7 +176,7 @@ def _balance(mesh: xr.Dataset) -> Table:
 
 
 def _extremes(mesh: xr.Dataset) -> Table:
-    table = _table("Extremes", "", "value", "unit", "pocket of", "roll angle", "across the face")
+    table = _table("Extremes", "pocket of", "roll angle", "across the face")
     for label, name, pick in _EXTREMES_OF_POCKETS:
         values = mesh[name].to_numpy()
         place = np.nanargmax(np.abs(values)) if pick is None else pick(values)
@@ -196,9 +196,8 @@ def _at(mesh: xr.Dataset, name: str, index: tuple[int, ...]) -> Iterator[str]:
     yield f"{shown(float(mesh[position][place]), 3)} {_unit(mesh, position)}"
 
 
-def _table(title: str, *columns: str) -> Table:
-    sides: dict[str, JustifyMethod] = {"value": "right"}
-    return plain_table(title, *(Column(head, justify=sides.get(head, "left")) for head in columns))
+def _table(title: str, *more: str) -> Table:
+    return plain_table(title, "", Column("value", justify="right"), "unit", *more)
 
 
 # Measured losses beside computed ones, for a terminal.

@@ -21,6 +21,7 @@ from epicyclic.show.page import Drawings, KeyFigure, Listing, Row, Section, Tabl
 from epicyclic.show.result_tables import key_figures, locking_text, losses_table, sums_table
 from epicyclic.show.terminal import as_on_page, spaced
 from epicyclic.study.bands.advice import Known, is_on_first_screen, main_causes
+from epicyclic.study.heat import hottest
 from epicyclic.study.operating import operating_line
 from epicyclic.units import celsius_text, efficiency_text, known_text, percent
 
@@ -69,10 +70,9 @@ def headline(result: Result, known: Known | None) -> Iterator[str]:
         band = f"95 % band {it.band}{limit}" if it.band else ""
         yield f"{it.label:{_LABEL}}{it.text:{_VALUE}}{band}".rstrip()
     if result.heat is not None:
-        found = result.heat.temperatures
-        hottest = max(found, key=lambda node: found[node])
-        degrees = celsius_text(found[hottest], 3)
-        yield f"{'hottest part':{_LABEL}}{degrees:{_VALUE}}{in_words(hottest)}"
+        node = hottest(result.heat)
+        degrees = celsius_text(result.heat.temperatures[node], 3)
+        yield f"{'hottest part':{_LABEL}}{degrees:{_VALUE}}{in_words(node)}"
 
 
 def loss_summary(result: Result) -> Table:

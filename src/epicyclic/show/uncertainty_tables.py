@@ -13,7 +13,7 @@ from rich.console import RenderableType
 from epicyclic.messages import one_line
 from epicyclic.result.result import Result, in_words
 from epicyclic.show.page import MISSING, Cell, KeyFigure, Listing, Table, aligned, number, shown
-from epicyclic.show.terminal import as_on_page, titled
+from epicyclic.show.terminal import as_on_page, listed, titled
 from epicyclic.study.bands.advice import (
     MOST_DRIVERS,
     Known,
@@ -280,9 +280,7 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
     ]
     if data.attrs["failed"]:
         notes.append(f"{data.attrs['failed']} of {data.attrs['pairs']} pairs have no result.")
-    return titled(
-        f"{second}\nless {first}", as_on_page(table), as_on_page(Listing(tuple(notes), "Notes"))
-    )
+    return titled(f"{second}\nless {first}", as_on_page(table), listed("Notes", notes))
 
 
 def _label(name: str, grouping: str = "") -> str:

@@ -383,8 +383,7 @@ class Desk:
             return told
         value = value_at(self.current, key_parts(key))
         self.remove(key)
-        self.change(f"{table}.{toml_key(name)}", value)
-        return ""
+        return self.add(table, name, value)
 
     def _refused(self, table: str, name: str) -> str:
         """Why a table of names cannot take a new name."""
