@@ -378,7 +378,7 @@ def map_sections(data: xr.Dataset, drawings: Drawings) -> list[Section]:
         Section("methods", "Methods", _map_methods(data)),
         Section("conventions", "Conventions", (Table(("", "statement"), stated),)),
         Section("inputs", "Inputs", tuple(input_tables(map_inputs(data), map_inputs(data)))),
-        Section("versions", "Versions", (versions_of(data),)),
+        Section("versions", "Versions", (versions_line(json.loads(data.attrs["versions"])),)),
     ]
     return [section for section in sections if section.items]
 
@@ -457,11 +457,6 @@ def _map_methods(data: xr.Dataset) -> tuple[Table | Listing, ...]:
     return (Table(("what", "method", "source"), rows),)
 
 
-def versions_of(data: xr.Dataset) -> Listing:
-    """The program, and the libraries that it computed with."""
-    return versions_line(json.loads(data.attrs["versions"]))
-
-
 # The report of a sweep: its chapters.
 
 
@@ -492,7 +487,7 @@ def sweep_sections(data: xr.Dataset, shown: xr.Dataset, drawings: Drawings) -> l
         Section("points", "Least loss", _points(data), _POINTS_LEAD),
         Section("validity", "Validity", validity_items(data)),
         Section("inputs", "Inputs", tuple(input_tables(inputs, inputs)), _MAP_INPUT_LEAD),
-        Section("versions", "Versions", (versions_of(data),)),
+        Section("versions", "Versions", (versions_line(json.loads(data.attrs["versions"])),)),
     ]
     return [section for section in sections if section.items]
 

@@ -199,20 +199,14 @@ def _legend(mesh: xr.Dataset) -> list[Patch | Line2D]:
     ]
 
 
-def roll_angles(mesh: xr.Dataset, end: str) -> FloatArray:
-    """Roll angles of the pockets at one end of the face. [deg]"""
-    twist = float(mesh["twist"]) if end == "last" else 0.0
-    angles: FloatArray = mesh["roll_angle"].to_numpy() + twist
-    return angles
-
-
 class Section:
     """Teeth and pockets at one end of the face, at any moment of the mesh period."""
 
     def __init__(self, mesh: xr.Dataset, end: str) -> None:
         self._mesh = mesh
         self._end = end
-        self.roll = roll_angles(mesh, end)  # Of the pockets, shape (2, steps). [deg]
+        twist = float(mesh["twist"]) if end == "last" else 0.0
+        self.roll = mesh["roll_angle"].to_numpy() + twist  # Of the pockets: (2, steps). [deg]
         self.stride = mesh.sizes["mesh_position"]  # Steps between pockets that live together.
         self._outlines = _upright(mesh["outline"].sel(end=end).to_numpy())
         self._living = np.isfinite(self._outlines[:, :, 0, 0])
@@ -425,7 +419,7 @@ class _PressureMap:
 
     def __init__(self, mesh: xr.Dataset, ax: Axes) -> None:
         self._stride = mesh.sizes["mesh_position"]
-        self._roll = roll_angles(mesh, "first")
+        self._roll = mesh["roll_angle"].to_numpy()
         self._face = mesh["station_position"].to_numpy()
         self._lean = float(mesh["twist"]) * self._face / self._face[-1]
         self._quarter = 90.0 / mesh.attrs["teeth"][0]
