@@ -179,8 +179,10 @@ def _limits(data: xr.Dataset) -> Iterator[str]:
 
 def _place(data: xr.Dataset, point: xr.DataArray) -> str:
     """The operating point, by the axes of the map that have more than one value."""
+    from epicyclic.show.plots.style import place_text  # which `run` need not load
+
     axes = [str(name) for name in data["total"].dims if data.sizes[name] > 1]
-    return ", ".join(f"{name} {_value(point[name])}" for name in axes)
+    return ", ".join(f"{name} {place_text(point[name])}" for name in axes)
 
 
 def _band_of(total: xr.Dataset) -> Callable[[int, int], Cell]:
@@ -225,12 +227,6 @@ def _drivers(data: xr.Dataset) -> Table | Listing:
 def _causes(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]], note: str) -> Table | Listing:
     title = "Causes of the uncertainty of the total loss"
     return Table(head, tuple(rows), title, note=note) if rows else Listing((), title)
-
-
-def _value(value: xr.DataArray) -> str:
-    if value.dtype.kind not in "if":
-        return str(value.item())
-    return f"{format_number(value.item())} {unit_text(str(value.attrs.get('units', '')))}".rstrip()
 
 
 NO_SHARE = 1e-3

@@ -26,11 +26,12 @@ from epicyclic.show.plots.style import (
     label_logarithms,
     label_of,
     legend_of_figure,
+    place_text,
     styled_figure,
     write_beside,
 )
 from epicyclic.study.sweeps.runner import HERE, Runner
-from epicyclic.units import format_number, percent, unit_text
+from epicyclic.units import percent, unit_text
 from epicyclic.validation import chapters
 from epicyclic.validation.chapters import Family, Mark
 from epicyclic.validation.compare import Comparison, Published
@@ -64,7 +65,7 @@ def family_figure(family: Family) -> Figure:
                     continue
                 colour = COLOURS[index % len(COLOURS)]
                 style = LINE_STYLES[index % len(LINE_STYLES)]
-                _plot_curve(ax, curve, index, _value(curve[curves]), color=colour, ls=style)
+                _plot_curve(ax, curve, index, place_text(curve[curves], 5), color=colour, ls=style)
             held = [part[name] for name in part.coords if part[name].ndim == 0]
             _mark(family.marks, part, held, ax)
             title = ", ".join(map(_described, held)) or str(part.attrs["long_name"])
@@ -94,7 +95,7 @@ def branch_figure(family: Family) -> Figure:
                 color=COLOURS[index],
                 mfc="none",
                 ms=4,
-                label=_value(speed),
+                label=place_text(speed, 5),
             )
         ends = np.array([0.0, float(over.max())])
         middle = float(over.mean()), float(loss.mean())
@@ -187,18 +188,9 @@ def _is_same(value: float | str, panel: xr.DataArray) -> bool:
     return bool(abs(found - value) < SAME)
 
 
-def _value(coordinate: xr.DataArray) -> str:
-    """``"5000 rpm"``"""
-    value = coordinate.item()
-    if isinstance(value, str):
-        return value
-    unit = unit_text(str(coordinate.attrs.get("units", "")))
-    return f"{format_number(float(value), 5)} {unit}".rstrip()
-
-
 def _described(coordinate: xr.DataArray) -> str:
     """``"speed of the sun 4000 rpm"``, ``"3 shaved planets"``"""
-    words = [str(coordinate.attrs.get("long_name", "")), _value(coordinate)]
+    words = [str(coordinate.attrs.get("long_name", "")), place_text(coordinate, 5)]
     return " ".join(reversed(words) if isinstance(coordinate.item(), str) else words).strip()
 
 
@@ -238,7 +230,7 @@ def _plot_loss(study: xr.Dataset, ax: Axes, published: PublishedStudy | None) ->
     loss = study["pocketing_loss"]
     curves, over = map(str, loss.dims)
     for number, curve in enumerate(loss):
-        _plot_curve(ax, curve, number, _value(curve[curves]))
+        _plot_curve(ax, curve, number, place_text(curve[curves], 5))
     own = {} if published is None else published.own
     for mark in () if published is None else published.marks:
         if not all(_has(loss, place, own) for place in (mark.place, mark.base) if place):
@@ -273,7 +265,7 @@ def _plot_exponents(study: xr.Dataset, ax: Axes, published: PublishedStudy | Non
     ax.set(xscale="log", yscale="log")
     for number, curve in enumerate(loss):
         slope = float(study["speed_exponent"][number])
-        _plot_curve(ax, curve, number, f"{_value(curve[curves])}: {slope:.2f}")
+        _plot_curve(ax, curve, number, f"{place_text(curve[curves], 5)}: {slope:.2f}")
     known = published.exponents if published is not None and curves == "helix_angle" else {}
     for (angle, exponent), style in zip(known.items(), ("--", ":"), strict=False):
         if angle not in loss[curves]:

@@ -226,6 +226,14 @@ def labelled(ax: Axes, x: xr.DataArray, y: xr.DataArray, title: str = "") -> Axe
     return ax
 
 
+def place_text(value: xr.DataArray, digits: int = 6) -> str:
+    """One value of an axis: a name, or a number with its unit, ``"4000 rpm"``."""
+    if value.dtype.kind not in "fiu":
+        return str(value.item())
+    unit = unit_text(str(value.attrs.get("units", "1")))
+    return f"{format_number(float(value), digits)} {unit}".rstrip()
+
+
 def span_text(values: xr.DataArray) -> str:
     """Least and greatest of some numbers with their unit, ``"0 to 4000 rpm"``."""
     ends = dict.fromkeys((float(values.min()), float(values.max())))

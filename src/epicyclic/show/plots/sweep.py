@@ -27,6 +27,7 @@ from epicyclic.show.plots.style import (
     in_percent,
     label_of,
     legend_below,
+    place_text,
     room_of,
     span_text,
     title_of,
@@ -141,7 +142,7 @@ def plot_sweep_lines(data: xr.Dataset, name: str, ax: Axes) -> Axes:
             color=COLOURS[number],
             ls=LINE_STYLES[number],
             marker=".",
-            label=", ".join(_value(line[dim]) for dim in index),
+            label=", ".join(place_text(line[dim], 4) for dim in index),
         )
     if between:
         title = in_few_words(key_of(data[between[0]]))  # the entries have units
@@ -247,7 +248,7 @@ def _at_first(data: xr.Dataset, kept: list[str]) -> xr.Dataset:
 def _titled(values: xr.DataArray, part: xr.Dataset, ax: Axes) -> str:
     """What is shown, and the values of the dimensions that are not."""
     fixed = [array for array in part.coords.values() if array.ndim == 0 and CASE_KEY in array.attrs]
-    held = [f"{in_few_words(key_of(array))} {_value(array)}" for array in fixed]
+    held = [f"{in_few_words(key_of(array))} {place_text(array, 4)}" for array in fixed]
     width = int(TITLE_CHARACTERS * room_of(ax))
     return textwrap.fill(", ".join([title_of(values), *held]), width, break_long_words=False)
 
@@ -260,19 +261,11 @@ def _is_count(values: xr.DataArray) -> bool:
     return values.dtype.kind in "iu"
 
 
-def _unit(values: xr.DataArray) -> str:
-    return unit_text(str(values.attrs.get("units", "1")))
-
-
 def _axis_label(data: xr.Dataset, dim: str) -> str:
     """``"speed, rpm"``."""
-    unit, name = _unit(data[dim]), in_few_words(key_of(data[dim]))
+    unit = unit_text(str(data[dim].attrs.get("units", "1")))
+    name = in_few_words(key_of(data[dim]))
     return f"{name}, {unit}" if unit else name
-
-
-def _value(value: xr.DataArray) -> str:
-    text = format_number(float(value), 4) if _is_number(value) else str(value.item())
-    return f"{text} {_unit(value)}".rstrip()
 
 
 def _span(values: xr.DataArray) -> str:
