@@ -32,7 +32,7 @@ from epicyclic.arrays import (
     total,
 )
 from epicyclic.errors import ConvergenceError
-from epicyclic.machine import gear_set, solve
+from epicyclic.machine import gear_set, heat, solve
 from epicyclic.machine.element import LOAD_INDEPENDENT, ElementResult, Fluids, Loss, Note, State
 from epicyclic.machine.shaft_parts import ShaftPart
 from epicyclic.study.solve import solve_together
@@ -275,13 +275,34 @@ def test_flows_with_voids_leave_points_together(monkeypatch: pytest.MonkeyPatch)
     assert set(solved_at_once) == {5}
 
 
-@pytest.mark.parametrize("kind", ["flank", "network"])
+HEATED: dict[str, dict[str, Any]] = {
+    "flank": {"models.temperatures": "flank"},
+    "jets": {"thermal.oil_flow": "3.5 l/min"},
+    "bath": {"thermal.oil_flow": "3.5 l/min", "thermal.lubrication": "dip"},
+    "outlet": {"thermal.oil_outlet_temperature": "127 degC"},
+    "cooler": {"thermal.oil_flow": "3.5 l/min", "thermal.cooler_conductance": "31 W/K"},
+    "housing": {"thermal.housing": {"area": "0.31 m^2"}, "thermal.oil_flow": "2.9 l/min"},
+    "stated": {
+        "thermal.oil_flow": "3.5 l/min",
+        "thermal.jet_shares": {"sun": 0.4},
+        "thermal.conductances": {"sun-oil": {"scale": 1.3}},
+    },
+}
+
+
+@pytest.mark.parametrize("kind", HEATED)
 def test_temperatures_of_points_together_are_those_of_each_alone(
     kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Up to what a temperature may still change: 3e-5 K, and losses by some 1 % for each kelvin."""
-    changes = {"models.temperatures": kind, "thermal.oil_flow": "3.5 l/min"}
-    cases = _cases("talbot-2012", **changes)
+    cases = _cases("talbot-2012", **{"models.temperatures": "network", **HEATED[kind]})
+    heated, sizes = heat.NetworkModel.heated, []
+
+    def noted(self: heat.NetworkModel, around: Any, *seen: Any) -> heat.Answer:
+        sizes.append(np.size(around))
+        return heated(self, around, *seen)
+
+    monkeypatch.setattr(heat.NetworkModel, "heated", noted)
     asked = []
     evaluate = gear_set.GearSet.evaluate
 
@@ -293,6 +314,7 @@ def test_temperatures_of_points_together_are_those_of_each_alone(
         patched.setattr(gear_set.GearSet, "evaluate", counted)
         together = solve_together(cases, {})
     assert len(asked) < 0.3 * sum(asked), "most points were solved one by one"
+    assert (len(sizes) < 0.3 * sum(sizes)) == (kind not in ("flank", "housing"))
     for case, other in zip(cases, together, strict=True):
         assert not isinstance(other, Exception)
         one = ep.solve(case)

@@ -25,7 +25,7 @@ class Model:
     def fluids(self, temperatures):
         return temperatures
 
-    def answer(self, temperatures, solution):
+    def answer(self, solution):
         oil, off = solution["oil"], next(self.off)
         return Answer(
             {"oil": 350 - 0.4 * (oil - 350) + off, "housing": 0.5 * oil + 165 + 0.7 * off}

@@ -419,7 +419,7 @@ def _heat(case: Case, built: Built, settled: Settled) -> HeatBalance | None:
     return HeatBalance(
         model=case.models.temperatures,
         temperatures=answer.temperatures,
-        sources=heat_of(solution),
+        sources=heat_of(solution.losses.values()),
         ways=tuple(_heat_paths(case, answer)),
         given=answer.given,
         residual=answer.residual,

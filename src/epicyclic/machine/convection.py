@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, between, pow, sqrt
 from epicyclic.dataclass import dataclass
 from epicyclic.oil.oil import AIR_GAS_CONSTANT, MixtureState, air_viscosity
 
@@ -23,6 +23,8 @@ WATER = 999.0  # Density of water there. [kg/m^3]
 @dataclass(frozen=True, slots=True)
 class Fluid:
     """What heat transfer to a fluid depends on."""
+
+    pointwise = True
 
     density: float  # [kg/m^3]
     dynamic_viscosity: float  # [Pa s]
@@ -153,11 +155,11 @@ def disc_coefficient(
     omega = abs(speed)
     if omega == 0:
         return 0.0
-    transition = math.sqrt(TRANSITION_REYNOLDS * fluid.kinematic_viscosity / omega)
-    middle = min(max(transition, inner_radius), outer_radius)
+    transition = sqrt(TRANSITION_REYNOLDS * fluid.kinematic_viscosity / omega)
+    middle: float = between(transition, inner_radius, outer_radius)
     laminar = _laminar_disc(fluid, omega) * (middle**2 - inner_radius**2)
     # 2 int h r dr of h ~ r^0.6
-    outside = math.pow(outer_radius, 2.6) - math.pow(middle, 2.6)
+    outside = pow(outer_radius, 2.6) - pow(middle, 2.6)
     turbulent = _turbulent_disc(fluid, omega) * 2 / 2.6 * outside
     return (laminar + turbulent) / (outer_radius**2 - inner_radius**2)
 
@@ -167,15 +169,15 @@ def _laminar_disc(fluid: Fluid, omega: float) -> float:
 
     Departure: the last term of the denominator is added here, fitted to the exact solution.
     """
-    root = math.pow(fluid.prandtl, -1 / 3)
+    root = pow(fluid.prandtl, -1 / 3)
     nusselt = 0.62048 / root / (1 + 0.2980 * root + 0.14514 * root**2 + 0.125 * root**3)
-    return nusselt * fluid.conductivity * math.sqrt(omega / fluid.kinematic_viscosity)
+    return nusselt * fluid.conductivity * sqrt(omega / fluid.kinematic_viscosity)
 
 
 def _turbulent_disc(fluid: Fluid, omega: float) -> float:
     """Coefficient in turbulent flow over r^0.6. Theory (W16). [W/(m^2.6 K)]"""
-    nusselt = 0.0238 * math.pow(fluid.prandtl, 0.6)
-    return nusselt * fluid.conductivity * math.pow(omega / fluid.kinematic_viscosity, 0.8)
+    nusselt = 0.0238 * pow(fluid.prandtl, 0.6)
+    return nusselt * fluid.conductivity * pow(omega / fluid.kinematic_viscosity, 0.8)
 
 
 def dipped_disc(fluid: Fluid, speed: float, diameter: float) -> float:
@@ -191,7 +193,7 @@ def dipped_disc(fluid: Fluid, speed: float, diameter: float) -> float:
     2629
     """
     reynolds = abs(speed) * diameter**2 / (2 * fluid.kinematic_viscosity)
-    nusselt = 0.228 * math.pow(reynolds, 0.731) * math.pow(fluid.prandtl, 1 / 3)
+    nusselt = 0.228 * pow(reynolds, 0.731) * pow(fluid.prandtl, 1 / 3)
     return nusselt * fluid.conductivity / diameter
 
 

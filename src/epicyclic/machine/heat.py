@@ -4,19 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
-from typing import Any, Literal, Protocol
+from contextlib import suppress
+from functools import cached_property, partial
+from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import (
+    Alone,
+    Apart,
+    FloatArray,
+    itself,
+    joined,
+    larger,
+    largest,
+    points_in,
+    taken,
+)
 from epicyclic.contact.temperatures import bulk_rise_of_flash, bulk_rise_of_loss
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine import convection as shell
 from epicyclic.machine.convection import Fluid
-from epicyclic.machine.element import OIL, Fluids
+from epicyclic.machine.element import OIL, Fluids, Loss, joined_key
 from epicyclic.machine.gear_mesh import GearMesh, MeshFigures
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.heat_flow import Link, Network
@@ -24,6 +35,7 @@ from epicyclic.machine.heat_paths import (
     INLET,
     OF_SHAFT,
     STEEL,
+    Seen,
     Wetting,
     bearing_capacity,
     bearing_links,
@@ -32,6 +44,7 @@ from epicyclic.machine.heat_paths import (
     gear_set_links,
 )
 from epicyclic.machine.machine import Machine, Operation
+from epicyclic.machine.planets import BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, Wanted, solve_machine, solve_machines, start_of
 from epicyclic.units import celsius_text, known_text
@@ -59,6 +72,8 @@ COLDEST, HOTTEST = 200.0, 770.0
 class Answer:
     """What the heat of the losses leads to."""
 
+    pointwise = True
+
     temperatures: Mapping[str, float]  # Temperatures of all nodes. [K]
     links: tuple[Link, ...] = ()  # Paths of heat; empty where temperatures follow from formulas.
     flows: Mapping[str, float] | None = None  # Heat through every link. [W]
@@ -68,18 +83,19 @@ class Answer:
     residual: float = 0.0
 
 
-class ThermalModel(Protocol):
-    """How temperatures follow from losses."""
+class _Asked(NamedTuple):
+    """The temperatures of a network that a point asks for."""
 
-    @property
-    def start(self) -> Mapping[str, float]:
-        """Temperatures of all nodes to start from. [K]"""
+    network: NetworkModel
+    around: float  # Temperature of the oil, for its properties. [K]
+    seen: Seen
 
-    def fluids(self, temperatures: Mapping[str, float]) -> Fluids:
-        """Oil and mixture at the temperatures of the nodes that they meet."""
 
-    def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
-        """Temperatures that the losses of a solution lead to."""
+class _Heated(NamedTuple):
+    """What it gets."""
+
+    temperatures: Mapping[str, float]
+    answer: Callable[[], Answer]
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,16 +108,16 @@ class Settled:
     change: float = 0.0  # Largest change of a temperature in the last of them. [K]
 
 
-def heat_of(solution: Solution) -> dict[str, float]:
-    """Heat that the losses bring to each thermal node. [W]"""
+def heat_of(losses: Iterable[Loss]) -> dict[str, float]:
+    """Heat that losses bring to each thermal node. [W]"""
     heat: dict[str, float] = {}
-    for loss in solution.losses.values():
+    for loss in losses:
         for node, share in loss.heat:
             heat[node] = heat.get(node, 0.0) + share * loss.watts
     return heat
 
 
-_Pass = tuple[Mapping[str, float], Solution, Answer]  # Temperatures [K], losses there, and so on.
+_Pass = tuple[Mapping[str, float], Solution, _Heated]  # Temperatures [K], losses there, and so on.
 
 
 def settle(points: Sequence[tuple[Machine, Operation, ThermalModel]]) -> list[Settled | Exception]:
@@ -113,27 +129,53 @@ def settle(points: Sequence[tuple[Machine, Operation, ThermalModel]]) -> list[Se
     passes = [_passes(*point) for point in points]
     found: dict[int, Settled | Exception] = {}
     answers: dict[int, Any] = dict.fromkeys(range(len(passes)))
-    wanted: dict[int, Wanted] = {}
-    while answers or wanted:
+    asked: dict[int, _Asked | Wanted] = {}
+    while answers or asked:
         for number, answer in answers.items():
+            own = passes[number]
             try:
-                wanted[number] = passes[number].send(answer)
+                failed = isinstance(answer, Exception)
+                asked[number] = own.throw(answer) if failed else own.send(answer)
             except StopIteration as done:
                 found[number] = done.value
             except Exception as error:
                 found[number] = error
-        whole = all(it.whole for it in wanted.values())
-        own = {number: it for number, it in wanted.items() if it.whole == whole}
-        wanted = {number: it for number, it in wanted.items() if it.whole != whole}
-        answers = dict(zip(own, solve_machines(list(own.values())), strict=True))
-        found |= {number: it for number, it in answers.items() if isinstance(it, Exception)}
-        answers = {number: it for number, it in answers.items() if number not in found}
+        turns = {number: _turn(it) for number, it in asked.items()}
+        first = min(turns.values(), default=0)
+        those = {number: asked.pop(number) for number, turn in turns.items() if turn == first}
+        answer_all: Any = solve_machines if first else _answers
+        answers = dict(zip(those, answer_all([*those.values()]), strict=True))
     return [found[number] for number in range(len(passes))]
+
+
+def _turn(asked: _Asked | Wanted) -> int:
+    """What is done first: heat, then losses, then whole solutions."""
+    return 0 if isinstance(asked, _Asked) else 1 + asked.whole
+
+
+def _answers(asked: Sequence[_Asked]) -> list[_Heated | Exception]:
+    """Temperatures of the networks of several points, of alike ones at once."""
+    found: list[_Heated | Exception] = []
+    if len(asked) > 1:
+        networks, *those = zip(*asked, strict=True)
+        with suppress(Alone, Apart, ConvergenceError, InputError):  # single points tell of them
+            answer = networks[0].beside(networks).heated(*map(joined, those))
+            return taken(_heated(answer), range(len(asked)))
+    for network, around, seen in asked:
+        try:
+            found.append(_heated(network.heated(around, seen)))
+        except Exception as error:
+            found.append(error)
+    return found
+
+
+def _heated(answer: Answer) -> _Heated:
+    return _Heated(answer.temperatures, partial(itself, answer))
 
 
 def _passes(
     machine: Machine, operation: Operation, model: ThermalModel
-) -> Generator[Wanted, tuple[Solution, bool], Settled]:
+) -> Generator[_Asked | Wanted, Any, Settled]:
     """The passes of one point: asks for solutions until its temperatures agree. Theory (W27).
 
     From the third on, each pass is at the temperatures that the two before let expect. Raises
@@ -147,14 +189,20 @@ def _passes(
         solution, agrees = yield Wanted(
             machine, operation, model.fluids(held), unheated, earlier, change <= NEARLY
         )
-        found.append((held, solution, answer := model.answer(held, solution)))
+        if isinstance(model, NetworkModel):
+            answer = yield _Asked(model, held[OIL], model.seen(solution))
+        else:
+            answer = _heated(model.answer(solution))
+        found.append((held, solution, answer))
         reached = _values(answer.temperatures)
         change = float(np.abs(reached - at).max())
         if agrees and change <= (AGREEMENT if len(found) <= SCATTERING_FROM else SCATTER):
             if reached.min() < COLDEST or reached.max() > HOTTEST:
                 break
-            return Settled(solution, answer, len(found), change)
-        at = _expected(model, *found[-2:]) if len(found) > 1 else reached
+            return Settled(solution, answer.answer(), len(found), change)
+        at = reached
+        if len(found) > 1:
+            at = yield from _expected(model, *found[-2:])
     start = model.fluids(dict(model.start))  # where losses and torques may not even agree
     solve_machine(Wanted(machine, operation, start, unheated))
     raise _no_equilibrium(found)
@@ -168,58 +216,67 @@ def _held(model: ThermalModel, values: FloatArray) -> dict[str, float]:
     return dict(zip(model.start, np.clip(values, COLDEST, HOTTEST).tolist(), strict=True))
 
 
-def _expected(model: ThermalModel, before: _Pass, last: _Pass) -> FloatArray:
+def _expected(
+    model: ThermalModel, before: _Pass, last: _Pass
+) -> Generator[_Asked, _Heated, FloatArray]:
     """Temperatures that agree with the losses which two passes let expect. [K]"""
     at, reached = _values(last[0]), _values(last[2].temperatures)
-    if not last[2].links:  # not all follow from losses: the secant of each
+    if not isinstance(model, NetworkModel):  # not all follow from losses: the secant of each
         step, rise = at - _values(before[0]), reached - _values(before[2].temperatures)
         slopes = np.divide(rise, step, out=np.zeros_like(at), where=step != 0)
         return np.asarray(at + (reached - at) / (1 - np.minimum(slopes, QUICK)))
+    seen = model.seen(last[1])
 
-    def ahead(values: FloatArray) -> FloatArray:
+    def ahead(values: FloatArray) -> _Asked:
         held = _held(model, values)
-        return _values(model.answer(held, _expected_losses(before, last, held)).temperatures)
+        heat = model.net_heat(_expected_losses(before, last, held))
+        return _Asked(model, held[OIL], seen._replace(heat=heat))
+
+    def off(values: FloatArray) -> FloatArray:
+        _, around, seen = ahead(values)
+        return _values(model.heated(around, seen).temperatures) - values
 
     found, change, near = reached, math.inf, max(AGREEMENT, NEAR * np.abs(reached - at).max())
     try:
         while change > near:
-            old, found, former = found, ahead(found), change
+            old, former = found, change
+            found = _values((yield ahead(old)).temperatures)
             change = np.abs(found - old).max()
             if change > max(QUICK * former, near):
                 from scipy.optimize import root  # takes a sixth of a second
 
-                done = root(lambda values: ahead(values) - values, at)
+                done = root(off, at)
                 return np.asarray(done.x if done.success else reached)
     except ConvergenceError:  # what does not hold for expected losses may hold for others
         return reached
     return found
 
 
-def _expected_losses(before: _Pass, last: _Pass, temperatures: Mapping[str, float]) -> Solution:
-    """The last solution with its losses as two passes let expect them at other temperatures.
+def _expected_losses(
+    before: _Pass, last: _Pass, temperatures: Mapping[str, float]
+) -> Iterator[Loss]:
+    """The last losses as two passes let expect them at other temperatures.
 
     The logarithm of each goes on with the mean temperature of what it heats. Those that are shares
     of the power of a mesh go with its torque, too, which lags one pass behind.
     """
     (then, older, _), (now, solution, _) = before, last
-    torques, seen = solution.meshes, solution.state.torques
-    results = {}
-    for key, result in solution.results.items():
-        losses = {**result.losses}
-        for name, loss in losses.items():
-            own, old, new = (
-                sum(share * nodes.get(node, 0.0) for node, share in loss.heat)
-                for nodes in (now, then, temperatures)
-            )
-            slope, was = 0.0, older.results[key].losses[name].watts
-            if loss.watts and was and own != old:
-                slope = math.log(loss.watts / was) / (own - old)
-            watts = loss.watts * math.exp(max(-STEEPEST, min(slope, STEEPEST)) * (new - own))
-            if loss.mesh and torques[loss.mesh] * seen[loss.mesh] > 0:
-                watts *= min(torques[loss.mesh] / seen[loss.mesh], MOST_MORE)
-            losses[name] = loss._replace(watts=watts)
-        results[key] = replace(result, losses=losses)
-    return replace(solution, results=results)
+    torques, seen, old_losses = solution.meshes, solution.state.torques, older.losses
+    for key, loss in solution.losses.items():
+        if key in solution.given:
+            yield loss
+            continue
+        own, old, new = (
+            sum(share * nodes.get(node, 0.0) for node, share in loss.heat)
+            for nodes in (now, then, temperatures)
+        )
+        slope, was = 0.0, old_losses[key].watts
+        if loss.watts and was and own != old:
+            slope = math.log(loss.watts / was) / (own - old)
+        watts = loss.watts * math.exp(max(-STEEPEST, min(slope, STEEPEST)) * (new - own))
+        if loss.mesh and torques[loss.mesh] * seen[loss.mesh] > 0:
+            watts *= min(torques[loss.mesh] / seen[loss.mesh], MOST_MORE)
+        yield loss._replace(watts=watts)
 
 
 def _no_equilibrium(found: Sequence[_Pass]) -> ConvergenceError:
@@ -279,14 +336,15 @@ class FlankModel:
     oil: float  # Temperature of the oil. [K]
     method: BulkMethod  # One of `BULK_METHODS`.
     lubrication_factors: Mapping[str, float]  # X_S of each set, by its key. [1]
-    fluids: Callable[[Mapping[str, float]], Fluids]  # As of `ThermalModel`.
+    # Oil and mixture at the temperatures of the nodes that they meet.
+    fluids: Callable[[Mapping[str, float]], Fluids]
 
     @property
     def start(self) -> Mapping[str, float]:
         """All gears as warm as the oil. [K]"""
         return dict.fromkeys(_sides(self.machine), self.oil)
 
-    def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
+    def answer(self, solution: Solution) -> Answer:
         """Bulk temperatures of all gears."""
         rise = BULK_METHODS[self.method]
         return Answer(
@@ -405,6 +463,8 @@ class Housing:
 class Change:
     """What the user does to a conductance or capacity: another value [W/K, J/K], a factor [1]."""
 
+    pointwise = True
+
     value: float | None
     scale: float
 
@@ -417,6 +477,8 @@ class Change:
 class Wet:
     """How oil gets to gears."""
 
+    pointwise = True
+
     bath: float  # Share of them that dips into oil. [1]
     effectiveness: float  # Effectiveness of jets. [1]
 
@@ -424,6 +486,8 @@ class Wet:
 @dataclass(frozen=True, slots=True)
 class HeatSettings:
     """How heat leaves the parts of a machine."""
+
+    pointwise = True
 
     inlet: float  # Temperatures of the oil; the outlet where it was measured. [K]
     outlet: float | None  # Temperatures of the oil; the outlet where it was measured. [K]
@@ -452,7 +516,7 @@ class NetworkModel:
 
     machine: Machine
     settings: HeatSettings
-    fluids: Callable[[Mapping[str, float]], Fluids]  # As of `ThermalModel`.
+    fluids: Callable[[Mapping[str, float]], Fluids]  # As of `FlankModel`.
     # The oil, and its mixture with air, as heat sees them, at a temperature.
     media_at: Callable[[float], tuple[Fluid, Fluid]]
 
@@ -497,38 +561,57 @@ class NetworkModel:
             if len(set(nodes.values())) > 1
         }
 
-    def answer(self, temperatures: Mapping[str, float], solution: Solution) -> Answer:
+    def heated(
+        self,
+        around: float,  # Temperature of the oil, for its properties. [K]
+        seen: Seen,
+    ) -> Answer:
         """Temperatures at which the heat of the losses leaves. Theory (W26).
 
-        Raises `InputError` if the heat of a part has no way out.
+        Raises `InputError` if the heat of a part has no way out, `Alone` of several points if a
+        flow or the temperature of the housing is sought for each.
         """
-        heat = self._heat(solution)
-        own, at = self.settings, (temperatures[OIL], solution, heat)
+        own, heat = self.settings, seen.heat
         others = own.outlet is not None and (own.housing is not None or own.cooler > 0)
+        if points_in(heat.values()) and (others or own.housing is not None):
+            raise Alone
         is_open = others and sum(heat.values()) > 0 and OUTFLOW not in own.changes
-        network = self._to_outlet(*at) if is_open else self._with_flow(*at)
+        network = self._to_outlet(around, seen) if is_open else self._with_flow(around, seen)
         found = network.steady(heat)
         flows = network.flows(found)
-        whole = max(sum(map(abs, heat.values())), *map(abs, flows.values()))
-        left = max(map(abs, network.residuals(found, heat).values()))
-        residual = left / whole if whole else 0.0
+        whole = larger(sum(map(abs, heat.values())), largest(flows.values()))
+        left = largest(network.residuals(found, heat).values())
+        residual = left / larger(whole, SMALLEST_HEAT)
         return Answer(found, network.links, flows, network.given, residual)
 
-    def _with_flow(
-        self, around: float, solution: Solution, heat: dict[str, float], flow: float | None = None
-    ) -> Network:
-        fixed = self._fixed_links(around, solution, heat, flow)
-        return self._with_wall(fixed, heat, self._wall(fixed, heat))
+    def beside(self, models: Sequence[NetworkModel]) -> NetworkModel:
+        """This of several points; raises `Alone` unless all have its machine."""
+        if any(it.machine != self.machine for it in models):
+            raise Alone
 
-    def _to_outlet(self, around: float, solution: Solution, heat: dict[str, float]) -> Network:
+        def media_of_each(around: Any) -> tuple[Fluid, Fluid]:
+            each = zip(models, np.ravel(around).tolist(), strict=True)
+            found: tuple[Fluid, Fluid] = joined([it.media_at(own) for it, own in each])
+            return found
+
+        settings = self.settings
+        if any(it.settings != settings for it in models):
+            settings = joined([it.settings for it in models])
+        return replace(self, settings=settings, media_at=media_of_each)
+
+    def _with_flow(self, around: float, seen: Seen, flow: float | None = None) -> Network:
+        fixed = self._fixed_links(around, seen, flow)
+        return self._with_wall(fixed, seen.heat, self._wall(fixed, seen.heat))
+
+    def _to_outlet(self, around: float, seen: Seen) -> Network:
         """The network with as much flow as lets the oil leave at its stated temperature."""
         from scipy.optimize import brentq
 
-        outlet = self.settings.outlet
+        outlet, heat = self.settings.outlet, seen.heat
         assert outlet is not None
 
         def excess(flow: float) -> float:
-            return self._with_flow(around, solution, heat, flow).steady(heat)[OIL] - outlet
+            return self._with_flow(around, seen, flow).steady(heat)[OIL] - outlet
 
         most = sum(heat.values()) / (outlet - self.settings.inlet)
         least = LEAST_FLOW * most
@@ -541,16 +624,30 @@ class NetworkModel:
         while excess(most) > 0:  # heat comes in on other paths
             most *= 2
         flow = float(brentq(excess, least, most, xtol=SAME, rtol=SAME))
-        return self._with_flow(around, solution, heat, flow)
+        return self._with_flow(around, seen, flow)
 
     def network(self, temperature: float, solution: Solution) -> Network:
         """The network with oil and housing at one temperature. [K]"""
-        heat = self._heat(solution)
-        return self._with_wall(self._fixed_links(temperature, solution, heat), heat, temperature)
+        seen = self.seen(solution)
+        return self._with_wall(self._fixed_links(temperature, seen), seen.heat, temperature)
 
-    def _heat(self, solution: Solution) -> dict[str, float]:
+    def seen(self, solution: Solution) -> Seen:
+        """What the network depends on."""
+        rollers = {
+            joined_key(own.key, planet.key): cast(
+                BearingFigures, solution.results[own.key].figures[planet.key]
+            ).heat_conductance
+            for own in self.machine.elements
+            if isinstance(own, GearSet)
+            for planet in own.planets
+            if planet.bearing is not None
+        }
+        heat = self.net_heat(solution.losses.values())
+        return Seen(solution.state.speeds, heat, rollers)
+
+    def net_heat(self, losses: Iterable[Loss]) -> dict[str, float]:
         """That arises at each node, less the power of a cooler. [W]"""
-        heat = heat_of(solution)
+        heat = heat_of(losses)
         heat[OIL] = heat.get(OIL, 0.0) - self.settings.cooler_power
         if self.settings.housing is None:
             heat[OIL] += heat.pop(HOUSING, 0.0)
@@ -605,24 +702,23 @@ class NetworkModel:
     def _fixed_links(
         self,
         around: float,  # Temperature of the oil, for its properties. [K]
-        solution: Solution,  # Speeds, and loads of the bearings.
-        heat: Mapping[str, float],  # That arises at each node, less the power of a cooler. [W]
+        seen: Seen,
         carried: float | None = None,  # Heat capacity of the flow; None: as stated. [W/K]
     ) -> tuple[Link, ...]:
         """All paths of the heat but that to the air."""
         own = self.settings
         oil, mixture = self.media_at(around)
         if carried is None and own.outlet is not None:
-            carried = max(sum(heat.values()), 0.0) / (own.outlet - own.inlet)
+            carried = larger(sum(seen.heat.values()), 0.0) / (own.outlet - own.inlet)
         elif carried is None:
             carried = oil.density * oil.heat_capacity * own.flow
-        shares = self._jet_shares(heat)
+        shares = self._jet_shares(seen.heat)
 
         def wetting(wet: Wet) -> Wetting:
             around, jet = oil if wet.bath else mixture, wet.effectiveness * carried
             return Wetting(around, wet.bath, jet, shares, own.press_fit)
 
-        return tuple(map(self._changed, self._paths(solution, wetting, carried)))
+        return tuple(map(self._changed, self._paths(seen, wetting, carried)))
 
     def capacities(self) -> dict[str, float]:
         """Heat that each node stores for a kelvin. Theory (W35). [J/K]
@@ -658,7 +754,7 @@ class NetworkModel:
         """The oil goes where the heat arises, unless the user says otherwise. Theory (W30)."""
         given = self.settings.jet_shares
         own = {node: heat.get(node, 0.0) for node in self._met_by_jets() if node not in given}
-        left = max(0.0, 1 - sum(given.values()))
+        left = larger(0.0, 1 - sum(given.values()))
         even = LEAST_SHARE * sum(own.values()) + SMALLEST_HEAT
         weights = {node: watts + even for node, watts in own.items()}
         total = sum(weights.values())
@@ -675,14 +771,12 @@ class NetworkModel:
         return tuple(node for node in self.wetted if node not in elsewhere) or self.wetted
 
     def _paths(
-        self, solution: Solution, wetting: Callable[[Wet], Wetting], carried: float
+        self, seen: Seen, wetting: Callable[[Wet], Wetting], carried: float
     ) -> Iterator[Link]:
         housing = self.settings.housing is not None
         for own in self.machine.elements:
             if isinstance(own, GearSet):
-                result = solution.results[own.key]
-                wet = self.settings.wet_sets[own.key]
-                found = gear_set_links(own, solution.state, result, wetting(wet))
+                found = gear_set_links(own, seen, wetting(self.settings.wet_sets[own.key]))
             elif isinstance(own, ShaftBearing):
                 found = bearing_links(own, wetting(self.settings.wet))
             else:
@@ -699,6 +793,9 @@ class NetworkModel:
     def _changed(self, link: Link) -> Link:
         change = self.settings.changes.get(link.key)
         return link if change is None else replace(link, conductance=change(link.conductance))
+
+
+ThermalModel = FlankModel | NetworkModel  # How temperatures follow from losses.
 
 
 _OUTLET_REMEDY = (

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, apart, side_by_side
 from epicyclic.dataclass import dataclass
 from epicyclic.errors import ConvergenceError
 
@@ -23,6 +23,8 @@ from epicyclic.errors import ConvergenceError
 @dataclass(frozen=True, slots=True)
 class Link:
     """A path of heat."""
+
+    pointwise = True
 
     key: str  # ``"sun-oil"``.
     hot: str  # Nodes whose temperatures drive the heat.
@@ -40,7 +42,10 @@ class Link:
 
 @dataclass(frozen=True)
 class Network:
-    """Nodes of unknown temperature, nodes of given temperature, and links between them."""
+    """Nodes of unknown temperature, nodes of given temperature, and links between them.
+
+    Of one point, or of several: arrays have the points first.
+    """
 
     nodes: tuple[str, ...]  # Nodes of unknown temperature.
     given: Mapping[str, float]  # Nodes of given temperature. [K]
@@ -56,31 +61,34 @@ class Network:
         way to a node of given temperature: see `cut_off`.
         """
         matrix, known = self.system
-        found = np.linalg.solve(matrix, known + self.sources(heat))
-        found += np.linalg.solve(matrix, known + self.sources(heat) - matrix @ found)
-        return dict(zip(self.nodes, map(float, found), strict=True))
+        brought = (known + self.sources(heat))[..., None]
+        found: Any = np.linalg.solve(matrix, brought)
+        found += np.linalg.solve(matrix, brought - matrix @ found)
+        return dict(zip(self.nodes, apart(found[..., 0]), strict=True))
 
     @cached_property
     def system(self) -> tuple[FloatArray, FloatArray]:
         """Matrix A and vector b of C dT/dt = q + b - A T. Theory (W25)."""
         place = {node: index for index, node in enumerate(self.nodes)}
-        matrix = np.zeros((len(self.nodes), len(self.nodes)))
-        known = np.zeros(len(self.nodes))
-        for link in self.links:
+        conductances = side_by_side(link.conductance for link in self.links)
+        given = dict(zip(self.given, side_by_side(self.given.values()).T, strict=True))
+        matrix = np.zeros((*conductances.shape[:-1], len(self.nodes), len(self.nodes)))
+        known = np.zeros(matrix.shape[:-1])
+        for link, own in zip(self.links, conductances.T, strict=True):
             for node, taken in ((link.hot, 1.0), (link.target, -1.0)):
                 if node not in place:
                     continue
-                row, conductance = place[node], taken * link.conductance
+                row, conductance = place[node], taken * own
                 for driver, sign in ((link.hot, 1.0), (link.cold, -1.0)):
                     if driver in place:
-                        matrix[row, place[driver]] += sign * conductance
+                        matrix[..., row, place[driver]] += sign * conductance
                     else:
-                        known[row] -= sign * conductance * self.given[driver]
+                        known[..., row] -= sign * conductance * given[driver]
         return matrix, known
 
     def sources(self, heat: Mapping[str, float]) -> FloatArray:
         """Heat that arises at the nodes of unknown temperature, in their order. [W]"""
-        return np.array([heat.get(node, 0.0) for node in self.nodes])
+        return side_by_side(heat.get(node, 0.0) for node in self.nodes)
 
     def flows(self, temperatures: Mapping[str, float]) -> dict[str, float]:
         """Heat through every link. [W]"""
@@ -94,9 +102,9 @@ class Network:
     ) -> dict[str, float]:
         """Heat that arises at each node less the heat that leaves it. [W]"""
         matrix, known = self.system
-        found = np.array([temperatures[node] for node in self.nodes])
-        left = self.sources(heat) + known - matrix @ found
-        return dict(zip(self.nodes, map(float, left), strict=True))
+        found = side_by_side(temperatures[node] for node in self.nodes)
+        left = self.sources(heat) + known - (matrix @ found[..., None])[..., 0]
+        return dict(zip(self.nodes, apart(left), strict=True))
 
     def cut_off(self) -> tuple[str, ...]:
         """Nodes from which no heat reaches a node of given temperature."""

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
+from epicyclic.arrays import larger
 from epicyclic.contact.temperatures import Solid
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING, Gear
 from epicyclic.losses.planet_bearing import RollerBearing
 from epicyclic.machine.convection import SPLASHED_WALL, Fluid, dipped_disc, disc_coefficient
 from epicyclic.machine.disc import Disc
-from epicyclic.machine.element import OIL, ElementResult, State, joined_key
+from epicyclic.machine.element import OIL, joined_key
 from epicyclic.machine.gear_set import GearSet, Planet
 from epicyclic.machine.heat_flow import Link
-from epicyclic.machine.planets import BearingFigures
 from epicyclic.machine.shaft_parts import ShaftBearing
 
 INLET = "oil_inlet"  # The oil before it meets anything.
@@ -43,6 +44,14 @@ class Wetting:
     press_fit: float  # Contact conductance of a press fit, by area. [W/(m^2 K)]
 
 
+class Seen(NamedTuple):
+    """What of a solution the paths of heat depend on."""
+
+    speeds: Mapping[str, float]  # Of every body. [rad/s]
+    heat: Mapping[str, float]  # That losses bring to each node, less that of a cooler. [W]
+    rollers: Mapping[str, float]  # Conductance of each planet bearing, by its key. [W/K]
+
+
 @dataclass(frozen=True, slots=True)
 class OneGear:
     """A gear of a set as heat sees it."""
@@ -54,21 +63,19 @@ class OneGear:
     count: int
 
 
-def gear_set_links(
-    own: GearSet, state: State, result: ElementResult, wetting: Wetting
-) -> Iterator[Link]:
+def gear_set_links(own: GearSet, seen: Seen, wetting: Wetting) -> Iterator[Link]:
     """Paths of the heat of a set. Theory (W29), (W30), (W31)."""
     planets = {planet.nodes[0]: planet for planet in own.planets}
     for one in gears_of(own):
         planet = planets.get(one.node)
         reference = own.carrier if planet else HOUSING
-        speed = abs(state.speeds[one.body] - state.speeds[reference])
+        speed = abs(seen.speeds[one.body] - seen.speeds[reference])
         yield from _gear_to_oil(one, speed, planet, wetting)
         if planet is None and one.gear.internal and not speed:
             yield from _ring_to_housing(own, one, wetting)
     for planet in own.planets:
-        yield from _planet_to_carrier(own, planet, result, wetting)
-    yield from _carrier_to_oil(own, state, wetting)
+        yield from _planet_to_carrier(own, planet, seen, wetting)
+    yield from _carrier_to_oil(own, seen, wetting)
 
 
 def gears_of(own: GearSet) -> Iterator[OneGear]:
@@ -108,7 +115,7 @@ def _in_bath(gear: Gear, speed: float, inner: float, wetting: Wetting) -> float:
     """Conductance of faces and flanks that dip; at rest they are splashed like walls. [W/K]"""
     outer = max(gear.tip_radius, gear.root_radius)
     flanks = 2 * gear.teeth * abs(gear.tip_radius - gear.root_radius) * gear.face_width
-    coefficient = max(dipped_disc(wetting.around, speed, 2 * outer), SPLASHED_WALL)
+    coefficient = larger(dipped_disc(wetting.around, speed, 2 * outer), SPLASHED_WALL)
     return wetting.bath * coefficient * (_faces(outer, min(inner, outer)) + flanks)
 
 
@@ -138,14 +145,12 @@ def _ring_to_housing(own: GearSet, one: OneGear, wetting: Wetting) -> Iterator[L
 
 
 def _planet_to_carrier(
-    own: GearSet, planet: Planet, result: ElementResult, wetting: Wetting
+    own: GearSet, planet: Planet, seen: Seen, wetting: Wetting
 ) -> Iterator[Link]:
     if planet.bearing is None:
         return
     node, pin = planet.nodes
-    figures = result.figures[planet.key]
-    assert isinstance(figures, BearingFigures)
-    rollers = own.count * figures.heat_conductance
+    rollers = own.count * seen.rollers[joined_key(own.key, planet.key)]
     yield Link(f"{node}-{pin}", node, pin, rollers, ROLLERS, HERE)
     seat = math.pi * SEAT_LENGTH * planet.bearing.bearing.inner_diameter**2
     carrier = carrier_node(own)
@@ -159,16 +164,16 @@ def carrier_node(own: GearSet) -> str:
     return joined_key(own.key, "carrier")
 
 
-def _carrier_to_oil(own: GearSet, state: State, wetting: Wetting) -> Iterator[Link]:
+def _carrier_to_oil(own: GearSet, seen: Seen, wetting: Wetting) -> Iterator[Link]:
     if not any(planet.bearing for planet in own.planets):
         return
     known = [disc for disc in _discs(own) if disc.where == "carrier"]
     radius = known[0].turning.radius if known else max(planet.pin_radius for planet in own.planets)
-    speed = abs(state.speeds[own.carrier])
+    speed = abs(seen.speeds[own.carrier])
     node = carrier_node(own)
     area = _faces(radius, 0.0)
     if wetting.bath:
-        dipped = max(dipped_disc(wetting.around, speed, 2 * radius), SPLASHED_WALL)
+        dipped = larger(dipped_disc(wetting.around, speed, 2 * radius), SPLASHED_WALL)
         coefficient, how = wetting.bath * dipped, (BATH, BATH_SOURCE)
     else:
         coefficient, how = disc_coefficient(wetting.around, speed, radius), (FACES, DISC_SOURCE)
