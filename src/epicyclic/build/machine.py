@@ -565,24 +565,15 @@ def build(
     parts = _train_parts if isinstance(case, TrainCase) else _single_parts
     machine, cases, layout = parts(_Design(case, tables, key))
     model = thermal_model(case, cases, machine)
-    known = None
-    if case.computed:
-        temperature = case.operation.oil_inlet_temperature
-        known = _fluids(_Design(case, NO_TABLES, (case.design, temperature)))
     return Built(
         machine=machine,
         operation=operation,
-        known_fluids=known,
+        known_fluids=fluids_of(case) if case.computed else None,
         sets={element.key: element for element in machine.elements if isinstance(element, GearSet)},
         set_cases=cases,
         layout=layout if model is None else replace(layout, nodes=tuple(model.start)),
         thermal=model,
     )
-
-
-@lru_cache(maxsize=MOST_DESIGNS)
-def _fluids(design: _Design) -> Fluids:
-    return fluids_of(design.case)
 
 
 @lru_cache(maxsize=MOST_DESIGNS)

@@ -379,18 +379,13 @@ def _kinematic_viscosity(oil: Oil, temperature: float) -> float:
 
 def extrapolated_viscosity(oil: Oil, temperature: float) -> float:
     """ASTM D341 between neighbouring points, and beyond the outermost two. Theory (L1). [m^2/s]"""
-    y = _piecewise_line(math.log10(temperature), *_viscosity_line(oil))
-    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
-
-
-@lru_cache(maxsize=64)
-def _viscosity_line(oil: Oil) -> tuple[list[float], list[float]]:
-    """Viscosities as ASTM D341 draws them: lg T in K, lg lg(nu + 0.7) with nu in mm^2/s."""
     points = sorted(oil.kinematic_viscosity, key=lambda point: point.temperature)
-    return (
+    y = _piecewise_line(
+        math.log10(temperature),
         [math.log10(point.temperature) for point in points],
         [math.log10(math.log10(point.value / MM2_PER_S + D341_OFFSET)) for point in points],
     )
+    return float((10 ** (10 ** min(y, LARGEST_EXPONENT)) - D341_OFFSET) * MM2_PER_S)
 
 
 def _density(oil: Oil, temperature: float) -> float:
