@@ -435,8 +435,7 @@ def _keyed(group: Mapping[str, Iterable[Any]]) -> Iterator[tuple[str, list[Any]]
 
 
 def _repeated(keys: Iterable[str]) -> list[Problem]:
-    counts = Counter(map(str, keys))
-    again = (key for key, count in counts.items() if count > 1)
+    again = (key for key, count in Counter(keys).items() if count > 1)
     return [Problem(key, "", "is varied twice.", "Give each key once.") for key in again]
 
 
@@ -618,9 +617,7 @@ def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, s
             yield part.key, (axis.key,), np.array(part.coordinate), part.unit
     for key in plan.links:
         behind = plan.axes_behind(key)
-        shape = tuple(
-            plan.shape[number] if number in behind else 1 for number in range(len(plan.shape))
-        )
+        shape = tuple(size if it in behind else 1 for it, size in enumerate(plan.shape))
         values = [
             plan.point(int(np.ravel_multi_index(place, plan.shape))).coordinate(key)
             for place in np.ndindex(shape)
