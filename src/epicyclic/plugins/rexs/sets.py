@@ -201,7 +201,6 @@ def rigid_parts(model: Model, start: Iterable[Component]) -> list[Component]:
 
 
 def _neighbours(links: Iterable[tuple[int, int]]) -> dict[int, list[int]]:
-    """What each part is linked with."""
     neighbours: dict[int, list[int]] = {}
     for first, second in links:
         neighbours.setdefault(first, []).append(second)

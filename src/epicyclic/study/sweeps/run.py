@@ -227,7 +227,6 @@ class CasePlan(Plan):
         return list(rows.values())
 
     def _solve(self, index: int) -> Row:
-        """One case as a flat record."""
         (answer,) = self._answers([self.case.updated(self.changes(index))])
         return self._answered(answer)
 
@@ -242,7 +241,6 @@ class CasePlan(Plan):
 
     @staticmethod
     def _row_of(answer: Any) -> Row:
-        """The flat record of what is found."""
         if answer.status is not Status.CONVERGED:
             return Row(str(answer.status), message=answer.notes[0])
         warnings = " | ".join(answer.warnings)
@@ -250,7 +248,6 @@ class CasePlan(Plan):
 
 
 def _files(case: Case) -> Iterator[str]:
-    """The files that a case names."""
     tables: list[Any] = [case.models]
     if isinstance(case, TrainCase):
         tables += [table.models for table in case.sets.values() if hasattr(table, "models")]
