@@ -687,8 +687,6 @@ def _texts(value: Any) -> Iterator[str]:
 
 
 class _ReadSet(NamedTuple):
-    """A set and its problems."""
-
     table: SetTable | None  # None if a table of it is not valid by itself.
     problems: list[Problem]
     found: tuple[Found, ...] = ()

@@ -89,7 +89,7 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
     table = number_table("Friction models", "", *columns, *heads)
     chosen = next((row.sliding for row in rows if row.chosen), 0.0)
     for row in rows:
-        outside = share_text(row.outside) if row.flagged else ""
+        outside = share_text(row.outside) if row.reasons else ""
         table.add_row(
             row.name,
             *(f"{row.mean_friction[mesh]:z.4f}" for mesh in meshes),

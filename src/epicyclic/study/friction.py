@@ -49,8 +49,7 @@ class FrictionComparison:
     mean_friction: dict[str, float]  # For each mesh. [1]
     sliding: float  # Sliding loss of all meshes, local along the contact lines. [W]
     quick: float  # The same by mean friction times Ohlendorf's loss factor. [W]
-    flagged: bool  # True if the model was used outside the range in which it was made.
-    # Which ranges it leaves, by how much, and with what share of the loss.
+    # Which ranges it leaves, by how much, and with what share of the loss; empty if none.
     reasons: tuple[str, ...]
     outside: float  # Share of the sliding loss outside its range. [1]
     # The fluid that it was made for, if that is not the oil of the case; else empty.
@@ -95,7 +94,6 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
                 mean_friction={key: mesh.friction_mean for key, mesh in local.meshes.items()},
                 sliding=_sliding(local),
                 quick=quick,
-                flagged=bool(flags),
                 reasons=tuple(_reason(flag) for flag in flags),
                 outside=_outside(local, flags),
                 other_oil="" if fluid is None or same else fluid.title,
@@ -151,7 +149,7 @@ def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str |
 
 
 def _inside(row: FrictionComparison) -> str:
-    if not row.flagged:
+    if not row.reasons:
         return "the whole loss is within its range"
     return f"{percent(1 - row.outside, 0)} of the loss is within its range"
 

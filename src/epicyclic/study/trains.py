@@ -42,7 +42,6 @@ def loss_sums(
 
 
 def _kind_of(term: str) -> str:
-    """The kind of a loss of a set."""
     last = term.rpartition("_")[2]
     if "bearing" in term:
         return "bearings"

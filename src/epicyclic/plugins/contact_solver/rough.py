@@ -534,7 +534,6 @@ def _shear(records: FloatArray) -> FloatArray:
 
 
 def _solution(run: _Simulation, means: _Means, message: str) -> RoughSolution:
-    """The result of a simulation."""
     contact = run.contact
     load = math.pi / 2
     records, mean, shear = np.concatenate(run.records), means.rest, means.friction

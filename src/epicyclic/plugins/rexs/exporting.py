@@ -67,13 +67,16 @@ class Builder:
         self.components: list[Component] = []
         self.relations: list[Relation] = []
 
-    def add(self, kind: str, name: str, /, **attributes: Any) -> int:
-        """A component; attributes as text, flags, numbers, or numbers with the unit they have.
+    def add(self, kind: str, name: str, owner: int | None = None, /, **attributes: Any) -> int:
+        """A component, of which `owner` is the assembly.
 
-        Those that are None, with a unit or without, are left out.
+        Attributes are text, flags, numbers, or numbers with the unit they have; those that are
+        None, with a unit or without, are left out.
         """
         number = len(self.components) + 1
         self.components.append(Component(number, kind, name, tuple(_made(attributes))))
+        if owner is not None:
+            self.part(owner, number)
         return number
 
     def extend(self, number: int, /, **attributes: Any) -> None:
@@ -86,15 +89,13 @@ class Builder:
         number = len(self.relations) + 1
         self.relations.append(Relation(number, kind, tuple(roles.items()), order))
 
-    def parts(self) -> Iterator[Component | Relation]:
+    def parts(self) -> list[Component | Relation]:
         """All that was added."""
-        yield from self.components
-        yield from self.relations
+        return [*self.components, *self.relations]
 
-    def part(self, assembly: int, *parts: int) -> None:
-        """Parts of an assembly."""
-        for part in parts:
-            self.relate("assembly", assembly=assembly, part=part)
+    def part(self, assembly: int, part: int) -> None:
+        """A part of an assembly."""
+        self.relate("assembly", assembly=assembly, part=part)
 
 
 def _made(attributes: Mapping[str, Any]) -> Iterator[Attribute]:
@@ -114,9 +115,8 @@ def surroundings(builder: Builder, case: Case, **attributes: Any) -> tuple[int, 
     assert temperature is not None
     assert lubricant is not None
     unit = builder.add("gear_unit", case.title or "gear unit", **attributes)
-    casing = builder.add("gear_casing", "casing", temperature_lubricant=(temperature, "K"))
+    casing = builder.add("gear_casing", "casing", unit, temperature_lubricant=(temperature, "K"))
     oil = _lubricant(builder, lubricant.oil)
-    builder.part(unit, casing)
     builder.relate("reference", origin=casing, referenced=oil)
     return unit, casing, oil
 
@@ -140,9 +140,7 @@ def add_shaft(
     builder: Builder, unit: int, name: str, speed: float | None = None, **attributes: Any
 ) -> int:
     """A shaft of the gear unit."""
-    shaft = builder.add("shaft", name, rotational_speed=(speed, "rad/s"), **attributes)
-    builder.part(unit, shaft)
-    return shaft
+    return builder.add("shaft", name, unit, rotational_speed=(speed, "rad/s"), **attributes)
 
 
 def _gear(builder: Builder, gearing: Gearing, gear: str, shaft: int, name: str) -> int:
@@ -198,21 +196,19 @@ def _stage(
     """A mesh; `owners` are unit or planetary stage, and oil."""
     owner, oil = owners
     center = gearing.distances[mesh.key]
-    stage = builder.add("cylindrical_stage", name, center_distance=(center, "m"))
-    builder.part(owner, stage)
+    stage = builder.add("cylindrical_stage", name, owner, center_distance=(center, "m"))
     builder.relate("stage", stage=stage, gear_1=gears[mesh.first], gear_2=gears[mesh.second])
     builder.relate("reference", origin=stage, referenced=oil)
 
 
 def add_load(builder: Builder, shaft: int, torque: float) -> None:
     """A torque from outside."""
-    load = builder.add(
-        "external_load", "load", torque_around_u_axis=(torque, "N*m"), defines_torque=True
+    builder.add(
+        "external_load", "load", shaft, torque_around_u_axis=(torque, "N*m"), defines_torque=True
     )
-    builder.part(shaft, load)
 
 
-def case_parts(case: Case) -> Iterator[Component | Relation]:
+def case_parts(case: Case) -> list[Component | Relation]:
     """Components and relations that describe a case of one gear set."""
     builder = Builder()
     unit, casing, oil = surroundings(builder, case)
@@ -259,23 +255,21 @@ def _planetary_stage(
     builder: Builder, unit: int, size: Carrier | None, shafts: Mapping[str, int], name: str
 ) -> int:
     """A planetary stage with its central shafts and its carrier."""
-    stage = builder.add("planetary_stage", name)
-    builder.part(unit, stage)
+    stage = builder.add("planetary_stage", name, unit)
     for member, shaft in shafts.items():
         if member != CARRIER:
             builder.relate("central_shaft", planetary_stage=stage, shaft=shaft)
     builder.relate("planet_carrier_shaft", planetary_stage=stage, shaft=shafts[CARRIER])
-    carrier = builder.add("planet_carrier", "carrier")
-    builder.part(stage, carrier)
+    carrier = builder.add("planet_carrier", "carrier", stage)
     builder.part(carrier, shafts[CARRIER])
     if size is not None:
-        plate = builder.add(
+        builder.add(
             "side_plate",
             "carrier as a disc",
+            carrier,
             outer_diameter=(size.outer_diameter, "m"),
             length=(size.width, "m"),
         )
-        builder.part(carrier, plate)
     return stage
 
 
@@ -340,7 +334,7 @@ _TYPES = {kind: name for name, kind in BEARING_TYPES.items()}
 Place = tuple[float, float]  # Where an axis lies across its direction. [m]
 
 
-def train_parts(case: TrainCase) -> Iterator[Component | Relation]:
+def train_parts(case: TrainCase) -> list[Component | Relation]:
     """Components and relations that describe a train of computed planetary sets and pairs.
 
     Raises `InputError` if another set is among them.
@@ -437,7 +431,7 @@ def _loads(builder: Builder, case: TrainCase, shafts: Mapping[str, int]) -> None
     """Torque at the input, none at the output, and those of further shafts."""
     operation = case.operation
     add_load(builder, shafts[operation.input], operation.torque)
-    builder.part(shafts[operation.output], builder.add("external_load", "driven"))
+    builder.add("external_load", "driven", shafts[operation.output])
     for name, torque in operation.torques.items():
         add_load(builder, shafts[name], torque)
 

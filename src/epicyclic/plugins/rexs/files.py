@@ -15,9 +15,9 @@ from pydantic_core import from_json
 
 from epicyclic.dataclass import dataclass
 from epicyclic.errors import InputError, problems_in
-from epicyclic.files import read_bytes
+from epicyclic.files import read_bytes, refuse
 from epicyclic.messages import one_line
-from epicyclic.plugins.rexs.model import Attribute, Coded, Component, Relation, refuse
+from epicyclic.plugins.rexs.model import Attribute, Coded, Component, Relation
 
 if TYPE_CHECKING:
     from epicyclic.plugins.rexs.model import Content
@@ -40,12 +40,12 @@ class JsonContent:
         try:
             data = from_json(content.decode("utf-8-sig"), allow_inf_nan=False)
         except UnicodeDecodeError:
-            raise refuse("is not UTF-8 text.", "Save it as UTF-8 text.") from None
+            refuse("is not UTF-8 text.", "Save it as UTF-8 text.")
         except ValueError as error:
             message = one_line(str(error), 200)
-            raise refuse(f"is not valid JSON: {message}.", "Export it again.") from None
+            refuse(f"is not valid JSON: {message}.", "Export it again.")
         if not isinstance(data, dict) or not isinstance(data.get("model"), dict):
-            raise refuse('is not REXS: it has no object "model".', "Name a REXS file.")
+            refuse('is not REXS: it has no object "model".', "Name a REXS file.")
         return cls(data)
 
     @classmethod
@@ -99,7 +99,7 @@ class JsonContent:
 def _objects(owner: dict[str, Any], name: str) -> list[dict[str, Any]]:
     items = owner.get(name) or []
     if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
-        raise refuse(f'is not REXS: "{name}" is not a list of objects.', "Name a REXS file.")
+        refuse(f'is not REXS: "{name}" is not a list of objects.', "Name a REXS file.")
     return items
 
 
@@ -150,6 +150,8 @@ _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
 _BEFORE_ROOT = re.compile(r"\ufeff?(?:\s+|<\?.*?\?>|<!--.*?-->)*", re.DOTALL)
 """Declaration and comments; the library that reads the elements does not keep them as they are."""
 
+_COMPONENTS = "{*}components/{*}component"  # In any namespace, or none.
+
 
 class XmlContent:
     """A file in XML, as its elements."""
@@ -167,17 +169,17 @@ class XmlContent:
             root = etree.fromstring(data, parser)
         except (etree.XMLSyntaxError, ValueError, LookupError) as error:
             message = one_line(str(error).removesuffix(" (<string>, line 1)"), 200)
-            raise refuse(f"is not valid XML: {message}.", "Export it again.") from None
+            refuse(f"is not valid XML: {message}.", "Export it again.")
         if root.getroottree().docinfo.doctype:
-            raise refuse("has a document type, which REXS does not allow.", "Remove it.")
+            refuse("has a document type, which REXS does not allow.", "Remove it.")
         if _name(root) != "model":
-            raise refuse("is not REXS: its first element is not model.", "Name a REXS file.")
+            refuse("is not REXS: its first element is not model.", "Name a REXS file.")
         encoding = root.getroottree().docinfo.encoding or "UTF-8"
         try:
             before = _BEFORE_ROOT.match(data.decode(encoding, "replace"))
         except (LookupError, ValueError):  # the library knows more encodings than Python
             told = f"is in the encoding {one_line(encoding)}, which is not known here."
-            raise refuse(told, "Save it as UTF-8.") from None
+            refuse(told, "Save it as UTF-8.")
         return cls(root, before[0] if before else "")
 
     @classmethod
@@ -192,25 +194,24 @@ class XmlContent:
         return str(self.root.get("version", ""))
 
     def components(self) -> Iterator[Component]:
-        return map(_component_xml, self._component_elements())
+        return map(_component_xml, self.root.iterfind(_COMPONENTS))
 
     def relations(self) -> Iterator[Relation]:
-        for holder in _children(self.root, "relations"):
-            for element in _children(holder, "relation"):
-                refs = tuple((ref.get("role", ""), _id(ref)) for ref in _children(element, "ref"))
-                order: Any = element.get("order")
-                yield Relation(_id(element), element.get("type", ""), refs, order)
+        for element in self.root.iterfind("{*}relations/{*}relation"):
+            refs = tuple((ref.get("role", ""), _id(ref)) for ref in element.iterfind("{*}ref"))
+            order: Any = element.get("order")
+            yield Relation(_id(element), element.get("type", ""), refs, order)
 
     def load_cases(self) -> Iterator[tuple[Any, Iterator[Component]]]:
-        for spectrum in _children(self.root, "load_spectrum"):
-            for element in _children(spectrum, "load_case"):
-                yield element.get("id"), map(_component_xml, _children(element, "component"))
+        for element in self.root.iterfind("{*}load_spectrum/{*}load_case"):
+            yield element.get("id"), map(_component_xml, element.iterfind("{*}component"))
 
     def set_attribute(self, component: int, attribute: Attribute) -> None:
         if self._by_id is None:
-            self._by_id = {item.get("id", "").strip(): item for item in self._component_elements()}
+            items = self.root.iterfind(_COMPONENTS)
+            self._by_id = {item.get("id", "").strip(): item for item in items}
         element = self._by_id[str(component)]
-        for child in _children(element, "attribute"):
+        for child in element.iterfind("{*}attribute"):
             if child.get("id") == attribute.id:
                 _fill(child, attribute)
                 return
@@ -218,13 +219,13 @@ class XmlContent:
 
     def add(self, part: Component | Relation) -> None:
         if isinstance(part, Component):
-            holder = next(_children(self.root, "components"))
+            holder = next(self.root.iterfind("{*}components"))
             head = {"id": str(part.id), "type": part.type, "name": part.name}
             element = etree.SubElement(holder, "component", head)
             for attribute in part.attributes:
                 _fill(etree.SubElement(element, "attribute", {"id": attribute.id}), attribute)
             return
-        holder = next(_children(self.root, "relations"))
+        holder = next(self.root.iterfind("{*}relations"))
         head = {"id": str(part.id), "type": part.type}
         if part.order is not None:
             head["order"] = str(part.order)
@@ -240,10 +241,6 @@ class XmlContent:
         text = f"{self.before}{_written_xml(self.root)}\n{after}"
         return text.encode(tree.docinfo.encoding or "UTF-8", "xmlcharrefreplace")
 
-    def _component_elements(self) -> Iterator[etree._Element]:
-        for holder in _children(self.root, "components"):
-            yield from _children(holder, "component")
-
 
 def _written_xml(element: etree._Element) -> str:
     text: str = etree.tostring(element, encoding="unicode", with_tail=False)
@@ -255,14 +252,10 @@ def _name(element: etree._Element) -> str:
     return etree.QName(element).localname if isinstance(element.tag, str) else ""
 
 
-def _children(element: etree._Element, name: str) -> Iterator[etree._Element]:
-    return (child for child in element if _name(child) == name)
-
-
 def _component_xml(element: etree._Element) -> Component:
     attributes = tuple(
         Attribute(child.get("id", ""), child.get("unit"), _value(child))
-        for child in _children(element, "attribute")
+        for child in element.iterfind("{*}attribute")
     )
     return Component(_id(element), element.get("type", ""), element.get("name", ""), attributes)
 
@@ -273,7 +266,7 @@ def _value(element: etree._Element) -> Any:
         if name == "array" and child.get("code"):
             return Coded(child.get("code", ""), child.text or "")
         if name == "array":
-            return tuple((entry.text or "").strip() for entry in _children(child, "c"))
+            return tuple((entry.text or "").strip() for entry in child.iterfind("{*}c"))
         if name:
             return None  # matrices are kept, but nothing here reads them
     return (element.text or "").strip()
@@ -394,7 +387,7 @@ def _from_archive(data: bytes, with_others: bool) -> Document:
         raise
     except Exception as error:  # what a broken archive raises has no common base
         message = one_line(str(error), 200)
-        raise refuse(f"is not a valid archive: {message}.", "Pack it again.") from None
+        refuse(f"is not a valid archive: {message}.", "Pack it again.")
 
 
 def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
@@ -402,16 +395,16 @@ def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
     members = [info for info in infos if info.filename.lower().endswith((*_XML, *_JSON))]
     if len(members) != 1:
         what = "no member" if not members else f"{len(members)} members"
-        raise refuse(f"is an archive with {what} in REXS.", "Pack one file .rexs or .rexsj.")
+        refuse(f"is an archive with {what} in REXS.", "Pack one file .rexs or .rexsj.")
     for info in infos:
         parts = info.filename.replace("\\", "/").split("/")
         if ".." in parts or parts[0] == "" or ":" in parts[0]:
             shown = one_line(info.filename)
-            raise refuse(f"is an archive with a member outside of it: {shown}.", "Repack it.")
+            refuse(f"is an archive with a member outside of it: {shown}.", "Repack it.")
     model = _member(archive, members[0], LARGEST)
     if len(model) > LARGEST:
         remedy = "Export the gears without local results."
-        raise refuse(f"is larger than {LARGEST // 10**6} MB.", remedy)
+        refuse(f"is larger than {LARGEST // 10**6} MB.", remedy)
     content = _parse(model)
     others: list[tuple[zipfile.ZipInfo, bytes]] = []
     left = _LARGEST_REST
@@ -420,7 +413,7 @@ def _unpacked(archive: zipfile.ZipFile, with_others: bool) -> Document:
             others.append((info, _member(archive, info, left)))
             left -= len(others[-1][1])
             if left < 0:
-                raise refuse("is an archive with too many files beside the model.", "Remove them.")
+                refuse("is an archive with too many files beside the model.", "Remove them.")
     return Document(content, members[0].filename, tuple(others))
 
 
@@ -432,9 +425,9 @@ def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, largest: int) -> by
 def _parse(data: bytes) -> Content:
 
     if not data.strip():
-        raise refuse("is empty.", "Name a REXS file.")
+        refuse("is empty.", "Name a REXS file.")
     is_json = data.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[")
     signs = (b"{", b"[", b":") if is_json else (b"<", b"=")
     if sum(map(data.count, signs)) > MOST_SIGNS:
-        raise refuse("has too many parts.", "Export the gears without local results.")
+        refuse("has too many parts.", "Export the gears without local results.")
     return JsonContent.parse(data) if is_json else XmlContent.parse(data)

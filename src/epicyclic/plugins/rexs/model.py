@@ -16,7 +16,8 @@ import numpy as np
 
 from epicyclic.arrays import FloatArray
 from epicyclic.dataclass import dataclass, field, replace
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.errors import Problem, one_problem, raise_any
+from epicyclic.files import refuse
 from epicyclic.messages import one_line
 from epicyclic.units import Quantity
 
@@ -91,11 +92,6 @@ def written(value: float, unit: str, name: str) -> float:
 
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _CODES = {"float64": "<f8", "float32": "<f4", "int32": "<i4"}
-
-
-def refuse(allowed: str, remedy: str) -> InputError:
-    """The error of a file that cannot be used as a whole."""
-    return one_problem("", "", f"the file {allowed}", remedy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -419,7 +415,7 @@ def _version(text: str) -> str:
     known = versions()
     version = {"2.0": "2.0.0"}.get(text, text)
     if version not in known:
-        raise refuse(
+        refuse(
             f'is REXS of version "{one_line(text)}"; versions {known[0]} to {known[-1]} are read.',
             "Export it in one of these versions.",
         )

@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.files import refuse
 from epicyclic.gears.gear import HOUSING
-from epicyclic.plugins.rexs.model import Component, Model, Relation, refuse, types_of
+from epicyclic.plugins.rexs.model import Component, Model, Relation, types_of
 
 # Which gear sets a REXS file holds, and the components that each consists of.
 
@@ -200,7 +201,6 @@ def rigid_parts(model: Model, start: Iterable[Component]) -> list[Component]:
 
 
 def _neighbours(links: Iterable[tuple[int, int]]) -> dict[int, list[int]]:
-    """What each part is linked with."""
     neighbours: dict[int, list[int]] = {}
     for first, second in links:
         neighbours.setdefault(first, []).append(second)
@@ -362,14 +362,11 @@ def chosen_train(model: Model) -> Train | None:
 
     Raises `InputError` if there are too many, or if one is of a kind that is not covered.
     """
-    kinds = ("planetary_stage", "cylindrical_stage")
-    if len(model.of_type(kinds[0])) > MOST_STAGES:
-        raise _too_many(f"{len(model.of_type(kinds[0]))} stages", MOST_STAGES)
+    _check_count(len(model.of_type("planetary_stage")), "stages", MOST_STAGES)
     stages = gear_sets(model)
     if len(stages) < 2:
         return None
-    if len(stages) > MOST_STAGES:
-        raise _too_many(f"{len(stages)} stages", MOST_STAGES)
+    _check_count(len(stages), "stages", MOST_STAGES)
     order = list(model.components)
     names = Names()
     sets: dict[str, SetParts] = {}
@@ -385,15 +382,15 @@ def chosen_train(model: Model) -> Train | None:
     by_part = {part: name for name, shaft in shafts.items() for part in shaft.parts}
     switches = tuple(_switches(model, by_part))
     borne = list(_bearings(model, sets))
-    if len(borne) > MOST_BEARINGS:
-        raise _too_many(f"{len(borne)} bearings", MOST_BEARINGS)
+    _check_count(len(borne), "bearings", MOST_BEARINGS)
     bearings = {names.of(joint.component, "bearing"): joint for joint in borne}
     return Train(units[0] if units else stages[0], sets, shafts, switches, bearings)
 
 
-def _too_many(found: str, most: int) -> InputError:
-    remedy = "Import one stage with --component, or export fewer."
-    return refuse(f"has {found}, but at most {most} are read as one train.", remedy)
+def _check_count(count: int, noun: str, most: int) -> None:
+    if count > most:
+        remedy = "Import one stage with --component, or export fewer."
+        refuse(f"has {count} {noun}, but at most {most} are read as one train.", remedy)
 
 
 class Names:

@@ -231,7 +231,6 @@ def _has_size(bearing: Component) -> bool:
 def _bearing(
     draft: Draft, train: Train, places: _Places, name: str, between: tuple[str, str]
 ) -> None:
-    """The table of one bearing."""
     bearing = train.bearings[name].component
     shaft, against = between
     key = f"bearings.{name}"

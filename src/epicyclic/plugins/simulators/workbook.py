@@ -64,7 +64,6 @@ def write_workbook(data: xr.Dataset, path: Path) -> None:
 
 
 def _append_map(book: Any, name: str, data: xr.Dataset) -> None:
-    """A sheet of points."""
     sheet = book.create_sheet(name)
     sheet.freeze_panes = "A3"
     table = data.drop_vars(_LONG_TEXT).to_dataframe().reset_index()

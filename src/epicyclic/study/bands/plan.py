@@ -14,7 +14,7 @@ import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case
-from epicyclic.case.tables.uncertainty import MODEL_FORM, UncertainValue
+from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.dataclass import dataclass
 from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
@@ -165,7 +165,7 @@ def loss_numbers(
 def factors_of(values: Sequence[UncertainValue], points: FloatArray) -> dict[str, FloatArray]:
     """Factors of the models at some points of all `values`, by kind."""
     return {
-        value.key.removeprefix(MODEL_FORM): row
+        value.kind_of_loss: row
         for value, row in zip(values, points, strict=True)
         if value.is_model_form
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import math
 import operator
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from graphlib import CycleError, TopologicalSorter
 from itertools import islice
@@ -131,21 +131,18 @@ def unit_of(case: Case, key: str) -> str:
     return "1" if quantity is None else quantity.display
 
 
-def make_group(case: Case, group: Mapping[str, Iterable[Any]]) -> tuple[Axis | None, list[Problem]]:
+def make_group(case: Case, group: Mapping[str, list[Any]]) -> tuple[Axis | None, list[Problem]]:
     """The axis of keys whose values change together, named after the first; its problems."""
-    columns = {str(key): listed(values) for key, values in group.items()}
-    axes, problems = _columns(case, columns, first=True)
+    axes, problems = _columns(case, group, first=True)
     if problems:
         return None, problems
     leading, *others = axes
     return replace(leading, together=tuple(others)), []
 
 
-def make_rows(
-    case: Case, columns: Mapping[str, Iterable[Any]]
-) -> tuple[Axis | None, list[Problem]]:
+def make_rows(case: Case, columns: Mapping[str, list[Any]]) -> tuple[Axis | None, list[Problem]]:
     """The axis of a table of points, by its columns; its problems."""
-    axes, problems = _columns(case, {str(key): listed(it) for key, it in columns.items()})
+    axes, problems = _columns(case, columns)
     if problems:
         return None, problems
     numbers = tuple(range(1, 1 + len(axes[0].values)))

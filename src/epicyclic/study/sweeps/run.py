@@ -227,7 +227,6 @@ class CasePlan(Plan):
         return list(rows.values())
 
     def _solve(self, index: int) -> Row:
-        """One case as a flat record."""
         (answer,) = self._answers([self.case.updated(self.changes(index))])
         return self._answered(answer)
 
@@ -242,7 +241,6 @@ class CasePlan(Plan):
 
     @staticmethod
     def _row_of(answer: Any) -> Row:
-        """The flat record of what is found."""
         if answer.status is not Status.CONVERGED:
             return Row(str(answer.status), message=answer.notes[0])
         warnings = " | ".join(answer.warnings)
@@ -250,7 +248,6 @@ class CasePlan(Plan):
 
 
 def _files(case: Case) -> Iterator[str]:
-    """The files that a case names."""
     tables: list[Any] = [case.models]
     if isinstance(case, TrainCase):
         tables += [table.models for table in case.sets.values() if hasattr(table, "models")]
@@ -435,8 +432,7 @@ def _keyed(group: Mapping[str, Iterable[Any]]) -> Iterator[tuple[str, list[Any]]
 
 
 def _repeated(keys: Iterable[str]) -> list[Problem]:
-    counts = Counter(map(str, keys))
-    again = (key for key, count in counts.items() if count > 1)
+    again = (key for key, count in Counter(keys).items() if count > 1)
     return [Problem(key, "", "is varied twice.", "Give each key once.") for key in again]
 
 
@@ -618,9 +614,7 @@ def _coordinates(plan: SweepPlan) -> Iterator[tuple[str, tuple[str, ...], Any, s
             yield part.key, (axis.key,), np.array(part.coordinate), part.unit
     for key in plan.links:
         behind = plan.axes_behind(key)
-        shape = tuple(
-            plan.shape[number] if number in behind else 1 for number in range(len(plan.shape))
-        )
+        shape = tuple(size if it in behind else 1 for it, size in enumerate(plan.shape))
         values = [
             plan.point(int(np.ravel_multi_index(place, plan.shape))).coordinate(key)
             for place in np.ndindex(shape)

@@ -30,7 +30,7 @@ from typing import Any, BinaryIO, ClassVar, Protocol, Self
 import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from epicyclic.arrays import FloatArray
+from epicyclic.arrays import FloatArray, itself
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import (
     EpicyclicError,
@@ -617,7 +617,7 @@ def _run_on_cluster(
     with _client(address) as client:
         threads = sum(client.nthreads().values())
         # handed to the cluster once, which may have no workers yet
-        shared = client.submit(_same, plan, pure=False)
+        shared = client.submit(itself, plan, pure=False)
         version = metadata.version("epicyclic")
         batches = _batches(plan, indices, max(1, threads))
         futures = client.map(_solve_there, batches, plan=shared, version=version, pure=False)
@@ -661,10 +661,6 @@ def _client(address: str, *, trial: bool = False) -> Any:
 def _cluster_error(address: str, allowed: str) -> InputError:
     remedy = "Give the address of a running scheduler, as in tcp://host:8786."
     return one_problem("--dask", f'"{address}"', allowed, remedy, "the command")
-
-
-def _same(plan: Plan) -> Plan:
-    return plan
 
 
 def _solve_there(indices: Sequence[int], plan: Plan, version: str) -> Batch:
