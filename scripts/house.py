@@ -32,7 +32,7 @@ ADDED_TO_THE_CORE = {
     "test rigs, seals of sets, open clutches, rollers without a cage": 590,
     "a first run in two processes, sizes of units": 185,
     "points of a sweep that share a machine": 150,
-    "points of a sweep solved together": 1_235,
+    "points of a sweep solved together, their heat networks too": 1_275,
     "friction in vector code": 115,
     "temperatures that do not settle, limits of uncertain inputs, ranges of drag": 50,
     "keys and library of strength, odds over a cycle": 170,
@@ -56,7 +56,7 @@ ADDED_TO_CASE = {
 }
 """Lines of what was added since the house was built, which the changelog counts apart."""
 CEILINGS = {
-    "lines": 68_845 + sum(ADDED.values()),
+    "lines": 68_805 + sum(ADDED.values()),
     "lines of the core": 53_510 + sum(ADDED_TO_THE_CORE.values()),
     "lines of case": 4_305 + sum(ADDED_TO_CASE.values()),
     "files": 260,

@@ -140,17 +140,13 @@ def settle(points: Sequence[tuple[Machine, Operation, ThermalModel]]) -> list[Se
                 found[number] = done.value
             except Exception as error:
                 found[number] = error
-        turns = {number: _turn(it) for number, it in asked.items()}
+        # heat first, then losses, then whole solutions
+        turns = {n: 0 if isinstance(it, _Asked) else 1 + it.whole for n, it in asked.items()}
         first = min(turns.values(), default=0)
         those = {number: asked.pop(number) for number, turn in turns.items() if turn == first}
         answer_all: Any = solve_machines if first else _answers
         answers = dict(zip(those, answer_all([*those.values()]), strict=True))
     return [found[number] for number in range(len(passes))]
-
-
-def _turn(asked: _Asked | Wanted) -> int:
-    """What is done first: heat, then losses, then whole solutions."""
-    return 0 if isinstance(asked, _Asked) else 1 + asked.whole
 
 
 def _answers(asked: Sequence[_Asked]) -> list[_Heated | Exception]:

@@ -537,7 +537,7 @@ def duration_text(seconds: float) -> str:
 
 
 def _number(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.1f}"
+    return "-" if math.isnan(value) else f"{value:z.1f}"
 
 
 def warm_up_rows(data: xr.Dataset) -> pd.DataFrame:

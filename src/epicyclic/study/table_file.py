@@ -683,7 +683,7 @@ def _of_parquet(path: Path, name: str, form: TableForm) -> Source:
     try:
         with opened() as file:
             names = tuple(file.schema_arrow.names)
-    except (pa.ArrowException, OSError) as error:
+    except (pa.ArrowException, OSError, UnicodeError) as error:
         reason = one_line(str(error), 200).rstrip(".")
         refuse(f"is not a valid Parquet file: {reason}.", "Write it again, or as CSV.")
     headers = headers_of(names, form)
@@ -700,7 +700,7 @@ def _of_parquet(path: Path, name: str, form: TableForm) -> Source:
                     }
                     yield Piece(np.arange(done, done + batch.num_rows) + 1, columns)
                     done += batch.num_rows
-        except (pa.ArrowException, OSError) as error:
+        except (pa.ArrowException, OSError, UnicodeError) as error:
             refuse(f"cannot be read: {one_line(str(error), 200)}.", "Write it again.")
 
     return Source(name, tuple(headers), pieces, "row", rows=form.rows)
