@@ -159,3 +159,21 @@ main()
 """
     run = subprocess.run([sys.executable, "-c", program], check=False, capture_output=True)
     assert (run.returncode, run.stderr) == (0, b"")
+
+
+def test_the_thread_that_ends_compiled_code_tells_of_the_interruption_alone():
+    """What runs at the end of the process may call for the main thread."""
+    program = """
+import sys, threading
+from epicyclic.cli import main as ending
+def end(*arguments):
+    thread = threading.Thread(target=ending._end)
+    thread.start()
+    thread.join()
+ending.main = end
+sys.argv = ["epicyclic"]
+from epicyclic.__main__ import main
+main()
+"""
+    run = subprocess.run([sys.executable, "-c", program], check=False, capture_output=True)
+    assert (run.returncode, run.stderr) == (130, b"Interrupted.\n")

@@ -245,5 +245,6 @@ def _end() -> NoReturn:
             for worker in sys.modules["multiprocessing"].active_children():
                 worker.terminate()  # those of loky have no `kill`
         tell_once()
+        atexit.unregister(signal.signal)  # which only the main thread may call
         atexit._run_exitfuncs()
     os._exit(EXIT_INTERRUPTED)
