@@ -92,9 +92,9 @@ class _Asked(NamedTuple):
 
 
 class _Heated(NamedTuple):
-    """What it gets."""
+    """What it gets: temperatures, and all of its answer, of which only the last one is read."""
 
-    temperatures: Mapping[str, float]
+    temperatures: Mapping[str, float]  # [K]
     answer: Callable[[], Answer]
 
 
@@ -186,7 +186,8 @@ def _passes(
             machine, operation, model.fluids(held), unheated, earlier, change <= NEARLY
         )
         if isinstance(model, NetworkModel):
-            answer = yield _Asked(model, held[OIL], model.seen(solution))
+            seen = model.seen(solution, solution.losses.values())
+            answer = yield _Asked(model, held[OIL], seen)
         else:
             answer = _heated(model.answer(solution))
         found.append((held, solution, answer))
@@ -221,12 +222,11 @@ def _expected(
         step, rise = at - _values(before[0]), reached - _values(before[2].temperatures)
         slopes = np.divide(rise, step, out=np.zeros_like(at), where=step != 0)
         return np.asarray(at + (reached - at) / (1 - np.minimum(slopes, QUICK)))
-    seen = model.seen(last[1])
 
     def ahead(values: FloatArray) -> _Asked:
         held = _held(model, values)
-        heat = model.net_heat(_expected_losses(before, last, held))
-        return _Asked(model, held[OIL], seen._replace(heat=heat))
+        seen = model.seen(last[1], _expected_losses(before, last, held))
+        return _Asked(model, held[OIL], seen)
 
     def off(values: FloatArray) -> FloatArray:
         _, around, seen = ahead(values)
@@ -410,7 +410,8 @@ LEAST_FLOW = 1e-9  # With which the oil is warmest, over that which carries all 
 AT_REST = 1.0  # Conductance that makes a part without heat as warm as the oil. [W/K]
 LEAST_SHARE = 0.01
 """Oil for a part without heat over that for one with all the heat: an estimate. [1]"""
-SMALLEST_HEAT = 1e-6  # With which a gearbox without any heat shares its oil evenly. [W]
+SMALLEST_HEAT = 1e-6
+"""With which a gearbox without any heat shares its oil, and over which residuals are at least. [W]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -624,11 +625,11 @@ class NetworkModel:
 
     def network(self, temperature: float, solution: Solution) -> Network:
         """The network with oil and housing at one temperature. [K]"""
-        seen = self.seen(solution)
+        seen = self.seen(solution, solution.losses.values())
         return self._with_wall(self._fixed_links(temperature, seen), seen.heat, temperature)
 
-    def seen(self, solution: Solution) -> Seen:
-        """What the network depends on."""
+    def seen(self, solution: Solution, losses: Iterable[Loss]) -> Seen:
+        """What the network depends on, with the losses of a solution or others."""
         rollers = {
             joined_key(own.key, planet.key): cast(
                 BearingFigures, solution.results[own.key].figures[planet.key]
@@ -638,16 +639,11 @@ class NetworkModel:
             for planet in own.planets
             if planet.bearing is not None
         }
-        heat = self.net_heat(solution.losses.values())
-        return Seen(solution.state.speeds, heat, rollers)
-
-    def net_heat(self, losses: Iterable[Loss]) -> dict[str, float]:
-        """That arises at each node, less the power of a cooler. [W]"""
         heat = heat_of(losses)
         heat[OIL] = heat.get(OIL, 0.0) - self.settings.cooler_power
         if self.settings.housing is None:
             heat[OIL] += heat.pop(HOUSING, 0.0)
-        return heat
+        return Seen(solution.state.speeds, heat, rollers)
 
     def _wall(self, fixed: Sequence[Link], heat: Mapping[str, float]) -> float:
         """Temperature of the housing, on which the heat to the air depends. [K]"""
