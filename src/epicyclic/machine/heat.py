@@ -411,7 +411,7 @@ AT_REST = 1.0  # Conductance that makes a part without heat as warm as the oil. 
 LEAST_SHARE = 0.01
 """Oil for a part without heat over that for one with all the heat: an estimate. [1]"""
 SMALLEST_HEAT = 1e-6
-"""With which a gearbox without any heat shares its oil, and over which residuals are at least. [W]"""
+"""With which a gearbox without heat shares its oil; residuals are over this at least. [W]"""
 
 
 @dataclass(frozen=True, slots=True)
