@@ -217,16 +217,26 @@ def test_what_a_case_states_of_other_keys_stays(case):
 
 
 def test_a_fitted_factor_takes_the_place_of_the_error_of_its_model(case, talbot):
-    """Both meshes of a set slide: the factor of one of them leaves the model its error."""
-    points = Linear(3)
+    """Both meshes of a set slide: the factor of one of them leaves the model its error.
+
+    So do the sets of a train; and whichever model finds the drag, its loss is what was measured.
+    """
+    points, eaxle = Linear(3), ep.load_case("train-eaxle")
+    pockets = [f"sets.{mesh}_pocketing" for mesh in (
+        "pair.losses.mesh", "planets.losses.sun_mesh", "planets.losses.ring_mesh"
+    )]  # fmt: skip
+    factors = [f"{loss}.factor" for loss in pockets[:2]]
     for whole, keys, exact in (
-        (case, KEYS, {"model_form.sliding", "model_form.drag"}),
+        (case, KEYS, {"sliding", "churning", "windage", "drag"}),
         (talbot, ["losses.sun_mesh_sliding.factor", "losses.planet_bearing_mechanical.factor"],
-         {"model_form.planet-bearing"}),
+         {"planet-bearing"}),
+        (eaxle, factors, set()),
+        (eaxle.updated({f"{pockets[2]}.include": False}), factors, {"pocketing"}),
     ):  # fmt: skip
         fit = fit_parameters(points, make_parameters(whole, keys, ()), every(points), 0.95)
         table = calibrated_case(whole, fit).given()["uncertainty"]
-        assert {key for key, entry in table.items() if entry.get("exact")} == exact
+        found = {key for key, entry in table.items() if entry.get("exact")}
+        assert found == {f"model_form.{kind}" for kind in exact}
     stated = case.updated({"uncertainty": {"model_form.drag": {"lognormal_factor": 1.2}}})
     table = calibrated_case(stated, fit_parameters(
         points, make_parameters(case, KEYS, ()), every(points), 0.95

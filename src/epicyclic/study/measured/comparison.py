@@ -5,8 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, KeysView, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,12 +14,12 @@ from pydantic_core import to_jsonable_python
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.result import NOT_INCLUDED
 from epicyclic.case.case import Case
-from epicyclic.case.tables.uncertainty import MODEL_FORM
+from epicyclic.case.tables.uncertainty import MODEL_FORM, model_forms
 from epicyclic.dataclass import asdict, dataclass
 from epicyclic.errors import first_of
 from epicyclic.losses.ranges import OUT_OF_RANGE
 from epicyclic.result.result import versions
-from epicyclic.study.bands.inputs import model_form_of
+from epicyclic.study.bands.inputs import factors_of_kind
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.measured.residuals import Computed
 from epicyclic.study.measured.table import Measurements
@@ -50,14 +49,12 @@ def calibrated_case(case: Case, fit: Fit) -> Case:
     return case.updated({**fit.settings, "uncertainty": (settled | kept | known) or None})
 
 
-def _settled(case: Case, keys: Collection[str]) -> Iterator[str]:
+def _settled(case: Case, keys: KeysView[str]) -> Iterator[str]:
     """Kinds of losses whose factors are all among some keys."""
-    factors: dict[str, set[str]] = defaultdict(set)
-    losses = getattr(case, "losses", None)
-    for term in type(losses).model_fields if losses is not None else ():
-        if getattr(losses, term).include:
-            factors[model_form_of(term)].add(f"losses.{term}.factor")
-    return (kind for kind, wanted in factors.items() if wanted.issubset(keys))
+    for kind in model_forms():
+        factors = factors_of_kind(case, kind)
+        if factors and keys >= factors.keys():
+            yield kind
 
 
 def uncertainty_tables(fit: Fit) -> dict[str, dict[str, Any]]:
