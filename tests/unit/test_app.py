@@ -536,6 +536,27 @@ def test_a_chapter_is_shown_before_the_others_are_known(simulate, chapter, tab, 
 
 
 @pytest.mark.slow
+def test_a_picture_can_be_saved_once_it_is_drawn(simulate):
+    desk = opened("talbot-2012-pair")
+    desk.change("losses.mesh_pocketing.include", False)
+    drawn = asyncio.Event()
+
+    class _Slow(_Held):
+        async def do(self, task, *arguments, progress):
+            if task is tasks.turning:
+                await drawn.wait()
+            return await super().do(task, *arguments, progress=progress)
+
+    async def script(user):
+        await user.should_see("mesh periods", retries=200)
+        await user.should_not_see("svg")
+        drawn.set()
+        await user.should_see("svg", retries=200)
+
+    simulate(desk, script, chapter="gears", slow=_Slow)
+
+
+@pytest.mark.slow
 def test_another_case_is_opened_and_a_group_shows_its_fields_when_it_is_opened(simulate):
     desk = opened("talbot-2012-pair")
     desk.change("losses.mesh_pocketing.include", False)

@@ -85,7 +85,7 @@ async def download(do: Do, study: Study, name: str, original: str | None, stem: 
     ui.download(content, f"{stem}{suffix}")
 
 
-def save_buttons(name: str, draw: Callable[[str], Awaitable[bytes]]) -> None:
+def save_buttons(name: str, draw: Callable[[str], Awaitable[bytes]]) -> Element:
     """A button for each format, which draws a figure in it and hands the file to the browser."""
 
     async def save(ending: str) -> None:
@@ -94,9 +94,10 @@ def save_buttons(name: str, draw: Callable[[str], Awaitable[bytes]]) -> None:
         except EpicyclicError as error:
             ui.notify(str(error))
 
-    with ui.element("div").classes("formats"):
+    with ui.element("div").classes("formats") as buttons:
         for ending in FORMATS:
             ui.button(ending, on_click=partial(save, ending)).props("flat dense no-caps")
+    return buttons
 
 
 class Place:
@@ -121,7 +122,8 @@ class Place:
             with ui.element("figcaption"):
                 self._point = ui.label().classes("point")
                 ui.label("computing ...").classes("computing")
-                save_buttons(name, draw)
+                self._buttons = save_buttons(name, draw)
+        self._buttons.set_visibility(False)  # until there is something to save
 
     @property
     def is_gone(self) -> bool:
@@ -142,6 +144,7 @@ class Place:
             else:
                 picture.update_figure(_chart(drawing))
         self._point.set_text(drawings[0].point if drawings else "")
+        self._buttons.set_visibility(True)
         self.drawn = study
 
     def _make(self, drawings: Sequence[Drawing]) -> None:
