@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -62,6 +64,21 @@ def test_interpolation_is_off_by_little_at_any_torque(case, rpm, most):
     told = dense.attrs["torque_interpolation_error"]
     assert 0 < told < most < even.attrs["torque_interpolation_error"]
     assert f"{100 * told:.2g} %" in dense.attrs["torque_interpolation"]
+
+
+def test_a_map_states_its_error_at_the_middle_and_at_the_slowest_speed(case):
+    speeds = ["-3100 rpm", "-130 rpm", "0 rpm", "1700 rpm", "2900 rpm"]
+    data = ep.loss_map(case, speeds, ["-300 N*m", "0 N*m", "500 N*m"], jobs=1)
+    words = data.attrs["torque_interpolation"]
+    found = re.findall(r"([\d.]+) % \(([\d.]+) W\) at (-?\d+) rpm and (-?[\d.]+) N", words)
+    assert [float(rpm) for _, _, rpm, _ in found] == [1700.0, -130.0]
+    for share, watts, rpm, torque in found:
+        total = data["total"].isel(temperature=0).sel(speed=float(rpm))
+        at = {"operation.speed": f"{rpm} rpm", "operation.torque": f"{torque} N*m"}
+        exact = ep.solve(case.updated(at)).total
+        off = abs(float(np.interp(float(torque), data["torque"], total)) - exact)
+        assert [off, 100 * off / exact] == pytest.approx([float(watts), float(share)], rel=0.05)
+    assert data.attrs["torque_interpolation_error"] == pytest.approx(float(found[0][0]) / 100)
 
 
 @pytest.mark.parametrize(

@@ -211,36 +211,48 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     """What a map says of the error of linear interpolation between its torques.
 
     Measured where it is largest, near zero torque, and at some torques beyond: between torques of
-    the map, at the middle one of its speeds and the first value of all other
-    axes, the loss is solved directly.
+    the map, at the middle one of its speeds, the slowest one, where little is lost, and the first
+    value of all other axes, the loss is solved directly.
 
-    Returns dict: ``torque_interpolation_error``, relative [1], and ``torque_interpolation`` in
-    words; nothing if there is only one torque, no point can be solved, or one takes minutes.
+    Returns dict: ``torque_interpolation_error`` at the middle speed, relative [1], and
+    ``torque_interpolation`` in words; nothing if there is only one torque, no point can be solved,
+    or one takes minutes.
     """
     torques = data["torque"].values.astype(float)
     speeds = data["speed"].values[data["speed"].values != 0]
-    if torques.size < 2 or not speeds.size or _takes_minutes(case):
+    takes_minutes = any(own.models.friction == "ehl-direct" for own in set_cases(case).values())
+    if torques.size < 2 or not speeds.size or takes_minutes:
         return {}
     first = {name: 0 for name in data["total"].dims if name not in ("speed", "torque")}
-    speed = float(speeds[speeds.size // 2])
-    line = data.sel(speed=speed).isel(first)
-    middles = _checked(torques, line["total"].values)
-    fixed = [values for name, values in line.coords.items() if name != "torque"]
-    changes = {key_of(values): written_values(values)[0] for values in fixed}
+    ends = dict.fromkeys((float(speeds[speeds.size // 2]), float(min(speeds, key=abs))))
+    lines = [data.sel(speed=speed).isel(first) for speed in ends]
+    middles = [_checked(torques, line["total"].values) for line in lines]
+    points: list[dict[str, Any]] = []
     torque = OPERATING["torque"]
-    points = tuple(changes | {torque.key: torque.text(middle)} for middle in middles.tolist())
-    direct = Runner(jobs=1).run(PointList(case, points)).numbers("total")
-    with np.errstate(divide="ignore", invalid="ignore"):  # of no loss there is no part
-        error = np.abs(np.interp(middles, torques, line["total"].values) / direct - 1)
-    if not np.isfinite(error).any():
+    for line, own in zip(lines, middles, strict=True):
+        fixed = [values for name, values in line.coords.items() if name != "torque"]
+        changes = {key_of(values): written_values(values)[0] for values in fixed}
+        points += [changes | {torque.key: torque.text(middle)} for middle in own.tolist()]
+    direct = Runner(jobs=1).run(PointList(case, tuple(points))).numbers("total")
+    found, texts = [], []
+    for speed, line, own in zip(ends, lines, middles, strict=True):
+        exact, direct = direct[: own.size], direct[own.size :]
+        with np.errstate(divide="ignore", invalid="ignore"):  # of no loss there is no part
+            error = np.abs(np.interp(own, torques, line["total"].values) / exact - 1)
+        if np.isfinite(error).any():
+            worst = int(np.nanargmax(error))
+            found.append(float(f"{error[worst]:.2g}"))
+            watts = WATT.text(error[worst] * exact[worst], 2)
+            at = f"{format_number(speed)} rpm and {format_number(float(own[worst]), 3)}"
+            texts.append(
+                f"{100 * error[worst]:.2g} % ({watts}) at {at} {unit_text(NEWTON_METRE.display)}"
+            )
+    if not found:
         return {}
-    worst = int(np.nanargmax(error))
     return {
-        "torque_interpolation_error": float(f"{error[worst]:.2g}"),
+        "torque_interpolation_error": found[0],
         "torque_interpolation": "linear in the torque; the largest error of the total loss is "
-        f"{100 * error[worst]:.2g} %, at {format_number(float(middles[worst]), 3)} "
-        f"{unit_text(NEWTON_METRE.display)}: {np.isfinite(error).sum()} points between torques "
-        f"solved directly, at {format_number(speed)} rpm",
+        f"{', '.join(texts)}: {len(points)} points between torques solved directly",
     }
 
 
@@ -267,10 +279,6 @@ def _checked(torques: FloatArray, total: FloatArray) -> FloatArray:
     outer = np.where(backwards, low[first], high[first])
     closer = [inner + part * (outer - inner) for part in CLOSER_TO_ZERO]
     return np.unique(np.concatenate([middles[near], middles[others[places]], *closer]))
-
-
-def _takes_minutes(case: Case) -> bool:
-    return any(own.models.friction == "ehl-direct" for own in set_cases(case).values())
 
 
 # Loss maps: losses, torque loss and efficiency over speed, torque and oil temperature.
