@@ -439,6 +439,7 @@ def _position(kind: type[Table], problem: Problem) -> int:
 # A train: gear sets joined by shafts, with brakes, clutches, bearings, seals and other drags.
 
 
+_MAGNITUDES = {"torque", "speed", "oil_inlet_temperature"}  # Of these a train moves at any or none.
 _SHARED = ("models", "numerics", "friction_table", "lubrication")
 """Tables of a train that its computed sets take over where they have none of their own."""
 
@@ -594,7 +595,9 @@ class TrainCase(_TrainHead):
             own |= {key: getattr(whole.case, key) for key in _OPERATED}
             train = cls.model_construct(**own)
             train._found, train._sound, train._shape = before._found, whole.sections, before._shape
-            wrong = [*operation_problems(train, True), *bearing_force_problems(train, True)]
+            old, new = before._tables["operation"], tables["operation"]
+            turned = any(old.get(key) != new.get(key) for key in {*old, *new} - _MAGNITUDES)
+            wrong = [*operation_problems(train, True, turned), *bearing_force_problems(train, True)]
             return cls._made(cast(Self, train), tables, source, wrong, before._design)
         known = {problem.key for problem in problems}
         own_tables = {k: v for k, v in whole.sections.items() if k != "operation"}
