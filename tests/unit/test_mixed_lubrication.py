@@ -111,6 +111,17 @@ def test_the_stress_is_found_however_stiff_the_oil():
         assert stress == pytest.approx(found, rel=1e-7)
 
 
+def test_a_short_step_behind_a_very_long_one_is_not_the_last():
+    """The stress was a third of that of neighbours where the film lies far below the start."""
+    found = ep.friction(
+        "mixed-lubrication", line_load="298.6 N/mm", radius="36 mm", rolling_speed="84.4 m/s",
+        sliding_speed=["130 m/s", "134 m/s", "156 m/s", "160 m/s"], oil="iso-vg-320-mineral",
+        temperature="-4.4 degC",
+    )  # fmt: skip
+    assert (np.diff(found) < 0).all()
+    assert found[-1] > 0.9 * found[0]
+
+
 def test_derivative_of_the_stress_to_the_temperature(contact):
     oil = tuple(model._oil_constants(contact.oil))
     for pressure, log_rate in ((0.0, -9.0), (0.4e9, -6.0), (1.5e9, -4.0)):

@@ -18,6 +18,7 @@ LEAST_VISCOSITY = 0.01  # That no heat goes below: thinner than any oil. [mm^2/s
 START = 0.3  # Stress over its limit at unheated pressure with which Newton's method starts. [1]
 QUICK_STEPS, STEPS = 4, 100  # Of Newton's method alone, and held between bounds.
 LEFT = 1e-9  # Of the stress: what a step leaves is its cube over the square of the one before. [1]
+CLOSE = 1e-4  # Size of that step over the stress, at most: a longer one may meet another bend. [1]
 
 
 @partial(kernel, inlined=True)
@@ -62,7 +63,8 @@ def _bounded(
         hot, slope = eyring_stress(oil[0] + warm + heating * stress, pressure, log_rate, oil)
         step = (hot - stress) / (1.0 - heating * slope)
         last, stress, size = stress, stress + step, abs(step)
-        if size * size * size <= LEFT * stress * moved * moved and moved < math.inf:
+        close = size <= CLOSE * stress and moved < math.inf
+        if close and size * size * size <= LEFT * stress * moved * moved:
             break
         if hot > last:
             low = last
@@ -99,7 +101,8 @@ def _film_stresses(
                 step = (hot - stress[i]) / (1.0 - heat[i] * slope)
                 stress[i] += step
                 size = abs(step)
-                left[i] = LEFT * stress[i] * moved[i] * moved[i] - size * size * size
+                bent = LEFT * stress[i] * moved[i] * moved[i] - size * size * size
+                left[i] = min(bent, CLOSE * stress[i] - size)
                 moved[i] = size
             found = 0
             for i in range(n):
