@@ -438,3 +438,17 @@ def test_points_that_are_solved_together_have_the_loads_of_each():
             assert np.asarray(found.displacement)[place] == pytest.approx(
                 alone.displacement, rel=1e-6, abs=1e-12
             )
+
+
+@pytest.mark.parametrize("slices", [5, pytest.param(20, marks=pytest.mark.slow)])
+def test_of_two_solutions_every_start_leads_to_the_same(slices):
+    """Where an end of a roller just touches, half a slice more or less carries the load too."""
+    bearing, count = replace(TALBOT, slices=slices), 512
+    rng = np.random.default_rng(7)
+    force = np.sort(rng.uniform(50.0, 12000.0, count))
+    moment = 4e-3 * force * rng.uniform(0.5, 1.1, count)
+    block = [of_points(it[:, None]) for it in (force, 0 * force, moment, 0 * moment)]
+    found = np.asarray(roller_loads(bearing, *block).intensity)
+    for own, load, tilting in zip(found, force.tolist(), moment.tolist(), strict=True):
+        alone = roller_loads(bearing, load, 0.0, tilting, 0.0).intensity
+        assert np.abs(own - alone).max() < 1e-6 * alone.max()

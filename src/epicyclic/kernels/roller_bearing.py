@@ -132,16 +132,18 @@ def potential(
 
 
 @kernel
-def loaded_lengths(d: FloatArray, rollers: Rollers, lengths: FloatArray) -> None:
+def loaded_lengths(d: FloatArray, rollers: Rollers, lengths: FloatArray) -> bool:
     """Fill `lengths`, (rows, rollers), with the length over which each roller is loaded.
 
     Theory (B11). The source counts loaded slices, a number that jumps. Here the slice in which the
-    load ends counts for the part of it that a straight line between slice middles finds loaded, so
-    that the load distribution is a continuous function of the load.
+    load ends counts for the part of it that a straight line between slice middles finds loaded. At
+    the end of a roller half a slice still comes or goes at once: where it is so near to that that
+    it could be either, by the lengths before, True is returned.
     """
     psi, y_over_l, crown, width, clearance = rollers
     rows, slices = y_over_l.shape
     delta = np.empty(slices)
+    doubtful = False
     for z in range(psi.size):
         radial, tilt = approach_of_races(d, np.cos(psi[z]), np.sin(psi[z]))
         for row in range(rows):
@@ -156,6 +158,10 @@ def loaded_lengths(d: FloatArray, rollers: Rollers, lengths: FloatArray) -> None
                     count += max(a, b) / abs(a - b)
             # an unloaded roller keeps one slice: its stiffness is then finite and unused
             lengths[row, z] = width * max(count, 1.0)
+            # half a slice changes the deflection by so much, under the same load
+            moved = LENGTH_EXPONENT * 0.5 / max(count, 1.0) * delta.max()
+            doubtful |= min(abs(delta[0]), abs(delta[-1])) < moved
+    return doubtful
 
 
 @kernel
@@ -287,26 +293,28 @@ def solve_one(
     rows, slices = y_over_l.shape
     if largest(load) == 0.0:
         return 0
-    lengths = np.full((rows, psi.size), width * slices)
-    if near:
-        loaded_lengths(d, rollers, lengths)
-    stiffness = np.empty((rows, psi.size))
+    lengths, stiffness = np.empty((rows, psi.size)), np.empty((rows, psi.size))
     total = 0
-    converged = False
-    for outer in range(max_iterations):
-        for row in range(rows):
-            for z in range(psi.size):
-                stiffness[row, z] = slice_stiffness(lengths[row, z])
-        steps = minimise(d, load, rollers, stiffness, tolerance, max_iterations, held)
-        if steps < 0:
+    for whole in range(0 if near else 1, 2):  # the one solution that begins with whole rollers
+        lengths[:] = width * slices
+        doubtful = whole == 0 and loaded_lengths(d, rollers, lengths)
+        converged = False
+        for outer in range(max_iterations):
+            for row in range(rows):
+                for z in range(psi.size):
+                    stiffness[row, z] = slice_stiffness(lengths[row, z])
+            steps = minimise(d, load, rollers, stiffness, tolerance, max_iterations, held)
+            if steps < 0:
+                return -1
+            total += steps
+            if (outer > 0 and steps == 0) or outer == LENGTH_UPDATES:
+                converged = True
+                break
+            doubtful = loaded_lengths(d, rollers, lengths)
+        if not converged:
             return -1
-        total += steps
-        if (outer > 0 and steps == 0) or outer == LENGTH_UPDATES:
-            converged = True
+        if not doubtful:
             break
-        loaded_lengths(d, rollers, lengths)
-    if not converged:
-        return -1
     for z in range(psi.size):
         radial, tilt = approach_of_races(d, np.cos(psi[z]), np.sin(psi[z]))
         for row in range(rows):
