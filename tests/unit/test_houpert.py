@@ -123,7 +123,7 @@ def test_thrust_rollers_roll_and_slide():
     assert creep == pytest.approx(WARM.boundary_friction * 7e3 * model.roller_length / 4, rel=1e-3)
     sliding = thrust_sliding(model, bearing, 7e3, 30.0, WARM)
     assert sliding < creep
-    rolling = rolling_moment(model, bearing, math.pi / 2, [7e3 / 18], 30.0, WARM)
+    rolling = rolling_moment(model, bearing, math.pi / 2, np.array([7e3 / 18]), 30.0, WARM)
     mechanical, drag = model.parts(bearing, BearingLoad(0.0, 7e3), 30.0, WARM)
     assert mechanical.watts == pytest.approx(30 * (sliding + rolling), rel=1e-12)
     assert drag.watts == 0

@@ -117,7 +117,7 @@ def ball_loads(
     Half of the balls carry where the axial force is less than that needs.
     """
     slope = load.radial * math.tan(alpha) / load.axial if load.axial else math.inf
-    shares = np.array(roller_loads(slope if load.radial else 0.0, POSITIONS, 1.5))
+    shares = roller_loads(slope if load.radial else 0.0, POSITIONS, 1.5)
     around = np.cos(2 * math.pi * np.arange(POSITIONS) / POSITIONS)
     held = float((shares * around).mean()) * math.cos(alpha)
     along = load.axial / math.sin(alpha) if load.axial else 0.0

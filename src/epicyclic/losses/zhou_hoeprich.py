@@ -8,15 +8,17 @@ rib after Aihara (1987), read; film and roughness there after Wingertszahn et al
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import lru_cache
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from epicyclic.arrays import FloatArray
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.kernels.line_contact import (
+    Real,
     asperity_share,
     equivalent_modulus,
     hertz_pressure,
@@ -68,6 +70,9 @@ AS_MADE = Surfaces(running_in=1.0)
 """Bearings are so fine that they hardly run in."""
 POSITIONS = 72
 """Azimuths at which rolling is summed: few rollers lose more or less by where they stand."""
+FINE = 720
+"""Azimuths in tapered bearings, of which not always half carry: the first load of a roller makes it
+lose much."""
 
 _MEASURED = "measured tapered bearings: Aihara (1987), Zhou and Hoeprich (1991), Wingertszahn"
 _VISCOSITY = Range(
@@ -185,7 +190,7 @@ class ThrustRollerModel(Rollers):
         moment = 0.0
         if load.axial and speed:
             moment = thrust_sliding(self, bearing, load.axial, speed, oil)
-            own = [load.axial / self.rollers]
+            own = np.array([load.axial / self.rollers])
             moment += rolling_moment(self, bearing, math.pi / 2, own, speed, oil)
         method = "rolling after Zhou and Hoeprich, sliding by mixed friction"
         return film_parts(self.skf, bearing, speed, oil, moment, method, ZHOU_HOEPRICH_SOURCE)
@@ -213,7 +218,7 @@ def film_parts(
 
 
 @lru_cache(maxsize=256)
-def roller_loads(slope: float, rollers: int, exponent: float = 10 / 9) -> tuple[float, ...]:
+def roller_loads(slope: float, rollers: int, exponent: float = 10 / 9) -> FloatArray:
     """Load of each roller over their mean, for F_r tan(alpha)/F_a. Theory (J22). [1]
 
     `exponent` of the load over the approach, 3/2 for balls.
@@ -221,26 +226,26 @@ def roller_loads(slope: float, rollers: int, exponent: float = 10 / 9) -> tuple[
     Examples
     --------
     >>> roller_loads(0.0, 3)
-    (1.0, 1.0, 1.0)
+    array([1., 1., 1.])
     """
-    cosines = [math.cos(2 * math.pi * roller / rollers) for roller in range(rollers)]
+    cosines = np.cos(2 * math.pi * np.arange(rollers) / rollers)
     low, high = 0.0, 1.0  # 1/(2 epsilon): 0 if all rollers carry the same, 1 if half of them carry
     while True:
         middle = (low + high) / 2 if slope else 0.0
-        loads = [max(0.0, 1 - middle * (1 - cosine)) ** exponent for cosine in cosines]
-        total = sum(loads)
+        loads = np.maximum(0, 1 - middle * (1 - cosines)) ** exponent
         if not slope or high - low < 1e-12:
-            return tuple(rollers * load / total for load in loads)
-        found = sum(load * cosine for load, cosine in zip(loads, cosines, strict=True)) / total
-        low, high = (middle, high) if found < slope else (low, middle)
+            shares: FloatArray = loads / loads.mean()
+            return shares
+        low, high = (middle, high) if loads @ cosines < slope * loads.sum() else (low, middle)
 
 
-def rolling_force(speed_number: float, material_number: float, load_number: float) -> float:
+def rolling_force(speed_number: float, material_number: float, load_number: Real) -> Real:
     """F alpha/(l R) on each surface of an isothermal contact: 29.2 (G U)^0.648 W^0.246.
 
     Theory (J23). Zhou and Hoeprich (1991), Eq. 17, a fit to numerical solutions. [1]
     """
-    return 29.2 * math.pow(material_number * speed_number, 0.648) * math.pow(load_number, 0.246)
+    force: Real = 29.2 * math.pow(material_number * speed_number, 0.648) * load_number**0.246
+    return force
 
 
 def raceways(model: RollerModel, bearing: CatalogueBearing, axis: float) -> tuple[float, float]:
@@ -254,7 +259,7 @@ def rolling_moment(
     model: RollerModel,
     bearing: CatalogueBearing,
     axis: float,
-    loads: Sequence[float],  # Of rollers evenly around the bearing, 0 of those that carry none. [N]
+    loads: FloatArray,  # Of rollers evenly around the bearing, 0 of those that carry none. [N]
     speed: float,
     oil: OilState,
 ) -> float:
@@ -265,14 +270,13 @@ def rolling_moment(
     thermal = oil.thermal_load(u)
     G = oil.pressure_viscosity * STEEL
     rolling = 0.0
-    for own in filter(None, loads):
-        w = own / model.roller_length
-        for radius in (inner, outer):
-            R = model.roller_diameter * radius / bearing.pitch_diameter
-            U, W = oil.dynamic_viscosity * u / (STEEL * R), w / (STEEL * R)
-            heat = inlet_film_factor(thermal, hertz_pressure(w, R, STEEL) / STEEL, 0.0)
-            force = rolling_force(U, G, W) * heat * R / oil.pressure_viscosity
-            rolling += force * model.roller_length * reach
+    w: Any = loads[loads > 0] / model.roller_length
+    for radius in (inner, outer):
+        R = model.roller_diameter * radius / bearing.pitch_diameter
+        U, W = oil.dynamic_viscosity * u / (STEEL * R), w / (STEEL * R)
+        heat = inlet_film_factor(thermal, hertz_pressure(w, R, STEEL) / STEEL, 0.0)
+        force = rolling_force(U, G, W) * heat * R / oil.pressure_viscosity
+        rolling += float(force.sum()) * model.roller_length * reach
     starved = model.skf.supply(bearing, speed, oil.kinematic_viscosity)
     return rolling * starved * model.rollers / len(loads)
 
@@ -286,11 +290,9 @@ def cylindrical_rolling(
 ) -> float:
     """Rolling moment of rollers, half of which carry, over all positions. Theory (J36). [N m]"""
     shares = roller_loads(math.inf, POSITIONS)
-    held = sum(
-        share * math.cos(2 * math.pi * place / POSITIONS) for place, share in enumerate(shares)
-    )
+    held = float(shares @ np.cos(2 * math.pi * np.arange(POSITIONS) / POSITIONS))
     mean = radial * POSITIONS / (held * model.rollers)
-    return rolling_moment(model, bearing, 0.0, [mean * share for share in shares], speed, oil)
+    return rolling_moment(model, bearing, 0.0, mean * shares, speed, oil)
 
 
 def tapered_moments(
@@ -319,19 +321,16 @@ def tapered_moments(
     shape = 2.69 * along * (1 - 0.61 * math.exp(-0.73 * k))
     shape *= inlet_film_factor(oil.thermal_load(u), 0.0, slip)
     shape *= math.pow(oil.dynamic_viscosity * u / (STEEL * along), 0.67) * math.pow(G, 0.53)
-    rib = 0.0
-    least = math.inf
     mean = thrust / (math.sin(alpha) * model.rollers)
     slope = load.radial * math.tan(alpha) / thrust
-    loads = [mean * share for share in roller_loads(slope, model.rollers)]
-    for own in filter(None, loads):
-        pressed = own * math.sin(2 * half)
-        film = shape * math.pow(pressed / (STEEL * along**2), -0.067) / model.rib_roughness
-        least = min(least, film)
-        dry = asperity_share(film)
-        friction = dry * RIB_FRICTION + (1 - dry) * model.skf.full_film_friction
-        rib += friction * pressed * model.rib_height * outer / model.roller_diameter
-    return TaperedMoments(rolling_moment(model, bearing, axis, loads, speed, oil), rib, least)
+    loads = mean * roller_loads(slope, FINE if slope else 1)
+    pressed = loads[loads > 0] * math.sin(2 * half)
+    film = shape * (pressed / (STEEL * along**2)) ** -0.067 / model.rib_roughness
+    dry = asperity_share(film)
+    friction = dry * RIB_FRICTION + (1 - dry) * model.skf.full_film_friction
+    rib = float((friction * pressed).sum()) * model.rib_height * outer / model.roller_diameter
+    rolling = rolling_moment(model, bearing, axis, loads, speed, oil)
+    return TaperedMoments(rolling, rib * model.rollers / len(loads), float(film.min()))
 
 
 def thrust_sliding(
