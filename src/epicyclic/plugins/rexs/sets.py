@@ -260,7 +260,7 @@ def is_rigid(joint: Component, *, switched: bool = True) -> bool:
     if not switched and is_switched(joint):
         return False
     try:
-        return joint.type in _RIGID and (engaged is None or engaged.flag())
+        return joint.type in _RIGID and (engaged is None or all(engaged.flags()))
     except ValueError:
         return False
 
