@@ -180,9 +180,9 @@ def contact_figure(result: ContactResult) -> Figure:
         panels.append(plot_temperature)
     title = result.case.title or "Line contact"
     columns, panel = (1, TWO) if len(panels) == 2 else (2, MORE)
-    with styled_figure(2, columns, title, panel=panel, caption=_point(result)) as (figure, axes):
-        for ax in axes.flat[len(panels) :]:
-            ax.remove()
+    with styled_figure(
+        2, columns, title, panel=panel, caption=_point(result), count=len(panels)
+    ) as (figure, axes):
         for plot, ax in zip(panels, axes.flat, strict=False):
             plot(result, ax)
         if columns == 1:
