@@ -287,7 +287,7 @@ def _of_member(mesh: Mesh, member: int, table: StatedGear) -> MicroGeometry:
     flank = working_flank(member, table)
     if flank is None:
         return MicroGeometry()
-    gear = (mesh.gear1, mesh.gear2)[member - 1]
+    gear = mesh.gears[member - 1]
     root, tip = active_profile(mesh, member)
     return MicroGeometry(
         tip_relief=_profile_relief(gear, tip, flank, "tip_relief"),
