@@ -30,7 +30,6 @@ from epicyclic.validation.compute import (
 # The open figures of the published study of pocketing losses, for each model of the flow.
 
 
-STUDY = "Talbot (2012), section 4.4"
 CLOSURES = ("incompressible", "isentropic", "mean-density", "talbot-2012")
 """Models that are compared; "central-differences" has no solution for some of the figures."""
 

@@ -231,8 +231,7 @@ class Joint(NamedTuple):
 
 def joints(model: Model) -> Iterator[Joint]:
     """Everything that stands between two parts."""
-    found = (_joint(model, relation) for relation in model.relations)
-    return (joint for joint in found if joint is not None)
+    return filter(None, (_joint(model, relation) for relation in model.relations))
 
 
 def _joint(model: Model, relation: Relation) -> Joint | None:
