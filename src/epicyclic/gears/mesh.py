@@ -71,7 +71,7 @@ class Mesh:
         (G47).
         """
         one, two, rack = self.gear1, self.gear2, self.gear1.rack
-        side = -1 if two.internal else 1
+        side = two.side
         ratio, total = two.teeth / one.teeth, two.teeth + side * one.teeth
         bases = two.base_radius + side * one.base_radius
         can_mesh = total > 0 and abs(bases) <= self.center_distance

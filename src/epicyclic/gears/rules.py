@@ -160,7 +160,7 @@ def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
         remedy = f"Reduce gears.dedendum_coefficient, or give {root}."
         return Problem(root, root_shown, "must exceed zero.", remedy)
     height = gear.tip_radius - gear.root_radius
-    if (-height if gear.internal else height) <= 0:
+    if gear.side * height <= 0:
         larger, smaller = (root, tip) if gear.internal else (tip, root)
         allowed = f"leave no tooth: {larger} must exceed {smaller} for "
         allowed += f"{'a ring' if gear.internal else 'an external gear'}."
@@ -271,7 +271,7 @@ def _tip_limits(gearing: Gearing, tip: Gear) -> Iterator[float]:
     for mesh in _meshes_of(gearing, tip):
         first = tip.name == mesh.gear1.name
         root, clearance = (mesh.gear2 if first else mesh.gear1), mesh.tip_clearances[not first]
-        yield tip.tip_radius + (-clearance if tip.internal else clearance)
+        yield tip.tip_radius + tip.side * clearance
         try:
             end = longest_involute(root, gearing.tables[root.name].tool_tip_radius)
         except ValueError:  # no tool cuts it
@@ -357,7 +357,7 @@ def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
     if length <= 0:
         return 0.0
     form = math.hypot(mate.base_radius, length)
-    return form + (-mate.tip_chamfer if mate.internal else mate.tip_chamfer)
+    return form + mate.side * mate.tip_chamfer
 
 
 def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
