@@ -161,19 +161,21 @@ PREFIX = ".epicyclic-"  # Begins the names of the private folders.
 FILE, REMEDY = "FILE", "Name another file."
 
 
-def check_place(path: Path) -> None:
-    """Raise `InputError` unless a file can be written to `path`."""
-    with _plain_errors(path):
-        folder = path.absolute().parent
-        with suppress(FileNotFoundError):
-            path.lstat()  # raises for a name that is too long
-        if not folder.is_dir():
-            raise _error(path, FILE, "lies in a folder that does not exist.", "Create it first.")
-        if path.exists() and not path.is_file():
-            raise _error(path, FILE, "is a folder or no regular file.", REMEDY)
-        if not os.access(folder, os.W_OK):
-            allowed = "lies in a folder without write permission."
-            raise _error(path, FILE, allowed, "Move it.")
+def check_place(*paths: Path | None) -> None:
+    """Raise `InputError` unless a file can be written to each of `paths` that is given."""
+    for path in filter(None, paths):
+        with _plain_errors(path):
+            folder = path.absolute().parent
+            with suppress(FileNotFoundError):
+                path.lstat()  # raises for a name that is too long
+            if not folder.is_dir():
+                allowed = "lies in a folder that does not exist."
+                raise _error(path, FILE, allowed, "Create it first.")
+            if path.exists() and not path.is_file():
+                raise _error(path, FILE, "is a folder or no regular file.", REMEDY)
+            if not os.access(folder, os.W_OK):
+                allowed = "lies in a folder without write permission."
+                raise _error(path, FILE, allowed, "Move it.")
 
 
 def make_folder(path: Path, option: str = FILE) -> None:

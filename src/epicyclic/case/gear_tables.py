@@ -180,14 +180,9 @@ class GivenGear(Teeth):
 class GearTable(Teeth):
     """One gear."""
 
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "roughness": "1 um",
-        "material": None,
-        "tool_tip_radius": None,
-        "micro_geometry": None,
-        "shroud_gap": None,
-        "flange_gap": None,
-    }
+    STAND_INS: ClassVar[dict[str, object]] = {"roughness": "1 um"} | dict.fromkeys(
+        ("material", "tool_tip_radius", "micro_geometry", "shroud_gap", "flange_gap")
+    )
     AT_MOST_ONE: ClassVar[tuple[tuple[str, ...], ...]] = (
         THICKNESS,
         ("tooth_thickness_allowance", "tooth_thickness_fit"),
@@ -271,11 +266,7 @@ class PairGear(GivenGear, GearTable):
 class Planet(GearTable):
     """The planets, which are identical."""
 
-    STAND_INS = GearTable.STAND_INS | {
-        "angles": None,
-        "mass": None,
-        "micro_geometry_ring_side": None,
-    }
+    STAND_INS = GearTable.STAND_INS | dict.fromkeys(("angles", "mass", "micro_geometry_ring_side"))
 
     count: int = Field(ge=1, le=99, description="Number of planets.")
     angles: tuple[Angle, ...] | None = option(

@@ -293,9 +293,7 @@ def warm_up(
 
     if output is not None:
         check_ending("-o", output, FORMATS)
-    for path in (output, plot):
-        if path is not None:
-            check_place(path)
+    check_place(output, plot)
     loaded = load_with(case, changes)
     with progress_bar("warming up") as progress:
         data = compute(loaded, duration, start, cycle=cycle, progress=progress)

@@ -192,9 +192,7 @@ def _check_options(
         if path is not None:
             problems += wrong_ending(name, path, suffixes)
     raise_any(problems, "the command")
-    for path in (map_file, output):
-        if path is not None:
-            check_place(path)
+    check_place(map_file, output)
 
 
 def _check_shard(output: Path | None, json_file: str | None, journal: Path | None) -> None:

@@ -82,9 +82,7 @@ def uncertainty(
     """
     from epicyclic.show.uncertainty_tables import uncertainty_tables
 
-    for path in (output, plot):
-        if path is not None:
-            check_place(path)
+    check_place(output, plot)
     check_values(values)
     _check_use(source, cycle, changes, points, values)
     from epicyclic.show.record import open_map

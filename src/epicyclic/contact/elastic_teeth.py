@@ -103,9 +103,8 @@ class ToothPlate:
         gear = self.gear
         radius = np.hypot(gear.base_radius, curvature)
         half_angle = gear.half_angles_at(curvature)
-        outward = -1.0 if gear.internal else 1.0
-        height = outward * (radius * np.cos(half_angle) - gear.root_radius) - self.root_offset
-        transverse = np.arctan2(curvature, gear.base_radius) - outward * half_angle
+        height = gear.side * (radius * np.cos(half_angle) - gear.root_radius) - self.root_offset
+        transverse = np.arctan2(curvature, gear.base_radius) - gear.side * half_angle
         inclination = np.arctan(np.tan(transverse) * math.cos(gear.rack.helix_angle))
         thickness = np.interp(height, self.section_height, self.section_thickness)
         s = np.clip(2 * height / self.height - 1, -1.0, 1.0)
@@ -133,9 +132,8 @@ def tooth_plate(
 ) -> ToothPlate:
     """The plate of one tooth of `gear`."""
     outline = tooth_outline(gear, tool)
-    outward = -1.0 if gear.internal else 1.0
     flank = slice(outline.joints[0], outline.joints[2] + 1)
-    along = outward * (outline.radius * np.cos(outline.half_angle) - gear.root_radius)
+    along = gear.side * (outline.radius * np.cos(outline.half_angle) - gear.root_radius)
     across = outline.radius * np.sin(outline.half_angle) * math.cos(gear.rack.helix_angle)
     height, half = along[flank], across[flank]
     steep = np.arctan2(-np.gradient(half), np.gradient(height)) > ROOT_TANGENT

@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic
 
 import numpy as np
 
 from epicyclic.arrays import FloatArray, between
 from epicyclic.dataclass import dataclass, field
 from epicyclic.kernels.line_contact import (
+    Real,
     hertz_half_width,
     hertz_pressure,
     line_load_at_pressure,
     pan_hamrock_minimum_film,
 )
 from epicyclic.oil.oil import OilState
-
-Real = TypeVar("Real", float, FloatArray)
 
 STEEL_EFFUSIVITY = 12.4e3
 """Of case-hardened steel, ISO/TS 6336-20: for contacts that do not say. [W s^0.5/(m^2 K)]"""

@@ -651,14 +651,13 @@ def fitted_tool(
     A stated rounding is kept. Raises `ValueError` if no tool generates the tooth.
     """
     usual = cutting_tool(gear, rounding)
-    outward = -1 if gear.internal else 1
 
     def suits(tip_radius: float) -> bool:
         try:
             reached = form_radius(gear, replace(usual, tip_radius=tip_radius))
         except ValueError:
             return False
-        return outward * (reached - needed) <= 0
+        return gear.side * (reached - needed) <= 0
 
     low = 0.0 if gear.internal else _kindest_rack(gear).tip_radius
     high = usual.tip_radius

@@ -79,6 +79,7 @@ class Gear:
     tip_chamfer: float = 0.0
 
     if TYPE_CHECKING:  # what follows from them; no fields, which files would hold
+        side: int = field(init=False)  # Sign in sums with mates: -1 for a ring, else +1.
         reference_radius: float = field(init=False)  # r. [m]
         base_radius: float = field(init=False)  # r_b. [m]
         tip_form_radius: float = field(init=False)  # r_Fa, where the tip chamfer begins. [m]
@@ -90,11 +91,12 @@ class Gear:
         rack, radius = self.rack, self.teeth * self.rack.transverse_module / 2
         excess = 2 * radius * self.thickness_half_angle - math.pi * rack.transverse_module / 2
         slope = 2 * rack.normal_module * math.tan(rack.transverse_pressure_angle)
-        inward = 1 if self.internal else -1
+        side = -1 if self.internal else 1
         vars(self).update(
+            side=side,
             reference_radius=radius,  # (G5)
             base_radius=radius * math.cos(rack.transverse_pressure_angle),  # (G6)
-            tip_form_radius=self.tip_radius + inward * self.tip_chamfer,  # (G41)
+            tip_form_radius=self.tip_radius - side * self.tip_chamfer,  # (G41)
             profile_shift_coefficient=excess / slope,  # (G8)
         )
 

@@ -65,9 +65,8 @@ def span_contact_radius(gear: Gear, measured: float) -> float:
 def usual_span_teeth(gear: Gear) -> int:
     """The number of teeth whose span touches nearest to the middle of the teeth."""
     pitch, _ = _pitch_and_base(gear.rack, gear.teeth)
-    middle = gear.reference_radius + (-1 if gear.internal else 1) * (
-        gear.profile_shift_coefficient * gear.rack.normal_module
-    )
+    shift = gear.profile_shift_coefficient * gear.rack.normal_module
+    middle = gear.reference_radius + gear.side * shift
     wanted = 2 * gear.roll_length_at(middle) / math.cos(gear.rack.base_helix_angle)
     return max(2, 1 + round((wanted - span(gear, 1)) / pitch))
 
@@ -104,9 +103,8 @@ def _pin_angle(gear: Gear, pin: float) -> float:
     Raises `ValueError` if the ball is too small to touch the flanks.
     """
     _, base = _pitch_and_base(gear.rack, gear.teeth)
-    side = -1 if gear.internal else 1
     space = math.pi / gear.teeth - gear.thickness_half_angle
-    value = involute(gear.rack.transverse_pressure_angle) + side * (pin / base - space)
+    value = involute(gear.rack.transverse_pressure_angle) + gear.side * (pin / base - space)
     if value <= 0:
         raise ValueError("the ball does not touch the flanks")
     return inverse_involute(value)
@@ -127,7 +125,7 @@ def dimension_over_pins(gear: Gear, pin: float) -> float:
     22.2941
     """
     circle = 2 * gear.base_radius / math.cos(_pin_angle(gear, pin))
-    return circle * _spacing(gear.teeth) + (-pin if gear.internal else pin)
+    return circle * _spacing(gear.teeth) + gear.side * pin
 
 
 def pin_contact_radius(gear: Gear, pin: float) -> float:
@@ -135,9 +133,8 @@ def pin_contact_radius(gear: Gear, pin: float) -> float:
 
     Raises `ValueError` if the balls are too small to touch the flanks.
     """
-    side = -1 if gear.internal else 1
     curvature = gear.base_radius * math.tan(_pin_angle(gear, pin))
-    inward = side * pin * math.cos(gear.rack.base_helix_angle) / 2
+    inward = gear.side * pin * math.cos(gear.rack.base_helix_angle) / 2
     return math.hypot(gear.base_radius, curvature - inward)
 
 

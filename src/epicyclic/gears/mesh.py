@@ -35,6 +35,7 @@ class Mesh:
 
     # What follows from them, NaN where such gears cannot mesh; no fields, which files would hold.
     if TYPE_CHECKING:
+        gears: tuple[Gear, Gear] = field(init=False)  # Both.
         internal: bool = field(init=False)  # True if member 2 is a ring.
         ratio: float = field(init=False)  # u = z2/z1, positive. [1]
         side: int = field(init=False)  # Sign of member 2 in sums: -1 for an internal mesh, else +1.
@@ -70,7 +71,7 @@ class Mesh:
         (G47).
         """
         one, two, rack = self.gear1, self.gear2, self.gear1.rack
-        side = -1 if two.internal else 1
+        side = two.side
         ratio, total = two.teeth / one.teeth, two.teeth + side * one.teeth
         bases = two.base_radius + side * one.base_radius
         can_mesh = total > 0 and abs(bases) <= self.center_distance
@@ -88,6 +89,7 @@ class Mesh:
         backlash = 0.0 if abs(backlash) < TOUCHING else backlash
         tangent = math.tan(rack.helix_angle) * radius1 / one.reference_radius  # (G15)
         vars(self).update(
+            gears=(one, two),
             internal=two.internal,
             ratio=ratio,
             side=side,
@@ -156,7 +158,7 @@ class Mesh:
 @lru_cache(maxsize=256)
 def with_faces(mesh: Mesh, width: float) -> Mesh:
     """The mesh of gears whose faces are both so wide. [m]"""
-    one, two = (replace(gear, face_width=width) for gear in (mesh.gear1, mesh.gear2))
+    one, two = (replace(gear, face_width=width) for gear in mesh.gears)
     return replace(mesh, gear1=one, gear2=two)
 
 

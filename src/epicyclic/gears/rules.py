@@ -160,7 +160,7 @@ def _check_tooth(gear: Gear, key: str, table: StatedGear) -> Problem | None:
         remedy = f"Reduce gears.dedendum_coefficient, or give {root}."
         return Problem(root, root_shown, "must exceed zero.", remedy)
     height = gear.tip_radius - gear.root_radius
-    if (-height if gear.internal else height) <= 0:
+    if gear.side * height <= 0:
         larger, smaller = (root, tip) if gear.internal else (tip, root)
         allowed = f"leave no tooth: {larger} must exceed {smaller} for "
         allowed += f"{'a ring' if gear.internal else 'an external gear'}."
@@ -202,7 +202,7 @@ def check_mesh(
     distance_key: str,  # Where its centre distance is stated.
 ) -> list[Problem]:
     """Problems of a mesh of two sound gears."""
-    one, two = mesh.gear1, mesh.gear2
+    one, two = mesh.gears
     if mesh.internal and two.teeth <= one.teeth:
         allowed = f"must exceed the {one.teeth} teeth of the {one.name}, which turns inside it."
         remedy = "Check both tooth numbers."
@@ -271,7 +271,7 @@ def _tip_limits(gearing: Gearing, tip: Gear) -> Iterator[float]:
     for mesh in _meshes_of(gearing, tip):
         first = tip.name == mesh.gear1.name
         root, clearance = (mesh.gear2 if first else mesh.gear1), mesh.tip_clearances[not first]
-        yield tip.tip_radius + (-clearance if tip.internal else clearance)
+        yield tip.tip_radius + tip.side * clearance
         try:
             end = longest_involute(root, gearing.tables[root.name].tool_tip_radius)
         except ValueError:  # no tool cuts it
@@ -291,7 +291,7 @@ def _meshes_of(gearing: Gearing, gear: Gear) -> Iterator[Mesh]:
 
 
 def _check_contact_ratio(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Problem]:
-    one, two = mesh.gear1, mesh.gear2
+    one, two = mesh.gears
     transverse, overlap = mesh.transverse_contact_ratio, mesh.overlap_ratio
     if transverse <= 0:
         fault = f"the teeth of the {mesh.name} do not reach each other"
@@ -357,7 +357,7 @@ def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
     if length <= 0:
         return 0.0
     form = math.hypot(mate.base_radius, length)
-    return form + (-mate.tip_chamfer if mate.internal else mate.tip_chamfer)
+    return form + mate.side * mate.tip_chamfer
 
 
 def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
@@ -372,7 +372,7 @@ def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
 
 def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> Iterator[Problem]:
     """The tips of an internal mesh must pass each other beside it."""
-    one, two = mesh.gear1, mesh.gear2
+    one, two = mesh.gears
     if mesh.internal and mesh.tip_clearances[1] >= -ROUNDING and mesh.tip_passage < 0:
         key, shown = _tips(gearing, one, two)
         allowed = f"the tips of {one.name} and {two.name} collide beside the mesh, by "
@@ -399,9 +399,8 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
     """Teeth that are too thick, with the thickness and the centre distance that fit."""
     if mesh.backlash >= -ROUNDING:
         return []
-    gears = (mesh.gear1, mesh.gear2)
-    keys = [thickness_key(gearing.key(gear.name), gearing.tables[gear.name]) for gear in gears]
-    fits = " or ".join(_fitting(gearing, [*_meshes_of(gearing, it)], it) for it in gears)
+    keys = [thickness_key(gearing.key(it.name), gearing.tables[it.name]) for it in mesh.gears]
+    fits = " or ".join(_fitting(gearing, [*_meshes_of(gearing, it)], it) for it in mesh.gears)
     usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)
     less = thinning(mesh.gear1.rack, usual)
     allowed = f"the teeth of the {mesh.name} are {millimetres(-mesh.backlash)} too thick for the "
@@ -414,7 +413,7 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
 
 def tooth_notes(gearing: Gearing) -> Iterator[str]:
     """A note on every gear of unusual profile shift, and mesh whose teeth are far too thin."""
-    named = {gear.name: gear for mesh in gearing.geometries for gear in (mesh.gear1, mesh.gear2)}
+    named = {gear.name: gear for mesh in gearing.geometries for gear in mesh.gears}
     for gear in named.values():
         if abs(shift := gear.profile_shift_coefficient) > LARGEST_SHIFT:
             yield (
@@ -426,8 +425,7 @@ def tooth_notes(gearing: Gearing) -> Iterator[str]:
         usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)
         if backlash <= GROSS * usual:
             continue
-        gears = (mesh.gear1, mesh.gear2)
-        fits = " or ".join(_fitting(gearing, [mesh], gear, usual) for gear in gears)
+        fits = " or ".join(_fitting(gearing, [mesh], gear, usual) for gear in mesh.gears)
         yield (
             f"The {mesh.name} has a normal backlash of {millimetres(backlash)}, "
             f"{backlash / usual:.2g} times the {micrometres(usual)} that ISO/TR 10064-2 "
@@ -444,8 +442,7 @@ def _teeth(mesh: Mesh) -> int:
 def _over(mesh: Mesh, backlash: float = 0.0) -> float:
     """x1 + x2 less what leaves this normal backlash. [1]"""
     wanted = profile_shift_sum(mesh.gear1.rack, _teeth(mesh), mesh.center_distance, backlash)
-    gears = (mesh.gear1, mesh.gear2)
-    return sum(gear.profile_shift_coefficient for gear in gears) - wanted
+    return sum(gear.profile_shift_coefficient for gear in mesh.gears) - wanted
 
 
 def _fitting(gearing: Gearing, meshes: list[Mesh], gear: Gear, backlash: float = 0.0) -> str:

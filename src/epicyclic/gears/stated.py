@@ -233,7 +233,7 @@ def fitting(gear: Gear, key: str, table: StatedGear, over: float) -> str:
     arc = 2 * over * rack.normal_module * math.tan(rack.transverse_pressure_angle)
     if table.span_measurement is not None:
         normal = math.sin(rack.normal_pressure_angle)
-        change = 2 * over * rack.normal_module * normal * (-1 if gear.internal else 1)
+        change = 2 * over * rack.normal_module * normal * gear.side
         return _length(key, table.span_measurement - change, up=gear.internal)
     if table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
         half = gear.thickness_half_angle - arc / (2 * gear.reference_radius)
@@ -287,7 +287,7 @@ def _of_member(mesh: Mesh, member: int, table: StatedGear) -> MicroGeometry:
     flank = working_flank(member, table)
     if flank is None:
         return MicroGeometry()
-    gear = (mesh.gear1, mesh.gear2)[member - 1]
+    gear = mesh.gears[member - 1]
     root, tip = active_profile(mesh, member)
     return MicroGeometry(
         tip_relief=_profile_relief(gear, tip, flank, "tip_relief"),

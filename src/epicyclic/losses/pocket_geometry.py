@@ -160,12 +160,11 @@ def contact_clearances(mesh: Mesh, drives1: bool) -> tuple[float, float]:
 def _flank(gear: Gear, tool: Tool | None) -> tuple[NDArray[np.complex128], Floats, Floats]:
     """Flank, joints and figures of a gear as the kernels take them."""
     outline = tooth_outline(gear, tool, OUTLINE_POINTS)
-    outward = -1.0 if gear.internal else 1.0
     root, fillet, involute_end, corner = outline.joints
     points = outline.radius[: corner + 1] * np.exp(1j * outline.half_angle[: corner + 1])
     form, tip = map(gear.roll_length_at, (outline.form_radius, gear.tip_form_radius))
-    at_base = gear.thickness_half_angle + outward * involute(gear.rack.transverse_pressure_angle)
-    figures = np.array([gear.base_radius, at_base, form, tip, outward])
+    at_base = gear.thickness_half_angle + gear.side * involute(gear.rack.transverse_pressure_angle)
+    figures = np.array([gear.base_radius, at_base, form, tip, gear.side])
     return points, np.array([root, fillet, involute_end], dtype=np.float64), figures
 
 

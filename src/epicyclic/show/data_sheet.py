@@ -125,7 +125,7 @@ def reservations(case: Case) -> Iterator[str]:
                     f"than the {UM * least:.1f} µm that ISO/TR 10064-2 recommends."
                 )
             module = mesh.gear1.rack.normal_module
-            for gear, clearance in zip((mesh.gear1, mesh.gear2), mesh.tip_clearances, strict=True):
+            for gear, clearance in zip(mesh.gears, mesh.tip_clearances, strict=True):
                 if clearance < LEAST_CLEARANCE * module:
                     yield (
                         f"{where} tip clearance of the {gear.name} in the {mesh.name} is "

@@ -263,18 +263,14 @@ def _error_cells(row: ErrorFigures) -> list[str]:
     return [
         str(row.count),
         shown(row.bias, 3),
-        _percent(row.relative_bias),
+        _tenths(100 * row.relative_bias),
         shown(row.rms, 3),
-        _percent(row.mean_percentage),
+        _tenths(100 * row.mean_percentage),
         shown(row.largest, 3),
-        _percent(row.relative_largest),
+        _tenths(100 * row.relative_largest),
         str(row.largest_line) if row.count else MISSING,
         shown(row.chi_squared, 3),
     ]
-
-
-def _percent(value: float) -> str:
-    return MISSING if math.isnan(value) else f"{100 * value:z.1f}"
 
 
 def _legend(comparison: MeasuredComparison) -> str:
@@ -495,7 +491,7 @@ def warm_up_tables(data: xr.Dataset) -> RenderableType:
             in_words(str(node)),
             f"{temperature[0]:.1f}",
             f"{temperature[-1]:.1f}",
-            _number(float(one["settled_temperature"])),
+            _tenths(float(one["settled_temperature"])),
             duration_text(float(one["time_to_90_percent"])),
             shown(float(one["heat_capacity"])),
         )
@@ -531,13 +527,13 @@ def _summary(data: xr.Dataset) -> str:
 def duration_text(seconds: float) -> str:
     """A time in the unit that suits it, ``"1.5 h"``; a dash if there is none."""
     if math.isnan(seconds):
-        return "-"
+        return MISSING
     unit, size = next(((unit, size) for unit, size in _UNITS if seconds >= 2 * size), _UNITS[-1])
     return f"{format_number(seconds / size, 3)} {unit}"
 
 
-def _number(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:z.1f}"
+def _tenths(value: float) -> str:
+    return MISSING if math.isnan(value) else f"{value:z.1f}"
 
 
 def warm_up_rows(data: xr.Dataset) -> pd.DataFrame:

@@ -28,7 +28,6 @@ from epicyclic.case.tables.operation import Lubricant
 from epicyclic.contact.line_contact import Flanks, LineContacts
 from epicyclic.errors import InputError, one_problem, raise_any
 from epicyclic.gears.gear import involute
-from epicyclic.kernels.line_contact import equivalent_modulus
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings
 from epicyclic.losses.journal_bearing import JournalBearing, JournalState, solve_journal
 from epicyclic.losses.rolling import ROLLING_MODELS
@@ -42,6 +41,7 @@ from epicyclic.losses.windage import (
     Turning,
     drag,
 )
+from epicyclic.losses.zhou_hoeprich import STEEL
 from epicyclic.machine.convection import STANDARD_PRESSURE
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.messages import refused, written
@@ -63,7 +63,6 @@ from epicyclic.units import (
 )
 
 OilName = str | Mapping[str, Any]
-STEEL = equivalent_modulus(206e9, 0.3, 206e9, 0.3)  # E_eq of two bodies of steel. [Pa]
 ALPHA = math.radians(20)  # Pressure angle of the basic rack (ISO 53). [rad]
 LOCAL_FRICTION = (
     "mixed-lubrication", "mixed-ehl", "mixed-ehl+pairing", "xu-2007", "benedict-kelley",

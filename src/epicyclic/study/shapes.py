@@ -203,9 +203,7 @@ def _set_shapes(found: SetPlaces, duties: tuple[MeshDuty, ...]) -> dict[str, xr.
     gears = {
         gear.name: (gear, tool)
         for duty in duties
-        for gear, tool in zip(
-            (duty.gears.mesh.gear1, duty.gears.mesh.gear2), duty.gears.tools, strict=True
-        )
+        for gear, tool in zip(duty.gears.mesh.gears, duty.gears.tools, strict=True)
     }
     meshes = [duty.gears.mesh for duty in duties]
     places, speeds = found.places(meshes), found.relative_speeds(meshes)
@@ -254,13 +252,12 @@ def _view(mesh: Mesh) -> xr.Dataset:
     alpha = mesh.operating_pressure_angle
     along = np.array([math.cos(alpha), math.sin(alpha)])
     heights = (-mesh.operating_radius1, mesh.side * mesh.operating_radius2)
-    gears = (mesh.gear1, mesh.gear2)
     # Both teeth touch at the origin: that of gear 1 lies left of its flank there, of gear 2 right.
     turns = (1, mesh.side)
     radii = (mesh.operating_radius1, mesh.operating_radius2)
     directions = [
         math.copysign(math.pi / 2, -height) + turn * gear.half_angle_at(radius)
-        for height, turn, gear, radius in zip(heights, turns, gears, radii, strict=True)
+        for height, turn, gear, radius in zip(heights, turns, mesh.gears, radii, strict=True)
     ]
     ends = np.array([mesh.path_start, mesh.path_end]) - mesh.pitch_point
     path = np.outer(ends, along)
@@ -274,6 +271,6 @@ def _view(mesh: Mesh) -> xr.Dataset:
             "path_y": variable("end", path[:, 1], "y of the path of contact", MILLIMETRE),
             "pressure_angle": variable((), alpha, "operating pressure angle", DEGREE),
         },
-        {"gear": [gear.name for gear in gears]},
+        {"gear": [gear.name for gear in mesh.gears]},
         {"title": mesh.name},
     )

@@ -22,7 +22,6 @@ from epicyclic.study.sweeps.runner import HERE, Rows, Runner
 from epicyclic.validation.compute import (
     FIGURES,
     LoadedTest,
-    LoadedTests,
     data_file,
     loaded_conditions,
     source_case,
@@ -31,7 +30,6 @@ from epicyclic.validation.compute import (
 # The open figures of the published study of pocketing losses, for each model of the flow.
 
 
-STUDY = "Talbot (2012), section 4.4"
 CLOSURES = ("incompressible", "isentropic", "mean-density", "talbot-2012")
 """Models that are compared; "central-differences" has no solution for some of the figures."""
 
@@ -297,7 +295,7 @@ def measured_figures(runner: Runner = HERE) -> tuple[MeasuredFigure, ...]:
     draws = _drawn_tests(figures, runner)
     found = []
     for figure in figures:
-        nominal, *drawn = (_by_tests(figure, partial(_chosen, tests)) for tests in draws)
+        nominal, *drawn = (_computed(figure, tests=partial(_chosen, tests)) for tests in draws)
         band = sample_summary(np.array(drawn))
         found.append(
             MeasuredFigure(
@@ -328,7 +326,7 @@ def _conditions(figures: Iterable[Mapping[str, Any]]) -> dict[tuple[Any, ...], d
         return [LoadedTest(9.0 + place, 2.0 + place**2, 5.0 + place) for place in places]
 
     for figure in figures:
-        _by_tests(figure, tests)
+        _computed(figure, tests=tests)
     return asked
 
 
@@ -420,11 +418,11 @@ def settled_figures(runner: Runner = HERE) -> tuple[SettledFigure, ...]:
             what=figure["what"],
             unit=figure["unit"],
             published=tuple(figure[key] for key in ("value", "low", "high") if key in figure),
-            inlet=_by_tests(figure, inlet),
-            flank=_by_tests(figure, flank),
-            network=_by_tests(figure, middle),
-            low=min(_by_tests(figure, one) for one in others),
-            high=max(_by_tests(figure, one) for one in others),
+            inlet=_computed(figure, tests=inlet),
+            flank=_computed(figure, tests=flank),
+            network=_computed(figure, tests=middle),
+            low=min(_computed(figure, tests=one) for one in others),
+            high=max(_computed(figure, tests=one) for one in others),
         )
         for figure in figures
     )
@@ -450,11 +448,6 @@ def rows_of_all(points: Iterable[Mapping[str, Any]], runner: Runner, what: str =
             f"{len(rows.failures)} of {len(rows)} {what} cannot be computed: {rows.failures[0]}"
         )
     return rows
-
-
-def _by_tests(figure: Mapping[str, Any], tests: LoadedTests) -> float:
-    """A figure that follows from the loaded tests."""
-    return FIGURES[figure["compute"]](**figure["with"], tests=tests)
 
 
 def _chosen(

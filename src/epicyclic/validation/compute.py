@@ -37,6 +37,7 @@ from epicyclic.losses.friction import (
 )
 from epicyclic.losses.mesh import ohlendorf_closed_form, ohlendorf_loss_factor
 from epicyclic.losses.planet_bearing import RollerBearing, roller_loads
+from epicyclic.oil.oil import MixtureState
 from epicyclic.result.result import Result
 from epicyclic.study.solve import loaded_meshes, mesh_contacts, solve
 
@@ -51,6 +52,16 @@ _GEOMETRY: dict[str, Callable[[Mesh], float]] = {
     "path_of_contact": lambda mesh: 1e3 * (mesh.path_end - mesh.path_start),
     "contact_ratio": lambda mesh: mesh.transverse_contact_ratio,
 }
+_OF_CONTACT: dict[str, Callable[[MeshContact], float]] = {
+    "loss_factor": lambda it: ohlendorf_loss_factor(it.mesh),  # By the integral. [1]
+    # By the closed form, beyond its range as well. [1]
+    "closed_loss_factor": lambda it: ohlendorf_closed_form(it.mesh),
+    "pitch_pressure": lambda it: pitch_point_pressure(it) / 1e6,  # Of Hertz. [MPa]
+    # Of the minimum film along the contact lines. [um]
+    "smallest_film": lambda it: float(it.minimum_film.min()) * 1e6,
+    "largest_film": lambda it: float(it.minimum_film.max()) * 1e6,
+}
+"""What follows from the contact of a mesh alone."""
 
 
 @cache
@@ -94,16 +105,6 @@ def mesh_power(case: str, mesh: str) -> float:
     return _planets(case) * _contacts(case)[mesh].input_power / 1e3
 
 
-def loss_factor(case: str, mesh: str) -> float:
-    """Ohlendorf's, by the integral. [1]"""
-    return ohlendorf_loss_factor(_contacts(case)[mesh].mesh)
-
-
-def closed_loss_factor(case: str, mesh: str) -> float:
-    """Ohlendorf's, by the closed form, beyond its range as well. [1]"""
-    return ohlendorf_closed_form(_contacts(case)[mesh].mesh)
-
-
 def local_loss_factor(case: str, mesh: str, load_distribution: str) -> float:
     """Sliding loss along the contact lines over power and constant friction. [1]"""
     friction = 0.05  # any: it cancels out
@@ -118,7 +119,8 @@ def mean_friction(case: str, mesh: str, friction: str) -> float:
 
 def closed_loss(case: str, mesh: str, friction: float) -> float:
     """Loss of one mesh: power, friction, and loss factor by the closed form. [kW]"""
-    return friction * _contacts(case)[mesh].input_power * closed_loss_factor(case, mesh) / 1e3
+    contact = _contacts(case)[mesh]
+    return friction * contact.input_power * ohlendorf_closed_form(contact.mesh) / 1e3
 
 
 def local_loss(case: str, mesh: str, friction: float) -> float:
@@ -134,31 +136,6 @@ def stage_loss(case: str, **friction: float) -> float:
 def sliding_loss(case: str, mesh: str, load_distribution: str, friction: str | float) -> float:
     """Along the contact lines. [W]"""
     return _solved(case, friction, load_distribution).losses[f"{mesh}_sliding"]
-
-
-def pitch_pressure(case: str, mesh: str) -> float:
-    """Hertz pressure at the pitch point. [MPa]"""
-    return pitch_point_pressure(_contacts(case)[mesh]) / 1e6
-
-
-def smallest_film(case: str, mesh: str) -> float:
-    """Smallest minimum film along the contact lines. [um]"""
-    return float(_contacts(case)[mesh].minimum_film.min()) * 1e6
-
-
-def largest_film(case: str, mesh: str) -> float:
-    """Largest minimum film along the contact lines. [um]"""
-    return float(_contacts(case)[mesh].minimum_film.max()) * 1e6
-
-
-def program_single_stiffness(case: str, mesh: str) -> float:
-    """c' of a mesh under its load. [N/(mm um)]"""
-    return single_stiffness_of(_loaded(case)[mesh])
-
-
-def program_mesh_stiffness(case: str, mesh: str) -> float:
-    """c_gamma_alpha of a mesh under its load. [N/(mm um)]"""
-    return mesh_stiffness_of(_loaded(case)[mesh])
 
 
 def single_stiffness_of(mesh: LoadedMesh) -> float:
@@ -338,16 +315,10 @@ def _loaded_rollers(branch_torque: int, couple: bool) -> BoolArray:
     return loaded
 
 
-def mixture_density(temperature: str) -> float:
-    """Density of the mixture at the case's oil share. [kg/m^3]"""
+def _mixture(temperature: str) -> MixtureState:
+    """That with the case's share of oil."""
     warm = source_case().updated({"operation.oil_inlet_temperature": temperature})
-    return fluids_of(warm).mixture.density
-
-
-def mixture_viscosity(temperature: str) -> float:
-    """Dynamic viscosity of the mixture. [mPa s]"""
-    warm = source_case().updated({"operation.oil_inlet_temperature": temperature})
-    return fluids_of(warm).mixture.dynamic_viscosity * 1e3
+    return fluids_of(warm).mixture
 
 
 def composite_roughness(planet: str, others: str) -> float:
@@ -522,16 +493,6 @@ def _pocketing(
     return solve(case).losses["mesh_pocketing"]
 
 
-def single_stiffness(teeth1: int, teeth2: int, internal: bool) -> float:
-    """c': largest stiffness of a lone pair of teeth of a standard spur mesh. [N/(mm um)]"""
-    return single_stiffness_of(_standard_mesh(teeth1, teeth2, internal))
-
-
-def mean_mesh_stiffness(teeth1: int, teeth2: int, internal: bool) -> float:
-    """c_gamma: stiffness of a standard spur mesh, mean over its period. [N/(mm um)]"""
-    return mesh_stiffness_of(_standard_mesh(teeth1, teeth2, internal))
-
-
 def _standard_mesh(teeth1: int, teeth2: int, internal: bool) -> LoadedMesh:
     """Spur gears of ISO 53, profile A, without shift, of steel of 206 GPa, under 300 N/mm."""
     module, width, line_load = 4.0, 40.0, 300.0  # mm, mm, N/mm
@@ -657,17 +618,29 @@ def _mean_friction(pair: str) -> float:
     )
 
 
+def _of_contact(figure: Callable[[MeshContact], float]) -> Callable[[str, str], float]:
+    return lambda case, mesh: figure(_contacts(case)[mesh])
+
+
 FIGURES: Mapping[str, Callable[..., float]] = {
-    function.__name__: function
-    for function in (
-        mesh_geometry, mesh_power, loss_factor, closed_loss_factor, local_loss_factor,
-        mean_friction, closed_loss, local_loss, stage_loss, sliding_loss, pitch_pressure,
-        smallest_film, largest_film, program_single_stiffness, program_mesh_stiffness,
-        planet_bearing_loss, planet_bearing_ratio, planet_bearing_change,
-        azimuth_of_gained_rollers, mixture_density, mixture_viscosity, composite_roughness,
-        branch_slope, slope_gain, loss_in_test, loss_change, spin_share, prediction_difference,
-        loss_share, branch_loss_ratio, branch_spin, branch_spin_exponent, pocketing_figure,
-        single_stiffness, mean_mesh_stiffness, train_ratio,
-        train_efficiency, bulk_temperature, pair_bulk_temperature, pair_flash_temperature,
-    )
+    **{name: _of_contact(figure) for name, figure in _OF_CONTACT.items()},
+    # c' and c_gamma of a mesh under its load, and of a standard spur mesh. [N/(mm um)]
+    "program_single_stiffness": lambda case, mesh: single_stiffness_of(_loaded(case)[mesh]),
+    "program_mesh_stiffness": lambda case, mesh: mesh_stiffness_of(_loaded(case)[mesh]),
+    "single_stiffness": lambda **gears: single_stiffness_of(_standard_mesh(**gears)),
+    "mean_mesh_stiffness": lambda **gears: mesh_stiffness_of(_standard_mesh(**gears)),
+    "mixture_density": lambda temperature: _mixture(temperature).density,  # [kg/m^3]
+    # Dynamic. [mPa s]
+    "mixture_viscosity": lambda temperature: _mixture(temperature).dynamic_viscosity * 1e3,
+    **{
+        function.__name__: function
+        for function in (
+            mesh_geometry, mesh_power, local_loss_factor, mean_friction, closed_loss, local_loss,
+            stage_loss, sliding_loss, planet_bearing_loss, planet_bearing_ratio,
+            planet_bearing_change, azimuth_of_gained_rollers, composite_roughness, branch_slope,
+            slope_gain, loss_in_test, loss_change, spin_share, prediction_difference, loss_share,
+            branch_loss_ratio, branch_spin, branch_spin_exponent, pocketing_figure, train_ratio,
+            train_efficiency, bulk_temperature, pair_bulk_temperature, pair_flash_temperature,
+        )
+    },
 }  # fmt: skip

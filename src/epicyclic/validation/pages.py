@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from epicyclic.machine.pocket_flow import STUDY_SOURCE
 from epicyclic.result.result import versions
 from epicyclic.show.html import page_html
 from epicyclic.show.page import (
@@ -31,7 +32,6 @@ from epicyclic.units import percent, unit_text
 from epicyclic.validation.chapters import influences
 from epicyclic.validation.compare import (
     CLOSURES,
-    STUDY,
     ClosureFigure,
     Comparison,
     Estimate,
@@ -89,7 +89,7 @@ def closure_table(rows: Sequence[ClosureFigure]) -> Table:
     return Table(
         ("", "published", *CLOSURES),
         tuple(cells),
-        f"Pocketing, open figures of {STUDY}, by models.pocketing",
+        f"Pocketing, open figures of {STUDY_SOURCE}, by models.pocketing",
         frozenset([len(rows)]),
         f"Sources: {'; '.join(dict.fromkeys(row.source for row in rows))}. Tolerances beyond the "
         f"band: {'; '.join(causes)}.",

@@ -55,9 +55,7 @@ def family_figure(family: Family) -> Figure:
     ]
     count = len(places)
     panel = PANEL if count > 1 else ALONE
-    with styled_figure(*_grid(count), _title(family), panel=panel) as (figure, axes):
-        for ax in axes.flat[count:]:
-            ax.remove()
+    with styled_figure(*_grid(count), _title(family), panel=panel, count=count) as (figure, axes):
         for ax, part in zip(axes.flat, places, strict=False):
             curves, over = map(str, part.dims)
             for index, curve in enumerate(part):
@@ -212,14 +210,12 @@ def study_figure(
     oil = json.loads(study.attrs["case"])["operation"]["oil_inlet_temperature"]
     held = unit_text(f"pocketing {study.attrs['model']}, oil at {oil}")
     title = str(study.attrs["title"])
-    with styled_figure(*_grid(count), title, caption=held) as (figure, axes):
+    with styled_figure(*_grid(count), title, caption=held, count=count) as (figure, axes):
         flat = axes.ravel()
         for ax, place in zip(flat, places, strict=False):
             _plot_loss(study.isel(dict(zip(panels, place, strict=True))), ax, published)
         if exponents:
             _plot_exponents(study, flat[1], published)
-        for ax in flat[count:]:
-            ax.remove()
         curves = study[study["pocketing_loss"].dims[-2]]
         legend_of_figure(figure, flat[: len(places)], str(curves.attrs["long_name"]))
     return figure

@@ -139,7 +139,7 @@ def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketF
 
 
 def _varied_mesh(mesh: Mesh, variant: PocketVariant) -> Mesh:
-    one, two = mesh.gear1, mesh.gear2
+    one, two = mesh.gears
     z1, z2 = variant.teeth
     module = transverse_module(mesh, variant.teeth)
     rack = BasicRack(module, one.rack.transverse_pressure_angle, variant.helix_angle)

@@ -261,12 +261,9 @@ class LubricationTable(Table):
     """Oil supply of the gears: gives the share of oil around them, and their churning."""
 
     REPLACING = (("oil_level", "immersion"), ("oil_share", "oil_share_factor"))
-    STAND_INS: ClassVar[dict[str, object]] = {
-        "jet_speed": None,
-        "nozzle_side": None,
-        "churning": None,
-        "oil_share_factor": None,
-    }
+    STAND_INS: ClassVar[dict[str, object]] = dict.fromkeys(
+        ("jet_speed", "nozzle_side", "churning", "oil_share_factor")
+    )
 
     method: Method = Field(
         description="drained: mist only; flow: oil fed through shafts or carrier; dip: some of "

@@ -95,7 +95,8 @@ class Guard:
         if not self._is_own(headers):
             return _refusal(asked, _FORBIDDEN, "This is not the address of the app.")
         if asked.scope["type"] == "http" and self._has_token(asked):
-            return RedirectResponse("/", _SEE_OTHER, {"set-cookie": self._cookie()})
+            cookie = f"{self._name}={self.token}; Path=/; HttpOnly; SameSite=Strict"
+            return RedirectResponse("/", _SEE_OTHER, {"set-cookie": cookie})
         if not self._is_token(asked.cookies.get(self._name, "")):
             text = "Open the address with its token, as printed by the command."
             return _refusal(asked, _FORBIDDEN, text)
@@ -123,9 +124,6 @@ class Guard:
     def _name(self) -> str:
         """Name of the cookie: browsers do not tell ports apart."""
         return f"epicyclic-{min(self.hosts).rpartition(':')[2]}"
-
-    def _cookie(self) -> str:
-        return f"{self._name}={self.token}; Path=/; HttpOnly; SameSite=Strict"
 
 
 def _refusal(asked: HTTPConnection, status: int, text: str) -> ASGIApp:

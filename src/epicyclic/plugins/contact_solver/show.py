@@ -30,6 +30,7 @@ from epicyclic.show.plots.style import (
     LINE_STYLES,
     gif_bytes,
     label_logarithms,
+    labelled,
     legend_below,
     styled_figure,
 )
@@ -180,9 +181,9 @@ def contact_figure(result: ContactResult) -> Figure:
         panels.append(plot_temperature)
     title = result.case.title or "Line contact"
     columns, panel = (1, TWO) if len(panels) == 2 else (2, MORE)
-    with styled_figure(2, columns, title, panel=panel, caption=_point(result)) as (figure, axes):
-        for ax in axes.flat[len(panels) :]:
-            ax.remove()
+    with styled_figure(
+        2, columns, title, panel=panel, caption=_point(result), count=len(panels)
+    ) as (figure, axes):
         for plot, ax in zip(panels, axes.flat, strict=False):
             plot(result, ax)
         if columns == 1:
@@ -297,9 +298,7 @@ def _plot_both(
 def _over_x(result: ContactResult, ax: Axes, label: str) -> Axes:
     width = result.smooth.contact.half_width / MILLIMETRE
     ax.set_xlim(SHOWN_WIDTHS[0] * width, SHOWN_WIDTHS[1] * width)
-    ax.set_xlabel("position along the rolling direction, mm")
-    ax.set_ylabel(label)
-    return ax
+    return labelled(ax, "position along the rolling direction, mm", label)
 
 
 MARKERS = ("o", "^", "s")
@@ -355,13 +354,9 @@ def plot_against_simulations(
         ax.set_yscale("log")
         label_logarithms(ax.xaxis, ax.yaxis)
     name, _, unit = LABELS[quantity].partition(", ")
-    ax.set(
-        title=f"{name[:1].upper()}{name[1:]}",
-        xlabel=f"simulated, {unit}" if unit else "simulated",
-        ylabel=f"fitted, {unit}" if unit else "fitted",
-    )
+    across, up = (f"{what}, {unit}".rstrip(", ") for what in ("simulated", "fitted"))
     legend_below(ax, ncols=2)
-    return ax
+    return labelled(ax, across, up, f"{name[:1].upper()}{name[1:]}")
 
 
 def plot_over_film_ratio(model: OilModel, ax: Axes) -> Axes:
@@ -379,11 +374,9 @@ def plot_over_film_ratio(model: OilModel, ax: Axes) -> Axes:
     ax.set_xscale("log")
     label_logarithms(ax.xaxis)
     ax.set_ylim(bottom=0)
-    ax.set_xlabel("film ratio, by roughness")
-    ax.set_title("At the middle of the simulated conditions")
-    ax.set_ylabel(LABELS["friction"])
     legend_below(ax, ncols=3)
-    return ax
+    title = "At the middle of the simulated conditions"
+    return labelled(ax, "film ratio, by roughness", LABELS["friction"], title)
 
 
 def _middle(domain: Mapping[str, tuple[float, float]], modulus: float) -> LineContacts:

@@ -117,7 +117,7 @@ def tooth_root(gear: Gear, tool: Tool, transverse_contact_ratio: float) -> Tooth
 
     In normal modules on the virtual spur gear, whose number of teeth is negative for a ring.
     """
-    rack, sign = gear.rack, -1 if gear.internal else 1
+    rack, sign = gear.rack, gear.side
     module, alpha = rack.normal_module, rack.normal_pressure_angle
     base = math.cos(rack.base_helix_angle) ** 2
     teeth = sign * gear.teeth / (base * math.cos(rack.helix_angle))

@@ -153,11 +153,10 @@ def rotor_dynamics(case: Case) -> dict[str, Any]:
 
 def _mesh(duty: MeshDuty, count: int) -> dict[str, Any]:
     mesh, loaded = duty.gears.mesh, elastic_loads(duty)
-    gears = mesh.gear1, mesh.gear2
     return {
-        "gears": [gear.name for gear in gears],
-        "teeth": [gear.teeth for gear in gears],
-        "base_radius_m": [gear.base_radius for gear in gears],
+        "gears": [gear.name for gear in mesh.gears],
+        "teeth": [gear.teeth for gear in mesh.gears],
+        "base_radius_m": [gear.base_radius for gear in mesh.gears],
         "pressure_angle_deg": math.degrees(mesh.operating_pressure_angle),
         "base_helix_angle_deg": math.degrees(mesh.gear1.rack.base_helix_angle),
         "internal": mesh.internal,

@@ -330,7 +330,7 @@ class _Rating:
         elastic = loads.elastic or elastic_loads(duty)
         sharing = self._stated(key, "mesh_load_factor") or abs(duty.torque1) / mean_torque
         nominal = mean_torque / mesh.gear1.reference_radius
-        limits = [material_of(self._own(name, gear)) for gear in (mesh.gear1, mesh.gear2)]
+        limits = [material_of(self._own(name, gear)) for gear in mesh.gears]
         factors = self._factors(name, own, duty, loads, elastic, nominal, sharing, limits)
         scale = mean_torque * factors.common / abs(duty.torque1)
         return MeshRating(
@@ -374,7 +374,7 @@ class _Rating:
                 2 * gear.reference_radius,
                 gear.face_width,
             )
-            for gear in (mesh.gear1, mesh.gear2)
+            for gear in mesh.gears
         ]
         cosine = math.cos(mesh.gear1.rack.transverse_pressure_angle)
         base = max(it.single_pitch for it in deviations) * cosine
@@ -402,7 +402,7 @@ class _Rating:
             dynamic = moved.dynamic_factor(load, resonance)
         computed = face_load_factor(loads, mesh)
         face = self._stated(key, "face_load_factor") or computed
-        depth = max(abs(it.tip_radius - it.root_radius) for it in (mesh.gear1, mesh.gear2))
+        depth = max(abs(it.tip_radius - it.root_radius) for it in mesh.gears)
         return LoadFactors(
             application=table.application_factor,
             sharing=sharing,
@@ -418,7 +418,7 @@ class _Rating:
         """N: speed over that of the resonance. ISO 6336-1, Eq. 6; a held gear does not move."""
         mesh, bodies = duty.gears.mesh, duty.gears.bodies
         tables, compliance = self.case.gearings[name].tables, 0.0
-        for gear, body in zip((mesh.gear1, mesh.gear2), bodies, strict=True):
+        for gear, body in zip(mesh.gears, bodies, strict=True):
             _, inertia = gear_body(gear, tables[gear.name])
             if abs(self.state.speeds[body]) > 0:
                 mates = self._mates(own, gear)
@@ -432,7 +432,7 @@ class _Rating:
         """How many gears are in mesh with one flank of it."""
         planets = {planet.body for planet in own.planets}
         for mesh in own.meshes:
-            for one, body in zip((mesh.mesh.gear1, mesh.mesh.gear2), mesh.bodies, strict=True):
+            for one, body in zip(mesh.mesh.gears, mesh.bodies, strict=True):
                 if one.name == gear.name:
                     return 1 if body in planets or not planets else own.count
         return 1
@@ -451,7 +451,7 @@ class _Rating:
         roughness = (duty.gears.flanks.roughness1, duty.gears.flanks.roughness2)
         heights = [
             self._own(name, gear).flank_height or RZ_OVER_RA * RA_OVER_RQ * rough
-            for gear, rough in zip((mesh.gear1, mesh.gear2), roughness, strict=True)
+            for gear, rough in zip(mesh.gears, roughness, strict=True)
         ]
         radius = mesh.equivalent_radius(mesh.pitch_point)  # rho_red, transverse
         radius *= math.cos(mesh.gear1.rack.base_helix_angle)
@@ -461,7 +461,7 @@ class _Rating:
         stress = iso.nominal_contact_stress(mesh, nominal, modulus) * math.sqrt(factors.contact)
         single = iso.single_contact_factors(mesh)
         made = []
-        for member, gear in enumerate((mesh.gear1, mesh.gear2)):
+        for member, gear in enumerate(mesh.gears):
             material, table = limits[member], self._own(name, gear)
             cycles = self.table.life * speeds[member] * self._mates(own, gear) / (2 * math.pi)
             root = iso.tooth_root(gear, duty.gears.tools[member], mesh.transverse_contact_ratio)
@@ -502,7 +502,7 @@ class _Rating:
         flash = flash_temperatures(contact, friction, duty.gears.materials)
         mesh, oil = duty.gears.mesh, fluids.oil
         lubrication = LUBRICATION_FACTORS[self.case.thermal.lubrication]
-        mates = max(self._mates(own, gear) for gear in (mesh.gear1, mesh.gear2))
+        mates = max(self._mates(own, gear) for gear in mesh.gears)
         power = contact.line_load * np.abs(contact.sliding_speed)
         warm = self.case.models.temperatures != "inlet"
         loss = float((friction * power) @ contact.weight)

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from epicyclic.case.case import FILE_KEYS
+from epicyclic.case.gear_tables import PressureAngle
 from epicyclic.case.tables.base import ShortLength
 from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.schema.fields import Table, option
@@ -32,7 +33,6 @@ Planets = Annotated[int, Field(ge=1, le=30)]
 Shift = Annotated[Number, Field(ge=-2, le=2)]
 WidthRatio = Annotated[Number, Field(gt=0, le=10)]
 Play = Annotated[float, Quantity("an angle", "rad", "deg", low=0.0, high=30.0, open_low=True)]
-Angle = Annotated[float, Quantity("an angle", "rad", "deg", low=10.0, high=35.0)]
 
 
 class DutyPoint(Table):
@@ -50,7 +50,7 @@ class Choices(Table):
     arrangements: tuple[Arrangement, ...] = option(None, ("planetary",), min_length=1)
     module: tuple[Length, ...] = Field(description="Normal modules.", min_length=1)
     helix_angle: tuple[HelixAngle, ...] = option(None, ("0 deg",), min_length=1)
-    pressure_angle: Angle = option("alpha_n.", "20 deg")
+    pressure_angle: PressureAngle = option("alpha_n.", "20 deg")
     pinion_teeth: tuple[int, int] = option("Fewest and most, of the pinion or the sun.", (17, 35))
     planets: tuple[Planets, ...] = option("Numbers of planets.", (3,), min_length=1)
     profile_shift: tuple[Shift, ...] = option(

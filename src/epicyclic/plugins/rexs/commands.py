@@ -36,7 +36,6 @@ def import_tables(
     notes: Sequence[str],  # What is to be known beside the notes of the import itself.
 ) -> RenderableType:
     """Summary of an import."""
-
     head = Text(f"REXS {found.version}, {found.component}: {len(found.origins)} keys", "bold")
     parts: list[RenderableType] = [head]
     lacking = found.lacking(given)

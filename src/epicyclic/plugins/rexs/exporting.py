@@ -15,7 +15,7 @@ from epicyclic.build.models import SetCase, set_cases
 from epicyclic.case.case import Case, TrainCase, read_case
 from epicyclic.case.tables.elements import Carrier, PlanetBearing, ShaftBearingTable
 from epicyclic.errors import Problem, one_problem, problems_in, raise_any
-from epicyclic.files import whole_file
+from epicyclic.files import write_file
 from epicyclic.gears.flanks import RA_OVER_RQ
 from epicyclic.gears.gear import CARRIER, HOUSING
 from epicyclic.gears.gearing import Gearing, GearPairing
@@ -662,9 +662,7 @@ def write_rexs(
     InputError
         If the original cannot be read, or holds another gear set.
     """
-    data = rexs_bytes(path, result, original, component)
-    with whole_file(Path(path)) as temporary:
-        temporary.write_bytes(data)
+    write_file(Path(path), rexs_bytes(path, result, original, component))
 
 
 def rexs_bytes(

@@ -8,7 +8,7 @@ import re
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lxml import etree
 from pydantic_core import from_json
@@ -19,15 +19,11 @@ from epicyclic.files import read_bytes, refuse
 from epicyclic.messages import one_line
 from epicyclic.plugins.rexs.model import Attribute, Coded, Component, Relation
 
-if TYPE_CHECKING:
-    from epicyclic.plugins.rexs.model import Content
-
-
 # REXS as JSON; all that is not understood stays as it is.
 
 
 class JsonContent:
-    """A file in JSON, as its objects."""
+    """A file in JSON, as its objects. `set_attribute` replaces one with the same id."""
 
     def __init__(self, data: dict[str, Any]) -> None:
         self.data = data
@@ -154,7 +150,7 @@ _COMPONENTS = "{*}components/{*}component"  # In any namespace, or none.
 
 
 class XmlContent:
-    """A file in XML, as its elements."""
+    """A file in XML, as its elements; the same methods as `JsonContent`."""
 
     def __init__(self, root: etree._Element, before: str = _DECLARATION) -> None:
         self.root = root
@@ -304,6 +300,8 @@ def _appended(parent: etree._Element, name: str, head: dict[str, str]) -> etree.
     return child
 
 
+Content = JsonContent | XmlContent
+
 # REXS files: XML, JSON, or either in a ZIP archive; read with bounds, written whole.
 #
 # Nothing of an archive is unpacked to disk, and nothing that a file names elsewhere is read.
@@ -358,7 +356,6 @@ def stem(path: str | Path) -> str:
 
 def new_document(path: str | Path, head: dict[str, str]) -> Document:
     """An empty file in the form that the end of its name stands for."""
-
     name = str(path).lower()
     content = JsonContent.empty(head) if name.endswith(_JSON) else XmlContent.empty(head)
     return Document(content, "rexs-model.rexs" if name.endswith(_ZIP) else "")
@@ -423,7 +420,6 @@ def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, largest: int) -> by
 
 
 def _parse(data: bytes) -> Content:
-
     if not data.strip():
         refuse("is empty.", "Name a REXS file.")
     is_json = data.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"[")

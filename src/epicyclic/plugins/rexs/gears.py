@@ -11,7 +11,8 @@ import numpy as np
 from epicyclic.case.case import Case
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.flanks import RA_OVER_RQ
-from epicyclic.gears.gear import involute
+from epicyclic.gears.gearing import basic_rack
+from epicyclic.gears.mesh import profile_shift_sum
 from epicyclic.plugins.rexs.draft import Amount, Draft, amount_text, number_of
 from epicyclic.plugins.rexs.model import IN_MILLIMETRES, Component, Model, vector
 from epicyclic.plugins.rexs.sets import SetParts, Train, is_internal, joints, rigid_parts
@@ -521,17 +522,14 @@ def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> floa
     """
     try:
         gears = tables["gears"]
-        z1, z2 = (_signed_teeth(tables, name) for name in (member1, member2))
-        x1 = tables[member1]["profile_shift_coefficient"]
-        module = MILLIMETRE.parse(gears["normal_module"])
-        center = MILLIMETRE.parse(gears["center_distance"])
-        normal = DEGREE.parse(gears["normal_pressure_angle"])
-        helix = DEGREE.parse(gears["helix_angle"])
-        transverse = math.atan(math.tan(normal) / math.cos(helix))
-        reference = abs(z1 + z2) * module / (2 * math.cos(helix))
-        operating = math.acos(reference * math.cos(transverse) / center)
-        difference = involute(operating) - involute(transverse)
-        return (z1 + z2) * difference / (2 * math.tan(normal)) - float(x1)
+        teeth = sum(_signed_teeth(tables, name) for name in (member1, member2))
+        x1 = float(tables[member1]["profile_shift_coefficient"])
+        module, center = (
+            MILLIMETRE.parse(gears[it]) for it in ("normal_module", "center_distance")
+        )
+        normal, helix = (DEGREE.parse(gears[it]) for it in ("normal_pressure_angle", "helix_angle"))
+        rack = basic_rack(helix, module, normal_pressure_angle=normal)
+        return profile_shift_sum(rack, teeth, center) - x1
     except (KeyError, ValueError, ArithmeticError):  # lacking, or no gears: told elsewhere
         return None
 

@@ -10,7 +10,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib import resources
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from epicyclic.errors import Problem, one_problem, raise_any
 from epicyclic.files import refuse
 from epicyclic.messages import one_line
 from epicyclic.units import Quantity
+
+if TYPE_CHECKING:
+    from epicyclic.plugins.rexs.files import Content
 
 CUSTOM = "custom_epicyclic_"  # Start of the ids of attributes that the standard does not have.
 
@@ -141,10 +144,6 @@ class Attribute:
         if len(flags) < len(values) or not flags:
             raise ValueError("is neither true nor false")
         return flags
-
-    def flag(self) -> bool:
-        """The value as true or false, all of an array; ValueError if it is neither."""
-        return all(self.flags())
 
     def text(self) -> str:
         """The value as one line of text."""
@@ -365,26 +364,6 @@ def check_places(model: Model) -> Iterator[Problem]:
 _SHOWN = 20  # Problems of one file that are told.
 
 _ID = re.compile(r"[0-9]{1,9}")
-
-
-class Content(Protocol):
-    """A file in one of its forms; what it does not understand stays as it is."""
-
-    def version(self) -> str: ...
-
-    def components(self) -> Iterable[Component]: ...
-
-    def relations(self) -> Iterable[Relation]: ...
-
-    def load_cases(self) -> Iterable[tuple[Any, Iterable[Component]]]: ...
-
-    def set_attribute(self, component: int, attribute: Attribute) -> None:
-        """Give a component an attribute, in place of one with the same id."""
-
-    def add(self, part: Component | Relation) -> None:
-        """Append a component or a relation."""
-
-    def to_bytes(self) -> bytes: ...
 
 
 def build_model(content: Content) -> Model:

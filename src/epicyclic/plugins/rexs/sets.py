@@ -231,8 +231,7 @@ class Joint(NamedTuple):
 
 def joints(model: Model) -> Iterator[Joint]:
     """Everything that stands between two parts."""
-    found = (_joint(model, relation) for relation in model.relations)
-    return (joint for joint in found if joint is not None)
+    return filter(None, (_joint(model, relation) for relation in model.relations))
 
 
 def _joint(model: Model, relation: Relation) -> Joint | None:
@@ -260,7 +259,7 @@ def is_rigid(joint: Component, *, switched: bool = True) -> bool:
     if not switched and is_switched(joint):
         return False
     try:
-        return joint.type in _RIGID and (engaged is None or engaged.flag())
+        return joint.type in _RIGID and (engaged is None or all(engaged.flags()))
     except ValueError:
         return False
 

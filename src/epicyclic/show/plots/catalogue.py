@@ -383,14 +383,12 @@ def figure_of(
         dpi=dpi,
         caption=point,
         letters=letters,
+        count=len(panels),
     ) as (figure, axes):
-        spare = axes.ravel()[len(panels) :]
         for panel, ax in zip(panels, axes.ravel(), strict=False):
             panel.draw(ax)
             if panel.subject:
                 ax.set_title(_with_subject(ax, panel.subject))
-        for ax in spare:
-            ax.remove()
     return figure
 
 

@@ -20,6 +20,7 @@ from epicyclic.show.plots.style import (
     LINE_STYLES,
     in_percent,
     label_of,
+    labelled,
     legend_below,
     span_text,
     title_of,
@@ -148,12 +149,7 @@ def plot_map(
             levels = [one for one in levels if one >= LEAST_LINE] or levels
     draw_lines(ax, (speed, torque, values.to_numpy()), levels)
     ax.grid(visible=False)
-    ax.set(
-        title=title_of(values),
-        xlabel=_axis_label(data, "speed"),
-        ylabel=_axis_label(data, "torque"),
-    )
-    return ax
+    return labelled(ax, _axis_label(data, "speed"), _axis_label(data, "torque"), title_of(values))
 
 
 def draw_lines(
@@ -171,9 +167,9 @@ def draw_lines(
         return
     lines = ax.contour(*field, levels=drawn, colors="white", linewidths=0.7)
     edge: list[AbstractPathEffect] = [withStroke(linewidth=2.0, foreground="0.25")]
-    labelled = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
+    chosen = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
     to_axes, kept = ax.transData - ax.transAxes, np.empty((0, 2))
-    for text in ax.clabel(lines, labelled, fontsize="small", fmt="%g", inline=False):
+    for text in ax.clabel(lines, chosen, fontsize="small", fmt="%g", inline=False):
         text.set_path_effects(edge)
         place = to_axes.transform(text.get_position())
         is_cut = np.abs(place - 0.5).max() > 0.5 - EDGE
@@ -215,12 +211,7 @@ def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Lim
     if limits is not None and limits[1] > 0:
         ax.set_ylim(min(0.0, limits[0]), ROOM * limits[1])
     values = in_percent(data[name])
-    ax.set(
-        title=f"{title_of(values)} over {over}",
-        xlabel=_axis_label(data, over),
-        ylabel=label_of(values),
-    )
-    return ax
+    return labelled(ax, _axis_label(data, over), values, f"{title_of(values)} over {over}")
 
 
 def plot_map_parts(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None) -> Axes:
@@ -249,13 +240,9 @@ def plot_map_parts(data: xr.Dataset, name: str, ax: Axes, limits: Limits = None)
     if limits is not None and limits[1] > 0:
         ax.set_ylim(0.0, ROOM * limits[1])
     torque = f"{float(highest['torque']):g} {unit_text(str(highest['torque'].attrs['units']))}"
-    ax.set(
-        title=f"Components of the loss at {torque}",
-        xlabel=_axis_label(data, "speed"),
-        ylabel=label_of(data[name]),
-    )
     legend_below(ax, ncols=3)
-    return ax
+    title = f"Components of the loss at {torque}"
+    return labelled(ax, _axis_label(data, "speed"), data[name], title)
 
 
 def plot_half_width(

@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from epicyclic.arrays import FloatArray
 from epicyclic.case.tables.uncertainty import MODEL_FORM
 from epicyclic.result.result import Result, in_words
-from epicyclic.show.plots.style import COLOURS, legend_below, write_beside
+from epicyclic.show.plots.style import COLOURS, labelled, legend_below, write_beside
 from epicyclic.study.bands.advice import in_few_words, mean_shares, unit_of
 from epicyclic.units import decimals_of, format_number, part_text, percent, power_unit
 
@@ -247,11 +247,7 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     low_text, high_text = (f"{it:.2f}" if percent else format_number(it, 3) for it in (low, high))
     what = "total loss" if unit.endswith("W") else "energy lost"
     what, unit = ("efficiency", "%") if percent else (what, unit)
-    ax.set(
-        title=f"{what.capitalize()}: 95 % from {low_text} to {high_text} {unit}",
-        xlabel=f"{what}, {unit}",
-        ylabel="samples",
-    )
     ax.xaxis.set_major_locator(MaxNLocator(TICKS))
     legend_below(ax, ncols=3)
-    return ax
+    title = f"{what.capitalize()}: 95 % from {low_text} to {high_text} {unit}"
+    return labelled(ax, f"{what}, {unit}", "samples", title)

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from epicyclic.arrays import BoolArray, FloatArray
-from epicyclic.show.plots.style import COLOURS, styled_figure
+from epicyclic.show.plots.style import COLOURS, labelled, styled_figure
 from epicyclic.study.measured.comparison import AS_GIVEN, CALIBRATED, MeasuredComparison
 from epicyclic.study.operating import OPERATING
 from epicyclic.units import format_number, percent, unit_text
@@ -88,8 +88,7 @@ def plot_points(comparison: MeasuredComparison, ax: Axes) -> Axes:
     every = max(1, math.ceil(len(measured) / MOST_NUMBERS))
     ax.set_xticks(place[::every], [str(line) for line in measured.lines[::every]])
     of_what = f"residual over u (grey: ±{COVERED:g})" if weighted else "computed − measured, W"
-    ax.set(title="Residuals by point", xlabel="line of the table", ylabel=of_what)
-    return ax
+    return labelled(ax, "line of the table", of_what, "Residuals by point")
 
 
 def plot_residuals(comparison: MeasuredComparison, over: str, ax: Axes) -> Axes:

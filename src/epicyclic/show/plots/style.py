@@ -79,12 +79,15 @@ def styled_figure(
     dpi: float | None = None,  # Pixels an inch; default: `DPI`.
     caption: str = "",  # Below all, as the operating point; none if empty.
     letters: float = 1.0,  # Size of title and caption over the usual one.
+    count: int | None = None,  # Axes that stay, the first ones; default: all.
 ) -> Iterator[tuple[Figure, Any]]:
     """A figure and its array of Axes, drawn in the style of the package."""
     with mpl.rc_context(STYLE):
         size = size or (panel[0] * columns, panel[1] * rows)
         figure = Figure(figsize=size, dpi=dpi or DPI, layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, subplot_kw={"projection": projection})
+        for spare in axes.flat[count or axes.size :]:
+            spare.remove()
         if title:
             points = letters * TITLE_POINTS
             figure.suptitle(title, x=0.01, ha="left", fontsize=points, fontweight="bold")
@@ -220,9 +223,11 @@ def label_of(variable: xr.DataArray) -> str:
     return f"{name}, {unit}" if unit else name
 
 
-def labelled(ax: Axes, x: xr.DataArray, y: xr.DataArray, title: str = "") -> Axes:
-    """Axes with names and units of both variables, and a title: by default the name of `y`."""
-    ax.set(title=title or title_of(y), xlabel=label_of(x), ylabel=label_of(y))
+def labelled(ax: Axes, x: xr.DataArray | str, y: xr.DataArray | str, title: str = "") -> Axes:
+    """Axes with texts or names and units of variables, and a title: by default the name of `y`."""
+    if not isinstance(y, str):
+        title, y = title or title_of(y), label_of(y)
+    ax.set(title=title, xlabel=x if isinstance(x, str) else label_of(x), ylabel=y)
     return ax
 
 

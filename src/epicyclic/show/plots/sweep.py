@@ -26,6 +26,7 @@ from epicyclic.show.plots.style import (
     TITLE_CHARACTERS,
     in_percent,
     label_of,
+    labelled,
     legend_below,
     place_text,
     room_of,
@@ -169,12 +170,8 @@ def plot_sweep_field(data: xr.Dataset, name: str, ax: Axes) -> Axes:
         if _is_count(values[dim]):
             axis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(visible=False)
-    ax.set(
-        title=_titled(values, part, ax),
-        xlabel=_axis_label(data, across),
-        ylabel=_axis_label(data, up),
-    )
-    return ax
+    title = _titled(values, part, ax)
+    return labelled(ax, _axis_label(data, across), _axis_label(data, up), title)
 
 
 def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:
