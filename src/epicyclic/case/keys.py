@@ -9,10 +9,12 @@ from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
+from epicyclic.case.tables.models import has_rough_flanks
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import InputError, Problem
 from epicyclic.gears.sizing import Found
 from epicyclic.messages import did_you_mean, dotted, key_parts, value_at, written
+from epicyclic.oil.oil import BOUNDARY_FRICTION
 from epicyclic.schema.fields import (
     Table,
     all_keys,
@@ -143,7 +145,8 @@ def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Par
         return Problem(key, "", "is not a continuous number.", "Fit a key that is.")
     if key in varied:
         return Problem(key, "", "is given by a column of the table.", "Fit another key.")
-    value = value_of(case, key)
+    stated = value_of(case, key)
+    value = _of_oil(case, key) if stated is None else stated
     if value is None:
         return no_start(key, "has no value in the case")
     if quantity is None:
@@ -157,6 +160,14 @@ def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Par
     if is_open:
         low += OFF_OPEN_BOUND * (start - low)
     return Parameter(key, unit, start, low, high)
+
+
+def _of_oil(case: BaseModel, key: str) -> float | None:
+    """The boundary friction that a case leaves to the additives of its oil."""
+    models = value_of(case, key.rpartition(".")[0])
+    own = key.endswith("models.boundary_friction") and has_rough_flanks(models)
+    lubricant = getattr(case, "lubricant", None)
+    return BOUNDARY_FRICTION[lubricant.oil.additives].value if own and lubricant else None
 
 
 def no_start(key: str, what: str) -> Problem:
