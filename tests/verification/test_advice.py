@@ -47,8 +47,9 @@ def test_a_known_input_leaves_the_band_that_was_foretold(case, band, key):
     known = case.updated({"uncertainty": {key: {"exact": True}}})
     left = quick_known(known, ep.solve(known)).width
     assert left < known_of(band).width
-    # foretold by shares of the variance, while the lognormal oil share makes the band skew
-    assert left == pytest.approx(foretold[remedy_for(key)[0]], rel=0.05)
+    # foretold by shares of the variance, while the lognormal oil share makes the band skew; and
+    # each of the two widths is of draws of its own: those of other seeds are up to 5 % apart
+    assert left == pytest.approx(foretold[remedy_for(key)[0]], rel=0.08)
 
 
 def test_a_measured_part_of_the_loss_leaves_what_a_fit_to_it_leaves():
