@@ -12,7 +12,10 @@ from epicyclic.case import keys
 from epicyclic.case.tables import uncertainty
 from epicyclic.gears.flanks import FlankDeviations
 from epicyclic.gears.gearing import Gearing
+from epicyclic.losses import drag
+from epicyclic.losses.shaft_bearing import PalmgrenModel
 from epicyclic.losses.windage import LAMINAR_RIMS
+from epicyclic.losses.zhou_hoeprich import CylindricalModel, ThrustRollerModel
 from epicyclic.machine import gear_set, planets
 from epicyclic.study.bands import inputs
 
@@ -41,6 +44,14 @@ def former_viscous_loss(monkeypatch):
 def former_tips(monkeypatch):
     """As with gears.tip_alteration = "none", without a key for it."""
     monkeypatch.setattr(Gearing, "tip_shortenings", {})
+
+
+@pytest.fixture(autouse=True)
+def no_limit_of_viscosity(monkeypatch):
+    """Thick oil in bearings went without a flag."""
+    monkeypatch.setattr(drag, "THICKEST", replace(drag.THICKEST, high=1e9))
+    for model in (PalmgrenModel, CylindricalModel, ThrustRollerModel):
+        monkeypatch.setattr(model, "thickest", None)
 
 
 @pytest.fixture(autouse=True)

@@ -664,3 +664,31 @@ def test_preload_in_a_case(pair_case):
 )  # fmt: skip
 def test_pairs_that_contradict_themselves(pair_case, keys, key):
     assert only(problems_of(pair_case.updated, keys)).key == f"bearings.{key}"
+
+
+@pytest.mark.parametrize(
+    ("size", "where", "part"),
+    [
+        ("NU 207", {"radial_force": "1 kN"}, "viscous"),
+        ("22210", {"radial_force": "1 kN"}, "viscous"),
+        ("NKI 50/25", {"radial_force": "1 kN"}, "viscous"),
+        ("81112", {"axial_force": "2 kN"}, "mechanical"),
+    ],
+)
+def test_thick_oil_is_flagged_with_the_loss_that_it_makes_uncertain(size, where, part):
+    """The viscous moment knows no heating: it made kilowatts of an axle in cold oil."""
+    own = {"shaft": "motor", "designation": size, **where}
+    case = ep.load_case("train-eaxle").updated(
+        {"lubricant.oil": "iso-vg-220-mineral", "bearings.tried": own}
+    )
+    warm, cold = (
+        ep.solve(case.updated({"operation.oil_inlet_temperature": f"{celsius} degC"}))
+        for celsius in (90, 0)
+    )
+    quantity = "viscosity in the bearing"
+    told = [
+        [it.watts for it in result.flags if it.quantity == quantity and "tried" in it.use.where]
+        for result in (warm, cold)
+    ]
+    assert told == [[], [pytest.approx(cold.losses[f"tried.{part}"])]]
+    assert any(quantity in warning for warning in cold.warnings)

@@ -12,7 +12,7 @@ from epicyclic.dataclass import dataclass
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.windage import rim_coefficient
 from epicyclic.oil.oil import MixtureState
-from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, NUMBER
+from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, MILLIPASCAL_SECOND, NUMBER
 
 # Load-independent losses of bearings and of bodies turning in the mixture of oil and air.
 
@@ -28,6 +28,11 @@ SPEED_PARAMETER = Range(
     "speed_parameter", "speed times pitch diameter, rpm mm", None, 1e6, NUMBER, OF_THIS_PACKAGE
 )
 """Range of the formulas of Palmgren and Harris, which come from tests at moderate speed."""
+THICKEST = Range(
+    "viscosity", "viscosity in the bearing", None, 80.0, MILLIPASCAL_SECOND,
+    f"heating of the oil in the bearing is left out; {OF_THIS_PACKAGE}",
+)  # fmt: skip
+"""Range of the viscous moment: measured bearings whose heating is known had no thicker oil."""
 _FACES_SOURCE = "one-seventh power law of the flat plate, Schlichting, Boundary-Layer Theory"
 _FACES = Range("reynolds_number", "Reynolds number of the faces", None, 1e7, NUMBER, _FACES_SOURCE)
 _CREEPING = Range(
@@ -62,10 +67,13 @@ def bearing_viscous_loss(
     return moment * abs(speed)
 
 
-def viscous_flags(where: str, speed: float, pitch_diameter: float) -> tuple[ValidityFlag, ...]:
-    """Flags of `bearing_viscous_loss` in the bearing called `where`."""
-    values = {"speed_parameter": speed_parameter(speed, pitch_diameter)}
-    return check_ranges(ModelUse("bearing_viscous", "harris", where), (SPEED_PARAMETER,), values)
+def viscous_flags(
+    where: str, speed: float, pitch_diameter: float, viscosity: float
+) -> tuple[ValidityFlag, ...]:
+    """Flags of `bearing_viscous_loss` in the bearing called `where`; dynamic viscosity [Pa s]."""
+    use = ModelUse("bearing_viscous", "harris", where)
+    values = {"speed_parameter": speed_parameter(speed, pitch_diameter), "viscosity": viscosity}
+    return check_ranges(use, (SPEED_PARAMETER, THICKEST) if speed else (), values)
 
 
 def speed_parameter(speed: float, pitch_diameter: float) -> float:

@@ -6,7 +6,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import ClassVar, NamedTuple, get_args
+from typing import Any, ClassVar, NamedTuple, get_args
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from epicyclic.losses.designations import SPHERICAL_ANGLE
 from epicyclic.losses.drag import (
     RPM,
     SPEED_PARAMETER,
+    THICKEST,
     VISCOUS_METHOD,
     VISCOUS_SOURCE,
     bearing_viscous_loss,
@@ -269,8 +270,32 @@ def load_moment(
     return moment * bearing.pitch_diameter
 
 
+class Flagged:
+    """What flags of all models have in common."""
+
+    __slots__ = ()
+
+    axial_range: ClassVar = AXIAL_RATIO  # Of the forces on a cylindrical roller bearing.
+    # The part that thick oil makes uncertain, and its range of viscosities.
+    thickest: ClassVar[tuple[str, Range] | None] = None
+
+    def flags(
+        self: Any, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float,
+        oil: OilState,
+    ) -> tuple[ValidityFlag, ...]:  # fmt: skip
+        """Flags on speed, static load, thick oil and, of cylindrical rollers, axial force."""
+        use = ModelUse("bearing", self.name, where)
+        found = load_flags(use, self.axial_range, bearing, load, speed)
+        key, limit = self.thickest or ("", THICKEST)
+        for part in self.parts(bearing, load, speed, oil) if key else ():
+            if part.key == key and part.watts:
+                values = {limit.name: oil.dynamic_viscosity}
+                found += check_ranges(use, (limit,), values, watts=part.watts)
+        return found
+
+
 @dataclass(frozen=True, slots=True)
-class PalmgrenModel:
+class PalmgrenModel(Flagged):
     """Load-dependent moment after Palmgren or Harris, with the viscous moment of both."""
 
     viscous_factor: float  # f0. [1]
@@ -280,6 +305,7 @@ class PalmgrenModel:
 
     terms: ClassVar = ("mechanical", "viscous")
     depends_on_load: ClassVar = True
+    thickest: ClassVar = ("viscous", THICKEST)
 
     @property
     def name(self) -> str:
@@ -306,31 +332,17 @@ class PalmgrenModel:
             FrictionPart("viscous", False, viscous, VISCOUS_METHOD, VISCOUS_SOURCE),
         )
 
-    def flags(
-        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
-    ) -> tuple[ValidityFlag, ...]:
-        """Flags on speed, static load and, of cylindrical rollers, axial force."""
-        return load_flags(ModelUse("bearing", self.name, where), AXIAL_RATIO, bearing, load, speed)
 
-
-class WithoutCoefficient:
+class WithoutCoefficient(Flagged):
     """A model that does not scale the load by one coefficient."""
 
     __slots__ = ()
 
     name: ClassVar[str]
-    axial_range: ClassVar = AXIAL_RATIO  # Of the forces on a cylindrical roller bearing.
 
     def coefficient(self, bearing: CatalogueBearing, load: BearingLoad) -> float:
         """NaN: the model has no f1."""
         return math.nan
-
-    def flags(
-        self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
-    ) -> tuple[ValidityFlag, ...]:
-        """Flags on speed, static load and, of cylindrical rollers, axial force."""
-        use = ModelUse("bearing", self.name, where)
-        return load_flags(use, self.axial_range, bearing, load, speed)
 
 
 # --- table of the user ----------------------------------------------------------------------------

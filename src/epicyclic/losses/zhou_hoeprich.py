@@ -26,6 +26,7 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.losses.drag import (
     SPEED_PARAMETER,
+    THICKEST,
     VISCOUS_METHOD,
     VISCOUS_SOURCE,
     bearing_viscous_loss,
@@ -151,6 +152,7 @@ class CylindricalModel(Rollers):
 
     terms: ClassVar = ("mechanical", "viscous")
     axial_range: ClassVar = SKF_AXIAL_RATIO
+    thickest: ClassVar = ("viscous", THICKEST)
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -182,6 +184,7 @@ class ThrustRollerModel(Rollers):
     skf: SkfModel  # What starvation, drag and seals are taken from.
 
     terms: ClassVar = ("mechanical", "drag")
+    thickest: ClassVar = ("mechanical", _VISCOSITY)
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState

@@ -209,9 +209,8 @@ def thrust_loss(bearing: ThrustBearing, state: State) -> Outcome:
     """Viscous loss of all thrust bearings. Theory (V2)."""
     one, two = bearing.between
     speed = state.speeds[one] - state.speeds[two]
-    loss = bearing_viscous_loss(
-        bearing.viscous_factor, state.fluids.oil.kinematic_viscosity, speed, bearing.mean_diameter
-    )
+    diameter, oil = bearing.mean_diameter, state.fluids.oil
+    loss = bearing_viscous_loss(bearing.viscous_factor, oil.kinematic_viscosity, speed, diameter)
     watts, brakes = bearing.count * loss, ((*bearing.between, 1.0),)
-    flags = Flags(partial(viscous_flags, "thrust bearing", speed, bearing.mean_diameter))
+    flags = Flags(partial(viscous_flags, "thrust bearing", speed, diameter, oil.dynamic_viscosity))
     return Loss(LOAD_INDEPENDENT, watts, VISCOUS_METHOD, VISCOUS_SOURCE, brakes=brakes), flags

@@ -637,6 +637,7 @@ def solve_bearing(
     known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
     limits = partial(_limit_notes, where, known, own.limiting_speed, carried, abs(speed), watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
+    idle = speed, bearing.pitch_diameter, oil.dynamic_viscosity
     return BearingResult(
         {
             f"{key}_mechanical": Loss(LOAD_DEPENDENT, count * watts, *own.method, bent=BENT_SLICES),
@@ -645,7 +646,7 @@ def solve_bearing(
             ),
         },
         Figures({key: figures}),
-        loss.flags + Flags(partial(viscous_flags, where, speed, bearing.pitch_diameter)),
+        loss.flags + Flags(partial(viscous_flags, where, *idle)),
         Sought(notes.__iter__, limits),
         loads=loads,
     )
