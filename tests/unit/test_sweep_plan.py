@@ -181,3 +181,19 @@ def test_values_without_what_they_need_are_told_as_they_were_written(case, optio
     with pytest.raises(ep.InputError) as error:
         parse_vary(case, [option])
     assert told in str(error.value)
+
+
+def test_points_with_temperatures_keep_them_beside_points_without():
+    pair = ep.load_case("talbot-2012-pair").updated({"losses.mesh_pocketing.include": False})
+    kinds, torques = ["inlet", "network"], ["70 N*m", "110 N*m"]
+    varied = {"models.temperatures": kinds, "operation.torque": torques}
+    for base in kinds:
+        data = ep.sweep(pair.updated({"models.temperatures": base}), varied, jobs=1)
+        found = data["oil_temperature"].transpose("temperatures", "torque").values
+        heated = pair.updated({"models.temperatures": "network"})
+        wanted = [
+            ep.solve(heated.updated({"operation.torque": torque})).heat.temperatures["oil"]
+            for torque in torques
+        ]
+        assert np.isnan(found[0]).all()
+        assert found[1] + 273.15 == pytest.approx(wanted, abs=1e-3)

@@ -237,7 +237,9 @@ def look_nearby(case: Case, result: Result) -> Nearby:
     if outputs.tested:
         (losses,) = _losses(alone, [{}], outputs, flows)
     changes = steps(values)
-    moved = [number for number, it in enumerate(changes) if not _without_effect(alone, it)]
+    # where all oil has the temperature of its inlet, no loss sees how heat goes
+    blind = "thermal." if alone.models.temperatures == "inlet" else "-"
+    moved = [n for n, it in enumerate(changes) if not all(key.startswith(blind) for key in it)]
     stepped = np.tile(losses, (len(changes), 1))
     stepped[moved] = _losses(alone, [changes[number] for number in moved], outputs, flows)
     own = (result.input_power, shaft_power(case), losses[: len(outputs.losses)].sum())
@@ -267,13 +269,6 @@ def nearby_of(
     ends = np.tile(losses, (len(values), 2, 1))
     ends[inputs] = stepped.reshape(inputs.sum(), 2, losses.size)
     return Nearby(values, outputs, losses, powers, ends)
-
-
-def _without_effect(case: Case, changes: Mapping[str, Any]) -> bool:
-    """Where all oil has the temperature of its inlet, no loss sees how heat goes."""
-    return case.models.temperatures == "inlet" and all(
-        key.startswith("thermal.") for key in changes
-    )
 
 
 def _losses(

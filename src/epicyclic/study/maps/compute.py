@@ -29,7 +29,7 @@ from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
 from epicyclic.study.sweeps.run import PointList, SweepPlan, by_keys, make_plan, to_dataset
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
-from epicyclic.units import NEWTON_METRE, RPM, WATT, format_number, unit_text
+from epicyclic.units import NEWTON_METRE, RPM, WATT, format_number, torque_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -227,10 +227,9 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     ends = dict.fromkeys((float(speeds[speeds.size // 2]), float(min(speeds, key=abs))))
     lines = [data.sel(speed=speed).isel(first) for speed in ends]
     middles = [_checked(torques, line["total"].values) for line in lines]
-    points: list[dict[str, Any]] = []
-    torque = OPERATING["torque"]
+    points, torque = list[dict[str, Any]](), OPERATING["torque"]
     for line, own in zip(lines, middles, strict=True):
-        fixed = [values for name, values in line.coords.items() if name != "torque"]
+        fixed = line.drop_vars("torque").coords.values()
         changes = {key_of(values): written_values(values)[0] for values in fixed}
         points += [changes | {torque.key: torque.text(middle)} for middle in own.tolist()]
     direct = Runner(jobs=1).run(PointList(case, tuple(points))).numbers("total")
@@ -243,10 +242,8 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
             worst = int(np.nanargmax(error))
             found.append(float(f"{error[worst]:.2g}"))
             watts = WATT.text(error[worst] * exact[worst], 2)
-            at = f"{format_number(speed)} rpm and {format_number(float(own[worst]), 3)}"
-            texts.append(
-                f"{100 * error[worst]:.2g} % ({watts}) at {at} {unit_text(NEWTON_METRE.display)}"
-            )
+            at = f"{format_number(speed)} rpm and {torque_text(float(own[worst]), 3)}"
+            texts.append(f"{100 * error[worst]:.2g} % ({watts}) at {at}")
     if not found:
         return {}
     return {

@@ -589,13 +589,22 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
         coords[key] = (over, points, about)
     variables = {
         it.key: (dims, rows.numbers(it.key).reshape(plan.shape), _about(it.label, it.unit))
-        for it in number_fields(layout_of(plan.case))
+        for case in (plan.case, *_heated(plan))
+        for it in number_fields(layout_of(case))
     }
     for key, label in TEXTS.items():
         column = np.array(getattr(rows, key), dtype=object).reshape(plan.shape)
         variables[key] = (dims, column, _about(label, ""))
     with texts_not_copied():
         return with_plain_names(xr.Dataset(variables, coords, _attributes(plan, rows)))
+
+
+def _heated(plan: SweepPlan) -> Iterator[Case]:
+    """The case with each model of temperatures that varies: only some have those of the parts."""
+    for part in (part for axis in plan.axes for part in axis.keys):
+        for value in dict.fromkeys(part.values if part.key == "models.temperatures" else ()):
+            with suppress(InputError):  # the points report it
+                yield plan.case.updated({part.key: value})
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
