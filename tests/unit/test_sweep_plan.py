@@ -189,7 +189,7 @@ def test_points_with_temperatures_keep_them_beside_points_without():
     varied = {"models.temperatures": kinds, "operation.torque": torques}
     for base in kinds:
         data = ep.sweep(pair.updated({"models.temperatures": base}), varied, jobs=1)
-        found = data["oil_temperature"].transpose("temperatures", "torque").values
+        found = data["oil_temperature"].transpose("models_temperatures", "torque").values
         heated = pair.updated({"models.temperatures": "network"})
         wanted = [
             ep.solve(heated.updated({"operation.torque": torque})).heat.temperatures["oil"]

@@ -187,11 +187,14 @@ def test_drag_is_flagged_with_the_part_that_it_concerns():
     assert flags(0.0)[1] == {}
 
 
-def test_fast_bearings_are_flagged():
-    assert viscous_flags("bearing", 9_990 * RPM, 0.1) == ()
-    (flag,) = viscous_flags("bearing", -10_010 * RPM, 0.1)
+def test_fast_bearings_and_thick_oil_are_flagged():
+    assert viscous_flags("bearing", 9_990 * RPM, 0.1, 0.079) == ()
+    (flag,) = viscous_flags("bearing", -10_010 * RPM, 0.1, 0.079)
     assert flag.found_high == pytest.approx(1.001e6, rel=1e-12)
     assert flag.use.model == "harris"
+    (flag,) = viscous_flags("bearing", -9_990 * RPM, 0.1, 0.081)
+    assert flag.found_high == pytest.approx(81.0, rel=1e-12)
+    assert viscous_flags("bearing", 0.0, 0.1, 0.081) == ()
 
 
 def test_drag_scales_as_its_powers():
