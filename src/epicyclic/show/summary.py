@@ -151,12 +151,13 @@ def first_warnings(result: Result) -> Listing:
     """The warnings that concern most of the loss, in short; nothing if none matters."""
     found = [it for it in _notes(result) if MAY_LOSE not in it[1]]
     for watts, group in result.flags_with_loss:
-        uses = dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)
+        uses = [*dict.fromkeys(f"{in_words(flag.use.role)} {flag.use.model}" for flag in group)]
+        names = " and ".join(filter(None, (", ".join(uses[:-1]), uses[-1])))
         first, only = group[0], limits_text(group[0])
         only = only if None in (first.low, first.high) else f"from {only}"
         size = "" if math.isnan(watts) else f"; this affects {concern_text(watts, group)}"
         text = (
-            f"The {first.quantity} is {found_text(group)}, but {' and '.join(uses)} "
+            f"The {first.quantity} is {found_text(group)}, but {names} "
             f"{'are' if len(uses) > 1 else 'is'} valid only {only}{size}."
         )
         found.append((weight_of(watts, group), text))
