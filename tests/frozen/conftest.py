@@ -13,9 +13,9 @@ from epicyclic.case.tables import uncertainty
 from epicyclic.gears.flanks import FlankDeviations
 from epicyclic.gears.gearing import Gearing
 from epicyclic.losses import drag
-from epicyclic.losses.shaft_bearing import PalmgrenModel
+from epicyclic.losses.shaft_bearing import Flagged
 from epicyclic.losses.windage import LAMINAR_RIMS
-from epicyclic.losses.zhou_hoeprich import CylindricalModel, ThrustRollerModel
+from epicyclic.losses.zhou_hoeprich import ThrustRollerModel
 from epicyclic.machine import gear_set, planets
 from epicyclic.study.bands import inputs
 
@@ -49,9 +49,10 @@ def former_tips(monkeypatch):
 @pytest.fixture(autouse=True)
 def no_limit_of_viscosity(monkeypatch):
     """Thick oil in bearings went without a flag."""
-    monkeypatch.setattr(drag, "THICKEST", replace(drag.THICKEST, high=1e9))
-    for model in (PalmgrenModel, CylindricalModel, ThrustRollerModel):
-        monkeypatch.setattr(model, "thickest", None)
+    boundless = replace(drag.THICKEST, high=1e9)
+    monkeypatch.setattr(drag, "THICKEST", boundless)
+    monkeypatch.setattr(Flagged, "thickest", ("viscous", boundless))
+    monkeypatch.setattr(ThrustRollerModel, "thickest", ("mechanical", boundless))
 
 
 @pytest.fixture(autouse=True)

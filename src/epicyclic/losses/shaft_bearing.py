@@ -271,13 +271,13 @@ def load_moment(
 
 
 class Flagged:
-    """What flags of all models have in common."""
+    """What flags of models of the moment have in common."""
 
     __slots__ = ()
 
     axial_range: ClassVar = AXIAL_RATIO  # Of the forces on a cylindrical roller bearing.
     # The part that thick oil makes uncertain, and its range of viscosities.
-    thickest: ClassVar[tuple[str, Range] | None] = None
+    thickest: ClassVar[tuple[str, Range]] = ("viscous", THICKEST)
 
     def flags(
         self: Any, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float,
@@ -286,12 +286,11 @@ class Flagged:
         """Flags on speed, static load, thick oil and, of cylindrical rollers, axial force."""
         use = ModelUse("bearing", self.name, where)
         found = load_flags(use, self.axial_range, bearing, load, speed)
-        key, limit = self.thickest or ("", THICKEST)
-        for part in self.parts(bearing, load, speed, oil) if key else ():
-            if part.key == key and part.watts:
-                values = {limit.name: oil.dynamic_viscosity}
-                found += check_ranges(use, (limit,), values, watts=part.watts)
-        return found
+        (key, limit), values = self.thickest, {"viscosity": oil.dynamic_viscosity}
+        if not check_ranges(use, (limit,), values):
+            return found
+        watts = {part.key: part.watts for part in self.parts(bearing, load, speed, oil)}[key]
+        return found + (check_ranges(use, (limit,), values, watts=watts) if watts else ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,7 +304,6 @@ class PalmgrenModel(Flagged):
 
     terms: ClassVar = ("mechanical", "viscous")
     depends_on_load: ClassVar = True
-    thickest: ClassVar = ("viscous", THICKEST)
 
     @property
     def name(self) -> str:

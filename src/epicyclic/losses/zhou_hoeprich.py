@@ -26,7 +26,6 @@ from epicyclic.kernels.line_contact import (
 )
 from epicyclic.losses.drag import (
     SPEED_PARAMETER,
-    THICKEST,
     VISCOUS_METHOD,
     VISCOUS_SOURCE,
     bearing_viscous_loss,
@@ -152,7 +151,6 @@ class CylindricalModel(Rollers):
 
     terms: ClassVar = ("mechanical", "viscous")
     axial_range: ClassVar = SKF_AXIAL_RATIO
-    thickest: ClassVar = ("viscous", THICKEST)
 
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -238,6 +236,7 @@ def roller_loads(slope: float, rollers: int, exponent: float = 10 / 9) -> FloatA
         loads = np.maximum(0, 1 - middle * (1 - cosines)) ** exponent
         if not slope or high - low < 1e-12:
             shares: FloatArray = loads / loads.mean()
+            shares.flags.writeable = False  # kept
             return shares
         low, high = (middle, high) if loads @ cosines < slope * loads.sum() else (low, middle)
 

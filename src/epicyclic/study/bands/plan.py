@@ -238,8 +238,9 @@ def look_nearby(case: Case, result: Result) -> Nearby:
         (losses,) = _losses(alone, [{}], outputs, flows)
     changes = steps(values)
     # where all oil has the temperature of its inlet, no loss sees how heat goes
-    blind = "thermal." if alone.models.temperatures == "inlet" else "-"
-    moved = [n for n, it in enumerate(changes) if not all(key.startswith(blind) for key in it)]
+    cold = alone.models.temperatures == "inlet"
+    of_heat = [cold and all(key.startswith("thermal.") for key in it) for it in changes]
+    moved = np.flatnonzero(np.logical_not(of_heat)).tolist()
     stepped = np.tile(losses, (len(changes), 1))
     stepped[moved] = _losses(alone, [changes[number] for number in moved], outputs, flows)
     own = (result.input_power, shaft_power(case), losses[: len(outputs.losses)].sum())

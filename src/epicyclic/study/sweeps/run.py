@@ -589,7 +589,7 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
         coords[key] = (over, points, about)
     variables = {
         it.key: (dims, rows.numbers(it.key).reshape(plan.shape), _about(it.label, it.unit))
-        for case in (plan.case, *_heated(plan))
+        for case in (plan.case, *_with_temperatures(plan))
         for it in number_fields(layout_of(case))
     }
     for key, label in TEXTS.items():
@@ -599,7 +599,7 @@ def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
         return with_plain_names(xr.Dataset(variables, coords, _attributes(plan, rows)))
 
 
-def _heated(plan: SweepPlan) -> Iterator[Case]:
+def _with_temperatures(plan: SweepPlan) -> Iterator[Case]:
     """The case with each model of temperatures that varies: only some have those of the parts."""
     for part in (part for axis in plan.axes for part in axis.keys):
         for value in dict.fromkeys(part.values if part.key == "models.temperatures" else ()):
