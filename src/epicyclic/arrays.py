@@ -207,6 +207,7 @@ def joined(
     own = partial(joined, unlike=unlike)
     if unlike is not None:
         if cls is np.ndarray:
+            _alike([value.shape for value in values])
             return of_points(values)
         looked_for = hasattr(first, "parts")  # what comparing it would look for
         if not looked_for and all(value is first or value == first for value in values):

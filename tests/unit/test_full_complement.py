@@ -61,7 +61,7 @@ def test_loaded_rollers_stand_opposite_to_the_force_on_the_planet():
 
 
 def test_without_load_a_row_hangs_like_a_chain(bearing, oil):
-    empty = RollerLoads(bearing.azimuth, np.zeros((2, 23, bearing.slices)), np.zeros(4), 0)
+    empty = RollerLoads(bearing.azimuth, np.zeros((2, 23, bearing.slices)), np.zeros(4))
     found = rubbing(bearing, empty, SPEED, oil, PULL, outward=0.0)
     half = PULL * sum(math.sin(k * 2 * math.pi / 23) for k in range(1, 12))
     assert found.force == pytest.approx(half)

@@ -221,7 +221,6 @@ def test_pure_moment_on_two_rows_is_a_couple():
 def test_no_load_no_intensity():
     loads = roller_loads(TALBOT, 0.0, 0.0, 0.0, 0.0)
     assert np.all(loads.intensity == 0)
-    assert loads.iterations == 0
 
 
 # --- symmetries -----------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ import pytest
 
 import epicyclic as ep
 from asymmetric import planetary
+from epicyclic.contact.elastic_teeth import TOLERANCE
 from epicyclic.machine.heat import AGREEMENT
 
 FLOW = {"models.temperatures": "network", "thermal.oil_flow": "3.7 l/min"}
@@ -167,7 +168,8 @@ def test_formulas_fitted_by_the_oil_take_the_oil(friction, changes_it):
     told = [note for note in warm.warnings if "by their oil temperature" in note]
     assert bool(told) is not changes_it
     change = warm.losses["sun_mesh_sliding"] / cold.losses["sun_mesh_sliding"] - 1
-    assert (abs(change) > 1e-12) is changes_it
+    # the load on the flanks goes on from that at the inlet temperature, within its tolerance
+    assert (abs(change) > TOLERANCE) is changes_it
 
 
 def test_flank_rises_by_the_loss_of_one_of_its_meshes():

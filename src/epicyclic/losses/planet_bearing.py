@@ -195,8 +195,6 @@ class RollerLoads:
         Load per length of each slice. [N/m]
     displacement : ndarray, shape (4,)
         Outer against inner race: delta_x, delta_y [m], theta_x, theta_y [rad].
-    iterations : int
-        Newton steps.
     """
 
     pointwise = True
@@ -204,7 +202,6 @@ class RollerLoads:
     azimuth: FloatArray
     intensity: FloatArray
     displacement: FloatArray
-    iterations: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,8 +268,8 @@ def _loaded(
     for array in (intensity, state):
         array.flags.writeable = False
     if load.ndim > 1:
-        return RollerLoads(bearing.azimuth, of_points(intensity), of_points(state), 0)
-    return RollerLoads(bearing.azimuth, intensity, state, int(iterations))
+        intensity, state = of_points(intensity), of_points(state)
+    return RollerLoads(bearing.azimuth, intensity, state)
 
 
 def _solved(

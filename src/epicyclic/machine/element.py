@@ -298,6 +298,8 @@ class ElementResult:
     figures: Mapping[str, DataclassInstance] = field(default_factory=dict[str, Any])
     flags: SomeFlags = ()  # Models used outside their ranges.
     notes: tuple[str, ...] | Sought[str] = ()  # What else the user must know.
+    # What its parts carry, from which a solution at another temperature goes on.
+    loaded: Mapping[Any, Any] = field(default_factory=dict[Any, Any])
 
 
 class Element(Protocol):

@@ -280,17 +280,19 @@ def solve_mesh(
     count: int,
     oil: OilState,
     last: MeshResult | None = None,
+    loaded: LoadedMesh | None = None,
 ) -> MeshResult:
     """Losses and figures of one mesh of `count` in parallel, with `oil` on its flanks.
 
-    `last`, the result under nearly this torque, saves work.
+    `last`, the result under nearly this torque, saves work; so do the teeth `loaded` by it at
+    another temperature.
     """
     key, models = duty.gears.key, duty.gears.models
     friction = models.friction if last is None else last.friction
     rolling = models.rolling
     loads = None
     if duty.torque1 != 0 and duty.speed1 != 0:
-        loads = distribute_load(duty, None if last is None else last.elastic)
+        loads = distribute_load(duty, loaded if last is None else last.elastic)
     contact = None if loads is None else contact_under(duty, loads, oil, fluids.oil)
     loss = MeshLoss(0.0, 0.0)
     if contact is not None:

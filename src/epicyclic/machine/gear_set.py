@@ -261,21 +261,23 @@ class GearSet:
                 for duty in duties
             )
         driving = tuple(duty.drives1 for duty in duties)
+        earlier = state.earlier.get(self.key)
+        loaded = {} if earlier is None else earlier.loaded
         if last is None:
             flows, meshes, bearings = {}, {}, {}
-            earlier = state.earlier.get(self.key)
             known = earlier.known_flows if isinstance(earlier, GearSetResult) else KnownFlows()
         else:
             flows, meshes, bearings = dict(last.flows), dict(last.meshes), dict(last.bearings)
             known = last.known_flows
         if driving not in flows:
             none = {duty.gears.key: MeshFlow() for duty in duties}
-            ahead[:] = [partial(self._branch, state, torques, (0, shares[0]), 1, none, {}, {})]
+            of_first = partial(self._branch, state, torques, (0, shares[0]), 1)
+            ahead[:] = [partial(of_first, none, {}, {}, loaded)]
             flows[driving], known = one_by_one(mesh_flows, duties, state.fluids, known)
             ahead.clear()
         branches = []
         for place, share in enumerate(sorted(set(shares), reverse=True)):
-            last_ones = flows[driving], meshes, bearings
+            last_ones = flows[driving], meshes, bearings, loaded
             branch = self._branch(state, torques, (place, share), shares.count(share), *last_ones)
             meshes |= branch.meshes
             bearings |= branch.bearings
@@ -295,6 +297,10 @@ class GearSet:
             figures=first.figures,
             flags=Flags(partial(_widest, [branch.flags for branch in branches])) + drags.flags,
             notes=first.notes,
+            loaded={
+                **{place: mesh.elastic for place, mesh in meshes.items()},
+                **{place: bearing.loads for place, bearing in bearings.items()},
+            },
             shares=shares if self.planets else (),
             drags=drags,
             flows=flows,
@@ -456,6 +462,7 @@ class GearSet:
         flows: Flows,
         last_meshes: Mapping[tuple[str, int], MeshResult],
         last_bearings: Mapping[tuple[str, int], BearingResult],
+        loaded: Mapping[Any, Any],  # Both at another temperature.
     ) -> _Branch:
         place, share = load_share
         duties = {duty.gears.key: duty for duty in self.duties(state, torques, share)}
@@ -482,7 +489,8 @@ class GearSet:
                 driven = -speed if duties[planet.meshes[0].mesh].torque1 > 0 else speed
                 bearing = solve_pin(planet.key, planet.bearing, load, planets, oil, driven, last)
             else:
-                at = speed, last, planet.pin_radius, carrier, any(duty.torque1 for duty in tilted)
+                start = last or loaded.get((planet.key, place))
+                at = speed, start, planet.pin_radius, carrier, any(it.torque1 for it in tilted)
                 bearing = one_by_one(
                     solve_bearing, planet.key, planet.bearing, load, planets, oil, *at
                 )
@@ -498,6 +506,7 @@ class GearSet:
                 planets,
                 state.fluids.at(joined_key(self.key, key)),
                 last_meshes.get((key, place)),
+                loaded.get((key, place)),
             )
             for key, duty in duties.items()
         }

@@ -880,7 +880,7 @@ def solve_pin(
         {key: figures, f"{key}_film": film},
         journal_flags(where, found, speed),
         tuple(_pin_notes(where, own, load, found, count * found.watts, speed)),
-        found,
+        loads=found,
     )
 
 

@@ -15,6 +15,7 @@ from epicyclic.arrays import (
     Alone,
     Apart,
     BoolArray,
+    Each,
     FloatArray,
     Points,
     either,
@@ -418,7 +419,11 @@ def _together(wanted: Sequence[Wanted]) -> Wanted:
         return Wanted(machine, operation, fluids, whole=wanted[0].whole)
     names = "meshes", "rolling", "drives", "floating"
     begun = {name: joined([getattr(it, name) for it in earlier]) for name in names}
-    first = replace(earlier[0], results={}, **begun)
+    results = {
+        key: ElementResult({}, loaded=joined([it.results[key].loaded for it in earlier], Each))
+        for key in earlier[0].results
+    }
+    first = replace(earlier[0], results=results, **begun)
     return Wanted(machine, operation, fluids, None, first, wanted[0].whole)
 
 

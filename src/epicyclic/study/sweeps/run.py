@@ -146,9 +146,9 @@ _OPERATING_TABLES = (
 
 MESHES_TOGETHER = 128  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
-FEW = 32  # Points of a block that a study of few points has, at most.
-FEWEST_BLOCKS, MANY_BLOCKS = 3, 12
-"""Into which a study is cut at least, so that processes share it; larger blocks need the latter."""
+MANY, SMALL_BLOCKS = 48, 3
+"""Points from which on blocks are as large as is worth it, and blocks of a study of fewer, so that
+processes share it. [1]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,8 +190,7 @@ class CasePlan(Plan):
         """See `Plan`: of as many points as are worth it, if there are enough."""
         meshes = sum(len(gearing.meshes) for gearing in self.case.gearings.values())
         most = max(FEWEST_TOGETHER, MESHES_TOGETHER // max(1, meshes))
-        least = min(FEW, self.size // FEWEST_BLOCKS)
-        size = min(most, max(least, self.size // MANY_BLOCKS))
+        size = min(most, self.size if self.size >= MANY else self.size // SMALL_BLOCKS)
         return size if self.together and size >= FEWEST_TOGETHER else 1
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
