@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
@@ -177,7 +177,7 @@ def _passes(
     From the third on, each pass is at the temperatures that the two before let expect. Raises
     `ConvergenceError` if there is no equilibrium, or only one that no gearbox survives.
     """
-    unheated = start_of(machine, operation)
+    unheated = cache(partial(start_of, machine, operation))  # of a block nobody asks for it
     found: list[_Pass] = []
     at, change = _values(model.start), math.inf
     while len(found) < MOST_PASSES:

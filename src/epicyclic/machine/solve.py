@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, reduce
 from operator import and_
 from typing import Any, NamedTuple, cast
@@ -345,7 +345,8 @@ class Wanted(NamedTuple):
     machine: Machine
     operation: Operation
     fluids: Fluids | None  # None if every loss is given.
-    start: Start | None = None  # As from `start_of`, for solutions that differ in the oil only.
+    # That of `start_of`, kept for solutions that differ in the oil only.
+    start: Callable[[], Start] | None = None
     earlier: Solution | None = None  # At nearly the same temperatures, to begin with.
     # False for the losses of the oil at the loads of `earlier`, or at those without losses, and the
     # loads that follow: they lag one pass behind, which is enough as long as temperatures change.
@@ -361,9 +362,8 @@ def solve_machine(
     Whole solutions also where losses decide the directions of powers. Raises `ConvergenceError` if
     losses and torques do not agree, or grow beyond all bounds.
     """
-    machine, operation, fluids, start, earlier, whole = wanted
-    if start is None:
-        start = start_of(machine, operation)
+    machine, operation, fluids, begin, earlier, whole = wanted
+    start = start_of(machine, operation) if begin is None else begin()
     trail = Trail() if trail is None else trail
     if not whole and (lagging := _one_pass(wanted, start, trail)):
         return lagging
@@ -460,7 +460,7 @@ def solve_machines(
                 results = solution.results
                 if not (agree or wanted[rows[0]].whole):  # what is a step on the way nobody reads
                     results = {key: replace(it, flags=(), notes=()) for key, it in results.items()}
-                state = replace(solution.state, fluids=fluids)
+                state = replace(solution.state, fluids=fluids, earlier={})
                 one = replace(solution, results=results, state=state)
                 each = taken(one, range(len(rows)), final=True)
                 for row, own in zip(rows, each, strict=True):
