@@ -685,7 +685,7 @@ def number_fields(layout: Layout) -> tuple[NumberField, ...]:
 def _number_fields(layout: Layout) -> Iterator[tuple[str, str, str, Callable[[Result], float]]]:
     watt = WATT.display
     for name in layout.losses:
-        yield name, in_words(name), watt, partial(_loss, name)
+        yield name, in_words(name), watt, partial(lambda own, it: it.losses[own], name)
     yield "load_dependent", "load-dependent loss", watt, lambda it: it.load_dependent
     yield "load_independent", "load-independent loss", watt, lambda it: it.load_independent
     yield "total", "total loss", watt, lambda it: it.total
@@ -707,9 +707,11 @@ def _number_fields(layout: Layout) -> Iterator[tuple[str, str, str, Callable[[Re
         yield f"{name}_rolling_power", label, watt, partial(_rolling, name)
     for name in layout.members:
         label, unit = f"speed of the {name}", RPM.display
-        yield f"{name}_speed", label, unit, partial(_speed, name)
+        speed = partial(lambda own, it: RPM.to_display(it.flow.members[own].speed), name)
+        yield f"{name}_speed", label, unit, speed
         label, unit = f"torque on the {name}", NEWTON_METRE.display
-        yield f"{name}_torque", label, unit, partial(_torque, name)
+        torque = partial(lambda own, it: it.flow.members[own].torque, name)
+        yield f"{name}_torque", label, unit, torque
     for node in layout.nodes:
         label = f"temperature of the {in_words(node)}"
         yield f"{node}_temperature", label, CELSIUS.display, partial(_temperature, node)
@@ -763,10 +765,6 @@ def _part_number(
     return math.nan if source is None else displayed(source, field)
 
 
-def _loss(name: str, result: Result) -> float:
-    return result.losses[name]
-
-
 def _of_train(name: str, result: Result) -> float:
     return _or_nan(getattr(result.train, name, None))
 
@@ -777,14 +775,6 @@ def _or_nan(value: float | None) -> float:
 
 def _rolling(name: str, result: Result) -> float:
     return math.nan if result.train is None else result.train.rolling.get(name, math.nan)
-
-
-def _speed(name: str, result: Result) -> float:
-    return RPM.to_display(result.flow.members[name].speed)
-
-
-def _torque(name: str, result: Result) -> float:
-    return result.flow.members[name].torque
 
 
 def _temperature(node: str, result: Result) -> float:

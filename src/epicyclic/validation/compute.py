@@ -433,11 +433,8 @@ def branch_loss_ratio(temperature: str, tests: LoadedTests = _computed_tests) ->
 
 def branch_spin(temperature: str, speed: int = 4000, tests: LoadedTests = _computed_tests) -> float:
     """A third of P_LI with six less that with three planets. Eq. 5.14b. [W]"""
-    one, other = (
-        loss_in_test("load_independent", temperature, planets, speed=speed, tests=tests)
-        for planets in (3, 6)
-    )
-    return 1e3 * (other - one) / 3
+    sets = [{"temperature": temperature, "planets": it, "speed": speed} for it in (3, 6)]
+    return 1e3 * loss_change("load_independent", *sets, tests=tests) / 3
 
 
 def branch_spin_exponent(temperature: str, tests: LoadedTests = _computed_tests) -> float:
