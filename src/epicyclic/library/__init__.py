@@ -15,6 +15,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 __all__ = [
+    "bearing_tables",
     "builtin_case",
     "case_variants",
     "named",
@@ -118,3 +119,9 @@ def uncertainty_table() -> dict[str, Any]:
 def strength_table() -> dict[str, Any]:
     """Strength of gear materials, and load stages of oils, by the names of their tables."""
     return _read(_ROOT.joinpath("strength.toml"))
+
+
+@cache
+def bearing_tables(name: Literal["dimensions", "skf-2018"]) -> dict[str, Any]:
+    """Of rolling bearings: sizes of the ISO plans, or constants of SKF."""
+    return _read(_ROOT.joinpath("bearings", f"{name}.toml"))

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from importlib import resources
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from epicyclic.dataclass import dataclass, replace
+from epicyclic.library import bearing_tables
 from epicyclic.messages import did_you_mean
 
 RATING_BAND = 0.3
@@ -150,13 +149,6 @@ def thrust_bearing(text: str) -> tuple[float, float, float]:
     if name not in known:
         raise KeyError(did_you_mean(name, known))
     return known[name].bore / 1e3, known[name].outside_diameter / 1e3, known[name].width / 1e3
-
-
-@cache
-def bearing_tables(name: Literal["dimensions", "skf-2018"]) -> Mapping[str, Any]:
-    """What the library has of rolling bearings: sizes of the ISO plans, or constants of SKF."""
-    file = resources.files("epicyclic.library").joinpath("bearings", f"{name}.toml")
-    return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
 @cache

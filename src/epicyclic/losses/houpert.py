@@ -27,8 +27,8 @@ from epicyclic.losses.shaft_bearing import (
     WithoutCoefficient,
     load_flags,
 )
-from epicyclic.losses.skf_2018 import LEAST_SUPPLY, SkfModel
-from epicyclic.losses.zhou_hoeprich import AS_MADE, POSITIONS, STEEL, film_parts, roller_loads
+from epicyclic.losses.skf_2018 import LEAST_SUPPLY, SkfModel, film_parts
+from epicyclic.losses.zhou_hoeprich import AS_MADE, POSITIONS, STEEL, roller_loads
 from epicyclic.oil.oil import OilState
 from epicyclic.units import NUMBER
 

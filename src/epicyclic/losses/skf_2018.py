@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from epicyclic.dataclass import dataclass, replace
-from epicyclic.losses.designations import bearing_tables
+from epicyclic.library import bearing_tables
 from epicyclic.losses.drag import RPM
 from epicyclic.losses.ranges import BearingType, Cage, ModelUse, Range, ValidityFlag, check_ranges
 from epicyclic.losses.shaft_bearing import (
@@ -145,12 +145,8 @@ class SkfModel(WithoutCoefficient):
     ) -> tuple[FrictionPart, ...]:
         """``mechanical``, rolling and sliding, and ``drag``, with that of the seals. [W]"""
         moments = skf_moments(self, bearing, load, speed, oil.kinematic_viscosity)
-        by_load = (moments.rolling + moments.sliding) * abs(speed)
-        others = (moments.drag + moments.seal) * abs(speed)
-        return (
-            FrictionPart("mechanical", True, by_load, "rolling and sliding, SKF 2018", self.source),
-            FrictionPart("drag", False, others, "drag in the oil and seals, SKF 2018", self.source),
-        )
+        moment, method = moments.rolling + moments.sliding, "rolling and sliding, SKF 2018"
+        return film_parts(self, bearing, speed, oil, moment, method, self.source)
 
     def flags(
         self, where: str, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
@@ -161,6 +157,24 @@ class SkfModel(WithoutCoefficient):
         flooded, *_ = replace(self, starvation=0.0).parts(bearing, load, speed, oil)
         found = check_ranges(use, (_SUPPLY,), {"supply": starved}, could_be=flooded.watts)
         return found + load_flags(use, self.axial_range, bearing, load, speed)
+
+
+def film_parts(
+    skf: SkfModel,
+    bearing: CatalogueBearing,
+    speed: float,
+    oil: OilState,
+    moment: float,  # By load. [N m]
+    method: str,
+    source: str,
+) -> tuple[FrictionPart, ...]:
+    """``mechanical``, of a moment, and ``drag``, with that of the seals, after SKF. [W]"""
+    others = skf_drag_moment(skf, bearing, speed, oil.kinematic_viscosity) + skf.seal_moment
+    dragged = "drag in the oil and seals, SKF 2018"
+    return (
+        FrictionPart("mechanical", True, moment * abs(speed), method, source),
+        FrictionPart("drag", False, others * abs(speed), dragged, skf.source),
+    )
 
 
 def skf_series(kind: BearingType) -> tuple[str, ...]:

@@ -40,7 +40,7 @@ from epicyclic.losses.shaft_bearing import (
     WithoutCoefficient,
     load_flags,
 )
-from epicyclic.losses.skf_2018 import SKF_AXIAL_RATIO, SkfModel, skf_drag_moment, skf_moments
+from epicyclic.losses.skf_2018 import SKF_AXIAL_RATIO, SkfModel, film_parts, skf_moments
 from epicyclic.oil.oil import OilState
 from epicyclic.units import MILLIMETRE, MILLIPASCAL_SECOND, NUMBER
 
@@ -198,24 +198,6 @@ class ThrustRollerModel(Rollers):
 
 
 RollerModel = TaperedModel | CylindricalModel | ThrustRollerModel
-
-
-def film_parts(
-    skf: SkfModel,
-    bearing: CatalogueBearing,
-    speed: float,
-    oil: OilState,
-    moment: float,  # By load. [N m]
-    method: str,
-    source: str,
-) -> tuple[FrictionPart, ...]:
-    """``mechanical``, of a moment, and ``drag``, with that of the seals, after SKF. [W]"""
-    others = skf_drag_moment(skf, bearing, speed, oil.kinematic_viscosity) + skf.seal_moment
-    dragged = "drag in the oil and seals, SKF 2018"
-    return (
-        FrictionPart("mechanical", True, moment * abs(speed), method, source),
-        FrictionPart("drag", False, others * abs(speed), dragged, skf.source),
-    )
 
 
 @lru_cache(maxsize=256)
