@@ -727,7 +727,10 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         raw = raw | {"models": {k: v for k, v in raw["models"].items() if k in own}}
     read: Validation[Any]
     read, told, gearing = with_sizes(validate(form, raw), raw)
-    problems = [_with_gears(problem) for problem in read.problems]
+    problems = []
+    for it in read.problems:  # with the keys of gears of a listed set that the user wrote
+        key, remedy = (text.replace("members", "gears", 1) for text in (it.key, it.remedy))
+        problems.append(replace(it, key=key, remedy=remedy))
     if form is ListedSet and read.case is None:
         bad = {str(path_of(it.key)[1]) for it in read.problems if it.key.startswith("members.")}
         part = validate(ListedSet, {key: _without(bad, item) for key, item in raw.items()}).case
@@ -749,12 +752,6 @@ def _read_set_cached(given: _Given) -> _ReadSet:
         remedy = "Give one of them: that of the set from sun to ring, or that of each mesh."
         problems.append(Problem("efficiency", written(raw["efficiency"]), allowed, remedy))
     return _ReadSet(read.case, list(dict.fromkeys(problems)), told)
-
-
-def _with_gears(problem: Problem) -> Problem:
-    """A problem of a gear of a listed set with the key that the user wrote."""
-    key, remedy = (text.replace("members", "gears", 1) for text in (problem.key, problem.remedy))
-    return replace(problem, key=key, remedy=remedy)
 
 
 def _without(gears: set[str], item: Any) -> Any:

@@ -246,21 +246,19 @@ class GearTable(Teeth):
         return isinstance(self, GivenRing) or (isinstance(self, GivenGear) and self.internal)
 
 
-_RimThickness = Annotated[
-    Length | None,
-    Field(
-        description="Root circle to outside. Default: 3 normal modules (estimate) for the drag, "
-        "and a rim that is supported on its outside and does not bend."
-    ),
-]
+class _WithRim(Table):
+    """The rim that a gear has if it is a ring."""
+
+    STAND_INS: ClassVar[dict[str, object]] = GearTable.STAND_INS | {"rim_thickness": None}
+
+    rim_thickness: Length | None = option(
+        "Root circle to outside. Default: 3 normal modules (estimate) for the drag, and a rim that "
+        "is supported on its outside and does not bend."
+    )
 
 
-class PairGear(GivenGear, GearTable):
+class PairGear(_WithRim, GivenGear, GearTable):
     """The gear that meets the pinion."""
-
-    STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
-
-    rim_thickness: _RimThickness = None
 
 
 class Planet(GearTable):
@@ -282,12 +280,8 @@ class Planet(GearTable):
     )
 
 
-class Ring(GivenRing, GearTable):
+class Ring(_WithRim, GivenRing, GearTable):
     """The ring gear."""
-
-    STAND_INS = GearTable.STAND_INS | {"rim_thickness": None}
-
-    rim_thickness: _RimThickness = None
 
 
 class SetMesh(Table):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
+from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from epicyclic.case.gear_tables import (
@@ -23,6 +23,7 @@ from epicyclic.case.gear_tables import (
 )
 from epicyclic.case.tables.elements import (
     Carrier,
+    FromDigits,
     PlanetBearing,
     PlanetPin,
     Position,
@@ -303,12 +304,7 @@ class StateTable(Table):
     joined: tuple[tuple[str, ...], ...] = option("Groups of shafts that clutches join.", ())
 
 
-def _state_name(value: object) -> object:
-    """The name of a state, which may be a bare number."""
-    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
-
-
-StateName = Annotated[str, BeforeValidator(_state_name)]
+StateName = Annotated[str, FromDigits]  # It may be a bare number.
 
 
 class TrainOperation(Table):

@@ -52,8 +52,8 @@ def _filled(kind: str, raw: Any) -> Any:
     return designations.KEYS[kind](raw) | raw
 
 
-_FromDigits = BeforeValidator(lambda it: str(it) if type(it) is int else it)  # 6208 without quotes
-_Designation = Annotated[str, Field(max_length=40), _FromDigits]
+FromDigits = BeforeValidator(lambda it: str(it) if type(it) is int else it)  # 6208 without quotes
+_Designation = Annotated[str, Field(max_length=40), FromDigits]
 ShaftDesignation = Annotated[_Designation, AfterValidator(partial(_known, "shaft"))]
 PlanetDesignation = Annotated[_Designation, AfterValidator(partial(_known, "planet"))]
 ThrustDesignation = Annotated[_Designation, AfterValidator(partial(_known, "thrust"))]
