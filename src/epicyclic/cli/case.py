@@ -205,7 +205,13 @@ def heat(
     from epicyclic.study.heat import solve_for, with_network
     from epicyclic.study.solve import solve
 
-    _check_target(quantity, target)
+    if quantity != AS_GIVEN and target is None:
+        allowed = f"is needed with --solve {quantity}."
+        raise one_problem("--target", "", allowed, 'For example "90 degC".', "the command")
+    if quantity == AS_GIVEN and target is not None:
+        given, remedy = f'"{target}"', f"Add --solve {either(QUANTITIES[1:])}."
+        allowed = "needs a quantity to solve for."
+        raise one_problem("--target", given, allowed, remedy, "the command")
     stated = load_with(case, changes)
     found = None
     if target is not None:
@@ -229,16 +235,6 @@ def heat(
         from epicyclic.show.record import record
 
         draw(figure_of(record(solved, result=result, groups=()), "heat-network"), plot)
-
-
-def _check_target(quantity: str, target: str | None) -> None:
-    if quantity != AS_GIVEN and target is None:
-        allowed = f"is needed with --solve {quantity}."
-        raise one_problem("--target", "", allowed, 'For example "90 degC".', "the command")
-    if quantity == AS_GIVEN and target is not None:
-        given, remedy = f'"{target}"', f"Add --solve {either(QUANTITIES[1:])}."
-        allowed = "needs a quantity to solve for."
-        raise one_problem("--target", given, allowed, remedy, "the command")
 
 
 def _tables(case: Case, result: Result, found: Found | None) -> RenderableType:

@@ -518,7 +518,11 @@ def _check_flanks(gearing: Gearing, mesh: Mesh) -> Iterator[Problem]:
 def _check_flank(flank: _Flank) -> Iterator[Problem]:
     tip, root = (_relief_length(flank, end) for end in ("tip", "root"))
     if isinstance(tip, float) and isinstance(root, float):
-        yield from _check_overlap(flank, tip, root)
+        if tip + root > flank.active_length:
+            allowed = f"tip relief over {millimetres(tip)} and root relief over "
+            allowed += f"{millimetres(root)} of roll overlap: the active profile of the "
+            allowed += f"{flank.mesh} is {millimetres(flank.active_length)} long."
+            yield Problem(f"{flank.key}.tip_relief", "", allowed, "Shorten one of the two.")
     else:
         yield from (found for found in (tip, root) if isinstance(found, Problem))
     yield from _check_end_relief(flank)
@@ -573,14 +577,6 @@ def _without_amount(flank: _Flank) -> Iterator[Problem]:
 
 def _diameter_at(gear: Gear, roll_length: float) -> float:
     return float(2 * (gear.base_radius**2 + roll_length**2) ** 0.5)
-
-
-def _check_overlap(flank: _Flank, tip: float, root: float) -> Iterator[Problem]:
-    if tip + root > flank.active_length:
-        allowed = f"tip relief over {millimetres(tip)} and root relief over {millimetres(root)} of "
-        allowed += f"roll overlap: the active profile of the {flank.mesh} is "
-        allowed += f"{millimetres(flank.active_length)} long."
-        yield Problem(f"{flank.key}.tip_relief", "", allowed, "Shorten one of the two.")
 
 
 def _check_end_relief(flank: _Flank) -> Iterator[Problem]:

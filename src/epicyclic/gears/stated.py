@@ -289,6 +289,10 @@ def _of_member(mesh: Mesh, member: int, table: StatedGear) -> MicroGeometry:
         return MicroGeometry()
     gear = mesh.gears[member - 1]
     root, tip = active_profile(mesh, member)
+    topography = None
+    if (stated := flank.topography) is not None:
+        rolls = tuple(gear.roll_length_at(diameter / 2) for diameter in stated.diameter)
+        topography = Topography(rolls, stated.face_position, stated.deviation)
     return MicroGeometry(
         tip_relief=_profile_relief(gear, tip, flank, "tip_relief"),
         root_relief=_profile_relief(gear, root, flank, "root_relief"),
@@ -299,7 +303,7 @@ def _of_member(mesh: Mesh, member: int, table: StatedGear) -> MicroGeometry:
         profile_slope=flank.profile_slope,
         lead_crown=flank.lead_crown,
         lead_slope=flank.lead_slope,
-        topography=None if flank.topography is None else _topography(gear, flank.topography),
+        topography=topography,
     )
 
 
@@ -312,11 +316,3 @@ def _profile_relief(gear: Gear, end: float, flank: StatedFlank, key: str) -> Rel
     if amount == 0 or roll_length is None:
         return None
     return Relief(amount, roll_length, getattr(flank, f"{key}_shape"))
-
-
-def _topography(gear: Gear, table: StatedTopography) -> Topography:
-    return Topography(
-        tuple(gear.roll_length_at(diameter / 2) for diameter in table.diameter),
-        table.face_position,
-        table.deviation,
-    )

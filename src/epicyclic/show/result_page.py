@@ -131,13 +131,11 @@ def _train_losses(result: Result, train: Train, drawings: Drawings) -> tuple[Ite
     )
 
 
-def _validity_lead(result: Result) -> str:
-    if not result.flags:
-        return "Every model was used within its range of validity."
-    return (
-        "Some models were used outside their range of validity. Their conditions are held at the "
-        "limits of the range; the affected share of the loss is stated."
-    )
+VALID = "Every model was used within its range of validity."
+PARTLY_VALID = (
+    "Some models were used outside their range of validity. Their conditions are held at the "
+    "limits of the range; the affected share of the loss is stated."
+)
 
 
 def _validity(result: Result) -> tuple[Table | Listing, ...]:
@@ -278,7 +276,7 @@ _CHAPTERS: Mapping[str, Callable[[ResultRecord, Drawings], _Chapter]] = {
     "validity": lambda record, drawings: (
         "Validity",
         _validity(record.result),
-        _validity_lead(record.result),
+        PARTLY_VALID if record.result.flags else VALID,
     ),
     "temperatures": lambda record, drawings: ("Temperatures", _heat(record.result, drawings)),
     "gears": lambda record, drawings: (

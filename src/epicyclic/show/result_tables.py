@@ -288,9 +288,11 @@ def users_text(names: Iterable[str]) -> str:
 def standing_items(result: Result) -> Iterator[Listing]:
     """Which models were used and how well each is known, those that sets share on one line."""
     users: dict[tuple[str, str], list[str]] = {}
+    included = result.losses.keys() - set(result.not_included)
+    on_bearings = {set_of(name) for name in included if name.endswith("bearing_mechanical")}
     for key, phrase in result.standing.items():
         owner, _, role = key.rpartition(".")
-        if role != "bearing" or _has_planet_bearing(result, owner):
+        if role != "bearing" or owner in on_bearings:
             users.setdefault((role, phrase), []).append(owner)
     lines = []
     for (role, phrase), owners in users.items():
@@ -298,12 +300,6 @@ def standing_items(result: Result) -> Iterator[Listing]:
         lines.append(f"{_ROLES[role]}{whose}: {phrase}")
     if lines:
         yield Listing(tuple(lines), "Models and their reliability")
-
-
-def _has_planet_bearing(result: Result, owner: str) -> bool:
-    """True if a set has the loss of a planet bearing."""
-    included = result.losses.keys() - set(result.not_included)
-    return any(set_of(it) == owner and it.endswith("bearing_mechanical") for it in included)
 
 
 # Tables of the result of a train, for pages and terminals.

@@ -328,7 +328,11 @@ def _fit_line(fit: Fit) -> str:
     text = f"Weighted least squares, {fit.points} points, {free} degrees of freedom"
     if math.isfinite(fit.chi_squared):
         text += f", χ² {shown(fit.chi_squared, 4)}"
-    text += f"; {fit.evaluations} computed points. {_about_intervals(fit)}"
+    text += f"; {fit.evaluations} computed points. "
+    if all(item.profiled for item in fit.parameters):
+        text += "Intervals follow from profiles of the likelihood."
+    else:
+        text += "Intervals are those of the linearised model."
     if fit.discrepancy > 0 and fit.widening > 1:
         text += (
             f" Birge ratio {shown(fit.widening, 3)}: beyond the uncertainties of the "
@@ -343,12 +347,6 @@ def _fit_line(fit: Fit) -> str:
         if fit.noise == "relative":
             text += " They scatter in proportion to the loss (rms), as the residuals show."
     return text
-
-
-def _about_intervals(fit: Fit) -> str:
-    if all(item.profiled for item in fit.parameters):
-        return "Intervals follow from profiles of the likelihood."
-    return "Intervals are those of the linearised model."
 
 
 def fitted_comment(item: FittedParameter, fit: Fit) -> str:

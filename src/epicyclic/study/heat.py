@@ -294,11 +294,6 @@ def _losses(base: Case) -> float:
     return solve(base.updated({"models.temperatures": "inlet"})).total or 1.0
 
 
-def _cooler_power(base: Case, _: float) -> _Search:
-    unit = _unit(Power)
-    return _Search("thermal.cooler_power", unit, float, _losses(base), warms=False)
-
-
 def _oil_flow(base: Case, target: float) -> _Search:
     """The number is one over the flow: the temperature is about proportional to it."""
     assert base.lubricant is not None
@@ -326,7 +321,9 @@ def _input_power(base: Case, _: float) -> _Search:
 
 
 QUANTITIES: Mapping[str, Callable[[Case, float], _Search]] = {
-    "cooler_power": _cooler_power,
+    "cooler_power": lambda base, _: _Search(
+        "thermal.cooler_power", _unit(Power), float, _losses(base), warms=False
+    ),
     "oil_flow": _oil_flow,
     "input_power": _input_power,
 }

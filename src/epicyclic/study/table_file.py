@@ -247,7 +247,9 @@ class _Text:
                         yield np.arange(done, done + len(rows)) + 1, rows
                         done += len(rows)
                     return
-                lines = map(_without_quotes, file) if "#" in self.start else file
+                lines: Iterable[str] = file
+                if "#" in self.start:  # quotes in a comment do not count
+                    lines = (it.replace('"', "'") if it.startswith("#") else it for it in file)
                 reader = csv.reader(lines, delimiter=self.separator, skipinitialspace=True)
                 before = 0
                 while rows := list(islice(reader, size)):
@@ -258,11 +260,6 @@ class _Text:
                     yield numbers, rows
         except (csv.Error, UnicodeError) as error:
             refuse(f"cannot be read: {one_line(str(error), 200)}.", "Write it again as CSV.")
-
-
-def _without_quotes(line: str) -> str:
-    """A line whose quotes count only if it is no comment."""
-    return line.replace('"', "'") if line.startswith("#") else line
 
 
 @dataclass(frozen=True)
@@ -363,7 +360,9 @@ def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
             kept = (numbers > last) & (numbers >= first) & (numbers <= final)
             uniform = all(map(width.__eq__, map(len, rows)))
             if not uniform or not kept.all() or any(row[0][:1] in ("", "#", " ") for row in rows):
-                kept &= np.fromiter(map(_is_row, rows), dtype=bool, count=len(rows))
+                # neither blank nor a comment
+                whole = [any(row) and row[0].lstrip()[:1] != "#" for row in rows]
+                kept &= np.array(whole, dtype=bool)
                 rows = list(compress(rows, kept))
                 numbers = numbers[kept]
                 _check_widths(zip(numbers.tolist(), rows, strict=True), width, cells.separator)
@@ -374,11 +373,6 @@ def _of_cells(cells: _Text | _Workbook, name: str, form: TableForm) -> Source:
             yield Piece(numbers, columns)
 
     return Source(name, tuple(headers), pieces, "line", mark, moments)
-
-
-def _is_row(cells: Sequence[str]) -> bool:
-    """Whether it is neither blank nor a comment."""
-    return any(cells) and cells[0].lstrip()[:1] != "#"
 
 
 def _check_widths(rows: Iterable[tuple[int, list[str]]], width: int, separator: str) -> None:

@@ -388,15 +388,11 @@ def figure_of(
         for panel, ax in zip(panels, axes.ravel(), strict=False):
             panel.draw(ax)
             if panel.subject:
-                ax.set_title(_with_subject(ax, panel.subject))
+                drawn = ax.get_title(loc="left")
+                whole = f"{drawn}, {panel.subject}"
+                has_room = len(whole) < TITLE_CHARACTERS * room_of(ax)
+                ax.set_title(whole if has_room else f"{drawn},\n{panel.subject}")
     return figure
-
-
-def _with_subject(ax: Axes, subject: str) -> str:
-    """The title of Axes and what they are of, on two lines where one has no room."""
-    title = ax.get_title(loc="left")
-    whole = f"{title}, {subject}"
-    return whole if len(whole) < TITLE_CHARACTERS * room_of(ax) else f"{title},\n{subject}"
 
 
 def about(stored: Stored) -> tuple[str, str]:

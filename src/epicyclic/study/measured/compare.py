@@ -277,7 +277,13 @@ def compare_measured(
         question = replace(question, table=table)
     keys = tuple(dict.fromkeys(fit))
     varied = {key for change in table.changes for key in change}
-    problems = [*question.problems(), *_fit_problems(keys, hold_out, confidence)]
+    problems = [*question.problems()]
+    if hold_out is not None and not keys:
+        allowed = "excludes points from a fit, but no keys are fitted."
+        problems.append(Problem("hold_out", str(hold_out), allowed, "Name the keys to fit."))
+    if not 0 < confidence < 1:
+        allowed = "must be > 0 and < 1."
+        problems.append(Problem("confidence", f"{confidence:g}", allowed, "Give 0.95."))
     raise_any(problems, "the comparison")
     parameters = make_parameters(case, keys, varied)
     held_out = _held_out(table, hold_out, seed)
@@ -303,16 +309,6 @@ def _relative_problems(table: Measurements, relative: float) -> Iterator[Problem
     if (table.loss == 0).any():
         allowed = "leaves a measured loss of 0 without uncertainty."
         yield Problem(key, given, allowed, "Add a column uncertainty [W].")
-
-
-def _fit_problems(
-    keys: tuple[str, ...], hold_out: str | float | None, confidence: float
-) -> Iterator[Problem]:
-    if hold_out is not None and not keys:
-        allowed = "excludes points from a fit, but no keys are fitted."
-        yield Problem("hold_out", str(hold_out), allowed, "Name the keys to fit.")
-    if not 0 < confidence < 1:
-        yield Problem("confidence", f"{confidence:g}", "must be > 0 and < 1.", "Give 0.95.")
 
 
 def _held_out(table: Measurements, hold_out: str | float | None, seed: int) -> BoolArray:

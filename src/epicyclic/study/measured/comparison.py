@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Collection, Iterator, KeysView, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -45,16 +45,13 @@ def calibrated_case(case: Case, fit: Fit) -> Case:
     fitted = {item.key for item in fit.parameters}
     kept = {key: _without(table, fitted) for key, table in own.items() if key not in fitted}
     known = uncertainty_tables(fit)
-    settled = {f"{MODEL_FORM}{kind}": {"exact": True} for kind in _settled(case, known.keys())}
+    factors = {kind: factors_of_kind(case, kind).keys() for kind in model_forms()}
+    settled = {
+        f"{MODEL_FORM}{kind}": {"exact": True}
+        for kind, keys in factors.items()
+        if keys and known.keys() >= keys
+    }
     return case.updated({**fit.settings, "uncertainty": (settled | kept | known) or None})
-
-
-def _settled(case: Case, keys: KeysView[str]) -> Iterator[str]:
-    """Kinds of losses whose factors are all among some keys."""
-    for kind in model_forms():
-        factors = factors_of_kind(case, kind)
-        if factors and keys >= factors.keys():
-            yield kind
 
 
 def uncertainty_tables(fit: Fit) -> dict[str, dict[str, Any]]:

@@ -477,7 +477,8 @@ class Point:
                 return self._number(name, self.value(name))
             if name in self.changes:
                 return self._number(name, self.changes[name])
-            if _is_found(self.case, name):
+            stated = value_at(self.case.given(), path_of(name)) is not None
+            if not stated and name in {found.key for found in self.case.found}:
                 raise ValueError(
                     f"uses {name}, which the case leaves out and which follows from other keys"
                 )
@@ -581,12 +582,6 @@ def known_field(case: Case, key: str) -> tuple[Any, tuple[Any, ...]]:
     if field is None:
         raise ValueError(f"uses {key}, which is not a known key")
     return field
-
-
-def _is_found(case: Case, key: str) -> bool:
-    """A key that the case leaves out, whose value follows from others."""
-    stated = value_at(case.given(), path_of(key)) is not None
-    return not stated and key in {found.key for found in case.found}
 
 
 def _plain_number(key: str, value: Any) -> float:
