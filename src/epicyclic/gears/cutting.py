@@ -12,7 +12,6 @@ import numpy as np
 from epicyclic.arrays import FloatArray
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.gear import Gear, half_angle_from_profile_shift, inverse_involute, involute
-from epicyclic.gears.mesh import Mesh
 
 
 @dataclass(frozen=True, slots=True)
@@ -667,11 +666,3 @@ def fitted_tool(
         middle = (low + high) / 2
         low, high = (middle, high) if suits(middle) else (low, middle)
     return replace(usual, tip_radius=low)
-
-
-def mated_tools(mesh: Mesh, roundings: tuple[float | None, float | None]) -> tuple[Tool, Tool]:
-    """The tools that cut both gears of a mesh, each leaving the involute that the mate needs."""
-    return (
-        fitted_tool(mesh.gear1, roundings[0], mesh.inner_radii[0]),
-        fitted_tool(mesh.gear2, roundings[1], mesh.inner_radii[1]),
-    )

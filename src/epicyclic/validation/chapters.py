@@ -117,16 +117,14 @@ _ROUGHNESS = {0.063: (0.06, 0.02), 0.125: (0.06, 0.11), 0.149: (0.10, 0.11), 0.1
 """Composite roughness, and that of roller and race. p. 70. [um]"""
 
 
-def _rough(composite: float) -> dict[str, Any]:
-    roller, race = _ROUGHNESS[composite]
-    return {
-        "planet_bearing.roller_roughness": f"{roller} um",
-        "planet_bearing.race_roughness": f"{race} um",
-    }
-
-
 _CURVES = {
-    "roughness": Lever("roughness", "composite roughness", "um", tuple(_ROUGHNESS), _rough),
+    "roughness": Lever(
+        "roughness", "composite roughness", "um", tuple(_ROUGHNESS),
+        lambda composite: {
+            f"planet_bearing.{surface}_roughness": f"{roughness} um"
+            for surface, roughness in zip(("roller", "race"), _ROUGHNESS[composite], strict=True)
+        },
+    ),
     "roller": Lever(
         "roller_diameter", "roller diameter", "mm", (2.015, 3.015, 4.015, 5.015),
         _key("planet_bearing.roller_diameter", "mm"),

@@ -95,26 +95,11 @@ def _planets(case: str) -> int:
     return _case(case).gearings[""].count or 1
 
 
-def mesh_geometry(case: str, mesh: str, figure: str) -> float:
-    """Operating pressure angle [deg], path of contact [mm], or transverse contact ratio [1]."""
-    return _GEOMETRY[figure](_contacts(case)[mesh].mesh)
-
-
-def mesh_power(case: str, mesh: str) -> float:
-    """Through the meshes of all planets, relative to the carrier. [kW]"""
-    return _planets(case) * _contacts(case)[mesh].input_power / 1e3
-
-
 def local_loss_factor(case: str, mesh: str, load_distribution: str) -> float:
     """Sliding loss along the contact lines over power and constant friction. [1]"""
     friction = 0.05  # any: it cancels out
     loss = _solved(case, friction, load_distribution).losses[f"{mesh}_sliding"]
     return loss / (friction * _planets(case) * _contacts(case)[mesh].input_power)
-
-
-def mean_friction(case: str, mesh: str, friction: str) -> float:
-    """Mean coefficient of friction of a model. [1]"""
-    return _solved(case, friction).meshes[mesh].friction_mean
 
 
 def closed_loss(case: str, mesh: str, friction: float) -> float:
@@ -126,16 +111,6 @@ def closed_loss(case: str, mesh: str, friction: float) -> float:
 def local_loss(case: str, mesh: str, friction: float) -> float:
     """Loss of one mesh, along the contact lines. [kW]"""
     return _solved(case, friction).losses[f"{mesh}_sliding"] / _planets(case) / 1e3
-
-
-def stage_loss(case: str, **friction: float) -> float:
-    """Loss of all meshes, along the contact lines, with the friction of each. [kW]"""
-    return sum(_planets(case) * local_loss(case, mesh, it) for mesh, it in friction.items())
-
-
-def sliding_loss(case: str, mesh: str, load_distribution: str, friction: str | float) -> float:
-    """Along the contact lines. [W]"""
-    return _solved(case, friction, load_distribution).losses[f"{mesh}_sliding"]
 
 
 def single_stiffness_of(mesh: LoadedMesh) -> float:
@@ -433,8 +408,8 @@ def branch_loss_ratio(temperature: str, tests: LoadedTests = _computed_tests) ->
 
 def branch_spin(temperature: str, speed: int = 4000, tests: LoadedTests = _computed_tests) -> float:
     """A third of P_LI with six less that with three planets. Eq. 5.14b. [W]"""
-    sets = [{"temperature": temperature, "planets": it, "speed": speed} for it in (3, 6)]
-    return 1e3 * loss_change("load_independent", *sets, tests=tests) / 3
+    three, six = ({"temperature": temperature, "planets": it, "speed": speed} for it in (3, 6))
+    return 1e3 * loss_change("load_independent", three, six, tests) / 3
 
 
 def branch_spin_exponent(temperature: str, tests: LoadedTests = _computed_tests) -> float:
@@ -621,6 +596,22 @@ def _of_contact(figure: Callable[[MeshContact], float]) -> Callable[[str, str], 
 
 FIGURES: Mapping[str, Callable[..., float]] = {
     **{name: _of_contact(figure) for name, figure in _OF_CONTACT.items()},
+    # Operating pressure angle [deg], path of contact [mm], or transverse contact ratio [1].
+    "mesh_geometry": lambda case, mesh, figure: _GEOMETRY[figure](_contacts(case)[mesh].mesh),
+    # Through the meshes of all planets, relative to the carrier. [kW]
+    "mesh_power": lambda case, mesh: _planets(case) * _contacts(case)[mesh].input_power / 1e3,
+    # Mean coefficient of friction of a model. [1]
+    "mean_friction": lambda case, mesh, friction: (
+        _solved(case, friction).meshes[mesh].friction_mean
+    ),
+    # Sliding loss along the contact lines. [W]
+    "sliding_loss": lambda case, mesh, load_distribution, friction: (
+        _solved(case, friction, load_distribution).losses[f"{mesh}_sliding"]
+    ),
+    # Loss of all meshes, along the contact lines, with the friction of each. [kW]
+    "stage_loss": lambda case, **friction: sum(
+        _planets(case) * local_loss(case, mesh, it) for mesh, it in friction.items()
+    ),
     # c' and c_gamma of a mesh under its load, and of a standard spur mesh. [N/(mm um)]
     "program_single_stiffness": lambda case, mesh: single_stiffness_of(_loaded(case)[mesh]),
     "program_mesh_stiffness": lambda case, mesh: mesh_stiffness_of(_loaded(case)[mesh]),
@@ -632,12 +623,12 @@ FIGURES: Mapping[str, Callable[..., float]] = {
     **{
         function.__name__: function
         for function in (
-            mesh_geometry, mesh_power, local_loss_factor, mean_friction, closed_loss, local_loss,
-            stage_loss, sliding_loss, planet_bearing_loss, planet_bearing_ratio,
-            planet_bearing_change, azimuth_of_gained_rollers, composite_roughness, branch_slope,
-            slope_gain, loss_in_test, loss_change, spin_share, prediction_difference, loss_share,
-            branch_loss_ratio, branch_spin, branch_spin_exponent, pocketing_figure, train_ratio,
-            train_efficiency, bulk_temperature, pair_bulk_temperature, pair_flash_temperature,
+            local_loss_factor, closed_loss, local_loss, planet_bearing_loss,
+            planet_bearing_ratio, planet_bearing_change, azimuth_of_gained_rollers,
+            composite_roughness, branch_slope, slope_gain, loss_in_test, loss_change, spin_share,
+            prediction_difference, loss_share, branch_loss_ratio, branch_spin,
+            branch_spin_exponent, pocketing_figure, train_ratio, train_efficiency,
+            bulk_temperature, pair_bulk_temperature, pair_flash_temperature,
         )
     },
 }  # fmt: skip

@@ -17,7 +17,7 @@ from epicyclic.build.models import fluids_of
 from epicyclic.case.case import Case, build_case, read_case
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import Problem, Status, one_problem, raise_any
-from epicyclic.gears.cutting import mated_tools
+from epicyclic.gears.cutting import fitted_tool
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_thickness
 from epicyclic.gears.mesh import Mesh
 from epicyclic.losses.pocket_flow import NETWORK_MODELS, PocketFlow
@@ -115,8 +115,9 @@ def varied_duty(duty: MeshDuty, variant: PocketVariant) -> MeshDuty:
     ):
         if value < -ROUNDING:
             raise ValueError(f"the {what} is negative")
-    tools = mated_tools(mesh, duty.gears.roundings)
-    return replace(duty, gears=replace(duty.gears, mesh=mesh, tools=tools), speed1=variant.speed)
+    one, two = map(fitted_tool, mesh.gears, duty.gears.roundings, mesh.inner_radii)
+    gears = replace(duty.gears, mesh=mesh, tools=(one, two))
+    return replace(duty, gears=gears, speed1=variant.speed)
 
 
 def solve_variant(case: Case, duty: MeshDuty, variant: PocketVariant) -> PocketFlow:
@@ -313,8 +314,14 @@ def make_study(
     duty = _duty(case, mesh)
     given_ranges, range_problems = _parsed("range", ranges, names)
     given_levels, level_problems = _parsed("level", levels, list(LEVELS))
-    problems = [*_unknown_studies(names), *range_problems, *level_problems]
-    raise_any(problems, "the study")
+    problems = [
+        Problem("what", written(name), "is not a study.", _choice(name, list(STUDIES)))
+        for name in names
+        if name not in STUDIES
+    ]
+    if not names:
+        problems = [Problem("what", "", "names no study.", f"Choose one of {', '.join(STUDIES)}.")]
+    raise_any([*problems, *range_problems, *level_problems], "the study")
     base = base_variant(duty)
     axes = {}
     for name in names:
@@ -327,16 +334,6 @@ def make_study(
         axes[name] = tuple(_axis(duty, parameter, values[parameter]) for parameter in order)
     points = dict.fromkeys(point for name in names for point in _variants(base, axes[name]))
     return StudyPlan(case, duty, axes, tuple(points), given)
-
-
-def _unknown_studies(names: Sequence[str]) -> list[Problem]:
-    if not names:
-        return [Problem("what", "", "names no study.", f"Choose one of {', '.join(STUDIES)}.")]
-    return [
-        Problem("what", written(name), "is not a study.", _choice(name, list(STUDIES)))
-        for name in names
-        if name not in STUDIES
-    ]
 
 
 def _choice(name: str, known: Sequence[str]) -> str:
