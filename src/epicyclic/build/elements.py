@@ -11,7 +11,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from epicyclic.case.tables.elements import ClutchTable, SealTable, ShaftBearingTable, between
+from epicyclic.case.tables.elements import (
+    ClutchTable,
+    DragTable,
+    SealTable,
+    ShaftBearingTable,
+    between,
+)
 from epicyclic.losses.designations import DesignatedBearing, designated, with_elements
 from epicyclic.losses.houpert import CONFORMITIES, THRUST_CONFORMITIES, THRUST_SHARES, BallModel
 from epicyclic.losses.shaft_bearing import (
@@ -148,11 +154,7 @@ def _film_model(table: ShaftBearingTable, oil: Oil) -> BearingModel | None:
     if table.type in bearing_types("houpert") or table.type == "thrust-roller":
         if not chosen and (stated or table.viscous_factor is not None):
             return None
-        if table.type != "thrust-roller":
-            return _balls(table, oil)
-        return ThrustRollerModel(
-            *_rollers(table), skf=_skf_model(table, oil, skf_supply(table.type))
-        )
+        return _thrust_model(table, oil) if table.type == "thrust-roller" else _balls(table, oil)
     if not _roller_length(table):
         return None
     if table.type == "tapered":
@@ -180,6 +182,10 @@ def _balls(table: ShaftBearingTable, oil: Oil) -> BallModel:
         static_load_rating=table.static_load_rating or fits.static_load_rating,
         skf=_skf_model(table, oil, skf_supply(table.type)),
     )
+
+
+def _thrust_model(table: ShaftBearingTable, oil: Oil) -> ThrustRollerModel:
+    return ThrustRollerModel(*_rollers(table), skf=_skf_model(table, oil, skf_supply(table.type)))
 
 
 def _rollers(table: ShaftBearingTable) -> tuple[int, float, float]:
@@ -259,11 +265,17 @@ def _clutch(
     )
 
 
+def _drag(
+    name: str, table: DragTable, bodies: tuple[str, str], oil: Oil, folder: Path
+) -> TableLoss:
+    return TableLoss(name, bodies, table.points(folder))
+
+
 _BUILDERS: Mapping[str, Callable[..., Element]] = {
     "bearings": _bearing,
     "seals": _seal,
     "clutches": _clutch,
-    "drags": lambda name, table, bodies, _, folder: TableLoss(name, bodies, table.points(folder)),
+    "drags": _drag,
 }
 
 
