@@ -221,7 +221,11 @@ def _settings(
 def _wet(table: ThermalTable, gear_sets: Sequence[GearSet], to_gears: float | None) -> Wet:
     """How oil gets to some sets."""
     baths = {"dip": _bath_share(table, gear_sets), "submerged": 1.0}
-    return Wet(baths.get(table.lubrication, 0.0), _effectiveness(table, to_gears))
+    # how far the flow reaches the temperature of the gears, what misses them included
+    effectiveness = 0.0 if table.lubrication in IN_BATH else table.jet_effectiveness
+    if to_gears is not None and table.oil_flow and not table.jet_shares:
+        effectiveness *= min(1.0, to_gears / table.oil_flow)
+    return Wet(baths.get(table.lubrication, 0.0), effectiveness)
 
 
 def _bath_share(table: ThermalTable, gear_sets: Sequence[GearSet]) -> float:
@@ -240,15 +244,6 @@ def _bath_share(table: ThermalTable, gear_sets: Sequence[GearSet]) -> float:
     if "bath_share" in table.model_fields_set or not angles:
         return table.bath_share
     return sum(angles) / (math.pi * len(angles))
-
-
-def _effectiveness(table: ThermalTable, to_gears: float | None) -> float:
-    """How far the flow of oil reaches the temperature of the gears, what misses them included."""
-    if table.lubrication in IN_BATH:
-        return 0.0
-    if to_gears is None or not table.oil_flow or table.jet_shares:
-        return table.jet_effectiveness
-    return table.jet_effectiveness * min(1.0, to_gears / table.oil_flow)
 
 
 def _housing(table: HousingTable) -> Housing:

@@ -342,7 +342,11 @@ def _compressible_flow(
         geometry, slices, steps, end_length * geometry.mesh.gear1.rack.normal_module
     )
     pockets, count = cells.live.shape[1:]
-    fluid = _fluid(model, mixture, pressure)
+    # the fluid as `kernels.pocket_stage.solve_stage` takes it
+    xi = min(mixture.oil_fraction, 1 - LEAST_AIR)
+    central = model == "central-differences"
+    choke = np.empty(0) if central or model == "mean-density" else choking_table(xi)
+    fluid = xi, pressure / mixture.density, choke, central
     period = geometry.pitch / abs(speed)
     history = (
         np.zeros((steps, pockets, count)),
@@ -419,16 +423,6 @@ def _places(cells: Cells, geometry: PocketGeometry) -> dict[str, Any]:
         "face": cells.face,
         "live": cells.live,
     }
-
-
-def _fluid(
-    model: PocketModel, mixture: MixtureState, pressure: float
-) -> tuple[float, float, FloatArray, bool]:
-    """What the kernel takes of the fluid: see `kernels.pocket_stage.solve_stage`."""
-    xi = min(mixture.oil_fraction, 1 - LEAST_AIR)
-    central = model == "central-differences"
-    choke = np.empty(0) if central or model == "mean-density" else choking_table(xi)
-    return xi, pressure / mixture.density, choke, central
 
 
 def sound_speed(mixture: MixtureState, pressure: float) -> float:

@@ -163,7 +163,9 @@ def _makers(case: Case, result: Result) -> dict[str, Callable[[], Mapping[str, x
         "views": lambda: mesh_views(case),
         "bearings": lambda: _bearings(case, result),
         "meshes": lambda: mesh_details(case) if case.operation.torque and result.meshes else {},
-        "uncertainty": lambda: _uncertainty(case, result),
+        "uncertainty": lambda: (
+            {} if (known := quick_dataset(case, result)) is None else {"result": known}
+        ),
         "pockets": lambda: _pockets(case, result),
     }
 
@@ -179,11 +181,6 @@ def _bearings(case: Case, result: Result) -> dict[str, xr.Dataset]:
             assert isinstance(own.bearing, RollerBearing)
             found[key] = bearing_details(own.bearing, figures.loads)
     return found
-
-
-def _uncertainty(case: Case, result: Result) -> dict[str, xr.Dataset]:
-    known = quick_dataset(case, result)
-    return {} if known is None else {"result": known}
 
 
 def _pockets(case: Case, result: Result) -> dict[str, xr.Dataset]:

@@ -23,7 +23,6 @@ from epicyclic.oil.rheology import (
     OilLaws,
     PressureLaw,
     ReeEyring,
-    ShearLaw,
 )
 from epicyclic.schema.fields import PointsTable, Table, ValuesOrRows, option
 from epicyclic.units import (
@@ -139,20 +138,16 @@ _USUAL_OIL = OilBehaviour()
 
 def oil_laws(table: OilBehaviour) -> OilLaws:
     """The laws that a table without problems chooses."""
+    law, keys = SHEAR_LAWS[table.shear_law], ["eyring_stress", "shear_stress_slope"]
+    if law is not ReeEyring:
+        keys = [KEYS[field.name] for field in fields(law)]
     return OilLaws(
         PRESSURE_LAWS[table.pressure_law],
-        _shear_law(table),
+        law(*(getattr(table, key) for key in keys)),
         table.second_slope,
         table.slope_ratio,
         table.transition_pressure,
     )
-
-
-def _shear_law(table: OilBehaviour) -> ShearLaw:
-    law = SHEAR_LAWS[table.shear_law]
-    if law is ReeEyring:
-        return ReeEyring(table.eyring_stress, table.shear_stress_slope)
-    return law(*(getattr(table, KEYS[field.name]) for field in fields(law)))
 
 
 _VoidPressure = Annotated[float, Quantity("a pressure", "Pa", "bar", low=0.0, high=1.0)]
