@@ -180,8 +180,7 @@ def compare_published(
     ]
     rows = []
     for number, figure in enumerate(figures):
-        known = {"topic": _topic(figure), "computed": _computed(figure)}
-        rows.append(Comparison(**_stated(Comparison, figure) | known))
+        rows.append(_compare(figure))
         progress(number + 1, len(figures))
     return tuple(rows)
 
@@ -253,6 +252,11 @@ def _sentences(rows: Sequence[Comparison]) -> Iterator[str]:
         f"{sum(row.verdict == 'not computed' for row in rows)} that cannot be computed, for the "
         "reasons stated."
     )
+
+
+def _compare(figure: dict[str, Any]) -> Comparison:
+    known = {"topic": _topic(figure), "computed": _computed(figure)}
+    return Comparison(**_stated(Comparison, figure) | known)
 
 
 # Published measurements beside the band that the shipped distributions give. Nothing is fitted.
