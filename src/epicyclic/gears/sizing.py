@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from epicyclic.dataclass import dataclass
@@ -225,7 +225,13 @@ class _Solver:
                 doubly.remove(mesh)
         without = [mesh for mesh in self.meshes if mesh.group not in self.distances]
         if without:
-            raise _no_distance(without)
+            place = ".".join(without[0].place)
+            pairs = " or ".join(" and ".join(mesh.gears) for mesh in without)
+            table, _, key = place.rpartition(".")
+            allowed = "is missing and cannot be computed from a mesh without the tooth thickness "
+            allowed += f"of both gears, {pairs}."
+            remedy = f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.'
+            raise one_problem(place, "", allowed, remedy)
         free = [name for name in self.thinned if name not in self.shifts]
         if free:
             allowed = "is missing, and so is that of every mating gear."
@@ -370,16 +376,6 @@ class _Solver:
         assert match is not None
         half = 0.5 * 10.0 ** (int(match[2] or 0) - len(match[1]))
         return min(most, MILLIMETRE.parse(f"{half!r} {match[3]}") if match[3] else half)
-
-
-def _no_distance(meshes: Sequence[_Sized]) -> InputError:
-    place = ".".join(meshes[0].place)
-    pairs = " or ".join(" and ".join(mesh.gears) for mesh in meshes)
-    table, _, key = place.rpartition(".")
-    allowed = "is missing and cannot be computed from a mesh without the tooth thickness of both "
-    allowed += f"gears, {pairs}."
-    remedy = f'Add {key} = "... mm" to [{table}], or profile_shift_coefficient to them.'
-    return one_problem(place, "", allowed, remedy)
 
 
 def places_told(gearing: Gearing) -> Iterator[Found]:

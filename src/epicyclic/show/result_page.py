@@ -218,8 +218,7 @@ def _methods(result: Result) -> tuple[Table | Listing, ...]:
     users: dict[tuple[str, str], list[str]] = {}
     citations = result.citations
     for name, method in result.methods.items():
-        key = method, citations.get(name, "")
-        users.setdefault(key, []).append(name)
+        users.setdefault((method, citations.get(name, "")), []).append(name)
     rows = tuple(
         (Cell(tables.users_text(names)), Cell(method), Cell(source))
         for (method, source), names in users.items()
