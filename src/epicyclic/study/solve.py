@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import Any
 
@@ -95,19 +95,6 @@ def losses_and_powers(
     return _each_of(_losses_and_power, cases, flow_tables, changed)
 
 
-@contextmanager
-def _garbage_kept() -> Iterator[None]:
-    """Hardly anything is garbage while points are solved: to look for it takes a tenth of that."""
-    looks = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if looks:
-            gc.enable()
-
-
-@_garbage_kept()
 def _each_of(
     found_of: Callable[[Case, Built, Settled], Any],
     cases: Sequence[Case],
@@ -125,15 +112,19 @@ def _each_of(
             found[number] = error
         else:
             built[one.thermal is None][number] = own, one
-    for those in built.values():
-        every = solve_all([one for _, one in those.values()])
-        for (number, of), settled in zip(those.items(), every, strict=True):
-            found[number] = settled
-            if not isinstance(settled, Exception):
-                try:
-                    found[number] = found_of(*of, settled)
-                except Exception as error:
-                    found[number] = error
+    with ExitStack() as after:
+        if gc.isenabled():  # hardly anything is garbage meanwhile: to look for it takes a tenth
+            gc.disable()
+            after.callback(gc.enable)
+        for those in built.values():
+            every = solve_all([one for _, one in those.values()])
+            for (number, of), settled in zip(those.items(), every, strict=True):
+                found[number] = settled
+                if not isinstance(settled, Exception):
+                    try:
+                        found[number] = found_of(*of, settled)
+                    except Exception as error:
+                        found[number] = error
     return [found[number] for number in range(len(cases))]
 
 
