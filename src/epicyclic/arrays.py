@@ -28,6 +28,10 @@ IntArray = NDArray[np.intp]
 
 TINY = 1e-300  # In place of a divisor of 0.
 
+# The allocator of most Linux systems gives memory of arrays back to the system and asks for it again
+# until it has met a large one, at most 32 MB; arrays of a block took twice as long for that.
+np.empty(2**25 - 2**16, np.uint8)
+
 
 class Apart(Exception):  # noqa: N818 - no error: the points of a block part
     """A decision that is not the same for all points of a block."""
