@@ -28,8 +28,8 @@ IntArray = NDArray[np.intp]
 
 TINY = 1e-300  # In place of a divisor of 0.
 
-# The allocator of most Linux systems gives memory of arrays back to the system and asks for it again
-# until it has met a large one, at most 32 MB; arrays of a block took twice as long for that.
+# The allocator of most Linux systems gives memory of arrays back and asks for it again until it has
+# met a larger one, of 32 MB at most; operations on the arrays of a block took twice as long.
 np.empty(2**25 - 2**16, np.uint8)
 
 

@@ -7,8 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
-from epicyclic.kernels.line_contact import equivalent_modulus, hertz_half_width, hertz_pressure
+from epicyclic.contact.temperatures import Solid, heat_share
+from epicyclic.kernels.line_contact import (
+    equivalent_modulus,
+    flash_temperature,
+    hertz_half_width,
+    hertz_pressure,
+)
 
 STEEL = Solid(45.0, 440.0, 7800.0).effusivity
 

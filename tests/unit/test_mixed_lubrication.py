@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
-from contacts import STEEL
-from epicyclic.contact.line_contact import Flanks
-from epicyclic.kernels.line_contact import asperity_share
-from epicyclic.kernels.mixed_lubrication import eyring_stress, film_stress
+from epicyclic.kernels.line_contact import asperity_share, central_film, power
+from epicyclic.kernels.mixed_lubrication import acting_roughness, eyring_stress, film_stress
 from epicyclic.losses import mixed_lubrication as model
-from epicyclic.losses.mixed_lubrication import RUN_IN, Surfaces, mixed_friction
+from epicyclic.losses.mixed_lubrication import RUN_IN, Surfaces, acting_heights, mixed_friction
 from epicyclic.oil.oil import oil_state
 from epicyclic.study.solve import mesh_contacts
 
@@ -43,8 +41,15 @@ def stress_at(temperature, pressure, rate, oil):
 
 def share(contact):
     """Of the load on asperities."""
-    film = model.central_film(contact)
-    return asperity_share(film / model.acting_roughness(contact, RUN_IN))
+    film = central_film(
+        contact.line_load, contact.radius, contact.rolling_speed, contact.slide_to_roll_ratio,
+        contact.flanks.equivalent_modulus, contact.dynamic_viscosity, contact.pressure_viscosity,
+        contact.oil.thermal_load(contact.rolling_speed),
+    )  # fmt: skip
+    grown = power(2 * contact.hertz_half_width, RUN_IN.hurst_exponent)
+    return asperity_share(
+        film / acting_roughness(grown, *acting_heights(contact.roughness, RUN_IN))
+    )
 
 
 def rough(contact, one, two):
@@ -86,7 +91,7 @@ def test_smooth_flanks_have_the_friction_of_the_film(contact):
 def test_the_film_is_as_hot_as_its_stress_makes_it(contact):
     pressure, rate = np.array([0.6e9, 0.9e9]), np.array([1e6, 4e6])
     warm, heating = np.array([3.0, 7.0]), np.array([5e-7, 8e-7])
-    oil = model._oil_constants(contact.oil)
+    oil = np.array(model._oil_constants(contact.oil))
     stress = film_stress(pressure, rate, warm, heating, oil)
     for i in range(2):
         hot = oil[0] + warm[i] + heating[i] * stress[i]
@@ -149,14 +154,9 @@ def test_viscosity_of_the_film_is_that_of_the_oil():
 
 def test_roughness_that_acts():
     """By hand: 2 b 0.2 mm, cut-off 0.8 mm, H 0.5 leave half."""
-    flanks = Flanks(STEEL, 0.3e-6, 0.4e-6)
-
-    class Contact:
-        hertz_half_width = np.array([0.1e-3, 0.8e-3])
-        roughness = flanks.roughness1, flanks.roughness2
-
     surfaces = Surfaces(running_in=0.7, cutoff=0.8e-3, hurst_exponent=0.5)
-    found = model.acting_roughness(Contact(), surfaces)
+    width = np.array([0.2e-3, 1.6e-3])
+    found = acting_roughness(np.sqrt(width), *acting_heights((0.3e-6, 0.4e-6), surfaces))
     assert found == pytest.approx([0.7 * 0.5e-6 / 2, 0.7 * 0.5e-6])
 
 

@@ -16,9 +16,9 @@ import pytest
 from asymmetric import oil_table
 from epicyclic import validation
 from epicyclic.case.tables.operation import Lubricant
-from epicyclic.contact.temperatures import flash_temperature
 from epicyclic.gears.cutting import RackTool, ShaperTool
 from epicyclic.gears.mesh import Mesh
+from epicyclic.kernels.line_contact import flash_temperature
 from epicyclic.plugins.design import iso_6336 as iso
 from epicyclic.plugins.design import lubricated, mass
 from epicyclic.plugins.design import strength as rating

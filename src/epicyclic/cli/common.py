@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 EVERY = 15.0  # Between two lines, and before the first one. [s]
 COMPILING_EVERY = 5.0  # The same while kernels are compiled. [s]
-COMPILED = 95  # Kernels that a result needs, at most: simple cases need half as many.
+COMPILED = 110  # Kernels that a result needs, at most: simple cases need half as many.
 Update = Callable[..., None]
 LONG_SECONDS = 2.0  # After which a command that tells nothing of itself says that it works.
 

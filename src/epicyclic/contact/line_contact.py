@@ -83,16 +83,10 @@ class LineContacts:
         roughness2: Any = field(init=False)  # rms. [m]
         roughness: tuple[Any, Any] = field(init=False)  # Both. [m]
         composite_roughness: Any = field(init=False)  # sqrt(Rq1^2 + Rq2^2). [m]
-        hertz_pressure: FloatArray = field(init=False)  # p_h. [Pa]
-        hertz_half_width: FloatArray = field(init=False)  # b_h. [m]
-        speed_number: FloatArray = field(init=False)  # U = u_r mu/(E_eq R_eq). [1]
-        load_number: FloatArray = field(init=False)  # W = W'/(E_eq R_eq). [1]
 
     def __post_init__(self) -> None:
-        """Properties of oil and surfaces, p_h, b_h, U, W and G. Theory (C7), (C8), (C9), (C12)."""
+        """Properties of oil and surfaces. Theory (C8), (C12)."""
         oil, flanks = self.oil, self.flanks
-        stiffness = flanks.equivalent_modulus * self.radius
-        hertz = (self.line_load, self.radius, flanks.equivalent_modulus)
         vars(self).update(
             temperature=oil.temperature,
             dynamic_viscosity=oil.dynamic_viscosity,
@@ -102,11 +96,29 @@ class LineContacts:
             roughness2=flanks.roughness2,
             roughness=(flanks.roughness1, flanks.roughness2),
             composite_roughness=np.hypot(flanks.roughness1, flanks.roughness2),  # (C12)
-            hertz_pressure=hertz_pressure(*hertz),
-            hertz_half_width=hertz_half_width(*hertz),
-            speed_number=self.rolling_speed * oil.dynamic_viscosity / stiffness,  # (C7)
-            load_number=self.line_load / stiffness,  # (C9)
         )
+
+    @cached_property
+    def hertz_pressure(self) -> FloatArray:
+        """p_h. Theory (C6). [Pa]"""
+        return hertz_pressure(self.line_load, self.radius, self.flanks.equivalent_modulus)
+
+    @cached_property
+    def hertz_half_width(self) -> FloatArray:
+        """b_h. Theory (C5). [m]"""
+        return hertz_half_width(self.line_load, self.radius, self.flanks.equivalent_modulus)
+
+    @cached_property
+    def speed_number(self) -> FloatArray:
+        """U = u_r mu/(E_eq R_eq). Theory (C7). [1]"""
+        stiffness = self.flanks.equivalent_modulus * self.radius
+        number: FloatArray = self.rolling_speed * self.dynamic_viscosity / stiffness
+        return number
+
+    @cached_property
+    def load_number(self) -> FloatArray:
+        """W = W'/(E_eq R_eq). Theory (C9). [1]"""
+        return self.line_load / (self.flanks.equivalent_modulus * self.radius)
 
     # Not kept: for all points of a block they would be a seventh of its memory.
 

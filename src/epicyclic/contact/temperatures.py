@@ -43,37 +43,6 @@ class Solid:
 Numbers = FloatArray | float
 
 
-def flash_temperature(
-    friction: Numbers,  # Coefficient of friction mu. [1]
-    line_load: Numbers,  # W'. [N/m]
-    sliding_speed: Numbers,  # u_s, of either sign. [m/s]
-    speed1: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
-    speed2: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
-    half_width: Numbers,  # b of Hertz. [m]
-    effusivity1: float,  # [W s^0.5/(m^2 K)]
-    effusivity2: float,  # [W s^0.5/(m^2 K)]
-) -> FloatArray:
-    """Largest rise of the surface temperature in a line contact above that of the bodies. [K]
-
-    Theory (W2). H. Blok (1937), as in ISO/TS 6336-22, second hand: the heat mu W' |u_s| spread
-    evenly over the width of Hertz, shared so that both surfaces are equally hot. The bodies are
-    half-spaces that move fast: u b/kappa above about 10 for each, kappa its thermal diffusivity.
-    Arguments are numbers or arrays, point by point; 0 without load or speed.
-
-    Examples
-    --------
-    >>> rise = flash_temperature(0.05, 200e3, 3.0, 8.0, 5.0, 0.2e-3, 12.4e3, 12.4e3)
-    >>> round(float(rise), 1)
-    27.0
-    """
-    carried = effusivity1 * np.sqrt(np.abs(speed1)) + effusivity2 * np.sqrt(np.abs(speed2))
-    heat = friction * line_load * np.abs(sliding_speed)
-    scale = carried * np.sqrt(half_width)
-    out = np.zeros(np.broadcast(heat, scale).shape)
-    rise: FloatArray = np.divide(heat, scale, out=out, where=scale > 0)
-    return math.sqrt(2 / math.pi) * rise
-
-
 def heat_share(
     speed1: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
     speed2: Numbers,  # Speeds of the surfaces across the contact line, of either sign. [m/s]

@@ -19,6 +19,7 @@ from typing import Any, NoReturn, ParamSpec, TypeVar, cast
 
 import numba
 from numba.core import caching, event
+from numba.extending import overload, register_jitable
 from numba.np import linalg
 
 from epicyclic.cache_folder import is_private, private_folder
@@ -274,6 +275,26 @@ import_module("numba.np.arraymath")
 linalg.ensure_blas = _ask
 
 
+_PLAIN: Any = {"error_model": "numpy", "nogil": True}
+_INLINED: Any = cast(Any, {**_PLAIN, "fastmath": {"contract"}, "forceinline": True})
+
+
+def formula(function: Callable[P, R]) -> Callable[P, R]:
+    """A function of numbers and arrays that kernels may call with numbers, inlined."""
+    register_jitable(**_INLINED)(function)
+    return function
+
+
+def in_kernels(function: Callable[..., Any]) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """What kernels call in place of a `function` of numbers and arrays, inlined."""
+
+    def register(other: Callable[P, R]) -> Callable[P, R]:
+        overload(function, jit_options=_INLINED, strict=False)(lambda *_, **__: other)
+        return other
+
+    return register
+
+
 def kernel(function: Callable[P, R], *, inlined: bool = False) -> Callable[P, R]:
     """Compile `function` at first call and keep the machine code on disk.
 
@@ -281,10 +302,7 @@ def kernel(function: Callable[P, R], *, inlined: bool = False) -> Callable[P, R]
     callers check that results are finite. What is `inlined` leaves loops over it vector code, in
     which products may be added without rounding them first.
     """
-    fused: Any = {"contract"} if inlined else False
-    compiled: Any = numba.njit(
-        fastmath=fused, error_model="numpy", nogil=True, forceinline=inlined
-    )(function)
+    compiled: Any = numba.njit(**(_INLINED if inlined else _PLAIN))(function)
     if _CACHE_DIR is not None:
         config: Any = numba.config
         previous = config.CACHE_DIR

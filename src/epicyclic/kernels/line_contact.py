@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
-from epicyclic.kernels.compiling import kernel
+from epicyclic.arrays import TINY, FloatArray
+from epicyclic.kernels.compiling import formula, in_kernels, kernel
 
 # Hertz line contact, film thickness and rolling traction: closed forms for numbers and arrays.
 #
@@ -26,6 +26,7 @@ def equivalent_modulus(e1: float, nu1: float, e2: float, nu2: float) -> float:
     return 2 / ((1 - nu1**2) / e1 + (1 - nu2**2) / e2)
 
 
+@formula
 def hertz_half_width(w: Real, r_eq: Real, e_eq: float) -> Real:
     """b_h = sqrt(8 W' R_eq/(pi E_eq)). Johnson, Contact Mechanics (1985), Eq. 4.43. [m]
 
@@ -35,6 +36,7 @@ def hertz_half_width(w: Real, r_eq: Real, e_eq: float) -> Real:
     return half_width
 
 
+@formula
 def hertz_pressure(w: Real, r_eq: Real, e_eq: float) -> Real:
     """p_h = 2 W'/(pi b_h). Johnson (1985), Eq. 4.45. Theory (C6). [Pa]"""
     pressure: Real = (w * e_eq / (2 * math.pi * r_eq)) ** 0.5
@@ -136,6 +138,17 @@ def power(*bases_exponents: Any) -> Any:
     return np.exp(exponent) if isinstance(exponent, float) else of_each(exponentials, exponent)
 
 
+@in_kernels(power)
+def _power(
+    base: float, its: float, second: float = 1.0, its2: float = 0.0, third: float = 1.0,
+    its3: float = 0.0,
+) -> float:  # fmt: skip
+    """`power` of up to three numbers."""
+    exponent = its * logarithm(base) + its2 * logarithm(second) + its3 * logarithm(third)
+    return exponential(exponent)
+
+
+@formula
 def asperity_share(film_ratio: Real) -> Real:
     """Share of the load on asperities, exp(-1.8 Lambda^1.2). Theory (Y5), (J25). [1]
 
@@ -147,7 +160,7 @@ def asperity_share(film_ratio: Real) -> Real:
     >>> asperity_share(np.array([0.0, 0.5, 1.0, 3.0])).round(3)
     array([1.   , 0.457, 0.165, 0.001])
     """
-    share: Real = np.exp(-1.8 * power(film_ratio, 1.2))
+    share: Real = power(math.e, -1.8 * power(film_ratio, 1.2))
     return share
 
 
@@ -161,12 +174,14 @@ def pan_hamrock_minimum_film(u: Real, g: Real | float, w: Real) -> Real:
     return film
 
 
+@formula
 def pan_hamrock_central_film(u: Real, g: Real | float, w: Real) -> Real:
     """h_c/R_eq = 2.922 U^0.692 G^0.470 W^-0.166. Pan and Hamrock (1989), as above. Theory (C11)."""
     film: Real = 2.922 * power(u, 0.692, g, 0.470, w, -0.166)
     return film
 
 
+@formula
 def goksem_hargreaves_force(u: Real, g: float, w: Real, thermal_load: Real) -> Real:
     """Rolling force of one surface: F_r alpha/R_eq = 4.318 (G U)^0.658 W^0.0126 phi_T. Theory (R6).
 
@@ -183,6 +198,7 @@ LEAST_FILM_SHARE = 0.1
 """Least numerator of `inlet_film_factor`, which heavy load and strong heat bring below zero. [1]"""
 
 
+@formula
 def inlet_film_factor(thermal_load: Real, pressure: Real, slip: Real) -> Real:
     """phi_T, film over that without heat at its inlet. Theory (Y1). [1]
 
@@ -201,11 +217,66 @@ def inlet_film_factor(thermal_load: Real, pressure: Real, slip: Real) -> Real:
     return factor
 
 
+LEAST_FILM = 1e-40  # Of flanks that stand. [m]
+LEAST_LOAD = 1e-40  # Of flanks that carry nothing [N/m]; pressures likewise [Pa].
 MARTIN_FILM = 4.895  # h_0 W'/(mu u R) of rigid cylinders at constant viscosity, Martin (1916). [1]
 MARTIN_FORCE = 2.0796
 """F_r/sqrt(mu u W') of rigid cylinders, by quadrature of Martin's pressure. [1]"""
 
 
+@formula
+def central_film(
+    w: Real, r_eq: Real, speed: Real, slip: Real, e_eq: float, viscosity: float, alpha: float,
+    thermal_load: Real,
+) -> Real:  # fmt: skip
+    """Film of smooth flanks, thinned by heat at the inlet. Theory (Y2), (Y9). [m]
+
+    Under light load flanks stay rigid: H. M. Martin, Engineering 102 (1916) 119, 4.895 mu u_r R/W'.
+    `slip` sliding over rolling speed, `thermal_load` as for `inlet_film_factor`; the others as for
+    `hertz_pressure` and `martin_force`, `alpha` [1/Pa].
+    """
+    stiffness = e_eq * r_eq
+    smooth = pan_hamrock_central_film(viscosity * speed / stiffness, alpha * e_eq, w / stiffness)
+    heating = inlet_film_factor(thermal_load, hertz_pressure(w, r_eq, e_eq) / e_eq, slip)
+    rigid = MARTIN_FILM * viscosity * speed * r_eq / np.maximum(w, LEAST_LOAD)
+    film: Real = np.maximum(np.maximum(r_eq * heating * smooth, rigid), LEAST_FILM)
+    return film
+
+
+@formula
+def flash_temperature(
+    friction: Real,  # Coefficient of friction mu. [1]
+    line_load: Real,  # W'. [N/m]
+    sliding_speed: Real,  # u_s, of either sign. [m/s]
+    speed1: Real,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    speed2: Real,  # Speeds of the surfaces across the contact line, of either sign. [m/s]
+    half_width: Real,  # b of Hertz. [m]
+    effusivity1: float,  # [W s^0.5/(m^2 K)]
+    effusivity2: float,  # [W s^0.5/(m^2 K)]
+) -> Real:
+    """Largest rise of the surface temperature in a line contact above that of the bodies. [K]
+
+    Theory (W2). H. Blok (1937), as in ISO/TS 6336-22, second hand: the heat mu W' |u_s| spread
+    evenly over the width of Hertz, shared so that both surfaces are equally hot. The bodies are
+    half-spaces that move fast: u b/kappa above about 10 for each, kappa its thermal diffusivity.
+    Arguments are numbers or arrays, point by point; 0 without load or speed.
+
+    Examples
+    --------
+    >>> rise = flash_temperature(0.05, 200e3, 3.0, 8.0, 5.0, 0.2e-3, 12.4e3, 12.4e3)
+    >>> round(float(rise), 1)
+    27.0
+    """
+    carried = effusivity1 * np.sqrt(np.abs(speed1)) + effusivity2 * np.sqrt(np.abs(speed2))
+    heat = friction * line_load * np.abs(sliding_speed)
+    rise: Real = _OF_BLOK * heat / np.maximum(carried * np.sqrt(half_width), TINY)
+    return rise
+
+
+_OF_BLOK = math.sqrt(2 / math.pi)  # Heat of a band over its mean temperature. [1]
+
+
+@formula
 def martin_force(w: Real, speed: Real, viscosity: float) -> Real:
     """Rolling force per length of one surface of rigid cylinders at constant viscosity. [N/m]
 

@@ -1,16 +1,31 @@
-"""Shear stress of an oil film that its own heat and that of the flanks make thinner."""
+"""Friction of films and asperities, the oil as hot as its shear and the flanks make it."""
 
 from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray
-from epicyclic.kernels.compiling import kernel
-from epicyclic.kernels.line_contact import exponential, logarithm
+from epicyclic.arrays import TINY, FloatArray
+from epicyclic.kernels.compiling import formula, kernel
+from epicyclic.kernels.line_contact import (
+    LEAST_LOAD,
+    Real,
+    asperity_share,
+    central_film,
+    exponential,
+    flash_temperature,
+    hertz_half_width,
+    hertz_pressure,
+    logarithm,
+    power,
+)
+
+MEAN_FLASH = 2 / 3
+"""Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
+MEAN_PRESSURE = math.pi / 4  # Mean over largest pressure of Hertz. [1]
+LEAST_SPEED = 1e-100  # With which quotients of speeds are formed, at least.
 
 LARGE = 20.0  # From here on arsinh(exp(x)) is x + ln 2 to the last digit. [1]
 OFFSET = 0.7  # Of ASTM D341. [mm^2/s]
@@ -32,12 +47,20 @@ def eyring_stress(
     ln(nu + 0.7) and ln(nu) with nu in mm^2/s, the slope of ASTM D341, density times 1 mm^2/s
     [Pa s], alpha [1/Pa], d(ln alpha)/d(ln nu), and the limit Lambda [1].
     """
-    T0, log_shifted0, log_viscosity0, slope, _, alpha0, exponent, limit = oil
+    T0, log_shifted0, _, slope, _, _, _, _ = oil
     log_shifted = log_shifted0 * exponential(slope * logarithm(T0 / temperature))
     shifted = exponential(log_shifted)
     viscosity = max(shifted - OFFSET, LEAST_VISCOSITY)
-    log_viscosity = logarithm(viscosity)
     fall = -slope * shifted * log_shifted / (temperature * viscosity)  # d(ln nu)/dT
+    return _sheared(logarithm(viscosity), fall, pressure, log_rate, oil)
+
+
+@partial(kernel, inlined=True)
+def _sheared(
+    log_viscosity: float, fall: float, pressure: float, log_rate: float, oil: tuple[float, ...]
+) -> tuple[float, float]:
+    """`eyring_stress` at a viscosity, the logarithm of which falls with the temperature [1/K]."""
+    _, _, log_viscosity0, _, _, alpha0, exponent, limit = oil
     log_alpha = exponent * (log_viscosity - log_viscosity0)  # over alpha at T0
     alpha = alpha0 * exponential(log_alpha)
     squeezed = alpha * pressure
@@ -77,46 +100,6 @@ def _bounded(
 
 
 @kernel
-def _film_stresses(
-    pressure: FloatArray, rate: FloatArray, warm: FloatArray, heating: FloatArray, oil: FloatArray
-) -> FloatArray:
-    """`film_stress` of all points."""
-    stresses, n = np.empty_like(pressure), pressure.shape[1]
-    log_rate, moved, left = np.empty(n), np.empty(n), np.empty(n)
-    for row in range(len(pressure)):
-        p, slip, warmth, heat, stress = (
-            pressure[row], rate[row], warm[row], heating[row], stresses[row],
-        )  # fmt: skip
-        its = oil[row]
-        own = (its[0], its[1], its[2], its[3], its[4], its[5], its[6], its[7])
-        for i in range(n):
-            sheared = slip[i] if slip[i] > 0.0 else 1.0
-            log_rate[i] = logarithm(sheared * (own[4] * own[5] / own[7]))
-            stress[i], moved[i] = START * own[7] * p[i], math.inf
-        for number in range(QUICK_STEPS):
-            for i in range(n):
-                hot, slope = eyring_stress(
-                    own[0] + warmth[i] + heat[i] * stress[i], p[i], log_rate[i], own
-                )
-                step = (hot - stress[i]) / (1.0 - heat[i] * slope)
-                stress[i] += step
-                size = abs(step)
-                bent = LEFT * stress[i] * moved[i] * moved[i] - size * size * size
-                left[i] = min(bent, CLOSE * stress[i] - size)
-                moved[i] = size
-            found = 0
-            for i in range(n):
-                found += left[i] >= 0.0
-            if number and found == n:
-                break
-        for i in range(n):
-            if not left[i] >= 0.0:
-                stress[i] = _bounded(p[i], log_rate[i], warmth[i], heat[i], own)
-            if not slip[i] > 0.0:
-                stress[i] = 0.0
-    return stresses
-
-
 def film_stress(
     pressure: FloatArray, rate: FloatArray, warm: FloatArray, heating: FloatArray, oil: FloatArray
 ) -> FloatArray:
@@ -124,16 +107,114 @@ def film_stress(
 
     Parameters
     ----------
-    pressure, rate : ndarray, shape (n,) or (points, n)
+    pressure, rate : ndarray, shape (n,)
         Mean pressure [Pa], shear rate [1/s].
-    warm, heating : ndarray, of the same shape
+    warm, heating : ndarray, shape (n,)
         Rise by the friction of asperities [K]; rise per stress of the film [K/Pa].
-    oil : ndarray, shape (8,) or (points, 8)
+    oil : ndarray, shape (8,) or longer
         As for `eyring_stress`.
     """
-    shape = (-1, pressure.shape[-1])
-    rows: list[Any] = [
-        np.ascontiguousarray(it).reshape(shape) for it in (pressure, rate, warm, heating)
-    ]
-    rows.append(np.ascontiguousarray(np.broadcast_to(oil, (len(rows[0]), np.shape(oil)[-1]))))
-    return _film_stresses(*rows).reshape(pressure.shape).view(type(pressure))
+    n, its = len(pressure), oil
+    stress, log_rate, moved, left = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    own = (its[0], its[1], its[2], its[3], its[4], its[5], its[6], its[7])
+    fall = -own[3] * math.exp(own[1]) * own[1] / (own[0] * math.exp(own[2]))
+    for i in range(n):
+        sheared = rate[i] if rate[i] > 0.0 else 1.0
+        log_rate[i] = logarithm(sheared * (own[4] * own[5] / own[7]))
+        # first as of an oil whose stress falls with the temperature as at T0
+        cold, slope = _sheared(own[2], fall, pressure[i], log_rate[i], own)
+        steep = slope / (cold + TINY)
+        warmed = cold * exponential(steep * warm[i])
+        stress[i], moved[i] = warmed / (1.0 - heating[i] * steep * warmed), math.inf
+    for number in range(QUICK_STEPS):
+        for i in range(n):
+            hot, slope = eyring_stress(
+                own[0] + warm[i] + heating[i] * stress[i], pressure[i], log_rate[i], own
+            )
+            step = (hot - stress[i]) / (1.0 - heating[i] * slope)
+            stress[i] += step
+            size = abs(step)
+            bent = LEFT * stress[i] * moved[i] * moved[i] - size * size * size
+            left[i] = min(bent, CLOSE * stress[i] - size)
+            moved[i] = size
+        found = 0
+        for i in range(n):
+            found += left[i] >= 0.0
+        if number and found == n:
+            break
+    for i in range(n):
+        if not left[i] >= 0.0:
+            stress[i] = _bounded(pressure[i], log_rate[i], warm[i], heating[i], own)
+        if not rate[i] > 0.0:
+            stress[i] = 0.0
+    return stress
+
+
+@formula
+def acting_roughness(grown: Real, one: float, cut1: float, two: float, cut2: float) -> Real:
+    """sigma^2 = sum of (f Rq (2 b/l_c)^H)^2 of both flanks, 2 b/l_c at most 1. Theory (Y3). [m]
+
+    `grown` (2 b)^H, `one` and `two` f Rq of both flanks [m], `cut1` and `cut2` l_c^H. A self-affine
+    profile has an rms height that grows with the length L that is looked at as L^H; what is longer
+    than the contact is wide leaves both flanks parallel and breaks no film.
+    """
+    height1, height2 = one * np.minimum(grown / cut1, 1.0), two * np.minimum(grown / cut2, 1.0)
+    sigma: Real = np.sqrt(height1 * height1 + height2 * height2)
+    return sigma
+
+
+@kernel
+def mixed_friction(
+    line_load: FloatArray, radius: FloatArray, rolling: FloatArray, sliding: FloatArray,
+    film: FloatArray, flanks: FloatArray, oil: FloatArray,
+) -> FloatArray:  # fmt: skip
+    """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]
+
+    Parameters
+    ----------
+    line_load, radius, rolling, sliding : ndarray, shape (points, n)
+        W' [N/m]; R_eq [m], also of shape (1, n); u_r and u_s [m/s].
+    film : ndarray, shape (points, n) or (points, 0)
+        Thickness; empty for `central_film`. [m]
+    flanks : ndarray, shape (points, 8)
+        E_eq [Pa], effusivities of both bodies [W s^0.5/(m^2 K)], what `acting_roughness` takes of
+        both flanks, and H [1].
+    oil : ndarray, shape (points, 12)
+        As for `eyring_stress`; behind it viscosity [Pa s], thermal load over the square of the
+        speed [s^2/m^2], conductivity [W/(m K)], and the friction mu_b of asperities [1].
+    """
+    friction, n = np.empty_like(line_load), line_load.shape[1]
+    share, pressure, rate = np.empty(n), np.empty(n), np.empty(n)
+    warm, heating, films = np.empty(n), np.empty(n), np.empty(n)
+    for row in range(len(line_load)):
+        w, u, u_s, mu = line_load[row], rolling[row], sliding[row], friction[row]
+        R = radius[row % len(radius)]
+        E, e1, e2, one, cut1, two, cut2, exponent = flanks[row]
+        alpha = oil[row, 5]
+        viscosity, thermal, conductivity, boundary = oil[row, 8:]
+        if film.shape[1]:
+            films[:] = film[row]
+        else:
+            for i in range(n):
+                slip = abs(u_s[i]) / max(u[i], LEAST_SPEED)
+                films[i] = central_film(
+                    w[i], R[i], u[i], slip, E, viscosity, alpha, thermal * u[i] * u[i]
+                )
+        for i in range(n):
+            b = hertz_half_width(w[i], R[i], E)
+            sigma = acting_roughness(power(2.0 * b, exponent), one, cut1, two, cut2)
+            xi = asperity_share(films[i] / sigma)
+            p = max(MEAN_PRESSURE * hertz_pressure(w[i], R[i], E), LEAST_LOAD)
+            half = u_s[i] / 2.0
+            # of the flanks for a coefficient of friction of 1
+            flash = MEAN_FLASH * flash_temperature(
+                1.0, w[i], u_s[i], u[i] + half, u[i] - half, b, e1, e2
+            )
+            share[i], pressure[i], rate[i] = xi, p, abs(u_s[i]) / films[i]
+            warm[i] = flash * xi * boundary
+            # rises for each pascal of the film: of both flanks, and the mean across it
+            heating[i] = flash * (1.0 - xi) / p + abs(u_s[i]) * films[i] / (12.0 * conductivity)
+        stress = film_stress(pressure, rate, warm, heating, oil[row])
+        for i in range(n):
+            mu[i] = share[i] * boundary + (1.0 - share[i]) * stress[i] / pressure[i]
+    return friction

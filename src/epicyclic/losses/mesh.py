@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from epicyclic.arrays import TINY, AtOnce, FloatArray, either, larger, most, total
-from epicyclic.contact.temperatures import Solid, flash_temperature, heat_share
+from epicyclic.contact.temperatures import Solid, heat_share
 from epicyclic.dataclass import dataclass, field
 from epicyclic.gears.mesh import Mesh
+from epicyclic.kernels.line_contact import flash_temperature
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction import FrictionModel
 from epicyclic.losses.ranges import Flags, SomeFlags

@@ -11,13 +11,13 @@ At each contact, in the order of docs/theory/mixed-lubrication.md:
 
 from __future__ import annotations
 
-import math
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray, log, side_by_side, sqrt
+from epicyclic.arrays import FloatArray, log, pow, side_by_side, sqrt
 from epicyclic.contact.line_contact import LineContacts
-from epicyclic.contact.temperatures import flash_temperature
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.flanks import (
     HURST_EXPONENT,
@@ -26,21 +26,8 @@ from epicyclic.gears.flanks import (
     RA_OVER_RQ,
     RUNNING_IN,
 )
-from epicyclic.kernels.line_contact import (
-    MARTIN_FILM,
-    asperity_share,
-    inlet_film_factor,
-    pan_hamrock_central_film,
-    power,
-)
-from epicyclic.kernels.mixed_lubrication import film_stress
+from epicyclic.kernels import mixed_lubrication as kernels
 from epicyclic.oil.oil import D341_OFFSET, MM2_PER_S, OilState
-
-MEAN_FLASH = 2 / 3
-"""Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
-MEAN_PRESSURE = math.pi / 4  # Mean over largest pressure of Hertz. [1]
-LEAST_FILM = 1e-40  # Of flanks that stand. [m]
-LEAST_LOAD = 1e-40  # Of flanks that carry nothing [N/m]; pressures likewise [Pa].
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,22 +42,6 @@ class Surfaces:
 
 
 RUN_IN = Surfaces()
-
-
-def acting_roughness(contact: LineContacts, surfaces: Surfaces) -> FloatArray:
-    """sigma^2 = sum of (f Rq (2 b/l_c)^H)^2 of both flanks, 2 b/l_c at most 1. Theory (Y3). [m]
-
-    A self-affine profile has an rms height that grows with the length L that is looked at as L^H;
-    what is longer than the contact is wide leaves both flanks parallel and breaks no film.
-    """
-    exponent = surfaces.hurst_exponent
-    grown = power(2 * contact.hertz_half_width, exponent)
-    heights = []
-    for roughness in contact.roughness:
-        cutoff = usual_cutoff(roughness) if surfaces.cutoff is None else surfaces.cutoff
-        heights.append(roughness * np.minimum(grown / cutoff**exponent, 1.0))
-    sigma: FloatArray = surfaces.running_in * np.sqrt(heights[0] ** 2 + heights[1] ** 2)
-    return sigma
 
 
 def usual_cutoff(
@@ -90,65 +61,46 @@ def usual_cutoff(
     return PROFILE_CUTOFF * sqrt(RA_OVER_RQ * roughness / MIDDLE_OF_CLASS)
 
 
-def central_film(contact: LineContacts) -> FloatArray:
-    """Film of smooth flanks, thinned by heat at the inlet. Theory (Y2), (Y9). [m]
-
-    Under light load flanks stay rigid: H. M. Martin, Engineering 102 (1916) 119, 4.895 mu u_r R/W'.
-    """
-    assert isinstance(contact.oil, OilState)  # of fits to simulated contacts it is not known
-    heating = inlet_film_factor(
-        contact.oil.thermal_load(contact.rolling_speed),
-        contact.hertz_pressure / contact.flanks.equivalent_modulus,
-        contact.slide_to_roll_ratio,
-    )
-    smooth = pan_hamrock_central_film(
-        contact.speed_number, contact.material_number, contact.load_number
-    )
-    elastic = contact.radius * heating * smooth
-    squeezed = contact.dynamic_viscosity * contact.rolling_speed * contact.radius
-    rigid = MARTIN_FILM * squeezed / np.maximum(contact.line_load, LEAST_LOAD)
-    film: FloatArray = np.maximum(elastic, rigid)
-    return np.maximum(film, LEAST_FILM)
-
-
 def mixed_friction(
     contact: LineContacts,
     surfaces: Surfaces,
     boundary: float | None = None,  # mu_b; None: that of the oil. [1]
     film: FloatArray | None = None,  # None: `central_film`. [m]
 ) -> FloatArray:
-    """mu = xi mu_b + (1 - xi) tau/p, tau as hot as the film is. Theory (Y8). [1]"""
-    oil = contact.oil
+    """mu of each contact, as the kernel of this name has it. [1]"""
+    oil, flanks = contact.oil, contact.flanks
     assert isinstance(oil, OilState)
+    heights = acting_heights(contact.roughness, surfaces)
+    of_flanks = flanks.equivalent_modulus, *flanks.effusivities, *heights, surfaces.hurst_exponent
     boundary = oil.boundary_friction if boundary is None else boundary
-    film = central_film(contact) if film is None else film
-    share = asperity_share(film / acting_roughness(contact, surfaces))
-    pressure = np.maximum(MEAN_PRESSURE * contact.hertz_pressure, LEAST_LOAD)
-    slip = np.abs(contact.sliding_speed)
-    # flank temperature for a coefficient of friction of 1
-    flash = MEAN_FLASH * flash_temperature(
-        1.0,
-        contact.line_load,
-        slip,
-        *contact.surface_speeds,
-        contact.hertz_half_width,
-        *contact.flanks.effusivities,
-    )
-    # rises for each pascal of the film: of both flanks, and the mean across it, evenly heated
-    heating = flash * (1 - share) / pressure + slip * film / (12 * oil.thermal_conductivity)
-    stress = film_stress(
-        pressure, slip / film, flash * share * boundary, heating, _oil_constants(oil)
-    )
-    return share * boundary + (1 - share) * stress / pressure
+    inlet = oil.dynamic_viscosity, oil.thermal_load(1.0), oil.thermal_conductivity
+    load = contact.line_load
+    parts = load, contact.radius, contact.rolling_speed, contact.sliding_speed
+    places: list[Any] = [np.ascontiguousarray(np.atleast_2d(part)) for part in parts]
+    places.append(np.empty((1, 0)) if film is None else np.atleast_2d(film))
+    for numbers in (of_flanks, (*_oil_constants(oil), *inlet, boundary)):
+        table = side_by_side(numbers)
+        rows = np.broadcast_to(table, (len(places[0]), table.shape[-1]))
+        places.append(np.ascontiguousarray(rows))
+    return kernels.mixed_friction(*places).reshape(load.shape).view(type(load))
 
 
-def _oil_constants(oil: OilState) -> FloatArray:
+def acting_heights(roughness: Iterable[float], surfaces: Surfaces) -> list[float]:
+    """f Rq [m] and l_c^H of both flanks, as `acting_roughness` of the kernels takes them."""
+    found = []
+    for height in roughness:
+        cutoff = usual_cutoff(height) if surfaces.cutoff is None else surfaces.cutoff
+        found += [surfaces.running_in * height, pow(cutoff, surfaces.hurst_exponent)]
+    return found
+
+
+def _oil_constants(oil: OilState) -> tuple[float, ...]:
     """As `eyring_stress` takes them: the line of ASTM D341 that touches at this temperature."""
     viscosity = oil.kinematic_viscosity / MM2_PER_S
     shifted = viscosity + D341_OFFSET
     # -d(log log(nu + 0.7))/d(log T) from beta = -d(ln nu)/dT
     slope = oil.thermoviscosity * oil.temperature * viscosity / (shifted * log(shifted))
-    constants = (
+    return (
         oil.temperature,
         log(shifted),
         log(viscosity),
@@ -158,4 +110,3 @@ def _oil_constants(oil: OilState) -> FloatArray:
         oil.pressure_viscosity_exponent,
         oil.limiting_traction,
     )
-    return side_by_side(constants)

@@ -22,12 +22,11 @@ from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     Solid,
     bulk_rise_of_loss,
-    flash_temperature,
     iso_mean_friction,
     roughness_factor,
 )
 from epicyclic.gears.mesh import Mesh
-from epicyclic.kernels.line_contact import hertz_half_width
+from epicyclic.kernels.line_contact import flash_temperature, hertz_half_width
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction import (
     pitch_point_pressure,

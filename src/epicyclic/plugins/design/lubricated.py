@@ -18,14 +18,13 @@ from epicyclic.arrays import FloatArray
 from epicyclic.contact.temperatures import (
     LUBRICATION_FACTORS,
     bulk_rise_of_loss,
-    flash_temperature,
     iso_mean_friction,
     roughness_factor,
 )
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import BasicRack, Gear, half_angle_from_profile_shift
 from epicyclic.gears.mesh import Mesh
-from epicyclic.kernels.line_contact import hertz_half_width, hertz_pressure
+from epicyclic.kernels.line_contact import flash_temperature, hertz_half_width, hertz_pressure
 from epicyclic.losses.mesh import ohlendorf_loss_factor
 from epicyclic.machine.heat import HOTTEST
 from epicyclic.oil.oil import Oil, oil_state
