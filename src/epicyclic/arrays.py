@@ -179,6 +179,17 @@ def side_by_side(values: Iterable[Any]) -> FloatArray:
     return table
 
 
+def row_by_row(
+    kernel: Callable[..., FloatArray], places: Sequence[FloatArray], *numbers: Iterable[Any]
+) -> FloatArray:
+    """A kernel over arrays of shape (points, n), the first of them whole, and rows of numbers."""
+    rows = [np.ascontiguousarray(np.atleast_2d(values)) for values in places]
+    for table in map(side_by_side, numbers):
+        whole = np.broadcast_to(table, (len(rows[0]), table.shape[-1]))
+        rows.append(np.ascontiguousarray(whole))
+    return kernel(*rows).reshape(places[0].shape).view(type(places[0]))
+
+
 def apart(table: FloatArray) -> list[Any]:
     """The numbers that `side_by_side` put together."""
     if table.ndim == 1:

@@ -285,14 +285,9 @@ def formula(function: Callable[P, R]) -> Callable[P, R]:
     return function
 
 
-def in_kernels(function: Callable[..., Any]) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """What kernels call in place of a `function` of numbers and arrays, inlined."""
-
-    def register(other: Callable[P, R]) -> Callable[P, R]:
-        overload(function, jit_options=_INLINED, strict=False)(lambda *_, **__: other)
-        return other
-
-    return register
+def in_kernels(function: Callable[..., Any], own: Callable[..., Any]) -> None:
+    """Have kernels call `own` in place of a `function` of numbers and arrays, inlined."""
+    overload(function, jit_options=_INLINED, strict=False)(lambda *_, **__: own)
 
 
 def kernel(function: Callable[P, R], *, inlined: bool = False) -> Callable[P, R]:

@@ -138,7 +138,6 @@ def power(*bases_exponents: Any) -> Any:
     return np.exp(exponent) if isinstance(exponent, float) else of_each(exponentials, exponent)
 
 
-@in_kernels(power)
 def _power(
     base: float, its: float, second: float = 1.0, its2: float = 0.0, third: float = 1.0,
     its3: float = 0.0,
@@ -146,6 +145,9 @@ def _power(
     """`power` of up to three numbers."""
     exponent = its * logarithm(base) + its2 * logarithm(second) + its3 * logarithm(third)
     return exponential(exponent)
+
+
+in_kernels(power, _power)
 
 
 @formula
@@ -286,6 +288,28 @@ def martin_force(w: Real, speed: Real, viscosity: float) -> Real:
     """
     force: Real = MARTIN_FORCE * (viscosity * speed * w) ** 0.5
     return force
+
+
+@kernel
+def goksem_hargreaves_losses(
+    line_load: FloatArray, radius: FloatArray, rolling: FloatArray, numbers: FloatArray
+) -> FloatArray:
+    """Rolling loss per length, 2 u_r F_r with the smaller force. Theory (R7), (R10). [W/m]
+
+    Shapes (points, n), that of `radius` also (1, n); `numbers` of each point: E_eq [Pa], viscosity
+    [Pa s], alpha [1/Pa], thermal load over the square of the speed [s^2/m^2].
+    """
+    found = np.empty_like(line_load)
+    for row in range(len(line_load)):
+        w, u, loss, R = line_load[row], rolling[row], found[row], radius[row % len(radius)]
+        E, viscosity, alpha, thermal = numbers[row]
+        for i in range(len(w)):
+            stiffness = E * R[i]
+            U, W = viscosity * u[i] / stiffness, w[i] / stiffness
+            number = goksem_hargreaves_force(U, alpha * E, W, thermal * u[i] * u[i])
+            rigid = martin_force(w[i], u[i], viscosity)
+            loss[i] = 2.0 * np.minimum(number * R[i] / alpha, rigid) * u[i]
+    return found
 
 
 # Mean shear stress of an Eyring fluid under an elliptic pressure in an even film.

@@ -196,7 +196,7 @@ def mixed_friction(
             films[:] = film[row]
         else:
             for i in range(n):
-                slip = abs(u_s[i]) / max(u[i], LEAST_SPEED)
+                slip = abs(u_s[i]) / np.maximum(u[i], LEAST_SPEED)
                 films[i] = central_film(
                     w[i], R[i], u[i], slip, E, viscosity, alpha, thermal * u[i] * u[i]
                 )
@@ -204,7 +204,7 @@ def mixed_friction(
             b = hertz_half_width(w[i], R[i], E)
             sigma = acting_roughness(power(2.0 * b, exponent), one, cut1, two, cut2)
             xi = asperity_share(films[i] / sigma)
-            p = max(MEAN_PRESSURE * hertz_pressure(w[i], R[i], E), LEAST_LOAD)
+            p = np.maximum(MEAN_PRESSURE * hertz_pressure(w[i], R[i], E), LEAST_LOAD)
             half = u_s[i] / 2.0
             # of the flanks for a coefficient of friction of 1
             flash = MEAN_FLASH * flash_temperature(

@@ -12,11 +12,10 @@ At each contact, in the order of docs/theory/mixed-lubrication.md:
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray, log, pow, side_by_side, sqrt
+from epicyclic.arrays import FloatArray, log, pow, row_by_row, sqrt
 from epicyclic.contact.line_contact import LineContacts
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.flanks import (
@@ -74,15 +73,10 @@ def mixed_friction(
     of_flanks = flanks.equivalent_modulus, *flanks.effusivities, *heights, surfaces.hurst_exponent
     boundary = oil.boundary_friction if boundary is None else boundary
     inlet = oil.dynamic_viscosity, oil.thermal_load(1.0), oil.thermal_conductivity
-    load = contact.line_load
-    parts = load, contact.radius, contact.rolling_speed, contact.sliding_speed
-    places: list[Any] = [np.ascontiguousarray(np.atleast_2d(part)) for part in parts]
-    places.append(np.empty((1, 0)) if film is None else np.atleast_2d(film))
-    for numbers in (of_flanks, (*_oil_constants(oil), *inlet, boundary)):
-        table = side_by_side(numbers)
-        rows = np.broadcast_to(table, (len(places[0]), table.shape[-1]))
-        places.append(np.ascontiguousarray(rows))
-    return kernels.mixed_friction(*places).reshape(load.shape).view(type(load))
+    places = contact.line_load, contact.radius, contact.rolling_speed, contact.sliding_speed
+    films = np.empty((1, 0)) if film is None else film
+    of_oil = *_oil_constants(oil), *inlet, boundary
+    return row_by_row(kernels.mixed_friction, (*places, films), of_flanks, of_oil)
 
 
 def acting_heights(roughness: Iterable[float], surfaces: Surfaces) -> list[float]:

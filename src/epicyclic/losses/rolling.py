@@ -9,17 +9,13 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from epicyclic.arrays import TINY, BoolArray, FloatArray, Points, taken
+from epicyclic.arrays import TINY, BoolArray, FloatArray, Points, row_by_row, taken
 from epicyclic.contact.fitted_models import OilModel, at_each, rolling_scale
 from epicyclic.contact.line_contact import CONDITIONS, Flanks, LineContacts
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.interpolation import along_path, over_pressure
-from epicyclic.kernels.line_contact import (
-    goksem_hargreaves_force,
-    line_load_at_pressure,
-    martin_force,
-)
+from epicyclic.kernels.line_contact import goksem_hargreaves_losses, line_load_at_pressure
 from epicyclic.kernels.mixed_ehl import rolling_loss_number_at
 from epicyclic.losses.contact import MeshContact
 from epicyclic.losses.friction import (
@@ -110,16 +106,10 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
     the load. That of rigid cylinders and an oil of constant viscosity does; where it is smaller, it
     takes over.
     """
-    oil = contact.oil
-    number = goksem_hargreaves_force(
-        contact.speed_number,
-        contact.material_number,
-        contact.load_number,
-        oil.thermal_load(contact.rolling_speed),
-    )
-    elastic = number * contact.radius / oil.pressure_viscosity
-    rigid = martin_force(contact.line_load, contact.rolling_speed, oil.dynamic_viscosity)
-    return 2 * np.minimum(elastic, rigid) * contact.rolling_speed
+    oil, modulus = contact.oil, contact.flanks.equivalent_modulus
+    numbers = modulus, oil.dynamic_viscosity, oil.pressure_viscosity, oil.thermal_load(1.0)
+    places = contact.line_load, contact.radius, contact.rolling_speed
+    return row_by_row(goksem_hargreaves_losses, places, numbers)
 
 
 CONTAINED = RollingFormula(
