@@ -94,9 +94,6 @@ class Answer:
         with np.errstate(over="ignore", invalid="ignore"):  # of errors without bound
             for name, loss in self.result.losses.items():
                 older = before.result.losses[name].watts
-                losses[name] = loss
-                if not loss.follows and older is loss.watts and before is not self:  # drag
-                    continue
                 if loss.follows not in steps:
                     steps[loss.follows] = self._step(loads, loss)
                 step = steps[loss.follows]
@@ -130,9 +127,7 @@ class Answer:
             {key: either(alike, load, own[key]) for key, load in before.items()},
             ElementResult(
                 {
-                    name: loss
-                    if losses[name].watts is loss.watts
-                    else loss._replace(watts=either(alike, losses[name].watts, loss.watts))
+                    name: loss._replace(watts=either(alike, losses[name].watts, loss.watts))
                     for name, loss in result.losses.items()
                 }
             ),
