@@ -248,8 +248,7 @@ def _plain_errors(path: Path) -> Iterator[None]:
     except BrokenPipeError:  # of a pipe whose reader has seen enough
         raise
     except OSError as error:
-        reason = f"cannot be written: {error.strerror or error}."
-        raise _error(path, FILE, reason, REMEDY) from None
+        raise _error(path, FILE, f"cannot be written: {error.strerror or error}.", REMEDY) from None
     except RuntimeError as error:
         if not str(error).startswith("NetCDF: "):
             raise

@@ -233,8 +233,7 @@ def _check(path: Path) -> None:
             refuse("does not exist or is not a file.", "Check the path.")
         if path.stat().st_size > LARGEST:
             refuse(f"is larger than {LARGEST // 10**6} MB.", "Give a smaller file.")
-        start = read_bytes(path, "NetCDF", len(_SIGNATURE), whole=False)
-        if not start.startswith(_SIGNATURE):
+        if not read_bytes(path, "NetCDF", len(_SIGNATURE), whole=False).startswith(_SIGNATURE):
             refuse("is not a NetCDF 4 file.", _MAKE_AGAIN)
         with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
             if not all(_ends(data, place) for place in _heaps(data)):

@@ -188,10 +188,9 @@ def describe_range(
     noun: str, low: float | None, high: float | None, unit: str = "", *, open_low: bool = False
 ) -> str:
     """`noun` with its bounds: ``"a length > 0 mm and <= 100000 mm"``."""
-    bounds = ((">" if open_low else ">=", low), ("<=", high))
     limits = [
         f"{sign} {format_number(bound, 10)} {unit}".rstrip()
-        for sign, bound in bounds
+        for sign, bound in ((">" if open_low else ">=", low), ("<=", high))
         if bound is not None
     ]
     return f"{noun} {' and '.join(limits)}".rstrip()

@@ -129,8 +129,7 @@ def _bearing_model(table: ShaftBearingTable, oil: Oil, folder: Path) -> BearingM
         assert points is not None
         return TableModel(points)
     if table.model == "skf-2018":
-        constants = skf_constants(table.type, table.series or "", table.cage)
-        return _skf_model(table, oil, constants)
+        return _skf_model(table, oil, skf_constants(table.type, table.series or "", table.cage))
     by_film = _film_model(table, oil)
     if by_film is not None:
         return by_film

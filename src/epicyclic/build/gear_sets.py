@@ -173,8 +173,7 @@ def _meshes(
     # the tool of each gear serves the mate that reaches deepest
     needed: dict[str, float] = {}
     for mesh in gearing.geometries:
-        ends = ((mesh.gear1, mesh.inner_radii[0]), (mesh.gear2, mesh.inner_radii[1]))
-        for gear, radius in ends:
+        for gear, radius in ((mesh.gear1, mesh.inner_radii[0]), (mesh.gear2, mesh.inner_radii[1])):
             deeper = max if gear.internal else min
             needed[gear.name] = deeper(radius, needed.get(gear.name, radius))
     tools = {
@@ -211,8 +210,7 @@ def gear_bodies(
 ) -> tuple[GearBody, GearBody]:
     """Materials, root fillets and rims of both members of a mesh, `planets` of which are alike."""
     made = []
-    members = zip((mesh.gear1, mesh.gear2), tables, (1, planets), strict=True)
-    for gear, table, loads in members:
+    for gear, table, loads in zip((mesh.gear1, mesh.gear2), tables, (1, planets), strict=True):
         thickness, material = rim_thickness(table), table.material
         tool = cutting_tool(gear, table.tool_tip_radius)
         rim = None if thickness is None else Rim(thickness, loads)

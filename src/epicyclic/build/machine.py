@@ -116,9 +116,7 @@ def term_nodes(machine: Machine) -> dict[tuple[str, str], tuple[str, ...]]:
 
 def _at_flanks(mesh: GearMesh) -> tuple[str, ...]:
     """Losses of a mesh that depend on the temperature of its flanks, and not on the oil's."""
-    if mesh.models.friction.takes_oil_temperature:
-        return ("rolling",)
-    return ("sliding", "rolling")
+    return ("rolling",) if mesh.models.friction.takes_oil_temperature else ("sliding", "rolling")
 
 
 def _fluids_at(
@@ -622,6 +620,5 @@ def operation_of(case: Case) -> Operation:
 def layout_of(case: Case) -> Layout:
     """What the result of a case consists of."""
     if isinstance(case, TrainCase) and case.models.temperatures == "inlet":
-        elements = [*_sets(case, set_cases(case), {}), *_parts(case, case.shape.names)]
-        return _layout(case, elements)
+        return _layout(case, [*_sets(case, set_cases(case), {}), *_parts(case, case.shape.names)])
     return build(case).layout

@@ -187,8 +187,7 @@ class SetCase:
             return friction_model(name, settings)
         if name not in offered("friction_models"):
             allowed = "belongs to a plug-in that is not installed."
-            problem = Problem("models.friction", name, allowed, "Choose another model.")
-            raise InputError([problem])
+            raise InputError([Problem("models.friction", name, allowed, "Choose another model.")])
         model: FrictionModel = load("friction_models", name)(self)
         return model
 

@@ -248,9 +248,7 @@ class CaseTable(Table):
             validation.case._source = source
             found += _part_problems(validation.case, {name: name for name in _SHAFTS}, {})
         sound = None if validation.problems else validation.case
-        design = None
-        if before is not None and before._only_operated(tables):
-            design = before._design
+        design = before._design if before is not None and before._only_operated(tables) else None
         made = cls._made(sound, tables, source, list(dict.fromkeys(found)), design)
         made._found, made._sound = told, valid.sections
         if gearing is not None:
@@ -273,8 +271,7 @@ class CaseTable(Table):
         if case is not None and getattr(case, "uncertainty", {}):
             problems = [*problems, *stated_values(case)[1]]
         if case is None or problems:
-            ordered = sorted(problems, key=lambda problem: _position(cls, problem))
-            raise InputError(ordered, source)
+            raise InputError(sorted(problems, key=lambda problem: _position(cls, problem)), source)
         return case
 
     def __getitem__(self, key: str) -> Any:

@@ -50,8 +50,7 @@ def _planetary(parts: Parts) -> Gearing:
         _pairing(parts, "ring_mesh", ("planet", "ring"), (planet, ring), True, efficiency),
     )
     names = ("sun", "planet", "ring")
-    bodies = {name: name for name in names}
-    gearing = Gearing(bodies, ("planet",), meshes)
+    gearing = Gearing({name: name for name in names}, ("planet",), meshes)
     if "gears" not in parts:
         return gearing
     levers = {
@@ -77,8 +76,7 @@ def _pair(parts: Parts) -> Gearing:
     efficiency: float = parts.get("efficiency", 1.0)
     mesh = _pairing(parts, "mesh", ("pinion", "gear"), (one, two), internal, efficiency)
     names = ("pinion", "gear")
-    bodies = {name: name for name in names}
-    gearing = Gearing(bodies, (), (mesh,))
+    gearing = Gearing({name: name for name in names}, (), (mesh,))
     if "gears" not in parts:
         return gearing
     return replace(

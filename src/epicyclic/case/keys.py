@@ -222,8 +222,7 @@ def with_changes(kind: type[Table], tables: dict[str, Any], changes: Mapping[str
         for other in [] if value_at(tables, path) is None else _excluded(kind, tables, path):
             if not any(one[: len(other)] == other for one in stated):
                 former = f"replaces {dotted(other)} = {written(value_at(tables, other))}."
-                shown = written(value_at(tables, path))
-                replaced.append(Found(dotted(path), shown, former))
+                replaced.append(Found(dotted(path), written(value_at(tables, path)), former))
                 tables = without(tables, other)
     return Changes(tables, problems, tuple(replaced))
 

@@ -81,8 +81,7 @@ def cross_check(
         allowed = f'must be a different member from operation.input, "{operation.input}".'
         for key in ("fixed", "second_input"):
             if getattr(operation, key) == operation.input:
-                remedy = "Name one of the other two."
-                yield Problem(f"operation.{key}", "", allowed, remedy)
+                yield Problem(f"operation.{key}", "", allowed, "Name one of the other two.")
     solver = sections.get("contact_solver")
     if isinstance(solver, ContactSolver):
         yield from law_problems("contact_solver", solver)
@@ -100,8 +99,7 @@ def cross_check(
     toothed = {"sun", "planet", "ring"} <= sections.keys()
     if isinstance(sharing, LoadSharing) and toothed and not checked:
         # tooth numbers are enough, whether the gears fit or not
-        whole = gearing or expand({"gears": None, **sections})[0]
-        yield from _check_load_sharing(sharing, whole)
+        yield from _check_load_sharing(sharing, gearing or expand({"gears": None, **sections})[0])
     for check, needed in _CHECKS:
         if all(name in sections for name in needed):
             yield from check(*(sections[name] for name in needed))
@@ -429,8 +427,7 @@ def lubrication_problems(train: TrainCase) -> Iterator[Problem]:
         found = [*check_sump(own, train.thermal), *check_wetting(own, train.thermal)]
         if train.shape.sets[name].listed:
             found += check_immersion(own, train.shape.sets[name].members)
-        for problem in found:
-            yield replace(problem, key=_key(name, problem.key))
+        yield from (replace(problem, key=_key(name, problem.key)) for problem in found)
 
 
 def _level_problems(train: TrainCase) -> Iterator[Problem]:

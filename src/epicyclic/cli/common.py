@@ -186,8 +186,7 @@ def wrong_ending(option: str, path: Path, endings: Sequence[str]) -> list[Proble
     """The problem of a file that ends otherwise."""
     if path.suffix in endings:
         return []
-    allowed = f"must end in {' or '.join(endings)}."
-    return [Problem(option, str(path), allowed, "Name such a file.")]
+    return [Problem(option, str(path), f"must end in {' or '.join(endings)}.", "Name such a file.")]
 
 
 def beside(path: Path, part: str) -> Path:
@@ -446,13 +445,11 @@ def parse_changes(options: Sequence[str]) -> dict[str, Any]:
 
 def _alternatives(key: str) -> list[str]:
     """The keys that braces stand for: ``{sun,ring}.teeth``."""
-    parts = re.split(r"\{([^{}]*)\}", key)
     choices = [
         [name.strip() for name in part.split(",")] if place % 2 else [part]
-        for place, part in enumerate(parts)
+        for place, part in enumerate(re.split(r"\{([^{}]*)\}", key))
     ]
-    count = math.prod(map(len, choices))
-    if count > MOST_KEYS:
+    if math.prod(map(len, choices)) > MOST_KEYS:
         allowed = f"stands for more than {MOST_KEYS} keys."
         shown, remedy = f'"{one_line(key)}"', "Give fewer names in braces."
         raise one_problem("--set", shown, allowed, remedy, "the command")

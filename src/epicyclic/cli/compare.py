@@ -144,8 +144,7 @@ def compare(
     keys = [key.strip() for key in (fit or "").split(",") if key.strip()]
     if output is not None and not keys:
         allowed = "holds the calibrated case, but no keys are calibrated."
-        remedy = "Name the keys with --fit."
-        raise one_problem("-o", str(output), allowed, remedy, "the command")
+        raise one_problem("-o", str(output), allowed, "Name the keys with --fit.", "the command")
     if runner.shard is not None:
         others = {"--relative": relative, "--hold-out": hold_out, "--journal": journal}
         _check_shard(json_file, {"--fit": fit, **others})

@@ -182,10 +182,9 @@ def _check_options(
 ) -> None:
     problems = []
     if Path(map_or_case).suffix == _MAP_SUFFIX:
-        given = (("--set", changes), ("--map", map_file), ("--shard", runner.shard))
         problems += [
             Problem(name, "", "applies to a case, not to a map.", "Leave it out.")
-            for name, value in given
+            for name, value in (("--set", changes), ("--map", map_file), ("--shard", runner.shard))
             if value
         ]
     for name, path, suffixes in (("--map", map_file, (_MAP_SUFFIX,)), ("-o", output, _OUTPUTS)):

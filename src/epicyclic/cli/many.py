@@ -240,8 +240,7 @@ def loss_map(
         echo(f"State {state} is left out: it {reason}", err=True)
     if heated:
         check_axis(len(coordinates(plan).get("temperature", ())))
-    write = map_writer(plan, output, name, own)
-    compute(plan, output, runner, write, format=name, lumped=own)
+    compute(plan, output, runner, map_writer(plan, output, name, own), format=name, lumped=own)
 
 
 def map_writer(
@@ -271,10 +270,9 @@ def map_writer(
 
 def _check_given(values: Mapping[str, str | None]) -> None:
     """Raise `InputError` for options without which a map cannot be computed."""
-    examples = {"speed": "0:4000:41 rpm", "torque": "-1000:1000:41 N*m"}
     problems = [
         Problem(f"--{name}", "", "is missing.", f'For example --{name} "{example}".')
-        for name, example in examples.items()
+        for name, example in {"speed": "0:4000:41 rpm", "torque": "-1000:1000:41 N*m"}.items()
         if values[name] is None
     ]
     raise_any(problems, "the command")

@@ -778,9 +778,7 @@ def builtin_model(
     True
     """
     file = library.oil_model_file(oil.name)
-    if file is None or changed_properties(oil):
-        return None
-    return read_oil_model(file)
+    return None if file is None or changed_properties(oil) else read_oil_model(file)
 
 
 @lru_cache(maxsize=64)
@@ -803,6 +801,4 @@ def _plain(value: Any) -> Any:
     """`value` without the sources beside its numbers."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items() if key != "source"}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return value
+    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value

@@ -454,8 +454,7 @@ def form_radius(
 
     [m] Raises `ValueError` if the tool cannot generate this gear.
     """
-    cut = fit_tool(gear, default_tool(gear) if tool is None else tool)
-    return _involute_start(gear, cut)[0]
+    return _involute_start(gear, fit_tool(gear, default_tool(gear) if tool is None else tool))[0]
 
 
 def tooth_outline(

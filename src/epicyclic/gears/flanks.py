@@ -259,5 +259,4 @@ def rq_of(
     >>> round(1e6 * rq_of("Rz", 3e-6), 3)
     0.627
     """
-    factor = {"Rq": 1.0, "Ra": 1 / RA_OVER_RQ, "Rz": 1 / (RZ_OVER_RA * RA_OVER_RQ)}
-    return factor[parameter] * value
+    return {"Rq": 1.0, "Ra": 1 / RA_OVER_RQ, "Rz": 1 / (RZ_OVER_RA * RA_OVER_RQ)}[parameter] * value

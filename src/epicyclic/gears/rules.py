@@ -97,8 +97,7 @@ def _check_measure(gear: Gear, key: str, table: StatedGear) -> Problem | None:
     low, high = sorted((gear.root_radius, gear.tip_radius))
     if low < radius < high:
         return None
-    value = getattr(table, what)
-    shown = millimetres(value)
+    shown = millimetres(getattr(table, what))
     allowed = f"touches at diameter {millimetres(2 * radius)}, beyond the flanks, which reach from "
     allowed += f"{millimetres(2 * low)} to {millimetres(2 * high)}."
     return Problem(f"{key}.{what}", shown, allowed, f"Check it, tooth number and module. {remedy}")
@@ -252,8 +251,7 @@ def _negative_clearance(gearing: Gearing, tip: Gear, root: Gear, clearance: floa
     key, shown = _tips(gearing, tip)
     allowed = f"the tip of the {tip.name} reaches {millimetres(-clearance)} into the root of the "
     allowed += f"{root.name} (negative tip clearance)."
-    remedy = f"{_tip_limit(gearing, tip)}or cut the {root.name} deeper."
-    return Problem(key, shown, allowed, remedy)
+    return Problem(key, shown, allowed, f"{_tip_limit(gearing, tip)}or cut the {root.name} deeper.")
 
 
 def _tip_limit(gearing: Gearing, gear: Gear) -> str:
@@ -343,8 +341,7 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
             change = f"reduce {gearing.key(gear.name)}.tool_tip_radius"
     key, shown = _tips(gearing, mate)
     allowed = f"the tip of the {mate.name} {fault}."
-    remedy = f"{_tip_limit(gearing, mate)}or {change}."
-    return [Problem(key, shown, allowed, remedy)]
+    return [Problem(key, shown, allowed, f"{_tip_limit(gearing, mate)}or {change}.")]
 
 
 def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
@@ -413,8 +410,7 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
 
 def tooth_notes(gearing: Gearing) -> Iterator[str]:
     """A note on every gear of unusual profile shift, and mesh whose teeth are far too thin."""
-    named = {gear.name: gear for mesh in gearing.geometries for gear in mesh.gears}
-    for gear in named.values():
+    for gear in {gear.name: gear for mesh in gearing.geometries for gear in mesh.gears}.values():
         if abs(shift := gear.profile_shift_coefficient) > LARGEST_SHIFT:
             yield (
                 f"The profile shift of the {gear.name} is {shift:z.2f}: its number of "

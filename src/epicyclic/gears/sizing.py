@@ -152,7 +152,6 @@ def _sized(gearing: Gearing) -> Iterator[_Sized]:
         if not all(math.isclose(a, b, rel_tol=_ALIKE, abs_tol=least) for a, b in pairs):
             continue
         teeth = [gearing.tables[gear].teeth for gear in (mesh.first, mesh.second)]
-        central = gearing.central_gear(mesh)
         yield _Sized(
             mesh,
             (mesh.first, mesh.second),
@@ -160,7 +159,7 @@ def _sized(gearing: Gearing) -> Iterator[_Sized]:
             teeth[0] + (-1 if mesh.internal else 1) * teeth[1],
             one,
             tuple(gearing.distance_key(mesh).split(".")),
-            gives_way=mesh.second if mesh.internal else central or mesh.first,
+            gives_way=mesh.second if mesh.internal else gearing.central_gear(mesh) or mesh.first,
             group=gearing.planet_of(mesh) or mesh.key,
         )
 
@@ -321,8 +320,7 @@ class _Solver:
     def _tell(self, key: str, value: str, mesh: _Sized) -> None:
         """Note what was found from a mesh."""
         if mesh.backlash is None:
-            distance = self.distances[mesh.group]
-            least = micrometres(recommended_backlash(mesh.rack, distance))
+            least = micrometres(recommended_backlash(mesh.rack, self.distances[mesh.group]))
             with_what = (
                 f"for nominal teeth without backlash; ISO/TR 10064-2 recommends {least} or more"
             )

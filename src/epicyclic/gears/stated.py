@@ -232,8 +232,7 @@ def fitting(gear: Gear, key: str, table: StatedGear, over: float) -> str:
     rack, key = gear.rack, thickness_key(key, table)
     arc = 2 * over * rack.normal_module * math.tan(rack.transverse_pressure_angle)
     if table.span_measurement is not None:
-        normal = math.sin(rack.normal_pressure_angle)
-        change = 2 * over * rack.normal_module * normal * gear.side
+        change = 2 * over * rack.normal_module * math.sin(rack.normal_pressure_angle) * gear.side
         return _length(key, table.span_measurement - change, up=gear.internal)
     if table.dimension_over_pins is not None and table.measuring_pin_diameter is not None:
         half = gear.thickness_half_angle - arc / (2 * gear.reference_radius)

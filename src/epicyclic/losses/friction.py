@@ -499,8 +499,7 @@ def mixed_ehl(contact: LineContacts, settings: FrictionSettings) -> FloatArray:
     Talbot (2012), Eq. 5.8 and Table 5.2(a); branches in the film ratio blended, conditions
     outside Table 5.1 held at its limits (`held_in_table`). [1]
     """
-    held = held_in_table(contact, oil_held=settings.oil_held)
-    return at_each(sliding_friction_at, held)
+    return at_each(sliding_friction_at, held_in_table(contact, oil_held=settings.oil_held))
 
 
 def paired_friction(contact: LineContacts, settings: FrictionSettings) -> FloatArray:
@@ -590,8 +589,7 @@ class FrictionMap:
         ranges, source = [], "[friction_table] of the case"
         for name, points in self.axes:
             label, unit = _AXES[name]
-            ends = points[0], points[-1]
-            low, high = (unit.to_display(it) if unit.si else it for it in ends)
+            low, high = (unit.to_display(it) if unit.si else it for it in (points[0], points[-1]))
             ranges.append(Range(name, label, low, high, unit, source))
         return tuple(ranges)
 

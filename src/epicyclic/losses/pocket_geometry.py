@@ -136,7 +136,6 @@ def gap_feet(
 
 def _section(mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool) -> tuple[Any, Any]:
     """Both gears and the figures of their mesh as the kernels take them."""
-    clearances = contact_clearances(mesh, drives1)
     figures = np.array(
         [
             mesh.side * mesh.center_distance,
@@ -145,7 +144,7 @@ def _section(mesh: Mesh, tools: tuple[Tool | None, Tool | None], drives1: bool) 
             mesh.side,
             mesh.operating_pressure_angle,
             mesh.line_of_action,
-            *clearances,
+            *contact_clearances(mesh, drives1),
         ]
     )
     return (*_flank(mesh.gear1, tools[0]), *_flank(mesh.gear2, tools[1])), figures
@@ -250,10 +249,9 @@ def pocket_cells(
     gap, middle = (_along_mesh([read[..., part] for read in walls]) for part in (0, np.s_[1:]))
     gap, middle = (_mean_of_ends(array[:, :-1]) for array in (gap, middle))
     volume = width * _mean_of_ends(area)
-    growth = _growth(volume, width * _mean_of_ends(rate), pitch / steps)
     cells = Cells(
         volume,
-        growth,
+        _growth(volume, width * _mean_of_ends(rate), pitch / steps),
         area,
         width * gap,
         *_reaches(width, centroid, middle),

@@ -210,8 +210,7 @@ class FlowTable:
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures | None:
         """Figures of a flow; None where the table has none. Parameters as for `pocket_flow`."""
-        number = FlowFamily.number(speed, mixture, pressure)
-        scaled = self._at(number)
+        scaled = self._at(FlowFamily.number(speed, mixture, pressure))
         if scaled is None or not np.isfinite(scaled).all():
             return None
         figures = from_scaled(scaled, speed, mixture.density, self.number.size, self.error)

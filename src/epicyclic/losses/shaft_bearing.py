@@ -252,8 +252,7 @@ def harris_coefficient(bearing: CatalogueBearing, load: BearingLoad) -> float:
     if bearing.type not in _OF_BALLS:
         return TYPE_CONSTANTS[bearing.type, bearing.cage].coefficient
     factor, exponent = _OF_BALLS[bearing.type]
-    ratio = static_load(bearing, load) / bearing.static_load_rating
-    return factor * math.pow(ratio, exponent)
+    return factor * math.pow(static_load(bearing, load) / bearing.static_load_rating, exponent)
 
 
 def load_moment(
@@ -486,8 +485,7 @@ def limiting_speed(bearing: CatalogueBearing) -> float:
     >>> round(limiting_speed(CatalogueBearing("tapered", 0.03, 0.055, 0.017)) / RPM)
     12000
     """
-    limit = TYPE_CONSTANTS[bearing.type, bearing.cage].limit
-    return 1e-3 * limit * RPM / bearing.pitch_diameter
+    return 1e-3 * TYPE_CONSTANTS[bearing.type, bearing.cage].limit * RPM / bearing.pitch_diameter
 
 
 def limit_text(

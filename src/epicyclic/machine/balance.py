@@ -55,8 +55,7 @@ def freedom(
     """What stays open with the speed of `driven`, and of the bodies `given`, known."""
     bodies = machine.bodies
     others = _matrix(machine, [body for body in given if body != driven])
-    whole = np.vstack([others, np.eye(len(bodies))[bodies.index(driven)]])
-    free = _null_space(whole)
+    free = _null_space(np.vstack([others, np.eye(len(bodies))[bodies.index(driven)]]))
     moves = _null_space(others)
     blocked = bool(np.abs(moves[bodies.index(driven)]).max(initial=0.0) < SINGULAR)
     loose = tuple(
@@ -134,9 +133,7 @@ def exact_speeds(machine: Machine, given: Mapping[str, int]) -> dict[str, Fracti
             if left in other:
                 _take_out(other, left, own)
         done[left] = own
-    if len(done) < len(bodies):
-        return None
-    return {body: done[body]["="] for body in bodies}
+    return None if len(done) < len(bodies) else {body: done[body]["="] for body in bodies}
 
 
 def _take_out(row: dict[str, Fraction], body: str, other: Mapping[str, Fraction]) -> None:

@@ -226,8 +226,7 @@ def roller_conductance(
     races = np.log(inner_pitch / (math.pi * inner)) + np.log(outer_pitch / (math.pi * outer))
     roller = np.log(2 * roller_diameter / inner) + np.log(2 * roller_diameter / outer)
     resistance = (races + roller) / (math.pi * conductivity)
-    lengths = np.broadcast_to(length, loaded.shape)[loaded]
-    return float((lengths / resistance).sum())
+    return float((np.broadcast_to(length, loaded.shape)[loaded] / resistance).sum())
 
 
 # Heat that a gearbox gives to the air and to what it stands on: ISO/TR 14179-2 and -1.

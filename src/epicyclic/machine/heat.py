@@ -186,8 +186,7 @@ def _passes(
             machine, operation, model.fluids(held), unheated, earlier, change <= NEARLY
         )
         if isinstance(model, NetworkModel):
-            seen = model.seen(solution, solution.losses.values())
-            answer = yield _Asked(model, held[OIL], seen)
+            answer = yield _Asked(model, held[OIL], model.seen(solution, solution.losses.values()))
         else:
             answer = _heated(model.answer(solution))
         found.append((held, solution, answer))
@@ -225,8 +224,7 @@ def _expected(
 
     def ahead(values: FloatArray) -> _Asked:
         held = _held(model, values)
-        seen = model.seen(last[1], _expected_losses(before, last, held))
-        return _Asked(model, held[OIL], seen)
+        return _Asked(model, held[OIL], model.seen(last[1], _expected_losses(before, last, held)))
 
     def off(values: FloatArray) -> FloatArray:
         _, around, seen = ahead(values)

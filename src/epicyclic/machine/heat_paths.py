@@ -83,9 +83,8 @@ def gears_of(own: GearSet) -> Iterator[OneGear]:
     planets = {planet.nodes[0] for planet in own.planets}
     seen: set[tuple[str, str]] = set()
     for mesh in own.meshes:
-        gears = mesh.mesh.gear1, mesh.mesh.gear2
         for node, body, gear, material in zip(
-            mesh.nodes, mesh.bodies, gears, mesh.materials, strict=True
+            mesh.nodes, mesh.bodies, (mesh.mesh.gear1, mesh.mesh.gear2), mesh.materials, strict=True
         ):
             if (node, gear.name) not in seen:
                 seen.add((node, gear.name))

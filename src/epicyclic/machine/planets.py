@@ -281,8 +281,7 @@ def planet_load(
 
 def radial_force(contacts: Contacts, centrifugal: float) -> complex:
     """Force of all meshes and of rotation on the planet, t + i r. [N]"""
-    forces = (contact.duty.force * contact.direction for contact in contacts)
-    return sum(forces, 1j * centrifugal)
+    return sum((contact.duty.force * contact.direction for contact in contacts), 1j * centrifugal)
 
 
 def _axes(force: complex) -> tuple[FloatArray, FloatArray]:
@@ -308,8 +307,7 @@ def tilt_planet(
 
     def imbalance(scaled: FloatArray) -> FloatArray:
         load = _load_at(scaled * scale, contacts, centrifugal)
-        answer = _tilt_under(load, contacts, bearing, centrifugal)
-        return scaled - answer / scale
+        return scaled - _tilt_under(load, contacts, bearing, centrifugal) / scale
 
     found = root(imbalance, tilt / scale, method="hybr", tol=TILT_TOLERANCE / 10)
     if np.abs(found.fun).max() <= TILT_TOLERANCE:
@@ -760,15 +758,6 @@ def _bearing_figures(
         )
         for radius in (bearing.inner_radius, bearing.outer_radius)
     )
-    conductance = roller_conductance(  # through the loaded rollers
-        inner,
-        outer,
-        bearing.slice_width,
-        bearing.roller_diameter,
-        math.pi * bearing.inner_diameter / bearing.rollers_per_row,
-        math.pi * bearing.outer_diameter / bearing.rollers_per_row,
-        own.conductivity,
-    )
     return BearingFigures(
         radial_force=load.force,
         moment=math.hypot(load.moment_x, load.moment_y),
@@ -780,7 +769,15 @@ def _bearing_figures(
         flattening=hertz_half_width(*hardest) / bearing.inner_radius,
         resistance=loss / resisted if resisted else 0.0,
         contact_temperature=oil.temperature,
-        heat_conductance=conductance,
+        heat_conductance=roller_conductance(  # through the loaded rollers
+            inner,
+            outer,
+            bearing.slice_width,
+            bearing.roller_diameter,
+            math.pi * bearing.inner_diameter / bearing.rollers_per_row,
+            math.pi * bearing.outer_diameter / bearing.rollers_per_row,
+            own.conductivity,
+        ),
         loads=loads,
     )
 

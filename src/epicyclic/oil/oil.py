@@ -362,8 +362,7 @@ def mixture_state(oil: OilState, oil_fraction: float, pressure: float) -> Mixtur
     air_density = pressure / (AIR_GAS_CONSTANT * oil.temperature)
     density = oil_fraction * oil.density + (1 - oil_fraction) * air_density
     oil_mass = oil_fraction * oil.density / density
-    air = air_viscosity(oil.temperature)
-    viscosity = oil_mass * oil.dynamic_viscosity + (1 - oil_mass) * air
+    viscosity = oil_mass * oil.dynamic_viscosity + (1 - oil_mass) * air_viscosity(oil.temperature)
     return MixtureState(oil_fraction, density, viscosity)
 
 

@@ -778,9 +778,7 @@ def _rolling(name: str, result: Result) -> float:
 
 
 def _temperature(node: str, result: Result) -> float:
-    if result.heat is None:
-        return math.nan
-    return CELSIUS.to_display(result.heat.temperatures[node])
+    return math.nan if result.heat is None else CELSIUS.to_display(result.heat.temperatures[node])
 
 
 def _part(group: str, name: str, result: Result) -> DataclassInstance | None:

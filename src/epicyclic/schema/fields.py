@@ -132,8 +132,7 @@ def describe(annotation: Any, metadata: Sequence[Any] = ()) -> str:
         return quantity.describe()
     choices = choices_of(annotation)
     if choices:
-        quoted = [f'"{choice}"' for choice in choices]
-        return either(quoted)
+        return either([f'"{choice}"' for choice in choices])
     if member in (int, float):
         low, high, is_open = bounds_of(annotation, metadata)
         noun = "a whole number" if member is int else "a number"

@@ -33,8 +33,7 @@ def plain(value: Any) -> Any:
 
     Raises `InputError` if it is too large or nested too deep to be part of a case.
     """
-    budget = iter(range(_MOST_VALUES))
-    return _plain(value, _DEEPEST, budget)
+    return _plain(value, _DEEPEST, iter(range(_MOST_VALUES)))
 
 
 _UNIT_IN_KEY = re.compile(r"(?P<key>.+?)\s+\[(?P<unit>[^\[\]]+)\]")

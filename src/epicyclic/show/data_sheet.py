@@ -233,8 +233,7 @@ def case_table() -> RenderableType:
         groups = library.case_variants().get(name, [])
         words = "\n".join(f"{' '.join(group['words'])}  ({group['about']})" for group in groups)
         table.add_row(name, library.builtin_case(name)["title"], words)
-    example = Text("For example: epicyclic run talbot-2012-n6-polished-40C")
-    return Group(table, example)
+    return Group(table, Text("For example: epicyclic run talbot-2012-n6-polished-40C"))
 
 
 def oil_table() -> RenderableType:

@@ -43,10 +43,9 @@ def result_tables(
 
 def _headline(result: Result) -> Group:
     """Operating point and key figures."""
-    found = [f"{one.label} {one.text}" for one in tables.key_figures(result)]
     lines: list[RenderableType] = [
         Text(operating_line(result.inputs["operation"])),
-        Columns(found, padding=(0, 3)),
+        Columns([f"{one.label} {one.text}" for one in tables.key_figures(result)], padding=(0, 3)),
     ]
     if result.train and (locking := tables.locking_text(result.train)):
         lines.append(Text(locking, style="bold"))
@@ -109,12 +108,11 @@ def friction_table(rows: Sequence[FrictionComparison]) -> RenderableType:
         f"Spread: {low:.1f} to {high:.1f} W" + (f", a factor of {high / low:.2f}." if low else ".")
     )
     best, why = recommended(rows)
-    advice = Text.assemble(
-        ("Recommended: ", "bold"), f"{best.name}, because {why}. {sentence(best.standing)}"
-    )
     return spaced(
         Group(table, quick, spread),
-        advice,
+        Text.assemble(
+            ("Recommended: ", "bold"), f"{best.name}, because {why}. {sentence(best.standing)}"
+        ),
         listed("Out of range, and for another oil", [it for row in rows for it in _left(row)]),
         listed("Reliability of the models", [f"{row.name}: {row.standing}" for row in rows]),
         listed("Sources", [f"{row.name}: {row.title}, {row.source}" for row in rows]),

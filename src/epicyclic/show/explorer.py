@@ -93,7 +93,6 @@ def _axis(data: xr.Dataset, name: str) -> dict[str, Any]:
     """An axis with its values; between whole numbers and names there is nothing."""
     axis = data[name]
     unit = str(axis.attrs.get("units", "1"))
-    rising = axis.dtype.kind == "f" and bool((np.diff(axis.values) > 0).all())
     return {
         "name": name,
         "label": _label(data, name),
@@ -101,7 +100,7 @@ def _axis(data: xr.Dataset, name: str) -> dict[str, Any]:
         "key": key_of(axis),
         "stated": "" if unit == "1" else unit,
         "values": axis.values.tolist(),
-        "continuous": rising,
+        "continuous": axis.dtype.kind == "f" and bool((np.diff(axis.values) > 0).all()),
     }
 
 

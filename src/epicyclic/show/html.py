@@ -159,8 +159,7 @@ def _library() -> Markup:
     """plotly.js, packed: 1.9 MB in place of 4.8."""
     from plotly.offline import get_plotlyjs
 
-    packed = gzip.compress(get_plotlyjs().encode(), mtime=0)
-    return Markup(base64.b64encode(packed).decode())
+    return Markup(base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0)).decode())
 
 
 # Reports as PDF: the page of `report_html`, set by WeasyPrint.
@@ -189,6 +188,5 @@ def page_bytes(page: str, ending: str) -> bytes:
     # it reports every property of style sheets for screens
     logging.getLogger("weasyprint").setLevel(logging.CRITICAL)
     fetcher = weasyprint.urls.URLFetcher(allowed_protocols=["data"])  # nothing from elsewhere
-    document = weasyprint.HTML(string=page, url_fetcher=fetcher)
-    pdf: bytes = document.write_pdf()
+    pdf: bytes = weasyprint.HTML(string=page, url_fetcher=fetcher).write_pdf()
     return pdf

@@ -69,8 +69,7 @@ def input_tables(
                 stated = given["sets"].get(key, {})
                 kept = {k: v for k, v in own.items() if k not in _SHARED or k in stated}
                 schema, _ = form_of_set(own)
-                of_set = _Source(schema, stated, source.used)
-                tables += _set_tables(of_set, kept, key)
+                tables += _set_tables(_Source(schema, stated, source.used), kept, key)
         elif name in ElementTables.model_fields:
             title = _TITLES_OF_PARTS.get(name, _title(name))
             tables += _side_by_side(source, title, (name,), table)
@@ -197,8 +196,7 @@ def _beside(
         ]
         first = next(part for part, values in leaves.items() if path in values)
         rows.append((Cell(_words(path)), *cells, _about(source, (*place, first, *path))))
-    heads = (part.replace("_", " ") for part in parts)
-    return _with_meaning(("", *heads), tuple(rows), title)
+    return _with_meaning(("", *(part.replace("_", " ") for part in parts)), tuple(rows), title)
 
 
 def _with_meaning(head: tuple[str, ...], rows: tuple[tuple[Cell, ...], ...], title: str) -> Table:

@@ -175,8 +175,7 @@ def _bearings(case: Case, result: Result) -> dict[str, xr.Dataset]:
     for key, figures in result.bearings.items():
         if figures.loads is not None:
             name, _, planets = key.rpartition(".")
-            sets = build(case).sets
-            own = next(one.bearing for one in sets[name].planets if one.key == planets)
+            own = next(one.bearing for one in build(case).sets[name].planets if one.key == planets)
             assert own is not None
             assert isinstance(own.bearing, RollerBearing)
             found[key] = bearing_details(own.bearing, figures.loads)
@@ -455,7 +454,6 @@ def save_result(result: ResultRecord | CaseSource, path: str | Path) -> None:
     check_result_output(target)
     kept = result if isinstance(result, ResultRecord) else record(result)
     contents = kept.result
-    text = json.dumps(stated_result(contents), allow_nan=False, ensure_ascii=False)
     attributes = {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
@@ -465,7 +463,7 @@ def save_result(result: ResultRecord | CaseSource, path: str | Path) -> None:
         "conventions": "losses in W of the whole gear set, summed over planets; attribute result: "
         "the result as JSON; attribute given: the case as it was given; groups: meshes, planet "
         "bearing, shapes",
-        "result": text,
+        "result": json.dumps(stated_result(contents), allow_nan=False, ensure_ascii=False),
         "given": json.dumps(kept.given),
     }
     tree = xr.DataTree.from_dict({"/": kept.numbers.assign_attrs(attributes), **kept.fields})
@@ -543,8 +541,7 @@ def open_map(path: str | Path) -> xr.Dataset:
 def _record_of(root: xr.Dataset, fields: dict[str, xr.Dataset]) -> ResultRecord:
     version = root.attrs.get("format_version")
     if version != FORMAT_VERSION:
-        allowed = f"has the format version {version}; this program reads {FORMAT_VERSION}."
-        refuse(allowed, RUN_AGAIN)
+        refuse(f"has the format version {version}; this program reads {FORMAT_VERSION}.", RUN_AGAIN)
     raise_any(problem for path, data in fields.items() for problem in field_problems(path, data))
     stated = dict(root.attrs)
     problems: list[Problem] = []

@@ -182,8 +182,7 @@ def _gears(record: ResultRecord, drawings: Drawings) -> Iterator[Item]:
     drawn = drawings.get("gear-set", ())
     for number_of, (name, gears) in enumerate(sets_of(record.group("gears")).items()):
         picture = (Gallery((drawn[number_of],)),) if number_of < len(drawn) else ()
-        title = f"Gears of {in_words(name)}" if name else "Gears"
-        table = _gears_table(title, gears)
+        table = _gears_table(f"Gears of {in_words(name)}" if name else "Gears", gears)
         if len(gears) <= _MOST_BESIDE:
             yield Row((*picture, table))
         else:
@@ -198,8 +197,7 @@ def _gears_table(title: str, gears: Mapping[str, xr.Dataset]) -> Table:
         shown_ones = (number(float(gear[name]), "", 6) for gear in gears.values())
         unit = unit_text(str(next(iter(gears.values()))[name].attrs["units"]))
         rows.append((Cell(name.replace("_", " ")), *shown_ones, Cell(unit)))
-    names = (name.replace("_", " ") for name in gears)
-    return Table(("", *names, "unit"), tuple(rows), title)
+    return Table(("", *(name.replace("_", " ") for name in gears), "unit"), tuple(rows), title)
 
 
 def _bearings(record: ResultRecord, drawings: Drawings) -> tuple[str, tuple[Item, ...]]:
@@ -542,5 +540,4 @@ def _coordinate(axis: xr.DataArray, at: int) -> Cell:
 def _result(array: xr.DataArray, place: tuple[int, ...]) -> Cell:
     value = float(array.values[place])
     key = f"{array.name}[{','.join(map(str, place))}]"
-    text = f"{100 * value:.2f}" if array.name == "efficiency" else ""
-    return number(value, key, text=text)
+    return number(value, key, text=f"{100 * value:.2f}" if array.name == "efficiency" else "")

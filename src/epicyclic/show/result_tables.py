@@ -128,8 +128,7 @@ def losses_table(result: Result, *, most: int | None = None) -> Table:
         shown_from = max(sorted(losses.values(), reverse=True)[:most][-1], least)
     rows: list[tuple[Cell, ...]] = []
     strong = []
-    grouping = result.inputs["models"].get("load_dependent")
-    tested = ", as tested" if grouping == "as-tested" else ""
+    tested = ", as tested" if result.inputs["models"].get("load_dependent") == "as-tested" else ""
     for group in dict.fromkeys(groups.values()):
         key, rest = group.replace("-", "_"), 0.0
         for name, watts in losses.items():
@@ -402,8 +401,7 @@ def shafts_table(result: Result) -> Table:
     rows.append((Cell("housing"), number(0.0, ""), housing, Cell(""), Cell(""), Cell("at rest")))
     heads = (f"speed, {speed}", f"torque, {torque[0]}", f"power, {power[0]}")
     note = f"{_FLOW_NOTE} The transmitted torque includes those of sets and clutches."
-    head = ("", *heads, f"transmits, {torque[0]}", "")
-    return Table(head, tuple(rows), "Shafts", note=note)
+    return Table(("", *heads, f"transmits, {torque[0]}", ""), tuple(rows), "Shafts", note=note)
 
 
 def rolling_table(result: Result, train: Train) -> Table:
@@ -551,8 +549,7 @@ def _balance(heat: HeatBalance) -> Table:
 
 
 def _shared(watts: float, whole: float, key: str) -> tuple[Cell, Cell]:
-    share = percent(watts / whole) if whole else ""
-    return tenths(watts, key), aligned(share)
+    return tenths(watts, key), aligned(percent(watts / whole) if whole else "")
 
 
 def heat_path_items(heat: HeatBalance) -> tuple[Table | Listing, ...]:
@@ -610,8 +607,7 @@ def remarks(case: Case, result: Result) -> Iterator[str]:
         return
     if result.heat is None and any(mesh.contact is not None for mesh in result.meshes.values()):
         # at the bulk temperatures that its own meshes give to its gears
-        warm = _or_reason(case.updated({"models.temperatures": "flank"}))
-        yield _flank_text(result, warm)
+        yield _flank_text(result, _or_reason(case.updated({"models.temperatures": "flank"})))
     beyond = beyond_range(case, result)
     if beyond is not None:
         free = _or_reason(case.updated({"models.oil_beyond_range": "extrapolated"}))

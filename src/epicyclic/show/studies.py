@@ -46,10 +46,8 @@ def mesh_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
     """All meshes, one after the other, as `epicyclic.mesh_details` returns them."""
     parts: list[RenderableType] = []
     for mesh in meshes.values():
-        title = Text(str(mesh.attrs["title"]), style="bold")
-        parts += [title, _over_period(mesh), _figures(mesh)]
-    notes = _notes(meshes)
-    parts += map(Sentence, notes)
+        parts += [Text(str(mesh.attrs["title"]), style="bold"), _over_period(mesh), _figures(mesh)]
+    parts += map(Sentence, _notes(meshes))
     if any(mesh["transmission_error"].isnull().all() for mesh in meshes.values()):
         told = f'"{MISSING}": this load distribution gives no deflection; compliance does.'
         parts.append(Text(told))
@@ -102,8 +100,7 @@ def _means(mesh: xr.Dataset) -> Iterator[tuple[str, float, str]]:
     error, stiffness = (mesh[name] for name in _OVER_PERIOD)
     weight = mesh["weight"]
     yield "mean transmission error", float((error * weight).sum(skipna=False)), _OVER_PERIOD[0]
-    span = float(error.max() - error.min())
-    yield "transmission error, peak to peak", span, _OVER_PERIOD[0]
+    yield "transmission error, peak to peak", float(error.max() - error.min()), _OVER_PERIOD[0]
     yield "mean mesh stiffness", float((stiffness * weight).sum(skipna=False)), _OVER_PERIOD[1]
 
 
@@ -155,8 +152,7 @@ def pocket_tables(meshes: dict[str, xr.Dataset]) -> RenderableType:
     """All meshes, one after the other, as `epicyclic.pocket_details` returns them."""
     parts: list[RenderableType] = []
     for mesh in meshes.values():
-        title = Text(str(mesh.attrs["title"]), style="bold")
-        parts += [title, _balance(mesh), _extremes(mesh)]
+        parts += [Text(str(mesh.attrs["title"]), style="bold"), _balance(mesh), _extremes(mesh)]
     models = dict.fromkeys(f"Model: {mesh.attrs['model']}." for mesh in meshes.values())
     parts.append(Group(*map(Sentence, (*models, *_notes(meshes)))))
     return spaced(*parts)
@@ -293,8 +289,7 @@ def _legend(comparison: MeasuredComparison) -> str:
 
 
 def _fit_table(fit: Fit) -> Table:
-    interval = f"{100 * fit.confidence:.4g} % interval"
-    heads = ("key", "start", CALIBRATED, "std. error", interval)
+    heads = ("key", "start", CALIBRATED, "std. error", f"{100 * fit.confidence:.4g} % interval")
     table = number_table(f"{CALIBRATED} values", *heads, no_wrap=(True, True))
     table.add_column("unit")
     for item in fit.parameters:
@@ -366,8 +361,7 @@ def duty_tables(data: xr.Dataset) -> RenderableType:
     parts: list[RenderableType] = []
     if "temperature" in data.dims:
         for value in data["temperature"].values:
-            title = f"Oil at {shown(float(value))} °C"
-            parts += _tables(data.sel(temperature=value), title)
+            parts += _tables(data.sel(temperature=value), f"Oil at {shown(float(value))} °C")
     else:
         parts += _tables(data, "Duty cycle")
     stated = [
@@ -389,8 +383,7 @@ def _in_other_units(data: xr.Dataset) -> str:
 
 
 def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
-    modes = [str(name) for name in data["mode"].values]
-    heads = ("", *modes, "total", "of loss")
+    heads = ("", *map(str, data["mode"].values), "total", "of loss")
     table = number_table(f"{title}: energy in kJ", *heads, no_wrap=(True, False))
     lost = data["energy_lost"]
     whole = float(lost.sum())

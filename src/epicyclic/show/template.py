@@ -208,8 +208,7 @@ def _default(field: FieldInfo) -> str:
     if field.default is not None and not field.is_required():
         return toml_value(field.default)
     quantity = quantity_of(field.annotation, tuple(field.metadata))
-    value = f'"... {quantity.display}"' if quantity is not None else "..."
-    return _nested(field.annotation, value)
+    return _nested(field.annotation, f'"... {quantity.display}"' if quantity is not None else "...")
 
 
 def _nested(annotation: Any, value: str) -> str:

@@ -196,9 +196,8 @@ class Sentence:
     text: str
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        whole = _BEFORE_UNIT.sub(_NO_BREAK, self.text)
         lines = textwrap.wrap(
-            whole,
+            _BEFORE_UNIT.sub(_NO_BREAK, self.text),
             options.max_width,
             initial_indent="• ",
             subsequent_indent="  ",

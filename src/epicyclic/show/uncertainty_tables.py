@@ -165,8 +165,7 @@ def _limits(data: xr.Dataset) -> Iterator[str]:
     for driver in mean["driver"].values[:MOST_DRIVERS]:
         if mean.sel(driver=driver) <= LEAST:
             return
-        keys = str(driver).split(" + ")
-        own = data.sel(input=keys)
+        own = data.sel(input=str(driver).split(" + "))
         name = " + ".join(map(str, own["input_name"].values))
         advice = "; ".join(dict.fromkeys(map(str, own["input_advice"].values)))
         alone = width * np.sqrt(data["first_order"].sel(driver=driver).clip(0.0, 1.0))
@@ -205,10 +204,9 @@ def _drivers(data: xr.Dataset) -> Table | Listing:
         if not (own > LEAST).any():
             continue
         largest = own.isel(own.argmax(own.dims))
-        name = " + ".join(names[key] for key in str(driver).split(" + "))
         rows.append(
             (
-                Cell(name),
+                Cell(" + ".join(names[key] for key in str(driver).split(" + "))),
                 aligned(percent(max(float(mean.sel(driver=driver)), 0.0))),
                 aligned(percent(float(largest))),
                 Cell(_place(data, largest)),
@@ -220,8 +218,7 @@ def _drivers(data: xr.Dataset) -> Table | Listing:
         f"is weighted with the loss. The curves explain {percent(known)} or more of it at every "
         "point."
     )
-    head = ("", "mean share", "largest", "at")
-    return _causes(head, rows, note)
+    return _causes(("", "mean share", "largest", "at"), rows, note)
 
 
 def _causes(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]], note: str) -> Table | Listing:
@@ -365,8 +362,7 @@ def _budget(data: xr.Dataset) -> Table | Listing:
             f" They scatter: one alone is {percent(above)} of the variance above that with "
             "interactions, which it cannot exceed. More samples reduce that."
         )
-    head = heads[: len(heads) + len(orders) - 2]
-    return _causes(head, rows, note)
+    return _causes(heads[: len(heads) + len(orders) - 2], rows, note)
 
 
 def _notes(data: xr.Dataset) -> Iterator[str]:
@@ -403,8 +399,7 @@ def _notes(data: xr.Dataset) -> Iterator[str]:
     for key in sorted(set(map(str, data["input"].values)) - set(idle)):
         source = str(data["distribution_source"].sel(input=key).values)
         sources.setdefault(source, []).append(f"{names[key]} ({key})")
-    for source, keys in sources.items():
-        yield f"{', '.join(keys)}: {source}."
+    yield from (f"{', '.join(keys)}: {source}." for source, keys in sources.items())
 
 
 def _moves(data: xr.Dataset, key: str) -> bool:

@@ -69,8 +69,7 @@ def compare_friction(case: Case, *, brief: bool = False) -> tuple[FrictionCompar
     loss is NaN for the others, for ISO/TR 14179-2 alone.
     Raises `InputError` if the case is a train of given efficiencies.
     """
-    built = build_computed(case)
-    owners = list(built.set_cases.values())
+    owners = list(build_computed(case).set_cases.values())
     chosen = {own.chosen["friction"] for own in owners}
     suiting = {_STANDARD, _ANY_OIL} | (set() if _ANY_OIL in chosen else {_REGRESSION, PAIRED})
     rows = []

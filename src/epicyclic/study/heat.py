@@ -247,8 +247,7 @@ def _temperature(given: str | float) -> float:
 def _attempt(base: Case, search: _Search, number: float, target: float) -> Found | None:
     """The result at a number; None if the gearbox runs away there."""
     value = search.value(number)
-    changes = {search.key: search.unit.exact_text(value), **NETWORK, **search.changes}
-    case = base.updated(changes)
+    case = base.updated({search.key: search.unit.exact_text(value), **NETWORK, **search.changes})
     try:
         return Found(search.key, value, search.unit, target, case, solve(case))
     except ConvergenceError:

@@ -50,11 +50,10 @@ def variable(
 ) -> Variable:
     """`values`, in SI, as a variable over `dims`, for the constructor of `xarray.Dataset`."""
     scale, offset = unit.scale_and_offset()
-    attributes = {"long_name": label, "units": unit.display or "1"}
     return (
         (dims,) if isinstance(dims, str) else dims,
         np.asarray(values) * scale + offset,
-        attributes,
+        {"long_name": label, "units": unit.display or "1"},
     )
 
 

@@ -179,8 +179,7 @@ def open_table(table: Any, form: TableForm = AS_IT_IS) -> Source:
             refuse(f"must end in {', '.join(SUFFIXES)}.", old or "Choose one of these formats.")
         if suffix in PARQUET:
             return _of_parquet(path, name, form)
-        cells = _Workbook(path, form) if suffix in EXCEL else _Text(path)
-        return _of_cells(cells, name, form)
+        return _of_cells(_Workbook(path, form) if suffix in EXCEL else _Text(path), name, form)
 
 
 # --- cells of text --------------------------------------------------------------------------------
@@ -609,8 +608,7 @@ def plain_numbers(source: Source, header: str, column: pa.Array) -> pa.Array:
     import pyarrow as pa
     import pyarrow.compute as pc
 
-    kind = column.type
-    if not pa.types.is_string(kind):
+    if not pa.types.is_string(column.type):
         return column
     if source.moments and header == _TIME_OF_DATES:
         return pa.array(_seconds(column.to_pylist(), source.moments), from_pandas=True)

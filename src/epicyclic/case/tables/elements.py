@@ -38,8 +38,7 @@ def _known(kind: str, text: str) -> str:
     try:
         designations.CHECKS[kind](text)
     except KeyError as error:
-        context = {"remedy": error.args[1]}
-        raise PydanticCustomError("preset", error.args[0], context) from None
+        raise PydanticCustomError("preset", error.args[0], {"remedy": error.args[1]}) from None
     return text
 
 

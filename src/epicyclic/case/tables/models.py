@@ -249,8 +249,7 @@ class ContactSolver(OilBehaviour):
         preset = value_at(keys, ("preset",))
         if not isinstance(preset, str) or preset not in PRESETS:
             return keys
-        film = film_text(PRESETS[preset])
-        return {**behaviour_of(preset), "asperity_film": film, **keys}
+        return {**behaviour_of(preset), "asperity_film": film_text(PRESETS[preset]), **keys}
 
 
 TemperatureModel = Literal["inlet", "flank", "network"]

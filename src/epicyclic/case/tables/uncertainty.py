@@ -149,9 +149,7 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
         allowed = "has no effect, because another key sets the share of oil."
         remedy = f"State {FACTOR_KEY}, or lubrication.oil_share where it is given."
         return Problem(_name(key), _given(table), allowed, remedy)
-    if table.exact:
-        return None
-    return made_value(case, parameter, table, "given by the case")
+    return None if table.exact else made_value(case, parameter, table, "given by the case")
 
 
 def has_effect(case: CaseTable, key: str) -> bool:

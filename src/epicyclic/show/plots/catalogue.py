@@ -140,8 +140,7 @@ def _teeth(record: ResultRecord) -> Iterator[Panel]:
 
 def _of_map(draw: Callable[..., Axes], name: str, *more: object) -> Panels:
     """The panels of a map, all with one scale for `name`."""
-    limits = partial(loss_map.limits_of, name=name)
-    return _over_plane("torque_loss", limits, draw, name, *more)
+    return _over_plane("torque_loss", partial(loss_map.limits_of, name=name), draw, name, *more)
 
 
 def _over_plane(
@@ -454,11 +453,10 @@ def explorable(ax: Axes) -> dict[str, Any] | None:
     for trace in traces:
         trace["showlegend"] = bool(trace.get("name"))
     shapes = [shape for mark in marks if (shape := _shape(ax, mark))]
-    names = {one["name"] for one in (*traces, *shapes) if one.get("name")}
     layout |= {
         "shapes": shapes,
         "title": {"text": _escaped(ax.get_title(loc="left") or ax.get_title())},
-        "showlegend": len(names) > 1,
+        "showlegend": len({one["name"] for one in (*traces, *shapes) if one.get("name")}) > 1,
         "barmode": "overlay",
         "hovermode": "closest",
         "annotations": [_annotation(it) for it in ax.texts if isinstance(it, Annotation)],
@@ -543,10 +541,9 @@ def _line(ax: Axes, line: Line2D, labels: tuple[str, str]) -> dict[str, Any] | N
         return None
     style, nothing = line.get_linestyle(), ("None", "", " ", None)
     parts = {"lines": style, "markers": line.get_marker()}
-    mode = "+".join(part for part, look in parts.items() if look not in nothing) or "none"
     return {
         "type": "scatter",
-        "mode": mode,
+        "mode": "+".join(part for part, look in parts.items() if look not in nothing) or "none",
         "name": _name(line),
         "x": _list(line.get_xdata()),
         "y": _list(line.get_ydata()),
@@ -629,11 +626,10 @@ def _steps(steps: StepPatch, labels: tuple[str, str]) -> dict[str, Any]:
 
 def _polar_bars(bars: BarContainer) -> dict[str, Any]:
     patches = bars.patches
-    middles = [math.degrees(bar.get_x() + bar.get_width() / 2) for bar in patches]
     return {
         "type": "barpolar",
         "name": _escaped(str(bars.get_label())),
-        "theta": _list(middles),
+        "theta": _list([math.degrees(bar.get_x() + bar.get_width() / 2) for bar in patches]),
         "width": _list([math.degrees(bar.get_width()) for bar in patches]),
         "r": _list([bar.get_height() for bar in patches]),
         "marker": {"color": to_hex(patches[0].get_facecolor())},
@@ -760,8 +756,7 @@ def drawing(
         ax.set_title("", loc="left")
         ax.set_title("")
     plot = explorable(ax)
-    still = "" if is_live and plot else svg_text(figure, key)
-    return Drawing(key, caption, still, plot, point)
+    return Drawing(key, caption, "" if is_live and plot else svg_text(figure, key), plot, point)
 
 
 def svg_text(figure: Figure, key: str) -> str:

@@ -403,8 +403,7 @@ def warm_up_figure(data: xr.Dataset) -> Figure:
     times = seconds / size
     with styled_figure(2, 1, data.attrs["title"], panel=_PANEL) as (figure, axes):
         above, below = axes[0, 0], axes[1, 0]
-        nodes = _shown(data)
-        for number, node in enumerate(nodes):
+        for number, node in enumerate(_shown(data)):
             above.plot(
                 times,
                 data["temperature"].sel(node=node).values,

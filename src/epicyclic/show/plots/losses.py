@@ -166,8 +166,7 @@ def plot_shares(
     own, over = 100 * data["first_order"].sel(driver=drivers), data["total"].dims
     low, high = (end.to_numpy() for end in (own.min(over), own.max(over)))
     colours = [COLOURS[4 if key.startswith(MODEL_FORM) else 0] for key in drivers]
-    middle = 100 * mean.to_numpy()
-    ax.barh(range(len(drivers)), middle, color=colours, **EDGE)
+    ax.barh(range(len(drivers)), 100 * mean.to_numpy(), color=colours, **EDGE)
     ax.hlines(range(len(drivers)), low, high, color="black", lw=1.2, label="minimum to maximum")
     ax.set_yticks(range(len(drivers)), _names(data, drivers))
     ax.set(

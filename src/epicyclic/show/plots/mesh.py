@@ -238,8 +238,7 @@ COLOUR, OTHER = COLOURS[0], "0.75"
 
 def friction_figure(rows: Sequence[FrictionComparison], title: str) -> Figure:
     """The sliding loss with every friction model."""
-    panel = (7.6, 1.6 + ROW_HEIGHT * len(rows))
-    with styled_figure(1, 1, title, panel=panel) as (figure, axes):
+    with styled_figure(1, 1, title, panel=(7.6, 1.6 + ROW_HEIGHT * len(rows))) as (figure, axes):
         plot_friction_models(rows, axes[0, 0])
     return figure
 
@@ -268,8 +267,7 @@ def plot_friction_models(rows: Sequence[FrictionComparison], ax: Axes) -> Axes:
         }
         kept = (mark for mark, holds in marks.items() if holds)
         text = ", ".join([f"{row.sliding:.{digits}f} W", *kept])
-        weight = "bold" if row.chosen else "normal"
-        write_beside(ax, text, (row.sliding, place), fontweight=weight)
+        write_beside(ax, text, (row.sliding, place), fontweight="bold" if row.chosen else "normal")
     ax.set_yticks(range(len(rows)), [row.name for row in rows])
     ax.invert_yaxis()
     ax.grid(visible=False, axis="y")

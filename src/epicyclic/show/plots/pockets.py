@@ -51,8 +51,7 @@ GAP_SHARE = 0.05
 def pocket_figure(mesh: xr.Dataset) -> Figure:
     """Everything an engineer looks at on the pockets of one mesh, both kinds side by side."""
     with styled_figure(6, 2, str(mesh.attrs["title"])) as (figure, axes):
-        first = mesh["end_area"].isel(station=0)
-        _plot_kinds(mesh, first, axes[0, 0], "Area at the first end")
+        _plot_kinds(mesh, mesh["end_area"].isel(station=0), axes[0, 0], "Area at the first end")
         plot_volumes(mesh, axes[0, 1])
         plot_gaps(mesh, axes[1, 0])
         plot_power(mesh, axes[1, 1])
@@ -82,8 +81,7 @@ def plot_volumes(mesh: xr.Dataset, ax: Axes) -> Axes:
 
 def _plot_kinds(mesh: xr.Dataset, values: xr.DataArray, ax: Axes, title: str) -> Axes:
     for kind in (0, 1):
-        style = LINE_STYLES[kind]
-        ax.plot(mesh["roll_angle"][kind], values[kind], style, label=_name(mesh, kind))
+        ax.plot(mesh["roll_angle"][kind], values[kind], LINE_STYLES[kind], label=_name(mesh, kind))
     ax.set_ylim(bottom=0)
     legend_below(ax, ncols=2)
     return _over_roll(mesh, values, ax, title)

@@ -464,8 +464,7 @@ def _draw_card(ax: Axes, layout: _Layout, stage: str, x: float, entering: float)
             at = left + start, low
             ax.add_patch(Rectangle(at, length, 0.19, color=colour, alpha=0.35, lw=0, zorder=6))
         write(x - half + 0.08, low + 0.09, words, va="center", fontsize=size)
-        right = x + half - 0.08
-        write(right, low + 0.09, _power(power), ha="right", va="center", fontsize=size)
+        write(x + half - 0.08, low + 0.09, _power(power), ha="right", va="center", fontsize=size)
     if own.loss:
         share = f" ({percent(own.loss / entering, 2)})" if entering else ""
         aside = x + 0.14 + own.loss * layout.scale / 2

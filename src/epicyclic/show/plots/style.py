@@ -129,11 +129,10 @@ def legend_below(ax: Axes, **options: Any) -> None:
     longest = max((len(str(handle.get_label())) for handle in handles), default=0)
     columns = int(room_of(ax) / (ENTRY + longest / SMALL_CHARACTERS))
     options["ncols"] = max(1, min(columns, options.get("ncols", 1)))
-    below = ScaledTranslation(0, -BELOW, figure.dpi_scale_trans)
     ax.legend(
         loc="upper center",
         bbox_to_anchor=(0.5, 0.0),
-        bbox_transform=ax.transAxes + below,
+        bbox_transform=ax.transAxes + ScaledTranslation(0, -BELOW, figure.dpi_scale_trans),
         fontsize="small",
         frameon=False,
         **options,

@@ -170,8 +170,7 @@ def plot_sweep_field(data: xr.Dataset, name: str, ax: Axes) -> Axes:
         if _is_count(values[dim]):
             axis.set_major_locator(MaxNLocator(integer=True))
     ax.grid(visible=False)
-    title = _titled(values, part, ax)
-    return labelled(ax, _axis_label(data, across), _axis_label(data, up), title)
+    return labelled(ax, _axis_label(data, across), _axis_label(data, up), _titled(values, part, ax))
 
 
 def plot_sweep_parallel(data: xr.Dataset, ax: Axes) -> Axes:

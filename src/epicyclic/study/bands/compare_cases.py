@@ -152,8 +152,7 @@ def _evaluate(
     losses, powers = plan.found(runner.run(plan))
     # factors of models are those of a kind, whatever the operating point
     results = outputs.of(losses, powers, factors_of(values[0], np.moveaxis(drawn, 1, 0)))
-    entering = powers.with_loss(results[-2])
-    return outputs, _over_time(np.moveaxis(results, 1, 0), entering, weights)
+    return outputs, _over_time(np.moveaxis(results, 1, 0), powers.with_loss(results[-2]), weights)
 
 
 def _over_time(results: FloatArray, entering: FloatArray, weights: FloatArray) -> FloatArray:

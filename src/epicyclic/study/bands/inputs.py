@@ -135,9 +135,7 @@ def _assumed(case: CaseTable, key: str) -> UncertainValue | None:
 def _is_shared(case: CaseTable, key: str) -> bool:
     """False for the sharing of load between planets of which there are no two."""
     *owner, table, _ = ("", *key_parts(key))
-    if table != "load_sharing":
-        return True
-    return (case.gearings[owner[-1]].count or 1) > 1
+    return table != "load_sharing" or (case.gearings[owner[-1]].count or 1) > 1
 
 
 def _is_inherited(case: CaseTable, key: str) -> bool:
@@ -194,6 +192,5 @@ def slope_limit(case: CaseTable, key: str) -> float | None:
         of_set = value_of(case, dotted(owner[:2]))
     if of_set.models.load_distribution != _TAKES_DEVIATIONS:
         return None
-    gearing = case.gearings[owner[1] if owner else ""]
-    tolerances = tolerances_of(gearing.gear(name), table)
+    tolerances = tolerances_of(case.gearings[owner[1] if owner else ""].gear(name), table)
     return float(getattr(tolerances, SLOPES[parts[-1]]))

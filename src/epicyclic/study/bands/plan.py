@@ -73,8 +73,7 @@ class Outputs:
     @property
     def numbers(self) -> tuple[str, ...]:
         """What they follow from: losses, where they are grouped as tested also those unloaded."""
-        unloaded = (f"{UNLOADED}{name}" for name in self.losses if self.tested)
-        return (*self.losses, *unloaded)
+        return (*self.losses, *(f"{UNLOADED}{name}" for name in self.losses if self.tested))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -244,8 +243,7 @@ def look_nearby(case: Case, result: Result) -> Nearby:
     stepped = np.tile(losses, (len(changes), 1))
     stepped[moved] = _losses(alone, [changes[number] for number in moved], outputs, flows)
     own = (result.input_power, shaft_power(case), losses[: len(outputs.losses)].sum())
-    powers = Powers(*map(np.atleast_1d, own))
-    return nearby_of(values, outputs, losses, powers, stepped)
+    return nearby_of(values, outputs, losses, Powers(*map(np.atleast_1d, own)), stepped)
 
 
 def steps(values: Sequence[UncertainValue]) -> list[dict[str, Any]]:
@@ -281,8 +279,7 @@ def _losses(
         with suppress(EpicyclicError):
             cases[number] = case.updated(change)
     losses = np.full((len(changes), len(outputs.numbers)), np.nan)
-    found = loss_numbers(list(cases.values()), outputs, flows)
-    for number, its in zip(cases, found, strict=True):
+    for number, its in zip(cases, loss_numbers(list(cases.values()), outputs, flows), strict=True):
         if not isinstance(its, Exception):
             losses[number] = [its[name] for name in outputs.numbers]
         elif not isinstance(its, EpicyclicError):
@@ -357,13 +354,12 @@ class SamplePlan(CasePlan):
 
     def describe(self) -> dict[str, Any]:
         """The case, its operating points and a digest of the samples."""
-        digest = hashlib.sha256(b"".join(drawn.tobytes() for drawn in self.drawn))
         return {
             **CasePlan.describe(self),
             "inputs": [it.key for it in self.inputs],
             "count": self.count,
             "points": plain(self.points),
-            "drawn": digest.hexdigest(),
+            "drawn": hashlib.sha256(b"".join(drawn.tobytes() for drawn in self.drawn)).hexdigest(),
         }
 
     @property

@@ -132,8 +132,7 @@ class MapStudy(Study):
             if not np.isfinite(curves.explained):
                 shares[number] = np.nan
             elif np.ptp(sets) > 0:
-                found = index_values(sets[0], sets[1], sets[2:])
-                shares[number] = np.concatenate(found)
+                shares[number] = np.concatenate(index_values(sets[0], sets[1], sets[2:]))
         return shares, explained
 
     def _with_torque_loss(self, results: FloatArray) -> FloatArray:
@@ -205,8 +204,7 @@ class Energies:
         time = self.time.copy()
         if without is not None:
             time[without] = 0.0
-        count = len(self.lost)
-        found = np.einsum("ptn,p->tn", results[:, :count], time)
+        found = np.einsum("ptn,p->tn", results[:, : len(self.lost)], time)
         by_map = self.interpolated @ time
         known = by_map > 0
         lost = self.lost[:, None] * np.where(

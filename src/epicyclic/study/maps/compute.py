@@ -504,9 +504,8 @@ def coordinates(plan: MapPlan) -> dict[str, tuple[float | str, ...]]:
 
 def to_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
     """The map of `plan` from the rows of all its points."""
-    layout = layout_of(plan.case)
     data = by_keys(to_dataset(plan, rows))[
-        [*_kept_variables(layout), "status", "message", "warnings"]
+        [*_kept_variables(layout_of(plan.case)), "status", "message", "warnings"]
     ]
     data = data.rename({axis.key: axis_name(axis.key) for axis in plan.axes})
     data = data.transpose(*(name for name in (*AXES, STATE) if name in data.dims), ...)

@@ -116,8 +116,7 @@ def _axis_problems(data: xr.Dataset) -> Iterator[Problem]:
         axis = data[name]
         unit = axis.attrs.get("units")
         if unit not in (None, part.unit):  # arithmetic drops it; files must have it
-            allowed = f"must be in {part.unit}."
-            yield Problem(name, one_line(str(unit)), allowed, _MAKE_AGAIN)
+            yield Problem(name, one_line(str(unit)), f"must be in {part.unit}.", _MAKE_AGAIN)
         if axis.dtype.kind not in "fiu" or axis.ndim != 1 or not axis.size:
             yield Problem(name, "", "must be numbers along its own axis.", _MAKE_AGAIN)
         elif not np.isfinite(axis.values).all():

@@ -96,8 +96,7 @@ def heat_samples(
         for number, built in enumerate(machines):
             model = built.thermal
             assert isinstance(model, NetworkModel)
-            even = dict.fromkeys(model.nodes, knot)
-            fluids = model.fluids(even)
+            fluids = model.fluids(dict.fromkeys(model.nodes, knot))
             wanted = Wanted(built.machine, built.operation, fluids, earlier=last.get(number))
             solution, _ = solve_machine(wanted)
             last[number] = solution
@@ -279,8 +278,7 @@ def warm_up(
         tables = HeatTables(model, knots, samples)
         told = _run(tables, drive, begin, seconds, progress)
         course = told.course
-        mean = tables.transient(*drive.mean)
-        settled = mean.settled(course.temperatures[:, -1])
+        settled = tables.transient(*drive.mean).settled(course.temperatures[:, -1])
         if settled is not None and settled.max() > HOTTEST:
             settled = None
         hottest = float(np.max([course.temperatures.max(), *([] if settled is None else settled)]))
@@ -385,8 +383,7 @@ class _Drive:
 
 def _constant(case: Case) -> _Drive:
     """The operating point of a case."""
-    built = build(case)
-    operation, one = built.operation, np.ones(1)
+    operation, one = build(case).operation, np.ones(1)
     power = operation.torque * operation.speeds[operation.input] if held_shaft(case) else math.nan
     coasting = one if power <= 0 else np.zeros(1)
     step = _Step(1.0, one, coasting, one, max(power, 0.0), max(-power, 0.0))
@@ -569,14 +566,13 @@ def _to_dataset(
         ("energy_lost_settled", (), settled_loss * seconds,
          "energy lost if the settled state held from the start", KILOJOULE),
     )  # fmt: skip
-    coords = {
-        "time": variable("time", course.times, "time", SECOND),
-        "node": nodes,
-        "component": list(tables.terms),
-    }
     return xr.Dataset(
         {name: variable(dims, it, label, unit) for name, dims, it, label, unit in table},
-        coords,
+        {
+            "time": variable("time", course.times, "time", SECOND),
+            "node": nodes,
+            "component": list(tables.terms),
+        },
         {
             "title": case.title,
             **origin(case),

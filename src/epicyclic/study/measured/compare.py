@@ -268,8 +268,7 @@ def compare_measured(
     """
     runner = Runner(jobs, dask, journal=journal, progress=progress)
     case = as_case(case)
-    grid = read_grid(measured, form)
-    question = ask(case, grid, component, load_dependent, group, rig)
+    question = ask(case, read_grid(measured, form), component, load_dependent, group, rig)
     table = question.table
     if relative is not None:
         raise_any(_relative_problems(table, relative), "the comparison")
@@ -343,8 +342,7 @@ def make_parameters(
             if isinstance(item, Parameter) and item.start == 0:  # nothing to scale it by
                 item = no_start(item.key, "is 0 in the case")
         found.append(item)
-    problems = [item for item in found if isinstance(item, Problem)]
-    raise_any(problems, "the fit")
+    raise_any([item for item in found if isinstance(item, Problem)], "the fit")
     return tuple(item for item in found if isinstance(item, Parameter))
 
 

@@ -82,8 +82,7 @@ def rows_where(table: Measurements, text: str, key: str) -> BoolArray:
     if match is None or column not in table.labels:
         share = ", or a share between 0 and 1" if key == "hold_out" else ""
         allowed = f"must be COLUMN=VALUE{share}."
-        remedy = f"Columns are {', '.join(table.labels)}."
-        raise one_problem(key, text, allowed, remedy, _PLACE)
+        raise one_problem(key, text, allowed, f"Columns are {', '.join(table.labels)}.", _PLACE)
     wanted = match["value"].strip()
     cells = zip(table.labels[column], near_values(table.labels[column]), strict=True)
     chosen = np.array([_same(cell, wanted) or _same(near, wanted) for cell, near in cells])

@@ -207,8 +207,7 @@ def parse_measurements(
     changes = tuple(
         {key: column[row] for key, column in values.items()} for row in range(len(grid.rows))
     )
-    found = problems.all() or _refused(case, changes, problems.lines)
-    raise_any(found, grid.source)
+    raise_any(problems.all() or _refused(case, changes, problems.lines), grid.source)
     return Measurements(
         source=grid.source,
         lines=problems.lines,
@@ -482,9 +481,7 @@ def _values(
     for row, cell in enumerate(column.cells):
         if not cell:
             problems.cell(column, row, "is empty.", "Fill it, or delete the row.")
-    if is_text(annotation):
-        return column.cells
-    return tuple(map(parse_value, column.cells))
+    return column.cells if is_text(annotation) else tuple(map(parse_value, column.cells))
 
 
 def _check_repeats(grid: Grid, problems: _Problems) -> None:

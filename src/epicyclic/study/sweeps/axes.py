@@ -503,9 +503,7 @@ class Point:
         quantity = quantity_of(*known_field(self.case, key))
         if value is None:
             raise ValueError(f"uses {key}, which has no value in the case")
-        if quantity is not None:
-            return with_unit(value, quantity.si)
-        return _plain_number(key, value)
+        return _plain_number(key, value) if quantity is None else with_unit(value, quantity.si)
 
     def _number(self, key: str, value: Any) -> Any:
         """A value as a case file has it as a number, with its unit."""

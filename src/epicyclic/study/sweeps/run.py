@@ -220,8 +220,7 @@ class CasePlan(Plan):
             return Row("")
 
         rows = {index: self._row(partial(failing, index)) for index in indices}
-        found = self._answers(list(cases.values()))
-        for index, answer in zip(cases, found, strict=True):
+        for index, answer in zip(cases, self._answers(list(cases.values())), strict=True):
             rows[index] = self._row(partial(self._answered, answer))
         return list(rows.values())
 
@@ -284,10 +283,9 @@ class SweepPlan(CasePlan):
 
     def point(self, index: int) -> Point:
         """Case number `index`, counted with the last axis fastest."""
-        position = np.unravel_index(index, self.shape)
         varied = {
             part.key: part.values[i]
-            for axis, i in zip(self.axes, position, strict=True)
+            for axis, i in zip(self.axes, np.unravel_index(index, self.shape), strict=True)
             for part in axis.keys
         }
         return Point(self.case, varied, self.links)
