@@ -181,9 +181,8 @@ def _meshes(
         for name, table in gearing.tables.items()
     }
     for drawn, mesh in zip(gearing.meshes, gearing.geometries, strict=True):
-        gears = drawn.first, drawn.second
         one, two = tables = gearing.tables[drawn.first], gearing.tables[drawn.second]
-        own = [gearing.bodies[gear] for gear in gears]
+        own = [gearing.bodies[gear] for gear in (drawn.first, drawn.second)]
         yield GearMesh(
             key=drawn.key,
             mesh=mesh,

@@ -76,8 +76,7 @@ def thermal_model(case: Case, sets: Mapping[str, SetCase], machine: Machine) -> 
         return FlankModel(machine, inlet, case.thermal.bulk, factors, fluids)
     flows = [table.oil_flow for table in tables.values() if table is not None and table.oil_flow]
     settings = _settings(case, machine, tables, sum(flows) if flows else None, inlet)
-    pressure, share = case.surroundings.pressure, oil_share(case).share
-    media = partial(_media, case.lubricant.oil, pressure, share)
+    media = partial(_media, case.lubricant.oil, case.surroundings.pressure, oil_share(case).share)
     return NetworkModel(machine, settings, fluids, media)
 
 

@@ -820,9 +820,8 @@ def _element_problems(
     if train is None or not train.computed:
         return
     if train.lubricant is None:
-        remedy = "Add it; 'epicyclic oils' lists the built-in ones."
         allowed = "the table [lubricant] is missing, which computed losses need."
-        yield Problem("lubricant", "", allowed, remedy)
+        yield Problem("lubricant", "", allowed, "Add it; 'epicyclic oils' lists the built-in ones.")
     if train.operation.oil_inlet_temperature is None:
         reason = "is missing, and computed losses need it."
         advice = 'Add oil_inlet_temperature = "... degC" to [operation].'

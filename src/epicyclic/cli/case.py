@@ -73,9 +73,8 @@ def run(
 
     def tables() -> RenderableType:
         if details:
-            notes = tuple(remarks(loaded, result))
             further = (*more(loaded, result), *adjusted(loaded))
-            return result_tables(result, notes, band_texts(known), further)
+            return result_tables(result, tuple(remarks(loaded, result)), band_texts(known), further)
         return first_screen(result, known)
 
     show(tables, lambda: result_json(result, known), json_file)

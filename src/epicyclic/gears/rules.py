@@ -302,9 +302,8 @@ def _check_contact_ratio(gearing: Gearing, mesh: Mesh, distance_key: str) -> lis
         return []
     chamfers = ", reduce tip_chamfer" if one.tip_chamfer > 0 or two.tip_chamfer > 0 else ""
     key, shown = _tips(gearing, one, two)
-    allowed = f"{fault}: motion is not transmitted continuously."
     remedy = f"Lengthen the teeth{chamfers} or correct {distance_key}. {_reference_distance(mesh)}"
-    return [Problem(key, shown, allowed, remedy)]
+    return [Problem(key, shown, f"{fault}: motion is not transmitted continuously.", remedy)]
 
 
 def _tips(gearing: Gearing, *gears: Gear) -> tuple[str, str]:
@@ -362,9 +361,8 @@ def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:
     tip, root = (f"{key}.{which}_diameter" for which in ("tip", "root"))
     shown = f"{_diameter(gear.tip_radius, table.tip_diameter)}, "
     shown += f"{_diameter(gear.root_radius, table.root_diameter)}"
-    allowed = f"no tool can cut such a tooth: {reason}."
     remedy = f"Change the tip or root diameter, or {thickness_key(key, table)}."
-    return Problem(f"{tip}, {root}", shown, allowed, remedy)
+    return Problem(f"{tip}, {root}", shown, f"no tool can cut such a tooth: {reason}.", remedy)
 
 
 def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> Iterator[Problem]:

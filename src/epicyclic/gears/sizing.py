@@ -264,9 +264,8 @@ class _Solver:
             return closed_center_distance(mesh.rack, mesh.teeth, total, mesh.backlash or 0.0)
         except ValueError as error:
             key = ", ".join(map(self._shift_key, mesh.gears))
-            allowed = f"allow no centre distance: {error}."
             remedy = f"Correct the profile shifts, or give {'.'.join(mesh.place)}."
-            raise one_problem(key, "", allowed, remedy) from None
+            raise one_problem(key, "", f"allow no centre distance: {error}.", remedy) from None
 
     # --- profile shifts ---
 

@@ -115,10 +115,9 @@ def table_problems(
         return [Problem(quantity, f"{len(axes)} axes", allowed, remedy)]
     problems = rising_problems(axes)
     if "speed" in axes and len(axes["speed"]) > 0 and axes["speed"][0] < 0:
-        shown = RPM.text(float(axes["speed"][0]))
         allowed = "must not be negative, because a loss is the same in both senses of rotation."
         remedy = "Give magnitudes of the speed difference."
-        problems.append(Problem("speed", shown, allowed, remedy))
+        problems.append(Problem("speed", RPM.text(float(axes["speed"][0])), allowed, remedy))
     if quantity == "power" and "speed" not in axes:
         allowed = "needs the axis speed, because it is zero at rest."
         problems.append(Problem("power", "", allowed, "Add speed, or give torque."))

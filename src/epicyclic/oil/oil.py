@@ -306,10 +306,7 @@ class OilState:
 
     def thermal_load(self, speed: Real) -> Real:
         """mu beta u^2/k of an inlet with this rolling speed. Theory (R6). [1]"""
-        load: Real = (
-            self.dynamic_viscosity * self.thermoviscosity * speed**2 / self.thermal_conductivity
-        )
-        return load
+        return self.dynamic_viscosity * self.thermoviscosity * speed**2 / self.thermal_conductivity
 
 
 @dataclass(frozen=True, slots=True)

@@ -187,9 +187,8 @@ def _beside(
     source: _Source, title: str, place: Path, parts: Mapping[str, Mapping[str, Any]]
 ) -> Table:
     leaves = {part: dict(_leaves(table, ())) for part, table in parts.items()}
-    keys = dict.fromkeys(path for values in leaves.values() for path in values)
     rows = []
-    for path in keys:
+    for path in dict.fromkeys(path for values in leaves.values() for path in values):
         cells = [
             _cell(source, (*place, part, *path), values[path]) if path in values else Cell("")
             for part, values in leaves.items()

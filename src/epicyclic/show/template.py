@@ -196,9 +196,8 @@ def _line(text: str, about: str) -> str:
 
 
 def _about(field: FieldInfo) -> str:
-    choices = " | ".join(choices_of(field.annotation))
     quantity = quantity_of(field.annotation, tuple(field.metadata))
-    parts = [field.description or "", choices]
+    parts = [field.description or "", " | ".join(choices_of(field.annotation))]
     if not field.description and quantity is not None:
         parts.append(quantity.describe())
     return " ".join(part for part in parts if part)

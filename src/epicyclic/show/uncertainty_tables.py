@@ -330,9 +330,8 @@ def _budget(data: xr.Dataset) -> Table | Listing:
     total = data.sel(result="total", sum="total")
     orders = [name for name in ("first_order", "total_order") if name in data]
     largest = total[orders[-1]]
-    order = largest.sortby(-largest)["driver"].values
     rows, names = [], _names(data)
-    for driver in map(str, order):
+    for driver in map(str, largest.sortby(-largest)["driver"].values):
         keys = driver.split(" + ")
         if not total["contribution"].sel(input=keys).any():
             continue

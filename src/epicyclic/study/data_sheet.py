@@ -112,11 +112,10 @@ def _pins(gear: Gear, table: StatedGear) -> tuple[float, float] | None:
 
 
 def _mesh_sheet(mesh: Mesh) -> MeshSheet:
-    rack = mesh.gear1.rack
     start, end = mesh.path_start, mesh.path_end
     return MeshSheet(
         mesh,
-        recommended_backlash(rack, mesh.center_distance),
+        recommended_backlash(mesh.gear1.rack, mesh.center_distance),
         (
             _sliding(start, mesh.curvature2(start) / mesh.ratio),
             _sliding(mesh.curvature2(end), end * mesh.ratio),

@@ -80,9 +80,8 @@ def pocketing_table(
         For values that cannot be read, a set at rest, a mesh without pockets, and without
         interpolation.
     """
-    runner = Runner(jobs, dask, shard, journal, progress)
     plan = make_table_plan(as_case(case), speeds, temperatures)
-    return table_dataset(plan, runner.run(plan))
+    return table_dataset(plan, Runner(jobs, dask, shard, journal, progress).run(plan))
 
 
 @dataclass(frozen=True, slots=True)

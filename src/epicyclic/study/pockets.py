@@ -208,7 +208,6 @@ def _dataset(
     family = flow_family(duty)
     mesh = family.mesh
     life = _Life(family.geometry, flow, family.drives1)
-    width = mesh.face_width
     stations = flow.face
     coordinates = {
         "tooth": [mesh.gear1.name, mesh.gear2.name],
@@ -224,7 +223,7 @@ def _dataset(
         "axis": ["x", "y"],
     }
     variables = {
-        **_shapes(life, width),
+        **_shapes(life, mesh.face_width),
         **_flows(life),
         **_pictures(family, life),
         **_numbers(duty, flow, fluids),

@@ -174,9 +174,8 @@ def flows_around(
     for family, speed, mixture, pressure in flow_requests(duties, built.fluids):
         figures = family.figures(speed, mixture, pressure)
         if figures.periodic:
-            number = family.number(speed, mixture, pressure)
             scaled = scaled_figures(figures, speed, mixture.density)
-            found[family] = table_around(number, scaled, reach)
+            found[family] = table_around(family.number(speed, mixture, pressure), scaled, reach)
     return found
 
 

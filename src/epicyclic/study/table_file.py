@@ -743,9 +743,8 @@ def _of_frame(table: Any, form: TableForm) -> Source:
 
     def pieces(chosen: Sequence[str]) -> Iterator[Piece]:
         for start in range(0, len(frame), _BATCH_ROWS):
-            lines = np.arange(start, min(start + _BATCH_ROWS, len(frame))) + 1
             own = {header: columns[headers.index(header)] for header in chosen}
             cells = {it: _cells(it, column.slice(start, _BATCH_ROWS)) for it, column in own.items()}
-            yield Piece(lines, cells)
+            yield Piece(np.arange(start, min(start + _BATCH_ROWS, len(frame))) + 1, cells)
 
     return Source("the table", tuple(headers), pieces, "row", rows=form.rows)

@@ -190,9 +190,8 @@ def plot_over_period(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
     """Loaded transmission error or mesh stiffness, by its `name`, over one mesh period."""
     values = mesh[name].to_numpy()
     if np.isfinite(values).any():
-        angles = mesh["roll_angle"].to_numpy()
         pitch = float(mesh.attrs["pitch_angle_deg"])
-        ax.plot(*closed_period(angles, values, pitch), marker=".", ms=3)
+        ax.plot(*closed_period(mesh["roll_angle"].to_numpy(), values, pitch), marker=".", ms=3)
     else:
         _say(ax, "not available with this load distribution")
     return labelled(ax, mesh["roll_angle"], mesh[name])

@@ -225,8 +225,7 @@ def _in_best_order(names: list[str], effort: Callable[[tuple[str, ...]], float])
     """The order of least effort; of many names that which they have."""
     if len(names) > MOST_ORDERED:
         return names
-    orders: Iterator[tuple[str, ...]] = permutations(names)
-    best: tuple[str, ...] = min(orders, key=effort)
+    best: tuple[str, ...] = min(permutations(names), key=effort)
     return list(best)
 
 

@@ -106,9 +106,8 @@ def written_values(axis: xr.DataArray) -> list[Any]:
 def solve_sample(case: Case, lookup: Lookup, sample: Sample, runner: Runner = HERE) -> Deviation:
     """The deviation by direct solution of the points of `sample`."""
     rows, chance = sample.drawn()
-    points = tuple(changes_at(lookup, row) for row in rows.tolist())
     exact = case.updated({"numerics.pocket_interpolation": 0})
-    plan = PointList(exact, points)
+    plan = PointList(exact, tuple(changes_at(lookup, row) for row in rows.tolist()))
     direct = runner.within(plan).run(plan).numbers("total")
     found = np.isfinite(direct)
     method = f"{found.sum()} points of the cycle solved directly"
@@ -366,10 +365,9 @@ def loss_map(
         As for `sweep`, for keys that decide which shaft is which, and for states that are not there
         or in which the train cannot run.
     """
-    runner = Runner(jobs, dask, shard, journal, progress)
     torques = resolving_texts(torque) if resolve_zero else torque
     plan = map_plan(as_case(case), speed, torques, temperature, vary, states)
-    return checked_map(plan, runner.run(plan))
+    return checked_map(plan, Runner(jobs, dask, shard, journal, progress).run(plan))
 
 
 def checked_map(plan: MapPlan, rows: Rows) -> xr.Dataset:

@@ -819,10 +819,9 @@ def sweep(
         If a key cannot be varied, a value cannot be read, a link has no value, or the journal is
         that of another sweep.
     """
-    runner = Runner(jobs, dask, shard, journal, progress)
     table = points if points is None or isinstance(points, Mapping) else columns_of(points)
     plan = make_plan(as_case(case), vary, together=together, points=table, links=links)
-    return to_dataset(plan, runner.run(plan))
+    return to_dataset(plan, Runner(jobs, dask, shard, journal, progress).run(plan))
 
 
 def is_sweep(data: xr.Dataset) -> bool:
