@@ -207,6 +207,13 @@ class _Solver:
             for name, table in self.tables.items()
             if name in racks
         }
+        # what allowances take from x1 + x2 before the stated backlash is left; where none is
+        # stated, the nominal teeth have none
+        self.allowances = {
+            mesh.drawn.key: sum(self.thinned[name] for name in mesh.gears)
+            for mesh in meshes
+            if mesh.backlash is not None
+        }
         self.shifts = {  # nominal, without allowances
             name: gear.profile_shift_coefficient - self.thinned[name]
             for name, gear in made.items()
@@ -259,7 +266,8 @@ class _Solver:
         return None
 
     def _closed(self, mesh: _Sized) -> float:
-        total = sum(self.shifts[name] for name in mesh.gears) + self._allowances(mesh)
+        total = sum(self.shifts[name] for name in mesh.gears)
+        total += self.allowances.get(mesh.drawn.key, 0.0)
         try:
             return closed_center_distance(mesh.rack, mesh.teeth, total, mesh.backlash or 0.0)
         except ValueError as error:
@@ -294,14 +302,7 @@ class _Solver:
             total = profile_shift_sum(mesh.rack, mesh.teeth, distance, mesh.backlash or 0.0)
         except ValueError:
             return 0.0
-        return total - self._allowances(mesh)
-
-    def _allowances(self, mesh: _Sized) -> float:
-        """What allowances take from x1 + x2 before the stated backlash is left.
-
-        Where none is stated, the nominal teeth have none.
-        """
-        return 0.0 if mesh.backlash is None else sum(self.thinned[name] for name in mesh.gears)
+        return total - self.allowances.get(mesh.drawn.key, 0.0)
 
     def _set(self, name: str, shift: float, mesh: _Sized) -> None:
         if not LEAST_SHIFT <= shift <= LARGEST_SHIFT:
