@@ -7,13 +7,16 @@ import math
 import numpy as np
 import pytest
 
+from epicyclic.arrays import of_points, row_by_row
 from epicyclic.kernels.line_contact import (
     equivalent_modulus,
     goksem_hargreaves_force,
+    goksem_hargreaves_losses,
     hertz_half_width,
     hertz_pressure,
     inlet_film_factor,
     line_load_at_pressure,
+    martin_force,
     pan_hamrock_central_film,
     pan_hamrock_minimum_film,
 )
@@ -132,6 +135,27 @@ def test_goksem_hargreaves_is_the_other_published_form():
         other = w * math.exp(0.658228 * math.log(d) - 0.162625)
         # exponents rounded to 0.658 and 0.0126: 0.0002 times ln(G U) of -20
         assert goksem_hargreaves_force(u, g, w, 0.0) == pytest.approx(other, rel=0.006)
+
+
+def test_a_formula_is_the_same_of_arrays_and_in_kernels():
+    """Contacts of three points that share their radii, from creeping to fast, and without load."""
+    rng = np.random.default_rng(4)
+    load, speed = 10 ** rng.uniform(-2, 6, (3, 40)), 10 ** rng.uniform(-4, 2, (3, 40))
+    load[1, 7] = 0.0
+    radius, modulus = 10 ** rng.uniform(-3, -1, 40), np.array([[2.0e11], [2.2e11], [1.9e11]])
+    viscosity, alpha, thermal = np.array([[[0.01], [0.2], [3.0]], [[1.1e-8], [2e-8], [3e-8]],
+                                          [[0.02], [0.1], [0.5]]])  # fmt: skip
+    stiffness = modulus * radius
+    number = goksem_hargreaves_force(
+        viscosity * speed / stiffness, alpha * modulus, load / stiffness, thermal * speed**2
+    )
+    rigid = martin_force(load, speed, viscosity)
+    assert (number * radius / alpha < rigid).any()
+    assert (number * radius / alpha > rigid).any()
+    numbers = map(of_points, (modulus, viscosity, alpha, thermal))
+    found = row_by_row(goksem_hargreaves_losses, (of_points(load), radius, speed), numbers)
+    expected = 2 * np.minimum(number * radius / alpha, rigid) * speed
+    assert np.asarray(found) == pytest.approx(expected, rel=ROUNDING)
 
 
 def test_inlet_heating_lowers_the_rolling_force():
