@@ -212,8 +212,9 @@ LOSS_AGREEMENT = 1e-7
 """Error of predicted losses, at most, however little losses move the loads. [1]"""
 NO_POWER = 1e-12  # Power, relative to the largest one, that is rounding. [1]
 LIKELY = 0.9985  # Efficiency of a mesh that the first pass begins with. [1]
-PLAIN_PASSES, SECANTS = 15, 40
-"""Passes in which loads follow the losses, and after them passes of a method of secants."""
+PLAIN_PASSES, HALF_PASSES, SECANTS = 15, 10, 40
+"""Passes in which loads follow the losses, in which they go half of each step, and of a method
+of secants."""
 SMALL_STEPS = ((0.5, 20), (0.2, 85))
 """Share of a step by which loads follow the losses after that, and for how many passes: losses
 that rise steeply from no load may throw a small load to and fro. [1]"""
@@ -682,10 +683,11 @@ class _Branch:
 def _converged(branch: _Branch) -> _Pass:
     """Torques and losses that agree, with these directions of the rolling powers.
 
-    Nearly always plain repetition finds them. Loads that follow their losses slowly are left to
-    secants, those that steep losses throw to and fro to steps that become smaller.
+    Nearly always plain repetition finds them. Half steps settle most loads that steep losses throw
+    to and fro; those that follow their losses slowly are left to secants, the rest to small steps.
     """
     found = _repeated(branch, None, 1.0, PLAIN_PASSES)
+    found = _repeated(branch, found, 0.5, HALF_PASSES)
     if not isinstance(found, _Pass):
         found = _by_secants(branch, found)
     for share, passes in SMALL_STEPS:
@@ -714,11 +716,11 @@ def _repeated(
 
 def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
     """By Broyden's method on the loads of the meshes; as the `first` where that leads nowhere."""
+    if any(isinstance(load, Points) for load in first.meshes.values()):
+        raise Alone
     from scipy.optimize import NoConvergence, broyden1  # takes a third of a second, rarely needed
 
     last: Balance | _Pass = first
-    if any(isinstance(load, Points) for load in first.meshes.values()):
-        raise Alone
     start = np.array(list(first.meshes.values()))
     size = np.where(start, np.abs(start), 1.0)
 
