@@ -167,3 +167,15 @@ def test_surfaces_that_do_not_roll_have_the_limit(function, model, sliding):
     limit, near, _ = function(model, **contact)
     assert limit == pytest.approx(near, abs=1e-9)
     assert (function(model, **contact | {"line_load": 0.0}) >= 0.0).all()
+
+
+def test_every_wrong_argument_of_a_contact_is_named():
+    given = {"line_load": "300 N/mm", "rolling_speed": "8 m/s", "temperature": "80 degC"}
+    with pytest.raises(ep.InputError) as caught:
+        ep.friction("mixed-lubrication", **given, radius="12 mm", roughness="0.3 um", slip=0.2)
+    assert [(it.key, it.remedy) for it in caught.value.problems] == [
+        ("roughness", "Did you mean 'roughness1'?"),
+        ("slip", "Give some of modulus, roughness1, roughness2, temperature, line_load, radius, "
+         "rolling_speed, sliding_speed, oil."),
+        ("oil", 'Give it: oil = "...".'),
+    ]  # fmt: skip

@@ -26,7 +26,7 @@ from epicyclic.case.tables.elements import Force, ShaftBearingTable
 from epicyclic.case.tables.models import GearPairModels
 from epicyclic.case.tables.operation import Lubricant
 from epicyclic.contact.line_contact import Flanks, LineContacts
-from epicyclic.errors import InputError, one_problem, raise_any
+from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.gears.gear import involute
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionSettings
 from epicyclic.losses.journal_bearing import JournalBearing, JournalState, solve_journal
@@ -44,7 +44,7 @@ from epicyclic.losses.windage import (
 from epicyclic.losses.zhou_hoeprich import STEEL
 from epicyclic.machine.convection import STANDARD_PRESSURE
 from epicyclic.machine.shaft_parts import ShaftBearing
-from epicyclic.messages import refused, written
+from epicyclic.messages import did_you_mean, refused, written
 from epicyclic.oil.oil import Oil, mixture_state, oil_state
 from epicyclic.schema.fields import quantity_of
 from epicyclic.schema.read import plain
@@ -182,21 +182,25 @@ class LineContact(NamedTuple):
     film_ratio: FloatArray  # h_min over sqrt(Rq1^2 + Rq2^2). [1]
 
 
+_LOCAL = "line_load", "radius", "rolling_speed", "sliding_speed"
+_USUAL = {"modulus": STEEL, "roughness1": "0.4 um", "roughness2": "0.4 um", "sliding_speed": 0.0}
+
+
 def _at_contacts(
-    function: Callable[[LineContacts], tuple[Any, ...]],
-    *,
-    line_load: Any,
-    radius: Any,
-    rolling_speed: Any,
-    temperature: Any,
-    oil: OilName,
-    sliding_speed: Any = 0.0,
-    roughness1: Any = "0.4 um",
-    roughness2: Any = "0.4 um",
-    modulus: Any = STEEL,
+    function: Callable[[LineContacts], tuple[Any, ...]], given: Mapping[str, Any]
 ) -> list[FloatArray]:
     """What a function makes of each contact."""
-    liquid = _oil(oil)
+    names = ("modulus", "roughness1", "roughness2", "temperature", *_LOCAL)
+    known, contact = (*names, "oil"), {**_USUAL, **given}
+    others = [key for key in given if key not in known]
+    advice = f"Give some of {', '.join(known)}."
+    problems = [
+        Problem(it, "", "is not known.", did_you_mean(it, known) or advice) for it in others
+    ]
+    lacking = (key for key in known if key not in contact)
+    problems += [Problem(key, "", "is missing.", f'Give it: {key} = "...".') for key in lacking]
+    raise_any(problems, "the contact")
+    liquid = _oil(contact["oil"])
 
     def at(e_eq: float, rq1: float, rq2: float, t: float, *local: float) -> tuple[float, ...]:
         load, own, rolling, sliding = (np.array([one]) for one in local)
@@ -204,11 +208,7 @@ def _at_contacts(
         contact = LineContacts(load, own, rolling, sliding, flanks, oil_state(liquid, t))
         return tuple(float(np.ravel(one)[0]) for one in function(contact))
 
-    return _each(
-        at, modulus=modulus, roughness1=roughness1, roughness2=roughness2, temperature=temperature,
-        line_load=line_load, radius=radius, rolling_speed=rolling_speed,
-        sliding_speed=sliding_speed,
-    )  # fmt: skip
+    return _each(at, **{name: contact[name] for name in names})
 
 
 def line_contact(**contact: Any) -> LineContact:
@@ -251,7 +251,7 @@ def line_contact(**contact: Any) -> LineContact:
     [0.61, 0.53]
     """
     names = ("hertz_pressure", "hertz_half_width", "minimum_film", "film_ratio")
-    return LineContact(*_at_contacts(attrgetter(*names), **contact))
+    return LineContact(*_at_contacts(attrgetter(*names), contact))
 
 
 def friction(model: str, **contact: Any) -> FloatArray:
@@ -284,7 +284,7 @@ def friction(model: str, **contact: Any) -> FloatArray:
     """
     chosen = _chosen(model, FRICTION_MODELS, LOCAL_FRICTION)
     settings = FrictionSettings(fluid=GearPairModels.model_fields["fluid_friction"].default)
-    return _at_contacts(lambda it: (chosen.function(it, settings),), **contact)[0]
+    return _at_contacts(lambda it: (chosen.function(it, settings),), contact)[0]
 
 
 def rolling_loss(model: str, **contact: Any) -> FloatArray:
@@ -313,7 +313,7 @@ def rolling_loss(model: str, **contact: Any) -> FloatArray:
     """
     local = tuple(name for name in ROLLING_MODELS if name != "fitted")
     chosen = _chosen(model, ROLLING_MODELS, local)
-    return _at_contacts(lambda it: (chosen.loss_density(it),), **contact)[0]
+    return _at_contacts(lambda it: (chosen.loss_density(it),), contact)[0]
 
 
 def windage(
