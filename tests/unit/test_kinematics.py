@@ -7,7 +7,9 @@ import math
 
 import pytest
 
+import epicyclic as ep
 from epicyclic.gears.gear import HOUSING
+from epicyclic.machine import solve
 from epicyclic.machine.balance import Statics, speeds_of
 from epicyclic.machine.element import LOAD_INDEPENDENT, ElementResult, Loss
 from epicyclic.machine.machine import Machine, MeshRow, Operation
@@ -220,3 +222,16 @@ def test_losses_that_throw_a_small_load_to_and_fro_settle():
     # a load less by dx raises the drag by more than dx: passes with whole steps only grow
     assert 0.05 * 1.2 * load**-0.95 > 1
     assert load == pytest.approx(1.0 - 1.2 * load**0.05, rel=1e-7)
+
+
+def test_half_steps_settle_what_whole_ones_throw_to_and_fro(monkeypatch):
+    """Without secants, whose import takes a third of a second: a set next to no torque."""
+    monkeypatch.setattr(solve, "_by_secants", lambda *_: pytest.fail("secants were asked for"))
+    at = {"torque": "0.39 N*m", "speed": "2667 rpm", "oil_inlet_temperature": "40 degC"}
+    case = ep.load_case("talbot-2012").updated({f"operation.{key}": it for key, it in at.items()})
+    found = ep.solve(case)
+    powers = sum(member.power for member in found.flow.members.values())
+    assert powers == pytest.approx(found.total, rel=1e-7)
+    monkeypatch.setattr(solve, "SMALL_STEPS", ((0.5, 0), (0.2, 0)))
+    with pytest.raises(pytest.fail.Exception):
+        ep.solve(case)

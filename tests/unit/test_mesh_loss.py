@@ -13,6 +13,7 @@ from contacts import loaded_contact, with_overlap_ratio
 from epicyclic.losses.friction import FRICTION_MODELS, FrictionMap, FrictionSettings, friction_model
 from epicyclic.losses.mesh import local_loss, loss_factor_loss, mean_friction, ohlendorf_loss_factor
 from epicyclic.losses.rolling import ROLLING_MODELS
+from epicyclic.machine.gear_mesh import MOSTLY_ENOUGH, PEAK_SHARE, _exceeded
 from reference.gear_loss import equal_sharing_loss_factor, uniform_load_loss_factor
 
 SETTINGS = FrictionSettings(
@@ -399,3 +400,19 @@ def test_powers_too_small_for_a_number_have_a_friction_still(pair, mesh, torque,
     result = ep.solve(pair.updated({**friction, **point, "models.mesh": mesh}))
     assert 0 <= result.losses["mesh_sliding"] < 1e-290
     assert result.meshes["mesh"].friction_mean == pytest.approx(0.061, rel=1e-12)
+
+
+@pytest.mark.parametrize("light", [False, True], ids=["enough", "all are sorted"])
+def test_what_a_part_of_the_contact_exceeds(light):
+    """As of all points in their order, also where those that carry most are very short."""
+    rng = np.random.default_rng(6)
+    values, weight, other = rng.random((3, 400))
+    if light:
+        weight[values > 1 - 2 * MOSTLY_ENOUGH] *= 1e-3
+    order = np.argsort(values)
+    below = np.cumsum(weight[order])
+    expected = order[np.searchsorted(below, (1 - PEAK_SHARE) * below[-1])]
+    assert _exceeded(values, weight, other) == [values[expected], other[expected]]
+    heavy = weight[order[-round(MOSTLY_ENOUGH * 400) :]].sum() > PEAK_SHARE * weight.sum()
+    assert heavy != light
+    assert _exceeded(np.zeros(3), np.zeros(3)) == [0.0]

@@ -12,17 +12,18 @@ import numpy as np
 from epicyclic.arrays import FloatArray, between
 from epicyclic.dataclass import dataclass, field
 from epicyclic.kernels.line_contact import (
+    LEAST_SPEED,
     Real,
     hertz_half_width,
     hertz_pressure,
     line_load_at_pressure,
     pan_hamrock_minimum_film,
+    slide_to_roll_ratio,
 )
 from epicyclic.oil.oil import OilState
 
 STEEL_EFFUSIVITY = 12.4e3
 """Of case-hardened steel, ISO/TS 6336-20: for contacts that do not say. [W s^0.5/(m^2 K)]"""
-LEAST_SPEED = 1e-100  # With which quotients of speeds are formed, at least.
 CONDITIONS = (
     "slide_to_roll_ratio",
     "rolling_speed",
@@ -124,8 +125,8 @@ class LineContacts:
 
     @property
     def slide_to_roll_ratio(self) -> FloatArray:
-        """abs(u_s)/u_r. Theory (C4). [1]"""
-        return np.abs(self.sliding_speed) / np.maximum(self.rolling_speed, LEAST_SPEED)
+        """abs(u_s)/u_r. [1]"""
+        return slide_to_roll_ratio(self.sliding_speed, self.rolling_speed)
 
     @property
     def surface_speeds(self) -> tuple[FloatArray, FloatArray]:

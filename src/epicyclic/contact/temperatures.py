@@ -1,4 +1,4 @@
-"""Temperatures of tooth contacts: flash after Blok, bulk after ISO/TS 6336, and solids."""
+"""Temperatures of tooth contacts: shares of the heat after Blok, bulk after ISO/TS 6336; solids."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Solid:
         return math.sqrt(self.conductivity * self.heat_capacity * self.density)
 
 
-# Flash temperature of sliding line contacts, and how its heat is shared, after Blok.
+# How bodies share the heat of a sliding line contact, after Blok.
 
 Numbers = FloatArray | float
 

@@ -1,4 +1,4 @@
-"""Hertz line contact, films, rolling traction; mean Eyring stress; powers in vector code."""
+"""Line contacts: Hertz, films, rolling traction, flash; mean Eyring stress; powers in loops."""
 
 from __future__ import annotations
 
@@ -217,6 +217,16 @@ def inlet_film_factor(thermal_load: Real, pressure: Real, slip: Real) -> Real:
     slipping = 1 + 2.23 * power(slip, 0.83)
     factor: Real = numerator / (1 + 0.213 * slipping * power(thermal_load, 0.64))
     return factor
+
+
+LEAST_SPEED = 1e-100  # With which quotients of speeds are formed, at least.
+
+
+@formula
+def slide_to_roll_ratio(sliding: Real, rolling: Real) -> Real:
+    """abs(u_s)/u_r. Theory (C4). [1]"""
+    ratio: Real = np.abs(sliding) / np.maximum(rolling, LEAST_SPEED)
+    return ratio
 
 
 LEAST_FILM = 1e-40  # Of flanks that stand. [m]

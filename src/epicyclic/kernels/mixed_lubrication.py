@@ -20,17 +20,17 @@ from epicyclic.kernels.line_contact import (
     hertz_pressure,
     logarithm,
     power,
+    slide_to_roll_ratio,
 )
 
 MEAN_FLASH = 2 / 3
 """Mean over largest rise in an evenly heated, fast contact: the rise grows with sqrt(x). [1]"""
 MEAN_PRESSURE = math.pi / 4  # Mean over largest pressure of Hertz. [1]
-LEAST_SPEED = 1e-100  # With which quotients of speeds are formed, at least.
 
 LARGE = 20.0  # From here on arsinh(exp(x)) is x + ln 2 to the last digit. [1]
 OFFSET = 0.7  # Of ASTM D341. [mm^2/s]
 LEAST_VISCOSITY = 0.01  # That no heat goes below: thinner than any oil. [mm^2/s]
-START = 0.3  # Stress over its limit at unheated pressure with which Newton's method starts. [1]
+START = 0.3  # Stress over its limit at unheated pressure with which bisection starts. [1]
 QUICK_STEPS, STEPS = 4, 100  # Of Newton's method alone, and held between bounds.
 LEFT = 1e-9  # Of the stress: what a step leaves is its cube over the square of the one before. [1]
 CLOSE = 1e-4  # Size of that step over the stress, at most: a longer one may meet another bend. [1]
@@ -196,7 +196,7 @@ def mixed_friction(
             films[:] = film[row]
         else:
             for i in range(n):
-                slip = abs(u_s[i]) / np.maximum(u[i], LEAST_SPEED)
+                slip = slide_to_roll_ratio(u_s[i], u[i])
                 films[i] = central_film(
                     w[i], R[i], u[i], slip, E, viscosity, alpha, thermal * u[i] * u[i]
                 )

@@ -33,10 +33,11 @@ import numpy as np
 from epicyclic import library
 from epicyclic.arrays import FloatArray, on_grid
 from epicyclic.contact.fitted_models import OilModel, at_each, read_oil_model
-from epicyclic.contact.line_contact import LEAST_SPEED, LineContacts
+from epicyclic.contact.line_contact import LineContacts
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.flanks import RA_OVER_RQ, RZ_OVER_RA
 from epicyclic.kernels.line_contact import (
+    LEAST_SPEED,
     hertz_pressure,
     line_load_at_pressure,
     pan_hamrock_central_film,

@@ -7,6 +7,9 @@ At each contact, in the order of docs/theory/mixed-lubrication.md:
 3. the share of the load on asperities by the film ratio (Aihara);
 4. the shear stress of the film: Eyring with a limit, as hot as friction makes it;
 5. mu = xi mu_b + (1 - xi) tau/p.
+
+They are one kernel, `epicyclic.kernels.mixed_lubrication.mixed_friction`; formulas of smooth
+contacts stand in `epicyclic.kernels.line_contact`.
 """
 
 from __future__ import annotations

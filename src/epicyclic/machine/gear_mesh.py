@@ -374,7 +374,8 @@ def _exceeded(values: FloatArray, weight: FloatArray, *others: FloatArray) -> li
         above = np.cumsum(weight[rows, order], axis=1)
         if (above[:, -1:] > limit).all():
             break
-    place = order[rows, (above <= limit).sum(axis=1, keepdims=True)]
+    wholly = (above <= limit).sum(axis=1, keepdims=True)
+    place = order[rows, np.minimum(wholly, most - 1)]
     return [total(it[rows, place]) for it in (values, *beside)]
 
 

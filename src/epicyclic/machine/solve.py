@@ -212,12 +212,11 @@ LOSS_AGREEMENT = 1e-7
 """Error of predicted losses, at most, however little losses move the loads. [1]"""
 NO_POWER = 1e-12  # Power, relative to the largest one, that is rounding. [1]
 LIKELY = 0.9985  # Efficiency of a mesh that the first pass begins with. [1]
-PLAIN_PASSES, HALF_PASSES, SECANTS = 15, 10, 40
-"""Passes in which loads follow the losses, in which they go half of each step, and of a method
-of secants."""
+PLAIN_PASSES, SECANTS = 15, 40
+"""Passes in which loads follow the losses, and of a method of secants."""
 SMALL_STEPS = ((0.5, 20), (0.2, 85))
-"""Share of a step by which loads follow the losses after that, and for how many passes: losses
-that rise steeply from no load may throw a small load to and fro. [1]"""
+"""Share of a step by which loads follow the losses before and after secants, and for how many
+passes: losses that rise steeply from no load may throw a small load to and fro. [1]"""
 MOST_TORQUE = 1e15
 """Torque at a mesh, far above what a case can state, from which losses and torques only drive each
 other up. [N m]"""
@@ -687,11 +686,10 @@ def _converged(branch: _Branch) -> _Pass:
     to and fro; those that follow their losses slowly are left to secants, the rest to small steps.
     """
     found = _repeated(branch, None, 1.0, PLAIN_PASSES)
-    found = _repeated(branch, found, 0.5, HALF_PASSES)
+    found = _repeated(branch, found, *SMALL_STEPS[0])
     if not isinstance(found, _Pass):
         found = _by_secants(branch, found)
-    for share, passes in SMALL_STEPS:
-        found = _repeated(branch, found, share, passes)
+    found = _repeated(branch, found, *SMALL_STEPS[1])
     if isinstance(found, _Pass):
         return found
     raise branch.disagreement()

@@ -195,7 +195,8 @@ def _at_contacts(
     others = [key for key in given if key not in known]
     advice = f"Give some of {', '.join(known)}."
     problems = [
-        Problem(it, "", "is not known.", did_you_mean(it, known) or advice) for it in others
+        Problem(it, "", "is not a known argument.", did_you_mean(it, known) or advice)
+        for it in others
     ]
     lacking = (key for key in known if key not in contact)
     problems += [Problem(key, "", "is missing.", f'Give it: {key} = "...".') for key in lacking]
