@@ -107,6 +107,32 @@ def outcome(folder, *, cache=None, before="", **environment):
     return notes
 
 
+CALLER = """\
+from epicyclic.kernels.compiling import kernel
+from program import half
+
+@kernel
+def and_one(x):
+    return half(x) + 1
+
+print(and_one(9.0), sum(half.stats.cache_hits.values()), sum(and_one.stats.cache_hits.values()))
+"""
+
+
+@pytest.mark.slow
+def test_a_kernel_is_compiled_with_one_that_was_kept(tmp_path):
+    """What callers are compiled with is kept beside the machine code, and read only then."""
+    assert outcome(tmp_path) == []
+    settings = os.environ | {"XDG_CACHE_HOME": str(tmp_path / "cache")}
+    settings.pop("NUMBA_CACHE_DIR", None)
+    caller = tmp_path / "caller.py"
+    caller.write_text(CALLER)
+    for _ in range(2):  # compiled, and kept
+        *_, said = _output(caller, settings).splitlines()
+        assert said.startswith("5.5 1 ")
+    assert said == "5.5 1 1"
+
+
 def emptied(path):
     path.write_bytes(b"")
 

@@ -411,7 +411,7 @@ DIGITS = 5  # Significant digits in a file.
 
 
 class _Data(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 
 
 class NearbySimulations(_Data):

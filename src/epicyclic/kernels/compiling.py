@@ -10,17 +10,18 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable
-from contextlib import suppress
-from functools import cache
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NoReturn, ParamSpec, TypeVar, cast
 
+import llvmlite.binding as llvm
 import numba
 from numba.core import caching, event
+from numba.core.runtime.nrt import rtsys
 from numba.extending import overload, register_jitable
-from numba.np import linalg
 
 from epicyclic.cache_folder import is_private, private_folder
 from epicyclic.kernels import ahead, listeners
@@ -166,7 +167,8 @@ class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]  # numba h
         try:
             digest, data = super()._load_data(name)
             if digest == hashlib.sha256(data).digest():
-                return pickle.loads(data)
+                with _unasked():
+                    return pickle.loads(data)
             reason: Exception = ValueError("wrong checksum")
         except Exception as error:
             reason = error
@@ -188,8 +190,30 @@ def _content(file: str) -> str:
     return hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
 
+class _Kept(caching.CompileResultCacheImpl):  # type: ignore[misc]  # numba has no types
+    """Machine code, and beside it what a kernel that calls this one is compiled with.
+
+    The latter is read when there is one: with that of all kernels a tenth of a `run` went by.
+    """
+
+    def reduce(self, result: Any) -> Any:
+        (name, kind, (code, whole)), *others = super().reduce(result)
+        functions = result.library._get_module_for_linking().functions
+        names = [it.name for it in functions if not it.is_declaration]
+        text = "\n".join(f'define void @"{it}"() {{ ret void }}' for it in names)
+        return (name, kind, (code, llvm.parse_assembly(text).as_bitcode())), *others, whole
+
+    def rebuild(self, target_context: Any, payload: Any) -> Any:
+        *own, whole = payload
+        found = super().rebuild(target_context, own)
+        found.library._get_module_for_linking = cache(partial(llvm.parse_bitcode, whole))
+        return found
+
+
 class _KernelCache(caching.FunctionCache):  # type: ignore[misc]  # numba has no types
     """The cache of one kernel, without which the kernel runs as well."""
+
+    _impl_class = _Kept
 
     def __init__(self, compiled: Any) -> None:
         super().__init__(compiled.py_func)
@@ -203,20 +227,24 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]  # numba has no
         )
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        load = super().load_overload
+        rtsys.initialize(target_context)  # all that machine code needs to run
+        load = partial(self._load_overload, sig, target_context)
 
         def is_kept() -> bool:
             self._compiled.compile(sig)
-            return load(sig, target_context) is not None
+            return load() is not None
 
-        found = load(sig, target_context)
+        found = load()
+        if found is None:
+            with _unasked():  # what compiling needs, once for all copies
+                target_context.refresh()
         if found is None and _is_copy and self._locked is None:  # it is, after a failure
             self._lock()
-            found = load(sig, target_context)
+            found = load()
             if found is not None:
                 self._unlock()
         is_new = found is None and done_apart(is_kept)
-        return load(sig, target_context) if is_new else found
+        return load() if is_new else found
 
     def _lock(self) -> None:
         """Wait for who else compiles this kernel, then let others wait until it is kept.
@@ -251,6 +279,22 @@ def _note_lost(error: Exception) -> None:
     _notes[text] = None
 
 
+@contextmanager
+def _unasked() -> Iterator[None]:
+    """Let numba load sums and products of arrays without asking whether scipy.linalg is there.
+
+    It would import it, a tenth of a `run`, for kernels that do not call it. One that does imports
+    it all the same. A numba that asks by another name goes on asking.
+    """
+    linalg: Any = import_module("numba.np.linalg")
+    ask = getattr(linalg, "ensure_blas", None)
+    linalg.ensure_blas = lambda: None
+    try:
+        yield
+    finally:
+        linalg.ensure_blas = ask
+
+
 class _Listener(event.Listener):
     """Tells of kernels of this package that are compiled, not of what numba compiles for them."""
 
@@ -264,15 +308,6 @@ class _Listener(event.Listener):
 
 
 event.register("numba:compile", _Listener())
-
-
-# numba asks whether scipy.linalg is there when it loads sums and products of arrays, and so would
-# import it, a tenth of a `run`, for kernels that do not call it. One that does imports it all the
-# same. A numba that asks by another name goes on asking.
-_ask: Any = getattr(linalg, "ensure_blas", None)
-linalg.ensure_blas = lambda: None
-import_module("numba.np.arraymath")
-linalg.ensure_blas = _ask
 
 
 _PLAIN: Any = {"error_model": "numpy", "nogil": True}

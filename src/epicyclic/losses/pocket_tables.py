@@ -437,7 +437,7 @@ _Finite = Annotated[float, Field(allow_inf_nan=False)]
 class _Stored(BaseModel):
     """One table. Attributes as of `FlowTable`, and the family in plain values."""
 
-    model_config = ConfigDict(extra="forbid", ser_json_inf_nan="constants")
+    model_config = ConfigDict(extra="forbid", ser_json_inf_nan="constants", defer_build=True)
 
     family: dict[str, _Plain]
     number: list[Annotated[_Finite, Field(gt=0)]] = Field(min_length=1)
@@ -461,7 +461,7 @@ class _Stored(BaseModel):
 class StoredTables(BaseModel):
     """All tables of a file."""
 
-    model_config = ConfigDict(extra="forbid", ser_json_inf_nan="constants")
+    model_config = ConfigDict(extra="forbid", ser_json_inf_nan="constants", defer_build=True)
 
     version: str
     tables: list[_Stored]

@@ -36,7 +36,7 @@ _SMALL = {2: 2.2, 3: 3.2, 5: 4.6, 7: 6.8}
 class ShortOil(BaseModel):
     """An oil by its ISO viscosity grade or two viscosities, and its kind."""
 
-    model_config = ConfigDict(extra="allow")
+    model_config = ConfigDict(extra="allow", defer_build=True)
 
     kind: Literal["mineral", "pao", "ester", "pag", "atf"]
     iso_vg: int | None = option("Grade of ISO 3448.")

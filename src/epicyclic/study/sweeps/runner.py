@@ -118,7 +118,7 @@ class Rows:
 
 @dataclass(frozen=True, slots=True)
 class _Record:
-    __pydantic_config__ = ConfigDict(ser_json_inf_nan="constants")
+    __pydantic_config__ = ConfigDict(ser_json_inf_nan="constants", defer_build=True)
 
     sweep: str
     point: int
