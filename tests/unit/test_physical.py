@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import epicyclic as ep
@@ -12,6 +13,8 @@ from epicyclic.errors import Status
 from epicyclic.losses.pocket_tables import FlowFigures
 from epicyclic.machine import pocket_flow
 from epicyclic.result.physical import judged
+from epicyclic.study.maps.compute import map_plan, to_map
+from epicyclic.study.sweeps.runner import Runner
 
 
 @pytest.fixture(scope="module")
@@ -133,3 +136,38 @@ def test_points_of_sweeps_have_the_outcome_and_no_numbers(coarse_talbot, impossi
     assert list(found["status"].values) == ["converged", "unphysical"]
     assert found["total"].isnull().values.tolist() == [False, True]
     assert found["message"].values[1].startswith("No result: ")
+
+
+@pytest.mark.parametrize("torque", ["-730 N*m", "4 N*m", "1900 N*m"])
+def test_contacts_are_judged_by_no_less_than_their_figures(torque):
+    result = ep.solve(ep.load_case("talbot-2012").updated({"operation.torque": torque}))
+    for name, found in result.meshes.items():
+        own = result.extremes[name]
+        assert own.share == found.contact_share
+        assert own.resistance == found.resistance
+        assert 0 < found.hertz_pressure_max <= own.pressure < 2 * found.hertz_pressure_max
+        assert found.flattening <= own.flattening
+    found, own = result.bearing, result.extremes["planet_bearing"]
+    assert (own.pressure, own.flattening) == (found.hertz_pressure_max, found.flattening)
+    rows, rollers, _ = found.loads.intensity.shape
+    carried = found.loads.intensity.reshape(rows * rollers, -1)
+    assert own.share == np.mean(carried[carried.sum(axis=1).argmax()] > 0)
+
+
+def test_a_map_keeps_its_own_numbers_and_every_warning():
+    """Points of a block whose contacts are pressed too much, and others."""
+    case = ep.load_case("talbot-2012").updated({"sun.roughness": "0.35 um"})
+    speeds = [f"{rpm} rpm" for rpm in (300, 700, 1100, 1600, 2300, 3100, 3900, 4700)]
+    torques = [f"{torque} N*m" for torque in (-23000, -800, 3, 410, 9000, 30000)]
+    plan = map_plan(case, speeds, torques, ["60 degC"])
+    assert plan.block > 1
+    rows = Runner(jobs=1).run(plan)
+    own = {f"{mesh}_pocket_interpolation_error" for mesh in ("sun_mesh", "ring_mesh")}
+    assert set(rows.names) <= {*to_map(plan, rows).data_vars, *own}
+    for place in range(0, plan.size, 5):
+        alone = ep.solve(case.updated(plan.changes(place)))
+        assert rows.warnings[place] == " | ".join(alone.warnings)
+        assert rows.numbers("total")[place] == pytest.approx(alone.total, rel=1e-6)
+    pressed = [" withstands about " in text for text in rows.warnings]
+    assert any(pressed)
+    assert not all(pressed)

@@ -30,7 +30,7 @@ from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
 from epicyclic.losses.windage import DRAG_METHODS, LAMINAR_RIMS, DragModel
 from epicyclic.machine.disc import churned, drags_by_model
-from epicyclic.machine.element import OIL, Note, State, joined_key, note_watts
+from epicyclic.machine.element import OIL, Figures, Note, State, joined_key, note_watts
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.gear_set import GearSet, GearSetResult
 from epicyclic.machine.heat import AGREEMENT, Answer, Settled, heat_of
@@ -93,7 +93,8 @@ def case_notes(
     """What a user must know about a set: its oil, its load, its flows, its planets."""
     before, behind = _notes_of_tables(case)
     yield from before
-    for name, mesh in found.figures.items():
+    figures = {name: found.figures[name] for name in found.figures if _remarkable(found, name)}
+    for name, mesh in figures.items():
         if isinstance(mesh, MeshFigures) and mesh.contact_share < LEAST_CONTACT:
             yield (
                 f"Only {percent(mesh.contact_share, 0)} of the contact lines of the "
@@ -101,7 +102,7 @@ def case_notes(
                 "deflection of the teeth. Contact that begins or ends beyond the path of contact "
                 "is not modelled."
             )
-    yield from pressure_notes(found.figures)
+    yield from pressure_notes(figures)
     yield from found.notes
     yield from behind
     if case.sharing is not None and found.shares:
@@ -112,6 +113,12 @@ def case_notes(
                 f"{case.gearing.key(name)}.rim_thickness is not given, so the drag of the turning "
                 f"ring is computed for a rim of {DEFAULT_RIM_THICKNESS:g} normal modules."
             )
+
+
+def _remarkable(found: GearSetResult, name: str) -> bool:
+    """Whether the figures of a contact are worth reading for notes."""
+    own = found.extremes.get(name)
+    return own is None or own.pressure > GEAR_PRESSURE or own.share < LEAST_CONTACT
 
 
 @lru_cache(maxsize=16)
@@ -337,11 +344,19 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         solution.input_power,
         solution.efficiency,
     )
-    figures: dict[str, Any] = {
-        joined_key(key, name) if name else key: item
-        for key, result in solution.results.items()
-        for name, item in result.figures.items()
-    }
+    figures, extremes = (
+        {
+            joined_key(key, name) if name else key: partial(found.__getitem__, name)
+            for key, result in solution.results.items()
+            for found in (getattr(result, kind),)
+            for name in found
+        }
+        for kind in ("figures", "extremes")
+    )
+
+    def among(keys: Collection[str]) -> Figures[Any]:
+        return Figures({key: figures.pop(key) for key in keys if key in figures})
+
     methods = dict(_methods(built))
     sources = [term.source for term in terms if not term.left_out]
     sources += [source for _, source in methods.values()]
@@ -356,13 +371,10 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         layout=built.layout,
         terms=terms,
         flow=flow,
-        meshes={key: item for key, item in figures.items() if isinstance(item, MeshFigures)},
-        bearings={key: item for key, item in figures.items() if isinstance(item, BearingFigures)},
-        parts={
-            key: item
-            for key, item in figures.items()
-            if not isinstance(item, MeshFigures | BearingFigures)
-        },
+        meshes=among(built.layout.meshes),
+        bearings=among(built.layout.bearings),
+        parts=Figures(figures),
+        extremes=Figures(extremes),
         fluid=None if fluids is None else fluids.figures,
         models={
             joined_key(key, name): model

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
 from epicyclic.arrays import points_in, taken
 from epicyclic.dataclass import dataclass, field, replace
@@ -137,7 +137,10 @@ class Figure:
     unit: str
 
 
-class Figures(Mapping[str, "DataclassInstance"]):
+Found = TypeVar("Found")
+
+
+class Figures(Mapping[str, Found]):
     """Figures by what they describe, found when somebody reads them.
 
     Most answers of an element are steps on the way to the last one, of which alone anybody does.
@@ -147,16 +150,19 @@ class Figures(Mapping[str, "DataclassInstance"]):
 
     __slots__ = ("_finds", "_found")
 
-    def __init__(self, finds: Mapping[str, Callable[[], DataclassInstance]]) -> None:
+    def __init__(self, finds: Mapping[str, Callable[[], Found]]) -> None:
         self._finds = finds
-        self._found: dict[str, DataclassInstance] = {}
+        self._found: dict[str, Found] = {}
 
     @property
-    def parts(self) -> tuple[Mapping[str, Callable[[], DataclassInstance]]]:
+    def parts(self) -> tuple[Mapping[str, Callable[[], Found]]]:
         """What they are made of."""
         return (self._finds,)
 
-    def __getitem__(self, key: str) -> DataclassInstance:
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (dict(self),)
+
+    def __getitem__(self, key: str) -> Found:
         if key not in self._found:
             self._found[key] = self._finds[key]()
         return self._found[key]
@@ -166,6 +172,20 @@ class Figures(Mapping[str, "DataclassInstance"]):
 
     def __len__(self) -> int:
         return len(self._finds)
+
+
+@dataclass(frozen=True, slots=True)
+class Extremes:
+    """By what a contact is judged. Only of one that may be too much the figures are read then."""
+
+    pointwise = True
+
+    pressure: float  # Largest Hertz pressure; NaN without load or motion. [Pa]
+    flattening: float  # Largest half-width of the contact over its radius. [1]
+    resistance: float  # As of `MeshFigures`. [1]
+    share: float  # Of the contact lines, or of the most loaded roller, that carries. [1]
+    # Largest interpolation error of the pocketing loss; NaN where none is interpolated. [1]
+    flow_error: float = math.nan
 
 
 def figures(source: DataclassInstance) -> Iterator[Figure]:
@@ -300,6 +320,7 @@ class ElementResult:
     notes: tuple[str, ...] | Sought[str] = ()  # What else the user must know.
     # What its parts carry, from which a solution at another temperature goes on.
     loaded: Mapping[Any, Any] = field(default_factory=dict[Any, Any])
+    extremes: Mapping[str, Extremes] = field(default_factory=dict[str, Any])  # Of some figures.
 
 
 class Element(Protocol):

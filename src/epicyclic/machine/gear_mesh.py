@@ -58,6 +58,7 @@ from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
     ElementResult,
+    Extremes,
     Figures,
     Fluids,
     Loss,
@@ -329,10 +330,12 @@ def solve_mesh(
         f"{key}_pocketing": pocketing,
     }
     elastic = None if loads is None else loads.elastic
+    extremes = AtOnce(_mesh_extremes, duty, contact, loss, flow.figures)
     figures = AtOnce(_mesh_figures, duty, contact, loss, elastic, flow.figures)
     return MeshResult(
         losses=losses,
         figures=Figures({key: figures}),
+        extremes=Figures({key: extremes}),
         flags=loss.flags,
         notes=Sought(partial(_mesh_notes, duty, flow, fluids, count, losses, friction)),
         elastic=elastic,
@@ -379,6 +382,25 @@ def _exceeded(values: FloatArray, weight: FloatArray, *others: FloatArray) -> li
     return [total(it[rows, place]) for it in (values, *beside)]
 
 
+def _mesh_extremes(
+    duty: MeshDuty, contact: MeshContact | None, loss: MeshLoss, flow: FlowFigures | None
+) -> Extremes:
+    error = math.nan if flow is None else flow.error
+    if contact is None:
+        return Extremes(math.nan, 0.0, 0.0, math.nan, error)
+    speed = contact.rolling_speed + np.abs(contact.sliding_speed)
+    resisted = total(contact.line_load * contact.weight * speed)
+    return Extremes(
+        pressure=most(contact.hertz_pressure),
+        flattening=most(contact.hertz_half_width / contact.radius),
+        resistance=either(
+            resisted > 0, (loss.sliding + loss.rolling) / larger(resisted, TINY), 0.0
+        ),
+        share=total(contact.weight) / duty.gears.mesh.mean_contact_length,
+        flow_error=error,
+    )
+
+
 def _mesh_figures(
     duty: MeshDuty,
     contact: MeshContact | None,
@@ -392,19 +414,17 @@ def _mesh_figures(
         speed1 * rho1 - speed1 / mesh.ratio * mesh.curvature2(rho1)
         for rho1 in (mesh.path_start, mesh.path_end)
     )
-    found: dict[str, Any] = {"flattening": 0.0, "resistance": 0.0}
+    extremes = _mesh_extremes(duty, contact, loss, flow)
+    found: dict[str, Any] = {"flattening": 0.0}
     if contact is not None:
         line_load, weight, loaded = contact.line_load, contact.weight, contact.line_load > 0
         flash = flash_temperatures(contact, loss.friction, duty.gears.materials) * loaded
         load, film = line_load * weight, contact.film_ratio * loaded
-        speed = contact.rolling_speed + np.abs(contact.sliding_speed)
-        resisted = total(load * speed)
         flattened = contact.hertz_half_width / contact.radius
         # flattest where it is pressed most, too
         pressed, flattening = _exceeded(contact.hertz_pressure, weight, flattened)
         found = {
             "contact_temperature": contact.oil.temperature,
-            "contact_share": total(weight) / mesh.mean_contact_length,
             "flash_temperature_mean": total(flash * load) / total(load),
             "flash_temperature_max": most(flash),
             "film_ratio_min": least(film + NOWHERE * ~loaded),
@@ -413,9 +433,6 @@ def _mesh_figures(
             "line_load_max": _exceeded(line_load, weight)[0],
             "hertz_pressure_max": pressed,
             "flattening": flattening,
-            "resistance": either(
-                resisted > 0, (loss.sliding + loss.rolling) / larger(resisted, TINY), 0.0
-            ),
         }
     if elastic is not None:
         of_each = [
@@ -432,12 +449,14 @@ def _mesh_figures(
             "pocket_pressure_min": flow.pressure_min,
             "pocket_speed_max": flow.speed_max,
             "pocket_power_difference": flow.difference,
-            "pocket_interpolation_error": flow.error,
         }
     unknown: dict[str, Any] = dict.fromkeys((it.name for it in fields(MeshFigures)), math.nan)
     return MeshFigures(
         **unknown | found | {
             "seen": AtOnce(itself, contact),
+            "resistance": extremes.resistance,
+            "contact_share": extremes.share,
+            "pocket_interpolation_error": extremes.flow_error,
             "pressure_angle": mesh.operating_pressure_angle,
             "transverse_contact_ratio": mesh.transverse_contact_ratio,
             "overlap_ratio": mesh.overlap_ratio,

@@ -295,6 +295,7 @@ class GearSet:
         return GearSetResult(
             losses={name: found[name] for name in self.choices},
             figures=first.figures,
+            extremes=first.extremes,
             flags=Flags(partial(_widest, [branch.flags for branch in branches])) + drags.flags,
             notes=first.notes,
             loaded={
@@ -528,10 +529,10 @@ class GearSet:
             losses |= self._of_mesh(duty, mesh.losses)
             flags = mesh.flags + flags
         parts: list[ElementResult] = [*bearings.values(), *meshes.values()]
-        figures = {key: partial(it.figures.__getitem__, key) for it in parts for key in it.figures}
         return _Branch(
             losses=losses,
-            figures=Figures(figures),
+            figures=_all_of(it.figures for it in parts),
+            extremes=_all_of(it.extremes for it in parts),
             flags=flags,
             notes=Sought(*notes, *(mesh.notes.__iter__ for mesh in meshes.values())),
             meshes=meshes,
@@ -578,6 +579,11 @@ def _mean_heat(losses: Sequence[Loss]) -> tuple[tuple[str, float], ...]:
         for node, share in loss.heat:
             shares[node] += share * loss.watts / total
     return tuple(shares.items())
+
+
+def _all_of(found: Iterable[Mapping[str, Any]]) -> Figures[Any]:
+    """What is found of several parts."""
+    return Figures({key: partial(it.__getitem__, key) for it in found for key in it})
 
 
 def _widest(branches: Sequence[SomeFlags]) -> tuple[ValidityFlag, ...]:

@@ -9,7 +9,18 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from epicyclic.arrays import Alone, FloatArray, Points, larger, phase, total
+from epicyclic.arrays import (
+    TINY,
+    Alone,
+    AtOnce,
+    FloatArray,
+    Points,
+    either,
+    larger,
+    most,
+    phase,
+    total,
+)
 from epicyclic.contact.planet_sharing import (
     Branches,
     branch_directions,
@@ -65,6 +76,7 @@ from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
     ElementResult,
+    Extremes,
     Figures,
     Loss,
     Note,
@@ -634,6 +646,7 @@ def solve_bearing(
         notes = (_rubbing_note(where, rubbed),)
     known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
     limits = partial(_limit_notes, where, known, own.limiting_speed, carried, abs(speed), watts)
+    extremes = AtOnce(_bearing_extremes, own, loads, speed, watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     idle = speed, bearing.pitch_diameter, oil.dynamic_viscosity
     return BearingResult(
@@ -646,6 +659,7 @@ def solve_bearing(
         Figures({key: figures}),
         loss.flags + Flags(partial(viscous_flags, where, *idle)),
         Sought(notes.__iter__, limits),
+        extremes=Figures({key: extremes}),
         loads=loads,
     )
 
@@ -739,6 +753,24 @@ def _palmgren(own: PlanetBearing, loads: RollerLoads, force: float, speed: float
     return BearingLoss(watts, Flags(partial(palmgren_flags, bearing, loads, speed)), 0.0)
 
 
+def _bearing_extremes(
+    own: PlanetBearing, loads: RollerLoads, speed: float, loss: float
+) -> Extremes:
+    bearing, intensity = own.bearing, loads.intensity
+    points = intensity.shape[:-3]
+    rollers = intensity.reshape(*points, -1, bearing.slices)
+    place = np.asarray(rollers).sum(axis=-1).argmax(axis=-1)[..., None, None]
+    hardest = most(intensity.reshape(*points, -1)), bearing.inner_radius, bearing.equivalent_modulus
+    held = total(intensity) * bearing.slice_width
+    resisted = held * bearing.pitch_diameter / 2 * abs(speed)
+    return Extremes(
+        pressure=hertz_pressure(*hardest),
+        flattening=hertz_half_width(*hardest) / bearing.inner_radius,
+        resistance=either(resisted > 0, loss / larger(resisted, TINY), 0.0),
+        share=total((np.take_along_axis(rollers, place, axis=-2) > 0).mean(axis=-1)),
+    )
+
+
 def _bearing_figures(
     own: PlanetBearing,
     loads: RollerLoads,
@@ -750,8 +782,7 @@ def _bearing_figures(
     bearing = own.bearing
     rollers = loads.intensity.sum(axis=2) * bearing.slice_width
     row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
-    hardest = float(loads.intensity.max()), bearing.inner_radius, bearing.equivalent_modulus
-    resisted = float(rollers.sum()) * bearing.pitch_diameter / 2 * abs(speed)
+    extremes = _bearing_extremes(own, loads, speed, loss)
     inner, outer = (
         hertz_half_width(
             loads.intensity, np.full_like(loads.intensity, radius), bearing.equivalent_modulus
@@ -765,9 +796,9 @@ def _bearing_figures(
         rollers_loaded=float(np.count_nonzero(rollers)),
         roller_load_max=float(rollers[row, most]),
         roller_azimuth=math.remainder(float(loads.azimuth[most]), 2 * math.pi),
-        hertz_pressure_max=hertz_pressure(*hardest),
-        flattening=hertz_half_width(*hardest) / bearing.inner_radius,
-        resistance=loss / resisted if resisted else 0.0,
+        hertz_pressure_max=extremes.pressure,
+        flattening=extremes.flattening,
+        resistance=extremes.resistance,
         contact_temperature=oil.temperature,
         heat_conductance=roller_conductance(  # through the loaded rollers
             inner,

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from epicyclic.errors import Status
+from epicyclic.machine.element import Extremes
 from epicyclic.machine.gear_mesh import MeshFigures
 from epicyclic.machine.planets import BearingFigures
 from epicyclic.result.result import Result, in_words
@@ -43,8 +44,10 @@ Contact = MeshFigures | BearingFigures
 def judged(result: Result) -> Result:
     """The result, or the same with the status `Status.UNPHYSICAL` and a note that says why."""
     contacts: dict[str, Contact] = {
-        **{f"teeth of the {in_words(name)}": mesh for name, mesh in result.meshes.items()},
-        **{f"rollers of the {in_words(name)}": one for name, one in result.bearings.items()},
+        f"{what} of the {in_words(name)}": found[name]
+        for what, found in (("teeth", result.meshes), ("rollers", result.bearings))
+        for name in found
+        if _may_be_overloaded(result.extremes.get(name))
     }
     models = list(_overloaded(contacts))
     reasons = []
@@ -68,6 +71,13 @@ def judged(result: Result) -> Result:
         advice.append(CHECK_FILES)
     note = f"No result: {' '.join(reasons + advice)}"
     return replace(result, status=Status.UNPHYSICAL, notes=(note, *result.notes))
+
+
+def _may_be_overloaded(own: Extremes | None) -> bool:
+    """Whether the figures of a contact are worth reading."""
+    if own is None or own.flattening > FLATTENED:
+        return True
+    return own.resistance > MOST_RESISTANCE and own.pressure > PRESSED
 
 
 def _overloaded(contacts: Mapping[str, Contact]) -> Iterator[str]:

@@ -6,7 +6,7 @@ import dataclasses
 import json
 import math
 import platform
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from functools import cache, lru_cache, partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any, Protocol
@@ -18,6 +18,7 @@ from epicyclic.machine.element import (
     LOAD_DEPENDENT,
     LOAD_INDEPENDENT,
     OIL,
+    Extremes,
     Figure,
     FluidFigures,
     displayed,
@@ -360,6 +361,8 @@ class Result:
         Bearings of planets, by the first words of their losses.
     parts : mapping of str to dataclass
         Figures of further elements: bearings of shafts, seals.
+    extremes : mapping of str to Extremes
+        By what meshes and bearings are judged.
     fluid : FluidFigures or None
     models : mapping of str to str
         The models used, defaults resolved.
@@ -418,6 +421,7 @@ class Result:
     status: Status = Status.CONVERGED
     unloaded: float | None = None
     versions: Mapping[str, str] = field(default_factory=versions)
+    extremes: Mapping[str, Extremes] = field(default_factory=dict[str, Extremes])
 
     @property
     def inputs(self) -> Mapping[str, Any]:
@@ -557,9 +561,11 @@ class Result:
         for it in number_fields(self.layout):
             yield Figure(it.key, it.label, values[it.key], it.unit)
 
-    def values(self) -> dict[str, float]:
-        """The `numbers` alone, by their keys."""
-        return {it.key: it.read(self) + 0.0 for it in number_fields(self.layout)}  # no -0.0
+    def values(self, keys: Container[str] | None = None) -> dict[str, float]:
+        """The `numbers` alone, or some of them, by their keys."""
+        fields = number_fields(self.layout)
+        wanted = fields if keys is None else [it for it in fields if it.key in keys]
+        return {it.key: it.read(self) + 0.0 for it in wanted}  # no -0.0
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain numbers and text, in W and in the units stated beside them."""

@@ -371,8 +371,7 @@ class SamplePlan(CasePlan):
         """What the results follow from; nothing else is read."""
         return loss_numbers(cases, self.outputs, self.flow_tables)
 
-    @staticmethod
-    def _row_of(answer: Any) -> Row:
+    def _row_of(self, answer: Any) -> Row:
         return Row(str(Status.CONVERGED), numbers=answer)
 
 

@@ -27,7 +27,14 @@ from epicyclic.study.maps.tables import SUMS, Lookup, check_map, map_case, map_i
 from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name, key_of
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
-from epicyclic.study.sweeps.run import PointList, SweepPlan, by_keys, make_plan, to_dataset
+from epicyclic.study.sweeps.run import (
+    INTERPOLATION_ERROR,
+    PointList,
+    SweepPlan,
+    by_keys,
+    make_plan,
+    to_dataset,
+)
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
 from epicyclic.units import NEWTON_METRE, RPM, WATT, format_number, torque_text
 
@@ -297,7 +304,14 @@ _CREEP = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class MapPlan(SweepPlan):
-    """The points of a map."""
+    """The points of a map, which has only some of their numbers."""
+
+    def _numbers_of(self, answer: Any) -> dict[str, float]:
+        found: dict[str, float] = answer.values(frozenset(_kept_variables(answer.layout)))
+        for key, it in answer.extremes.items():
+            if not math.isnan(it.flow_error):
+                found[f"{key}_{INTERPOLATION_ERROR}"] = it.flow_error
+        return found
 
     kind: ClassVar[str] = "map"
 

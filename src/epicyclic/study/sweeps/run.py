@@ -237,12 +237,15 @@ class CasePlan(Plan):
         """What is found of cases, or what is wrong with each of them."""
         return solve_together(cases, self.flow_tables)
 
-    @staticmethod
-    def _row_of(answer: Any) -> Row:
+    def _row_of(self, answer: Any) -> Row:
         if answer.status is not Status.CONVERGED:
             return Row(str(answer.status), message=answer.notes[0])
         warnings = " | ".join(answer.warnings)
-        return Row(str(answer.status), warnings=warnings, numbers=answer.values())
+        return Row(str(answer.status), warnings=warnings, numbers=self._numbers_of(answer))
+
+    def _numbers_of(self, answer: Any) -> dict[str, float]:
+        found: dict[str, float] = answer.values()
+        return found
 
 
 def _files(case: Case) -> Iterator[str]:
@@ -570,7 +573,7 @@ def _is_bare(item: str) -> bool:
 FORMATS = (".nc", ".csv", ".parquet")
 _FORMULA = ("=", "+", "-", "@", "\t")  # What formulas of spreadsheets begin with.
 _CONTROLS = re.compile(r"[^\t\n -\x7e\xa0-\U0010ffff]")
-_INTERPOLATION_ERROR = "pocket_interpolation_error"
+INTERPOLATION_ERROR = "pocket_interpolation_error"
 
 
 def to_dataset(plan: SweepPlan, rows: Rows) -> xr.Dataset:
@@ -661,7 +664,7 @@ def _attributes(plan: SweepPlan, rows: Rows) -> dict[str, str]:
 
 def _about_pocketing(rows: Rows) -> str:
     """Whether the pocketing losses of some points were interpolated, and how well."""
-    errors = [rows.numbers(name) for name in rows.names if name.endswith(_INTERPOLATION_ERROR)]
+    errors = [rows.numbers(name) for name in rows.names if name.endswith(INTERPOLATION_ERROR)]
     if np.isnan(errors).all():
         return "flow solved at every point"
     return (
