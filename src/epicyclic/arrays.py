@@ -185,8 +185,7 @@ def row_by_row(
     """A kernel over arrays of shape (points, n), the first of them whole, and rows of numbers."""
     rows = [np.ascontiguousarray(np.atleast_2d(values)) for values in places]
     for table in map(side_by_side, numbers):
-        whole = np.broadcast_to(table, (len(rows[0]), table.shape[-1]))
-        rows.append(np.ascontiguousarray(whole))
+        rows.append(np.ascontiguousarray(np.broadcast_to(table, (len(rows[0]), table.shape[-1]))))
     return kernel(*rows).reshape(places[0].shape).view(type(places[0]))
 
 

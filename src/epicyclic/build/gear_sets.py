@@ -75,8 +75,7 @@ def _sump(case: SetCase, name: str, body: str, part: Dipped) -> Sump | None:
     if table is None or table.method != "dip":
         return None
     level = case.oil_heights.get(body) if table.oil_level is None else table.oil_level
-    stated = table.immersion.get(name, 0.0)
-    depth = stated if level is None else max(part.tip_radius + level, 0.0)
+    depth = table.immersion.get(name, 0.0) if level is None else max(part.tip_radius + level, 0.0)
     volume = case.thermal.oil_volume if table.oil_volume is None else table.oil_volume
     assert volume is not None
     smooth = case.chosen["drag"] != LAMINAR_RIMS

@@ -87,8 +87,7 @@ def uncertainty(
     _check_use(source, cycle, changes, points, values)
     from epicyclic.show.record import open_map
 
-    is_map = Path(source).suffix == MAP_SUFFIX
-    loaded = open_map(source) if is_map else load_with(source, changes)
+    loaded = open_map(source) if Path(source).suffix == MAP_SUFFIX else load_with(source, changes)
     if cycle is not None:
         study = _cycle_study(loaded, cycle, values["temperature"], samples, points, seed, runner)
     else:

@@ -337,23 +337,19 @@ def rim_coupling(
     ring = ElasticRing(
         gear.root_radius + rim.thickness / 2, rim.thickness, gear.face_width, modulus, poisson_ratio
     )
-    rho1 = np.clip(lines.curvature1.mean(axis=2), mesh.path_start, mesh.path_end)
-    rho2 = mesh.curvature2(rho1)
+    rho2 = mesh.curvature2(np.clip(lines.curvature1.mean(axis=2), mesh.path_start, mesh.path_end))
     # x from the axis of the ring to that of the pinion, y in the direction of the force
     alpha = mesh.operating_pressure_angle
     foot = gear.base_radius * np.array([math.cos(alpha), -math.sin(alpha)])
     direction = np.array([math.sin(alpha), math.cos(alpha)])
     x = foot[0] + rho2 * direction[0]
-    y = foot[1] + rho2 * direction[1]
-    tooth = np.arctan2(y, x) + gear.half_angles_at(rho2)
+    tooth = np.arctan2(foot[1] + rho2 * direction[1], x) + gear.half_angles_at(rho2)
     radial = direction[0] * np.cos(tooth) + direction[1] * np.sin(tooth)
     tangential = direction[1] * np.cos(tooth) - direction[0] * np.sin(tooth)
     # torque about the axis is the base radius; what the tangential force leaves of it is a moment
-    moment = gear.base_radius - tangential * ring.radius
-    load = np.stack([radial, tangential, moment], axis=-1)
+    load = np.stack([radial, tangential, gear.base_radius - tangential * ring.radius], axis=-1)
     angle = tooth[:, :, None] - tooth[:, None, :]
-    influence = ring.influence(angle, rim.loads)
-    transverse = np.einsum("mia,mijab,mjb->mij", load, influence, load)
+    transverse = np.einsum("mia,mijab,mjb->mij", load, ring.influence(angle, rim.loads), load)
     coupling: FloatArray = math.cos(gear.rack.base_helix_angle) ** 2 * transverse
     return coupling
 

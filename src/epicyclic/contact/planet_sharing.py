@@ -127,8 +127,7 @@ def _loaded(
     nearest = np.linalg.pinv(balance) @ right
     free = null_space(balance)
     # no force is negative: free @ x >= bounds
-    bounds = -(nearest[:number] + lead)
-    rows = np.vstack([free[:number].T, bounds])
+    rows = np.vstack([free[:number].T, -(nearest[:number] + lead)])
     target = np.zeros(len(rows))
     target[-1] = 1.0
     multipliers, distance = nnls(rows, target)

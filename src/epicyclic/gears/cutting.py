@@ -553,12 +553,10 @@ def _fillet(
     # of equal length, and the points are then computed there.
     fine = np.linspace(0.0, last_normal, 8 * points)
     radius, angle = cut.fillet(fine)
-    chords = np.abs(np.diff(radius * np.exp(1j * angle)))
-    length = np.concatenate([[0.0], np.cumsum(chords)])
+    length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(radius * np.exp(1j * angle))))])
     if length[-1] <= 1e-12 * gear.root_radius:
         return np.empty(0), np.empty(0)
-    normal = np.interp(np.linspace(0.0, length[-1], points)[1:], length, fine)
-    radius, angle = cut.fillet(normal)
+    radius, angle = cut.fillet(np.interp(np.linspace(0.0, length[-1], points)[1:], length, fine))
     half_angle = math.pi / gear.teeth - angle
     radius[-1] = start_radius
     half_angle[-1] = gear.half_angle_at(start_radius)

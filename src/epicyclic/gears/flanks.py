@@ -121,8 +121,7 @@ class Relief:
 
     def at(self, distance: FloatArray) -> FloatArray:
         """Deviation at a `distance` from the end. Theory (G37). [m]"""
-        share = np.clip(1 - distance / self.length, 0.0, 1.0)
-        return self.amount * share ** _EXPONENTS[self.shape]
+        return self.amount * np.clip(1 - distance / self.length, 0.0, 1.0) ** _EXPONENTS[self.shape]
 
 
 @dataclass(frozen=True, slots=True)

@@ -211,8 +211,7 @@ def fit_allowances(
     """
     row = bisect_left(_DIAMETERS, reference_diameter / _MM)
     upper = _UPPER[row][_SERIES.index(fit[2:])]
-    width = _WIDTHS[row][int(fit[:2]) - _FINEST]
-    return -upper * _UM, -(upper + width) * _UM
+    return -upper * _UM, -(upper + _WIDTHS[row][int(fit[:2]) - _FINEST]) * _UM
 
 
 @dataclass(frozen=True, slots=True)

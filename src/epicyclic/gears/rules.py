@@ -345,15 +345,13 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
 
 def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
     """Tip radius of `mate` whose contact with the other gear ends at `radius` there."""
-    gear = mesh.gear2 if mate is mesh.gear1 else mesh.gear1
-    curvature = gear.roll_length_at(radius)
+    curvature = (mesh.gear2 if mate is mesh.gear1 else mesh.gear1).roll_length_at(radius)
     length = mesh.line_of_action - mesh.side * curvature
     if mate is mesh.gear1:
         length = mesh.side * (mesh.line_of_action - curvature)
     if length <= 0:
         return 0.0
-    form = math.hypot(mate.base_radius, length)
-    return form + mate.side * mate.tip_chamfer
+    return math.hypot(mate.base_radius, length) + mate.side * mate.tip_chamfer
 
 
 def _no_tool(gearing: Gearing, gear: Gear, reason: str) -> Problem:

@@ -416,5 +416,4 @@ def jet_loss(
     ...  for side in ("in-mesh", "radial", "out-of-mesh")]
     [27.67, 69.17, 110.67]
     """
-    gained = larger(pitch_speed + _ALONG[side] * jet_speed, 0.0)
-    return density * flow * pitch_speed * gained
+    return density * flow * pitch_speed * larger(pitch_speed + _ALONG[side] * jet_speed, 0.0)

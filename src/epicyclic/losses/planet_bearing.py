@@ -380,8 +380,7 @@ def mixed_ehl_rolling_loss(
     density = needle_rolling_loss_at(p_h, u_r, mu_d, alpha_pv, held_radius, rough, modulus)
     density = density.reshape(carried.shape).view(type(carried))
     held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
-    beyond = beyond_data(carried, held_load, rolling, held_speed)
-    local = bearing.slice_width * density * beyond
+    local = bearing.slice_width * density * beyond_data(carried, held_load, rolling, held_speed)
     return BearingLoss(total(local), Flags(AtOnce(_flags, bearing, carried, speed, oil, local)))
 
 

@@ -123,8 +123,7 @@ class _Network:
             self._history,
             np.zeros(2),
         )
-        pressure = self._history[0][:, 1:-1, 1:-1]
-        return int(periods), -(pressure * self._growth).sum(axis=(1, 2))
+        return int(periods), -(self._history[0][:, 1:-1, 1:-1] * self._growth).sum(axis=(1, 2))
 
     def flow(self, lowest: float, damped: FloatArray | None = None) -> NetworkFlow:
         """Eased births, kinetic energy carried on, power from the boundary work. Theory (Q27).

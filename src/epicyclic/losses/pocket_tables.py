@@ -336,8 +336,7 @@ class _Growing:
 
     def _first(self) -> list[int]:
         """Both ends, and numbers in between no more than an octave apart where there are such."""
-        span = float(self._place[-1] - self._place[0])
-        parts = max(1, math.ceil(span / WIDEST))
+        parts = max(1, math.ceil(float(self._place[-1] - self._place[0]) / WIDEST))
         aims = np.linspace(self._place[0], self._place[-1], parts + 1)
         return sorted({int(np.abs(self._place - aim).argmin()) for aim in aims})
 

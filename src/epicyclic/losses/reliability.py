@@ -45,8 +45,7 @@ def reliability(
         return RELIABILITY[role][name]
     assert model is not None
     fit = model.fits[FITTED_QUANTITIES[role]]
-    fitted = next((item for item in fit.forms if item.form == form), fit.forms[0])
-    whole = fitted.errors[0]
+    whole = next((item for item in fit.forms if item.form == form), fit.forms[0]).errors[0]
     known = (
         f"median error {percent(whole.median, 0)}, 90 % of contacts within "
         f"{percent(whole.largest_of_90_percent, 0)}, against {fit.contacts} contacts simulated for "

@@ -281,8 +281,7 @@ def _path_table(
     rolling, sliding = motion.speeds(ends)
     slip = np.abs(sliding) / rolling
     crowding = np.log1p(np.maximum(slip, LEAST_SLIP) / LEAST_SLIP)
-    outwards = np.linspace(0.0, crowding, POINTS)
-    places = ends * np.expm1(outwards) / np.expm1(crowding)
+    places = ends * np.expm1(np.linspace(0.0, crowding, POINTS)) / np.expm1(crowding)
     # nothing slides at the pitch point, but each side has its sign there too
     sliding = motion.speeds(places)[1] + NO_SLIP * np.sign(sliding)
     pressures = np.geomspace(*model.fits[quantity].domain["hertz_pressure"], PRESSURES)

@@ -56,8 +56,7 @@ def freedom(
     bodies = machine.bodies
     others = _matrix(machine, [body for body in given if body != driven])
     free = _null_space(np.vstack([others, np.eye(len(bodies))[bodies.index(driven)]]))
-    moves = _null_space(others)
-    blocked = bool(np.abs(moves[bodies.index(driven)]).max(initial=0.0) < SINGULAR)
+    blocked = bool(np.abs(_null_space(others)[bodies.index(driven)]).max(initial=0.0) < SINGULAR)
     loose = tuple(
         body for body, row in zip(bodies, free, strict=True) if np.abs(row).max(initial=0.0) > 1e-8
     )

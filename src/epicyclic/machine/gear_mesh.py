@@ -303,8 +303,7 @@ def solve_mesh(
             loss = loss_factor_loss(contact, friction)
         else:
             loss = local_loss(contact, friction, rolling)
-    materials = duty.gears.materials
-    share1 = 0.5 if contact is None else heat_share1(contact, loss.heat, materials)
+    share1 = 0.5 if contact is None else heat_share1(contact, loss.heat, duty.gears.materials)
     method, source = friction.title, friction.source
     node1, node2 = duty.gears.nodes
     watts, halves = count * loss.rolling, ((node1, 0.5), (node2, 0.5))
@@ -377,8 +376,7 @@ def _exceeded(values: FloatArray, weight: FloatArray, *others: FloatArray) -> li
         above = np.cumsum(weight[rows, order], axis=1)
         if (above[:, -1:] > limit).all():
             break
-    wholly = (above <= limit).sum(axis=1, keepdims=True)
-    place = order[rows, np.minimum(wholly, most - 1)]
+    place = order[rows, np.minimum((above <= limit).sum(axis=1, keepdims=True), most - 1)]
     return [total(it[rows, place]) for it in (values, *beside)]
 
 

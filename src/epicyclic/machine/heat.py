@@ -575,8 +575,7 @@ class NetworkModel:
         found = network.steady(heat)
         flows = network.flows(found)
         whole = larger(sum(map(abs, heat.values())), largest(flows.values()))
-        left = largest(network.residuals(found, heat).values())
-        residual = left / larger(whole, SMALLEST_HEAT)
+        residual = largest(network.residuals(found, heat).values()) / larger(whole, SMALLEST_HEAT)
         return Answer(found, network.links, flows, network.given, residual)
 
     def beside(self, models: Sequence[NetworkModel]) -> NetworkModel:

@@ -445,8 +445,7 @@ def solve_machines(
                 trails = trail.parts(range(len(rows)))
         else:
             try:
-                together = _together([wanted[row] for row in rows])
-                solution, agree = solve_machine(together, trail)
+                solution, agree = solve_machine(_together([wanted[row] for row in rows]), trail)
             except Apart as parting:
                 left += _parted(rows, parting.rows, trail)
                 continue

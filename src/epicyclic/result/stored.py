@@ -107,8 +107,7 @@ def read_result(
             reader.refuse(key, "Field required")
     for key, (kind, default) in _MORE.items():
         found[key] = reader.read(kind, data[key], key) if key in data else default
-    is_train = data.get("kind") == "train"
-    found["train"] = reader.read(Train, data, "") if is_train else None
+    found["train"] = reader.read(Train, data, "") if data.get("kind") == "train" else None
     for key, unit in (("planet_angles", DEGREE), ("planet_shares", NUMBER)):
         angles = data.get(key)
         found[key] = reader.read(tuple[float, ...], angles, key, unit) if angles else ()

@@ -123,8 +123,7 @@ def changed_at(tables: Any, path: Sequence[str | int], change: Callable[[Any], A
         return change(tables)
     head, *rest = path
     if isinstance(head, int):
-        entry = changed_at(tables[head], rest, change)
-        return (*tables[:head], entry, *tables[head + 1 :])
+        return (*tables[:head], changed_at(tables[head], rest, change), *tables[head + 1 :])
     return tables | {head: changed_at(tables[head], rest, change)}
 
 

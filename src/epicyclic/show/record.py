@@ -410,8 +410,7 @@ def _uncertainty_problems(path: str, data: xr.Dataset) -> Iterator[Problem]:
             elif data[name].dtype.kind not in "OU":
                 yield Problem(f"{path}/{name}", "", "must be text.", RUN_AGAIN)
     known = data["result"].values if "result" in data.variables else ()
-    needed = {"total", "efficiency", "load_dependent", "load_independent"}
-    lacking = needed - set(map(str, known))
+    lacking = {"total", "efficiency", "load_dependent", "load_independent"} - set(map(str, known))
     if lacking:
         yield Problem(f"{path}/result", "", f"lacks {', '.join(sorted(lacking))}.", RUN_AGAIN)
     if not isinstance(data.attrs.get("failed"), int | np.integer):

@@ -100,8 +100,7 @@ def _widths(needs: Sequence[_Need], room: int) -> list[int]:
     left = room - sum(widths) - GAP * len(needs)
     while left > 0 and any(width < need.most for width, need in zip(widths, needs, strict=True)):
         narrow = [n for n, need in enumerate(needs) if widths[n] < need.most]
-        smallest = min(narrow, key=lambda n: widths[n])
-        widths[smallest] += 1
+        widths[min(narrow, key=lambda n: widths[n])] += 1
         left -= 1
     return widths
 

@@ -213,8 +213,7 @@ def solve_for(
                 progress(len(tried), max(EXPECTED, len(tried) + 1))
         found = tried[number]
         if found is None:
-            is_hot = search.warms or number < search.scale
-            return (HOTTEST if is_hot else COLDEST) - target
+            return (HOTTEST if search.warms or number < search.scale else COLDEST) - target
         over = _oil(found.result) - target
         return 0.0 if abs(over) <= CLOSE else over
 

@@ -199,8 +199,7 @@ def _of_sweep(
     def panels(stored: Stored) -> list[Panel]:
         if isinstance(stored, ResultRecord) or not is_sweep(stored):
             return []
-        enough = len(dimensions(stored)) >= least
-        names = sweep.shown_results(stored) if enough else []
+        names = sweep.shown_results(stored) if len(dimensions(stored)) >= least else []
         return [Panel("", partial(draw, stored, name)) for name in names]
 
     return panels

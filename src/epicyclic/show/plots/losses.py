@@ -238,8 +238,7 @@ def plot_band(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     low, high, nominal = (float(one[key]) * scale for key in ("low", "high", "nominal"))
     ax.axvspan(low, high, color=COLOURS[5], alpha=0.25, label="95 % interval")
     values = values[np.isfinite(values)]
-    shown = tuple(np.quantile(values, (RARE, 1 - RARE)))
-    counts, edges = np.histogram(values, "auto", shown)
+    counts, edges = np.histogram(values, "auto", tuple(np.quantile(values, (RARE, 1 - RARE))))
     ax.stairs(counts, edges, fill=True, color=COLOURS[0])
     ax.axvline(nominal, color=COLOURS[1], lw=1.6, label="case")
     ax.axvline(float(one["mean"]) * scale, color="black", lw=1.2, ls="--", label="mean")

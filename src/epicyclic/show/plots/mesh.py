@@ -151,8 +151,7 @@ def plot_plane_of_action(mesh: xr.Dataset, name: str, ax: Axes) -> Axes:
 def _draw_map(ax: Axes, path: FloatArray, face: FloatArray, values: FloatArray, label: str) -> None:
     # triangles between the points, in coordinates of like size so that they are not slivers
     scale = np.ptp(path) / np.ptp(face)
-    triangles = Triangulation(path, face * scale).triangles
-    corners = Triangulation(path, face, triangles)
+    corners = Triangulation(path, face, Triangulation(path, face * scale).triangles)
     norm = scale_of(values, float(values.min()))
     drawn = ax.tripcolor(
         corners, values, shading="gouraud", cmap=COLOUR_MAP, rasterized=True, norm=norm

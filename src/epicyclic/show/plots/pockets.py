@@ -441,8 +441,7 @@ class _PressureMap:
 
     def _corners(self, moment: int) -> list[FloatArray]:
         """Corners of the cells of all pockets."""
-        roll = self._roll[:, moment :: self._stride].ravel()
-        low = roll[:, None] + self._lean - self._quarter
+        low = self._roll[:, moment :: self._stride].ravel()[:, None] + self._lean - self._quarter
         high = low + 2 * self._quarter
         face = np.broadcast_to(self._face, low.shape)
         before, after = slice(None, -1), slice(1, None)

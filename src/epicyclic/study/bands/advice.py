@@ -175,8 +175,7 @@ def _left(known: Known, name: str, uncertainty: float) -> float:
     part, total = known.draws[name], known.draws["total"]
     sound = np.isfinite(part) & np.isfinite(total)
     (own, both), (_, whole) = np.cov(part[sound], total[sound])
-    error = uncertainty * known.nominal[name]
-    spread = own + error**2
+    spread = own + (uncertainty * known.nominal[name]) ** 2
     return float(np.clip(1 - both**2 / spread / whole, 0.0, 1.0)) if spread and whole else 1.0
 
 

@@ -469,8 +469,7 @@ def sampled_case(
     @cache  # operating points that differ in speed and torque have equal values
     def drawn(own: tuple[UncertainValue, ...]) -> tuple[Samples, FloatArray]:
         found = make_samples(own, count, seed)
-        sets = [found.a, found.b, *map(found.mixed, groups)]
-        return found, np.concatenate(sets, axis=1)[inputs]
+        return found, np.concatenate([found.a, found.b, *map(found.mixed, groups)], axis=1)[inputs]
 
     samples, own = zip(*map(drawn, values), strict=True)
     plan = SamplePlan(
@@ -504,8 +503,7 @@ def nearby_at(
     losses, powers = plan.found(runner.run(plan))
     found, first = [], 0
     for own, those in zip(values, changes, strict=True):
-        part = slice(first + 1, first + len(those))
-        stepped = losses[:, part, 0].T
+        stepped = losses[:, slice(first + 1, first + len(those)), 0].T
         found.append(nearby_of(own, outputs, losses[:, first, 0], powers[first], stepped))
         first += len(those)
     return tuple(found)

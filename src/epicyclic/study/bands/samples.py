@@ -201,8 +201,7 @@ def shortest_interval(samples: FloatArray) -> tuple[float, float]:
     """The shortest interval that holds a share of the samples; JCGM 101:2008, 7.7. Theory (U4)."""
     ordered = np.sort(samples)
     inside = min(ordered.size - 1, math.ceil(COVERAGE * ordered.size))
-    widths = ordered[inside:] - ordered[: ordered.size - inside]
-    first = int(widths.argmin())
+    first = int((ordered[inside:] - ordered[: ordered.size - inside]).argmin())
     return float(ordered[first]), float(ordered[first + inside])
 
 

@@ -237,8 +237,7 @@ def indices_of(
     moving = sorted({*groups, *factors})
     sound = np.isfinite(sets[:, -1]).all(axis=0)
     # scipy takes powers of 2 only: sound points stand in for those without a result
-    chosen = np.resize(np.flatnonzero(sound), sound.size)
-    kept = sets[:, :, chosen]
+    kept = sets[:, :, np.resize(np.flatnonzero(sound), sound.size)]
     first, total = sobol_indices(kept[0], kept[1], kept[2:][moving], seed)
     variables: dict[str, Any] = {"sum": list(SUMS[:-1])}
     for name, label, found in (

@@ -77,10 +77,8 @@ class Sample:
 
     def add(self, point: Sequence[FloatArray], power: FloatArray, energy: FloatArray) -> None:
         """Offer points as the axes of the map, in their units; W and J."""
-        losing = energy > 0
-        rows = np.stack([*point, power, energy], axis=1)[losing]
-        keys = self._random.exponential(size=len(rows)) / rows[:, -1]
-        self._keys = np.append(self._keys, keys)
+        rows = np.stack([*point, power, energy], axis=1)[energy > 0]
+        self._keys = np.append(self._keys, self._random.exponential(size=len(rows)) / rows[:, -1])
         self._rows = np.concatenate([self._rows, rows]) if self._rows.size else rows
         stay = np.argsort(self._keys)[: self._size + 1]
         self._keys, self._rows = self._keys[stay], self._rows[stay]

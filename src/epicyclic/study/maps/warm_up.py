@@ -271,8 +271,7 @@ def warm_up(
     drive = _constant(warm) if driven is None else _driven(warm, seconds, driven)
     own = model.settings
     low = min(start, own.inlet, own.ambient, own.coolant)
-    high = max(start, own.inlet, own.ambient, own.coolant) + HEADROOM
-    knots = _knots(low, high)
+    knots = _knots(low, max(start, own.inlet, own.ambient, own.coolant) + HEADROOM)
     samples = _sampled(warm, drive, knots, progress)
     while True:
         tables = HeatTables(model, knots, samples)

@@ -288,8 +288,7 @@ def _last_step(
 
 
 def _check_influence(residuals: Residuals, slopes: FloatArray) -> None:
-    loss = residuals.points.measured.loss[residuals.used]
-    scale = np.abs(loss) * residuals.weight
+    scale = np.abs(residuals.points.measured.loss[residuals.used]) * residuals.weight
     problems = [
         Problem(item.key, "", "has no influence on the measured losses.", "Do not fit it.")
         for item, slope in zip(residuals.parameters, np.abs(slopes).max(axis=0), strict=True)
@@ -338,8 +337,7 @@ def _discrepancy(residuals: Residuals, found: Linearised) -> float:
     """Error of the model as an extra variance, after Birge. Theory (X6). [W]"""
     if residuals.uncertainty is None:
         return found.spread
-    square = float(np.mean(residuals.uncertainty**2))
-    return math.sqrt(square * (found.spread**2 - 1))
+    return math.sqrt(float(np.mean(residuals.uncertainty**2)) * (found.spread**2 - 1))
 
 
 def _fitted(

@@ -62,8 +62,7 @@ class Rig:
             half = replace(table, loss=factor * table.loss, uncertainty=known)
             table = _less(half, ~two, two, tuple(AXES), "in the baseline")
         if self.unloaded:
-            torque = np.abs(table.conditions["torque"])
-            idle = torque <= EQUAL["torque"][1]
+            idle = np.abs(table.conditions["torque"]) <= EQUAL["torque"][1]
             table = _less(
                 table, ~idle, idle, ("speed", "temperature"), "without torque", alike=True
             )
