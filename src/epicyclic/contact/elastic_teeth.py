@@ -343,7 +343,8 @@ def rim_coupling(
     foot = gear.base_radius * np.array([math.cos(alpha), -math.sin(alpha)])
     direction = np.array([math.sin(alpha), math.cos(alpha)])
     x = foot[0] + rho2 * direction[0]
-    tooth = np.arctan2(foot[1] + rho2 * direction[1], x) + gear.half_angles_at(rho2)
+    y = foot[1] + rho2 * direction[1]
+    tooth = np.arctan2(y, x) + gear.half_angles_at(rho2)
     radial = direction[0] * np.cos(tooth) + direction[1] * np.sin(tooth)
     tangential = direction[1] * np.cos(tooth) - direction[0] * np.sin(tooth)
     # torque about the axis is the base radius; what the tangential force leaves of it is a moment

@@ -345,7 +345,8 @@ def _check_end_of_contact(gearing: Gearing, mesh: Mesh, gear: Gear, mate: Gear) 
 
 def _tip_radius_for(mesh: Mesh, mate: Gear, radius: float) -> float:
     """Tip radius of `mate` whose contact with the other gear ends at `radius` there."""
-    curvature = (mesh.gear2 if mate is mesh.gear1 else mesh.gear1).roll_length_at(radius)
+    gear = mesh.gear2 if mate is mesh.gear1 else mesh.gear1
+    curvature = gear.roll_length_at(radius)
     length = mesh.line_of_action - mesh.side * curvature
     if mate is mesh.gear1:
         length = mesh.side * (mesh.line_of_action - curvature)

@@ -278,7 +278,8 @@ def forced_convection(
     reynolds = air_speed * length / viscosity
     rise = abs(housing_temperature - air_temperature) / air_temperature
     grashof = GRAVITY * height**3 * rise / viscosity**2
-    return 0.0086 * math.pow(math.sqrt(reynolds**2 + grashof / 2.5), 0.64) / length
+    mixed = math.sqrt(reynolds**2 + grashof / 2.5)
+    return 0.0086 * math.pow(mixed, 0.64) / length
 
 
 def radiation(

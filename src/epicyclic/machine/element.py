@@ -176,7 +176,7 @@ class Figures(Mapping[str, Found]):
 
 @dataclass(frozen=True, slots=True)
 class Extremes:
-    """By what a contact is judged. Only of one that may be too much the figures are read then."""
+    """What a contact is judged by: its figures are read only where these may exceed a limit."""
 
     pointwise = True
 

@@ -362,7 +362,7 @@ class Result:
     parts : mapping of str to dataclass
         Figures of further elements: bearings of shafts, seals.
     extremes : mapping of str to Extremes
-        By what meshes and bearings are judged.
+        What meshes and bearings are judged by.
     fluid : FluidFigures or None
     models : mapping of str to str
         The models used, defaults resolved.

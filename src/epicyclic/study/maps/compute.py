@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -305,7 +306,7 @@ class MapPlan(SweepPlan):
     """The points of a map, which has only some of their numbers."""
 
     def _numbers_of(self, answer: Any) -> dict[str, float]:
-        found: dict[str, float] = answer.values(frozenset(_kept_variables(answer.layout)))
+        found: dict[str, float] = answer.values(_kept_variables(answer.layout))
         for key, it in answer.extremes.items():
             if not math.isnan(it.flow_error):
                 found[f"{key}_{INTERPOLATION_ERROR}"] = it.flow_error
@@ -544,12 +545,13 @@ def _one_ratio(ratio: xr.DataArray) -> xr.DataArray:
     return found.assign_attrs(ratio.attrs)
 
 
-def _kept_variables(layout: Layout) -> list[str]:
+@lru_cache(maxsize=16)
+def _kept_variables(layout: Layout) -> dict[str, None]:
     """Losses, their sums, efficiency, ratios, speeds and torques of members, temperatures."""
     kept = {*layout.losses, *SUMS, "efficiency", "ratio", "power_ratio"}
     kept |= {f"{name}_{what}" for name in layout.members for what in ("speed", "torque")}
     kept |= {f"{node}_temperature" for node in layout.nodes}
-    return [item.key for item in number_fields(layout) if item.key in kept]
+    return {item.key: None for item in number_fields(layout) if item.key in kept}
 
 
 def _at_rest(data: xr.Dataset) -> xr.Dataset:
