@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import epicyclic as ep
+from epicyclic.build.result import GEAR_PRESSURE
 from epicyclic.errors import Status
 from epicyclic.losses.pocket_tables import FlowFigures
 from epicyclic.machine import pocket_flow
@@ -171,3 +172,19 @@ def test_a_map_keeps_its_own_numbers_and_every_warning():
     pressed = [" withstands about " in text for text in rows.warnings]
     assert any(pressed)
     assert not all(pressed)
+
+
+def test_what_carries_nothing_is_told_under_little_pressure():
+    """A mesh far out of line, and a planet that tilts in its bearing."""
+    askew = {"sun_mesh.misalignment": "20 um", "operation.torque": "430 N*m"}
+    result = ep.solve(ep.load_case("talbot-2012").updated(askew))
+    share = result.meshes["sun_mesh"].contact_share
+    told = f"Only {100 * share:.0f} % of the contact lines of the sun mesh carry load"
+    assert [note for note in result.notes if note.startswith(told)]
+    assert share < 0.7 < result.extremes["ring_mesh"].share
+    tilted = {"planet_bearing.crown_drop": "40 um", "operation.torque": "70 N*m"}
+    result = ep.solve(ep.load_case("talbot-2012").updated(tilted))
+    own = result.extremes["planet_bearing"]
+    assert own.pressure < GEAR_PRESSURE
+    told = f"Planet bearing: {100 * (1 - own.share):.0f} % of the length of the most loaded roller"
+    assert [note for note in result.notes if note.startswith(told)]

@@ -329,12 +329,11 @@ def solve_mesh(
         f"{key}_pocketing": pocketing,
     }
     elastic = None if loads is None else loads.elastic
-    extremes = AtOnce(_mesh_extremes, duty, contact, loss, flow.figures)
     figures = AtOnce(_mesh_figures, duty, contact, loss, elastic, flow.figures)
     return MeshResult(
         losses=losses,
         figures=Figures({key: figures}),
-        extremes=Figures({key: extremes}),
+        extremes=Figures({key: AtOnce(_mesh_extremes, duty, contact, loss, flow.figures)}),
         flags=loss.flags,
         notes=Sought(partial(_mesh_notes, duty, flow, fluids, count, losses, friction)),
         elastic=elastic,

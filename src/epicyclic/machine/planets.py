@@ -646,7 +646,6 @@ def solve_bearing(
         notes = (_rubbing_note(where, rubbed),)
     known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
     limits = partial(_limit_notes, where, known, own.limiting_speed, carried, abs(speed), watts)
-    extremes = AtOnce(_bearing_extremes, own, loads, speed, watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     idle = speed, bearing.pitch_diameter, oil.dynamic_viscosity
     return BearingResult(
@@ -659,7 +658,7 @@ def solve_bearing(
         Figures({key: figures}),
         loss.flags + Flags(partial(viscous_flags, where, *idle)),
         Sought(notes.__iter__, limits),
-        extremes=Figures({key: extremes}),
+        extremes=Figures({key: AtOnce(_bearing_extremes, own, loads, speed, watts)}),
         loads=loads,
     )
 
