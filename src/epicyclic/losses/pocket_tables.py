@@ -17,7 +17,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from epicyclic.arrays import Alone, BoolArray, FloatArray, Points, larger, sqrt
+from epicyclic.arrays import Alone, BoolArray, FloatArray, Points, every, larger, sqrt
 from epicyclic.dataclass import asdict, dataclass, field, replace
 from epicyclic.errors import ConvergenceError, InputError, Problem, raise_any
 from epicyclic.files import sealed, unsealed
@@ -116,7 +116,7 @@ class FlowFamily:
             limit = void_number(self.geometry, self.slices, self.steps, self.end_length)
         except ValueError:  # no tooth outline: the solution says so
             return False
-        return bool(self.number(speed, mixture, pressure) <= limit)
+        return every(self.number(speed, mixture, pressure) <= limit)
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
         """Figures of the flow itself. Parameters as for `pocket_flow`."""

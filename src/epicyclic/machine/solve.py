@@ -109,7 +109,7 @@ class Answer:
             return losses, frozenset(loads)
         if isinstance(holds, Points):
             rows = np.asarray(holds)[:, 0]
-            if min(rows.sum(), (~rows).sum()) >= FEWEST:
+            if min(rows.sum(), (~rows).sum()) >= FEWEST_APART:
                 raise Apart(rows)
         serve = {it: near[it] & (len(off) * error <= most) for it, error in off.items()}
         return losses, frozenset(key for it in serve if every(serve[it]) for key in it)
@@ -222,6 +222,7 @@ MOST_TORQUE = 1e15
 other up. [N m]"""
 MOST_BRANCHES = 8  # Directions of the rolling powers that are tried with the losses of elements.
 FEWEST = 4  # Points from which on they are solved together: fewer take longer than one by one.
+FEWEST_APART = 8  # Points of either part of a block that parts where it need not.
 MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 
