@@ -18,6 +18,7 @@ from epicyclic.arrays import (
     Each,
     FloatArray,
     Points,
+    apart,
     either,
     every,
     isfinite,
@@ -26,6 +27,7 @@ from epicyclic.arrays import (
     largest,
     one_by_one,
     part_of_each,
+    side_by_side,
     taken,
 )
 from epicyclic.dataclass import dataclass, field, replace
@@ -86,22 +88,23 @@ class Answer:
         the last answer, to loads no farther off than `NEAR`. Raises `Apart` if all serve for a part
         of the points that is worth it.
         """
-        losses: dict[str, Loss] = {}
-        before = self.before or self
+        before, known = (self.before or self).result.losses, self.result.losses
+        follows, bent = zip(*((loss.follows, loss.bent) for loss in known.values()), strict=True)
         alike = self.alike(loads, self.result)
-        steps: dict[tuple[str, ...], _Step] = {}
-        off: dict[tuple[str, ...], float] = {}
+        steps = {it: self._step(loads, it) for it in dict.fromkeys(follows)}
+        step = _Step(*map(side_by_side, zip(*map(steps.get, follows), strict=True)))
+        watts = side_by_side(loss.watts for loss in known.values())
+        older = side_by_side(before[name].watts for name in known)
         with np.errstate(over="ignore", invalid="ignore"):  # of errors without bound
-            for name, loss in self.result.losses.items():
-                older = before.result.losses[name].watts
-                if loss.follows not in steps:
-                    steps[loss.follows] = self._step(loads, loss)
-                step = steps[loss.follows]
-                error = CAUTION * step.error(loss, older) * loss.watts
-                off[loss.follows] = off.get(loss.follows, 0.0) + error
-                line = loss.watts + step.part * (loss.watts - older)
-                # no prediction makes a loss negative
-                losses[name] = loss._replace(watts=larger(loss.watts * (loss.watts < 0), line))
+            errors = apart(CAUTION * step.error(watts, older, bent) * watts)
+            # no prediction makes a loss negative
+            line = apart(np.maximum(watts * (watts < 0), watts + step.part * (watts - older)))
+        losses = {
+            name: known[name]._replace(watts=own) for name, own in zip(known, line, strict=True)
+        }
+        off: dict[tuple[str, ...], Any] = {}
+        for it, error in zip(follows, errors, strict=True):
+            off[it] = off.get(it, 0.0) + error
         most = allowed * sum(loss.watts for loss in losses.values())
         near = {follows: alike & (step.size <= NEAR) for follows, step in steps.items()}
         holds = reduce(and_, near.values(), alike & (sum(off.values()) <= most))
@@ -145,9 +148,9 @@ class Answer:
             same = ((load * self.loads[key] > 0) | (load == self.loads[key])) & same
         return same
 
-    def _step(self, loads: Mapping[str, float], loss: Loss) -> _Step:
-        """From the last loads that a loss follows to these, along the line from those before."""
-        keys = loss.follows or tuple(loads)
+    def _step(self, loads: Mapping[str, float], follows: tuple[str, ...]) -> _Step:
+        """From the last loads that losses follow to these, along the line from those before."""
+        keys = follows or tuple(loads)
         before = (self.before or self).loads
         new, last, old = ([those[key] for key in keys] for those in (loads, self.loads, before))
         size = largest(new)
@@ -162,31 +165,28 @@ class Answer:
         return _Step(part, _apart(old, last) * moved, _apart(last, new), beside)
 
 
-@dataclass(frozen=True, slots=True)
-class _Step:
-    """A step of the loads along the line through the last two of them, and beside it."""
+class _Step(NamedTuple):
+    """A step of the loads along the line through the last two, or one for each of some losses."""
 
-    part: float  # How far it goes, over the step before. [1]
-    before: float  # Size of the step before and of this one, relative to the largest load. [1]
-    size: float  # Size of the step before and of this one, relative to the largest load. [1]
-    aside: float  # How far it ends beside the line, relative. [1]
+    part: Any  # How far it goes, over the step before. [1]
+    before: Any  # Size of the step before and of this one, relative to the largest load. [1]
+    size: Any  # Size of the step before and of this one, relative to the largest load. [1]
+    aside: Any  # How far it ends beside the line, relative. [1]
 
-    def error(self, loss: Loss, older: float) -> float:
-        """Estimate of the error of a loss on the line through its `older` watts, relative.
+    def error(self, watts: FloatArray, older: FloatArray, bent: Sequence[float]) -> Any:
+        """Estimate of the errors of losses on the lines through their `older` watts, relative.
 
-        The loss goes with some power of its load, the slope of which bends the line, and which
+        A loss goes with some power of its load, the slope of which bends the line, and which
         changes a little itself. What changed more than any power would, because it scatters or
         follows something else too, may change by as much again.
         """
-        watts = loss.watts
-        change = abs(watts - older) / larger(abs(watts), TINY)
-        power = change / larger(self.before, TINY)
-        bend = power * abs(power - 1) / 2 + loss.bent
+        change = np.abs(watts - older) / np.maximum(np.abs(watts), TINY)
+        power = change / np.maximum(self.before, TINY)
+        bend = power * np.abs(power - 1) / 2 + bent
         smooth = bend * self.size * (self.before + self.size) + STEEP * self.aside
-        error = either(power <= STEEPEST, smooth, change + STEEPEST * self.size)
-        error = either((watts == 0) & (watts != older), math.inf, error * (watts != older))
-        found: float = either(self.before == 0, STEEP * self.size, error)
-        return found
+        error = np.where(power <= STEEPEST, smooth, change + STEEPEST * self.size)
+        error = np.where((watts == 0) & (watts != older), math.inf, error * (watts != older))
+        return np.where(self.before == 0, STEEP * self.size, error)
 
 
 def _mixed(losses: Losses, others: Losses, serve: frozenset[str]) -> Losses:
