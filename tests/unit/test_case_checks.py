@@ -156,6 +156,10 @@ ONE_PROBLEM = {
         TALBOT, {"planet_bearing.pin_diameter": "36 mm"},
         "planet_bearing.pin_diameter", "reaches its root circle",
     ),
+    "errors of other planets": (
+        TALBOT, {"load_sharing.position_errors": ["8 um", "-3 um"]},
+        "load_sharing.position_errors", "each of the 3 planets",
+    ),
     "full complement": (
         TALBOT, {"planet_bearing.cage": "full-complement", "models.bearing": "mixed-ehl"},
         "models.bearing", "caged bearings",

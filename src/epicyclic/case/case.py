@@ -109,9 +109,10 @@ _DECIDED = (
 """Keys in place of whose defaults a value follows from [lubrication]."""
 _BESIDE_GEARS = {
     *("kind", "title", "operation", "lubrication", "surroundings", "thermal", "models", "numerics"),
-    *("losses", "friction_table", "contact_solver", "uncertainty"),
+    *("losses", "friction_table", "contact_solver", "uncertainty", "carrier", "thrust_bearing"),
+    *("planet_bearing", "planet_pin", "load_sharing"),
 }
-"""Tables on which gears, their bearings and how they share the load do not depend."""
+"""Tables on which gears do not depend."""
 
 
 _OPERATED = {"operation", "title"}
@@ -230,15 +231,14 @@ class CaseTable(Table):
         Raises `InputError` with `problems` and every other one.
         """
         same = {} if before is None else before._unchanged(tables)
-        valid = validate(cls, tables, same)
-        kept = None  # gears that were found and checked before
-        keys = tables.keys() | (set() if before is None else before._tables.keys())
-        if before is not None and before._gearings and keys <= same.keys() | _BESIDE_GEARS:
-            kept = before._gearings[""], before._found
+        valid, kept = validate(cls, tables, same), None
+        fresh = (tables.keys() | ({} if before is None else before._tables).keys()) - same.keys()
+        if before is not None and before._gearings and fresh <= _BESIDE_GEARS:
+            kept = before._gearings[""], before._found  # gears that were found and checked before
         validation, told, gearing = with_sizes(valid, tables, kept)
         folder = Path(source).parent
-        known, checked = {problem.key for problem in problems}, kept is not None
-        crossed = cross_check(validation.sections, tables, folder, gearing, checked=checked)
+        known = {problem.key for problem in problems}
+        crossed = cross_check(validation.sections, tables, folder, gearing, kept and fresh)
         found = [
             *problems,
             *(problem for problem in validation.problems if problem.key not in known),

@@ -69,8 +69,7 @@ def cross_check(
     given: Collection[str],  # Names of the tables that the case has, valid or not.
     folder: Path,  # Where the files lie that the case names.
     gearing: Gearing | None = None,  # Of a planetary set or a pair whose gears are sound.
-    *,
-    checked: bool = False,  # It was checked before, with bearings and load sharing.
+    fresh: Collection[str] | None = None,  # Tables that changed since it was checked; None: all.
 ) -> Iterator[Problem]:
     """Problems between keys and tables of a case."""
     models = sections.get("models")
@@ -89,15 +88,15 @@ def cross_check(
     if isinstance(models, GearPairModels) and isinstance(thermal, ThermalTable):
         own = oil if isinstance(oil, LubricationTable) else None
         yield from check_ways_out(thermal, models.temperatures, own)
-    if gearing is not None and not checked:
-        yield from set_problems(gearing)
+    if gearing is not None:
+        yield from set_problems(gearing) if fresh is None else ()
         for key in ("planet_bearing", "planet_pin"):
-            bearing = sections.get(key)
+            bearing = sections.get(key) if fresh is None or key in fresh else None
             if isinstance(bearing, PlanetBearing | PlanetPin) and gearing.planets:
                 yield from check_bores(gearing, key, bearing, gearing.planets)
     sharing = sections.get("load_sharing")
     toothed = {"sun", "planet", "ring"} <= sections.keys()
-    if isinstance(sharing, LoadSharing) and toothed and not checked:
+    if isinstance(sharing, LoadSharing) and toothed and (fresh is None or "load_sharing" in fresh):
         # tooth numbers are enough, whether the gears fit or not
         yield from _check_load_sharing(sharing, gearing or expand({"gears": None, **sections})[0])
     for check, needed in _CHECKS:

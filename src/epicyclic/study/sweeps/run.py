@@ -69,7 +69,8 @@ _LIKE_SPEED = (
 _FEWEST = 8  # Values of these keys for which a table is made: few flows are solved as soon.
 _TORQUE = AXES["torque"]  # Only its sign matters to the pockets.
 _NOT_OF_POCKETS = re.compile(
-    r"(.*\.)?((planet_bearing|load_sharing|bearings)\..*|\w*roughness"
+    r"(.*\.)?((planet_bearing|load_sharing|bearings|thrust_bearing)\..*|\w*roughness"
+    r"|carrier\.(outer_diameter|(open_)?width|\w+_gap)"
     r"|(hurst_exponent|running_in_factor|boundary_friction|pressure_viscosity_factor))"
 )
 """Keys that change neither a family nor a number: bands vary mostly these."""
