@@ -285,7 +285,7 @@ class PocketFlow:
         return self.power_from_flow / self.power - 1
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=8)  # of others the figures are kept, not the fields
 def pocket_flow(
     geometry: PocketGeometry,
     # Speed of gear 1 against the line of centres, not zero; its sign does not matter. [rad/s]
