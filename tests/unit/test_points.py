@@ -127,9 +127,19 @@ PARTS = {
 """What cases have of their own, beside their operation: the least of each number."""
 
 
-@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        *((name, {}) for name in PARTS),
+        *((name, {"models.preset": "talbot-2012"}) for name in PARTS),
+        *(
+            ("talbot-2012-pair", {"models.friction": friction})
+            for friction in ("xu-2007", "benedict-kelley", "doleschel", "matsumoto", "schlenk")
+        ),
+    ],
+)
 def test_cases_with_other_parts_are_solved_together(
-    name: str, monkeypatch: pytest.MonkeyPatch
+    name: str, changes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cases = [
         case.updated(
@@ -140,7 +150,7 @@ def test_cases_with_other_parts_are_solved_together(
                 for key, (least, unit) in PARTS[name].items()
             }
         )
-        for number, case in enumerate(_cases(name))
+        for number, case in enumerate(_cases(name, **changes))
     ]
     _check_together(cases, monkeypatch)
 

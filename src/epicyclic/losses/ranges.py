@@ -9,7 +9,7 @@ from typing import Any, Generic, Literal, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
-from epicyclic.arrays import BoolArray, Each, FloatArray, Points, between
+from epicyclic.arrays import BoolArray, Each, FloatArray, Points, between, side_by_side
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.units import WATT, Quantity, format_number, known_text, percent, unit_text
 
@@ -381,13 +381,13 @@ def check_contacts(
     found: list[list[ValidityFlag]] = [[] for _ in loaded]
     for item in ranges:
         values = getattr(contacts, item.name) if item.of is None else item.of(contacts)
+        values = side_by_side(values) if isinstance(values, tuple) else values  # of both flanks
         local = np.shape(values)[-1:] == loaded.shape[-1:]
         flags = _flags(use, item, values, weight if local else 1.0, part, loaded if local else True)
         # one flag may be that of all points; there is none where all keep the range
         for own, flag in zip(found, flags * (len(found) if len(flags) == 1 else 1), strict=False):
             own += [flag] if flag else []
-    each = map(tuple, found)
-    return Each(each) if several else next(each)
+    return Each(map(tuple, found)) if several else tuple(found[0])
 
 
 def _flags(
