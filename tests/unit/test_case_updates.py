@@ -62,6 +62,12 @@ def test_what_stays_as_it_was_is_read_as_if_for_the_first_time(name):
     ways = [{"operation.torque": "321 N*m"}, {"models.friction": "schlenk"}, {"title": "another"}]
     if "gears" in case.given():
         ways += [{"gears.dedendum_coefficient": 1.31}]
+    if "planet_bearing" in case.given():
+        ways += [
+            {"planet_bearing.race_roughness": "Ra 0.17 um"},
+            {"planet_bearing.race_roughness": "0.23 um", "carrier.width": "31 mm"},
+        ]
+        case = case.updated({"planet_bearing.roller_roughness": "Ra 0.09 um"})
     for changes in ways:
         changed = case.updated(changes).updated({"operation.speed": "1234 rpm"})
         first = read_case(changed.given())

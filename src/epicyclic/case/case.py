@@ -234,7 +234,9 @@ class CaseTable(Table):
         valid, kept = validate(cls, tables, same), None
         fresh = (tables.keys() | ({} if before is None else before._tables).keys()) - same.keys()
         if before is not None and before._gearings and fresh <= _BESIDE_GEARS:
-            kept = before._gearings[""], before._found  # gears that were found and checked before
+            notes = (*before._found, *converted_roughness({key: tables.get(key) for key in fresh}))
+            if all(path_of(it.key)[0] not in fresh for it in notes):  # else all is told anew
+                kept = before._gearings[""], before._found  # gears that were found and checked
         validation, told, gearing = with_sizes(valid, tables, kept)
         folder = Path(source).parent
         known = {problem.key for problem in problems}

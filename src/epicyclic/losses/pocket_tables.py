@@ -109,7 +109,7 @@ class FlowFamily:
         return larger(speed * sqrt(mixture.density / pressure), LEAST_NUMBER)
 
     def scales(self, speed: float, mixture: MixtureState, pressure: float) -> bool:
-        """Whether the flow is another one times density and powers of the speed."""
+        """Whether flows are all another one times density and powers of the speed."""
         if self.model != "incompressible":
             return self.model in NETWORK_MODELS
         try:

@@ -169,8 +169,8 @@ class _Step(NamedTuple):
     """A step of the loads along the line through the last two, or one for each of some losses."""
 
     part: Any  # How far it goes, over the step before. [1]
-    before: Any  # Size of the step before and of this one, relative to the largest load. [1]
-    size: Any  # Size of the step before and of this one, relative to the largest load. [1]
+    before: Any  # Size of the step before, relative to the largest load. [1]
+    size: Any  # Size of this one, likewise. [1]
     aside: Any  # How far it ends beside the line, relative. [1]
 
     def error(self, watts: FloatArray, older: FloatArray, bent: Sequence[float]) -> Any:
@@ -222,7 +222,7 @@ MOST_TORQUE = 1e15
 other up. [N m]"""
 MOST_BRANCHES = 8  # Directions of the rolling powers that are tried with the losses of elements.
 FEWEST = 4  # Points from which on they are solved together: fewer take longer than one by one.
-FEWEST_APART = 8  # Points of either part of a block that parts where it need not.
+FEWEST_APART = 8  # Points of either part where a block parts only to spare evaluations.
 MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 

@@ -147,9 +147,7 @@ _OPERATING_TABLES = (
 
 MESHES_TOGETHER = 168  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
-MANY, SMALL_BLOCKS = 48, 3
-"""Points from which on blocks are as large as is worth it, and blocks of a study of fewer, so that
-processes share it. [1]"""
+MANY, SMALL_BLOCKS = 48, 3  # Points from which on blocks are full, and blocks of fewer, to share.
 
 
 @dataclass(frozen=True, slots=True)
