@@ -261,12 +261,14 @@ def rolling_loss_number_at(
 
 
 @kernel
-def needle_rolling_loss_at(
-    p_h: FloatArray, u_r: FloatArray, mu_d: FloatArray, alpha_pv: FloatArray,
-    r_eq: float, s_co: float, e_eq: float,
-) -> FloatArray:  # fmt: skip
-    """`needle_rolling_loss` of every slice; arrays of shape (n,). [W/m]"""
-    loss = np.empty(p_h.size)
-    for i in range(p_h.size):
-        loss[i] = needle_rolling_loss(p_h[i], u_r[i], mu_d[i], alpha_pv[i], r_eq, s_co, e_eq)
+def needle_rolling_loss_at(p_h: FloatArray, numbers: FloatArray) -> FloatArray:
+    """`needle_rolling_loss` of every slice at several points, (points, n). [W/m]
+
+    Its other parameters are the rows of `numbers`.
+    """
+    loss = np.empty_like(p_h)
+    for i in range(len(loss)):
+        u_r, mu_d, alpha_pv, r_eq, s_co, e_eq = numbers[i]
+        for k in range(loss.shape[1]):
+            loss[i, k] = needle_rolling_loss(p_h[i, k], u_r, mu_d, alpha_pv, r_eq, s_co, e_eq)
     return loss

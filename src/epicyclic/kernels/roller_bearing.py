@@ -330,10 +330,10 @@ def solve_roller_loads(
     load: FloatArray,  # F_x, F_y [N] and M_x/L, M_y/L [N], moments conjugate to the tilts.
     start: FloatArray,  # Where the iteration starts. [m]
     psi: FloatArray,  # Azimuth of each roller. [rad]
+    # Of the bearing of all points, or of each, in the first axis:
     y_over_l: FloatArray,  # Axial position of the slices over the half-width of the bearing. [1]
     crown: FloatArray,  # Crown drop at each slice. [m]
-    width: float,  # Slice width. [m]
-    clearance: float,  # Diametral clearance. [m]
+    sizes: FloatArray,  # Slice width and diametral clearance. [m]
     tolerance: float,  # Largest residual force over the largest load. [1]
     max_iterations: int,  # For each of the two nested iterations.
     held: bool = False,  # True to keep the tilts of `start`.
@@ -350,17 +350,18 @@ def solve_roller_loads(
     iterations : ndarray, shape (n,)
         Newton steps in all, or -1 without convergence.
     """
-    rollers = (psi, y_over_l, crown, width, clearance)
-    points, (rows, slices) = len(load), y_over_l.shape
+    points, (bearings, rows, slices) = len(load), y_over_l.shape
     q, d = np.zeros((points, rows, psi.size, slices)), np.empty_like(start)
     iterations = np.empty(points, np.intp)
     for i in range(points):
+        own = i % bearings
+        rollers = (psi, y_over_l[own], crown[own], sizes[own, 0], sizes[own, 1])
         loaded = i > 0 and iterations[i - 1] > 0 and largest(load[i]) > 0.0
         # first from the point before, which is nearer, and if that leads nowhere from its own start
-        for own in range(0 if loaded and not (near or held) else 1, 2):
-            d[i] = start[i] if own else d[i - 1]
+        for anew in range(0 if loaded and not (near or held) else 1, 2):
+            d[i] = start[i] if anew else d[i - 1]
             iterations[i] = solve_one(
-                load[i], d[i], rollers, tolerance, max_iterations, held, near or not own, q[i]
+                load[i], d[i], rollers, tolerance, max_iterations, held, near or not anew, q[i]
             )
             if iterations[i] >= 0:
                 break

@@ -20,8 +20,11 @@ from epicyclic.arrays import (
     IntArray,
     Points,
     either,
+    hypot,
     larger,
     of_points,
+    points_in,
+    row_by_row,
     side_by_side,
     total,
 )
@@ -121,6 +124,8 @@ PALMGREN_RANGES = (
 class RollerBearing:
     """A cylindrical roller or needle bearing."""
 
+    pointwise = True
+
     rows: int
     rollers_per_row: int
     roller_diameter: float  # [m]
@@ -157,7 +162,7 @@ class RollerBearing:
         length, width = self.roller_length, self.roller_length / self.slices
         within = (np.arange(self.slices) + 0.5) * width - length / 2
         middles = (np.arange(self.rows) - (self.rows - 1) / 2) * (length + self.row_gap)
-        positions, crown = middles[:, None] + within, np.zeros(self.slices)  # (B7)
+        positions, crown = middles[..., None] + within[..., None, :], np.zeros(self.slices)  # (B7)
         crowned = self.crown_length_fraction * length
         if crowned:
             depth = np.abs(within) - (length / 2 - crowned)
@@ -246,7 +251,7 @@ def roller_loads_next_to(
     """Load on every slice under nearly the load of `last`, which saves most of the work."""
     half_width = bearing.half_width
     load = side_by_side([force, 0.0, moment_x / half_width, moment_y / half_width])
-    start = np.asarray(last.displacement) * (1.0, 1.0, half_width, half_width)
+    start = np.asarray(last.displacement) * side_by_side([1.0, 1.0, half_width, half_width])
     return _loaded(bearing, load, start, near=True)
 
 
@@ -281,14 +286,15 @@ def _solved(
     near: bool = False,
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """What `solve_roller_loads` finds, of one point without its axis."""
+    reach = side_by_side([bearing.half_width])[..., None]
+    sizes = side_by_side([bearing.slice_width, bearing.diametral_clearance])
+    shape = (points_in(vars(bearing).values()) or 1, bearing.rows, bearing.slices)
+    of_each = ((bearing.slice_positions / reach, shape), (bearing.crown, shape[::2]))
     intensity, state, iterations = solve_roller_loads(
         np.atleast_2d(load),
         np.atleast_2d(start),
         bearing.azimuth,
-        bearing.slice_positions / bearing.half_width,
-        bearing.crown,
-        bearing.slice_width,
-        bearing.diametral_clearance,
+        *(np.array(np.broadcast_to(*it), order="C") for it in (*of_each, (sizes, (shape[0], 2)))),
         TOLERANCE,
         MAX_ITERATIONS,
         held,
@@ -374,11 +380,9 @@ def mixed_ehl_rolling_loss(
     alike = np.ones_like(carried)
     held_pressure = held_in_range(hertz_pressure(carried, radius * alike, modulus), _PRESSURE)
     held_radius, held_speed = held_in_range(radius, _RADIUS), held_in_range(rolling, _SPEED)
-    rough = held_in_range(math.hypot(bearing.race_roughness, bearing.roller_roughness), _COMPOSITE)
-    several = np.broadcast_arrays(held_pressure, held_speed, viscosity, alpha)
-    p_h, u_r, mu_d, alpha_pv = (np.ravel(np.asarray(it)) for it in several)
-    density = needle_rolling_loss_at(p_h, u_r, mu_d, alpha_pv, held_radius, rough, modulus)
-    density = density.reshape(carried.shape).view(type(carried))
+    rough = held_in_range(hypot(bearing.race_roughness, bearing.roller_roughness), _COMPOSITE)
+    numbers = held_speed, viscosity, alpha, held_radius, rough, modulus
+    density = row_by_row(needle_rolling_loss_at, [held_pressure], numbers)
     held_load = line_load_at_pressure(held_pressure, held_radius * alike, modulus)
     local = bearing.slice_width * density * beyond_data(carried, held_load, rolling, held_speed)
     return BearingLoss(total(local), Flags(AtOnce(_flags, bearing, carried, speed, oil, local)))
@@ -456,7 +460,7 @@ def _contacts(
     rolling = bearing.rolling_speed(speed)
     return RaceContacts(
         line_load=load,
-        radius=np.repeat(radii, carried.shape[-1]),
+        radius=np.repeat(side_by_side(radii), carried.shape[-1], axis=-1),
         rolling_speed=rolling * np.ones_like(load),
         sliding_speed=np.zeros_like(load),
         flanks=Flanks(bearing.equivalent_modulus, bearing.race_roughness, bearing.roller_roughness),
@@ -487,8 +491,9 @@ def centrifugal_forces(
 
 def pressed_alone(loads: RollerLoads, forces: FloatArray, length: float) -> RollerLoads:
     """Rollers pressed on one race over their `length`, by what of `forces` exceeds their load."""
-    carried = loads.intensity.mean(axis=-1) * length
-    alone = np.maximum(np.abs(forces)[..., None, :] - carried, 0.0) / length
+    over = side_by_side([length])[..., None]
+    carried = loads.intensity.mean(axis=-1) * over
+    alone = np.maximum(np.abs(forces)[..., None, :] - carried, 0.0) / over
     return replace(loads, intensity=alone[..., None])
 
 

@@ -236,13 +236,13 @@ def tabulated(
         return along_path(
             contacts.path, pressure, *_path_table(*fit, motion, contacts.flanks, contacts.oil)
         )
-    alike = contacts.speed, contacts.flanks, contacts.oil
+    alike = contacts.races, contacts.speed, contacts.flanks, contacts.oil
     each = taken(alike, range(len(pressure))) if isinstance(pressure, Points) else [alike]
     found = np.empty_like(pressure)
     shape = len(each), len(contacts.races), -1
     pressures, places = (np.asarray(it).reshape(shape) for it in (pressure, found))
-    for own, given, into in zip(each, pressures, places, strict=True):
-        for race, of_race, place in zip(contacts.races, given, into, strict=True):
+    for (races, *own), given, into in zip(each, pressures, places, strict=True):
+        for race, of_race, place in zip(races, given, into, strict=True):
             place[:] = over_pressure(of_race, *_race_table(*fit, race, *own))
     return found
 

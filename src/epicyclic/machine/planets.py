@@ -494,7 +494,7 @@ PALMGREN_SOURCE = "A. Palmgren, Ball and Roller Bearing Engineering (1959); Talb
 class PlanetBearing:
     """A planet bearing and the models of its losses."""
 
-    one_by_one = True
+    pointwise = True
 
     bearing: RollerBearing
     # ``"mixed-ehl"``, ``"palmgren"``, or a loss fitted to simulated contacts.
@@ -644,8 +644,8 @@ def solve_bearing(
         rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
         watts += rubbed.between + rubbed.skewed
         notes = (_rubbing_note(where, rubbed),)
-    known, carried = rated(bearing, own.aligns_itself, own.cage), load.force if loaded else math.inf
-    limits = partial(_limit_notes, where, known, own.limiting_speed, carried, abs(speed), watts)
+    carried = load.force if loaded else math.inf
+    limits = partial(_limit_notes, where, own, carried, abs(speed), watts)
     figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
     idle = speed, bearing.pitch_diameter, oil.dynamic_viscosity
     return BearingResult(
@@ -699,12 +699,12 @@ def rated(
 
 def _limit_notes(
     where: str,
-    known: CatalogueBearing,
-    stated: float | None,  # Its limiting speed, if the case gives it. [rad/s]
+    own: PlanetBearing,
     force: float,
     speed: float,  # Not negative. [rad/s]
     watts: float,
 ) -> Iterator[Note]:
+    known = rated(own.bearing, own.aligns_itself, own.cage)
     share = "0.01 C0" if known.type == "spherical" else "0.02 C"
     least = minimum_load(known, 0.0, 0.0)
     if speed and force < least:
@@ -722,9 +722,9 @@ def _limit_notes(
             "the bearing needs oil that cools it."
         )
         yield Note(text, watts)
-    limit = stated or limiting_speed(known)
+    limit = own.limiting_speed or limiting_speed(known)
     if speed > limit:
-        told = limit_text(speed, limit, stated is not None)
+        told = limit_text(speed, limit, own.limiting_speed is not None)
         yield Note(f"{where}, against the carrier: {told}", watts)
 
 
