@@ -76,23 +76,24 @@ _NOT_OF_POCKETS = re.compile(
 """Keys that change neither a family nor a number: bands vary mostly these."""
 
 
-def flow_tables(plan: CasePlan, indices: Iterable[int], threads: int | None = None) -> FlowTables:
+def flow_tables(plan: CasePlan, indices: Sequence[int], threads: int | None = None) -> FlowTables:
     """Tables for the points `indices`; none where that does not pay.
 
     A table is made for all points of `plan` that read it, so that it is the same whichever of them
     are done, and where.
     """
     bound = plan.case.numerics.pocket_interpolation
-    samples = flows_asked(plan, range(plan.size))
+    samples = flows_asked(plan, plan.order())
     alike = {tuple(changes.get(key) for key in _LIKE_SPEED) for changes in samples.values()}
     if bound == 0 or len(alike) < _FEWEST:
         return {}
-    wanted = flows_asked(plan, indices)
+    wanted = samples if len(indices) == plan.size else flows_asked(plan, indices)
     asked: dict[FlowFamily, set[float]] = defaultdict(set)
     read: set[FlowFamily] = set()
+    changed = one_after_another(plan.case)
     for flow, changes in samples.items():
         try:
-            numbers = pocket_flow_numbers(plan.case.updated(changes))
+            numbers = pocket_flow_numbers(changed(changes))
         except InputError:
             continue  # the point reports it
         for family, number in numbers:
@@ -122,6 +123,23 @@ def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
     """Equal for points that differ in the magnitude of torque only."""
     coasting = str(changes.get(_TORQUE, "")).lstrip().startswith("-")
     return (coasting, *(f"{key}={value}" for key, value in changes.items() if key != _TORQUE))
+
+
+def one_after_another(case: Case) -> Callable[[Mapping[str, Any]], Case]:
+    """Makes `case` with some changes of the one that it made before.
+
+    What only depends on what both have is not checked again.
+    """
+    last: tuple[Case, Mapping[str, Any]] = case, {}
+
+    def changed(changes: Mapping[str, Any]) -> Case:
+        nonlocal last
+        own, before = last if last[1].keys() == changes.keys() else (case, {})
+        moved = {key: it for key, it in changes.items() if key not in before or it != before[key]}
+        last = own.updated(moved), changes
+        return last[0]
+
+    return changed
 
 
 # What a sweep varies: keys, their values, and the cases of the full product.
@@ -202,20 +220,10 @@ class CasePlan(Plan):
 
     def _solve_block(self, indices: Sequence[int]) -> list[Row]:
         cases: dict[int, Case] = {}
-
-        last: tuple[Case, Mapping[str, Any]] = self.case, {}
+        changed = one_after_another(self.case)
 
         def failing(index: int) -> Row:
-            nonlocal last
-            (case, before), changes = last, self.changes(index)
-            if before.keys() != changes.keys():
-                case, before = self.case, {}
-            # from the case before: what only depends on the rest is not checked again
-            moved = {
-                key: it for key, it in changes.items() if key not in before or it != before[key]
-            }
-            cases[index] = case.updated(moved)
-            last = cases[index], changes
+            cases[index] = changed(self.changes(index))
             return Row("")
 
         rows = {index: self._row(partial(failing, index)) for index in indices}

@@ -25,7 +25,7 @@ from itertools import groupby
 from multiprocessing import current_process, resource_tracker
 from pathlib import Path
 from queue import SimpleQueue
-from typing import Any, BinaryIO, ClassVar, Protocol, Self
+from typing import Any, BinaryIO, ClassVar, Protocol, Self, TypeGuard
 
 import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
@@ -419,6 +419,8 @@ class Runner:
             journal.begin(heading(plan, self.shard, self.output))
         if not left:
             return
+        if self.dask is None and _has_workers(self.jobs):
+            _start_workers(plan, self.jobs)  # while this process prepares
         plan = plan.prepared(left, self.jobs)
         if self.dask is not None:
             yield from _run_on_cluster(plan, left, self.dask, journal)
@@ -489,11 +491,32 @@ def _run_here(
             from loky import cpu_count
 
             jobs = cpu_count()
-        if jobs is not None and jobs > 1 and not current_process().daemon:  # which has no children
+        if _has_workers(jobs):
             yield from _run_in_workers(plan, indices[done:], jobs, journal)
             return
         yield _solve_batch(plan, blocks[0], journal)
         done += len(blocks.pop(0))
+
+
+def _has_workers(jobs: int | None) -> TypeGuard[int]:
+    """Whether other processes compute too."""
+    return jobs is not None and jobs > 1 and not current_process().daemon  # which has no children
+
+
+def _start_workers(
+    plan: Plan, jobs: int
+) -> tuple[Any, Callable[..., Future[Batch]], list[Future[Batch]]]:
+    """Workers, what gives them points of `plan`, and an empty batch of it for each."""
+    from cloudpickle import dumps  # models of friction hold functions
+    from loky import get_reusable_executor
+
+    # that loky replaces workers which have grown large, or adapts their number, is no news
+    told = "A worker (stopped|was restarted) while|Trying to resize"
+    warnings.filterwarnings("ignore", told, UserWarning)
+    with _apart_from_here():
+        workers = get_reusable_executor(jobs - 1, timeout=WORKER_IDLE_SECONDS, env=_ONE_THREAD)
+        call = partial(workers.submit, _solve_in_worker, os.getpid(), dumps(plan))
+        return workers, call, [call((), None) for _ in range(jobs - 1)]
 
 
 def _workers_pay(done: int, seconds: float, left: int) -> bool:
@@ -506,18 +529,9 @@ def _run_in_workers(
     plan: Plan, indices: list[int], jobs: int, journal: Journal | None
 ) -> Iterator[Batch]:
     """Finished points, in any order: of this process while others start, then of all `jobs`."""
-    from cloudpickle import dumps  # models of friction hold functions
-    from loky import get_reusable_executor
-
-    # that loky replaces workers which have grown large, or adapts their number, is no news
-    told = "A worker (stopped|was restarted) while|Trying to resize"
-    warnings.filterwarnings("ignore", told, UserWarning)
     batches = deque(_batches(plan, indices, jobs))
     left, finished = len(batches), SimpleQueue[Future[Batch]]()
-    with _apart_from_here():
-        workers = get_reusable_executor(jobs - 1, timeout=WORKER_IDLE_SECONDS, env=_ONE_THREAD)
-        call = partial(workers.submit, _solve_in_worker, os.getpid(), dumps(plan))
-        started = [call((), None) for _ in range(jobs - 1)]
+    workers, call, started = _start_workers(plan, jobs)
 
     def go_on(last: Future[Batch]) -> None:
         if last.exception() is not None:
