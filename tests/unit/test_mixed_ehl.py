@@ -218,13 +218,18 @@ def test_all_points_at_once_give_the_same():
     ):
         each = [at_one(*point) for point in points]
         assert at_all(*arrays) == pytest.approx(each, rel=TRANSCRIPTION)
-    pressure = np.array([0.3e9, 1e9, 2e9])
-    several = (pressure, *np.array([[8.0, 9.0, 7.0], [6e-3, 5e-3, 7e-3], [12e-9, 14e-9, 11e-9]]))
-    rest = (2.3e-3, 0.14e-6, STEEL)
-    each = [mixed_ehl.needle_rolling_loss(*own, *rest) for own in zip(*several, strict=True)]
-    assert mixed_ehl.needle_rolling_loss_at(*several, *rest) == pytest.approx(
-        each, rel=TRANSCRIPTION
+    pressure = np.array([[0.3e9, 1e9, 2e9], [0.4e9, 0.7e9, 1.7e9]])
+    rest = np.array(
+        [
+            [8.0, 6e-3, 12e-9, 2.3e-3, 0.14e-6, STEEL],
+            [9.0, 5e-3, 14e-9, 2.6e-3, 0.13e-6, 0.9 * STEEL],
+        ]
     )
+    for found, its, own in zip(
+        mixed_ehl.needle_rolling_loss_at(pressure, rest), pressure, rest, strict=True
+    ):
+        each = [mixed_ehl.needle_rolling_loss(p_h, *own) for p_h in its]
+        assert found == pytest.approx(each, rel=TRANSCRIPTION)
 
 
 # --- blends ---------------------------------------------------------------------------------------

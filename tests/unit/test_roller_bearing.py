@@ -277,10 +277,9 @@ def test_solution_does_not_depend_on_the_start(load):
             vector[None],
             start[None],
             azimuth,
-            TALBOT.slice_positions / half_width,
-            TALBOT.crown,
-            TALBOT.slice_width,
-            TALBOT.diametral_clearance,
+            TALBOT.slice_positions[None] / half_width,
+            TALBOT.crown[None],
+            np.array([[TALBOT.slice_width, TALBOT.diametral_clearance]]),
             SOLVER,
             100,
         )
