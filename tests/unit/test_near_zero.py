@@ -30,8 +30,8 @@ def test_losses_at_rest_are_shared_as_at_the_nearest_speed_rather_forward(case):
 
 
 def test_torques_crowd_on_each_side_that_reaches_zero():
-    found = resolving_zero([-120.0, -60.0, 0.0, 240.0], crowd=3)
-    assert found == [-120.0, -60.0, -30.0, -15.0, -5.0, 0.0, 20.0, 60.0, 120.0, 240.0]
+    found = resolving_zero([-80.0, -40.0, 0.0, 100.0], crowd=3)
+    assert found == [-80.0, -40.0, -20.0, -10.0, -5.0, 0.0, 12.5, 25.0, 50.0, 100.0]
     assert resolving_zero([-7.0, 7.0], crowd=1) == [-7.0, -3.5, 0.0, 3.5, 7.0]
     assert resolving_zero([0.0, 6.0], crowd=1) == [0.0, 3.0, 6.0]
     assert resolving_zero([300.0, 100.0]) == [100.0, 300.0]
@@ -84,7 +84,7 @@ def test_a_map_states_its_error_at_the_middle_and_at_the_slowest_speed(case):
 @pytest.mark.parametrize(
     ("options", "count"),
     [
-        (["--torque", "0:300:4 N*m"], 9),
+        (["--torque", "0:300:4 N*m"], 12),
         (["--torque", "0:300:4 N*m", "--even-torques"], 4),
         (["--torque", "0,100,300 N*m"], 3),
         (["--torque", "100:300:3 N*m"], 3),

@@ -60,7 +60,7 @@ _SPEEDS, _TORQUES, _TEMPERATURES = 9, 9, 4  # Values of the axes of a map that i
 _DISTANCE = Quantity("a distance", "m", "km", low=0.0, high=1e7, open_low=True)
 _KJ_PER_WH = 3.6
 _CROWDING = 1.5  # Exponent by which its speeds and torques crowd at zero, where losses bend most.
-_CROWD = 4  # Further torques next to zero, on each side. [1]
+_CROWD = 6  # Further torques next to zero, on each side. [1]
 SAMPLES = 20  # Points that are solved to measure the error of the interpolation.
 
 

@@ -208,7 +208,7 @@ DURATION = Quantity("a time", "s", "s", low=0.0, high=1e9, open_low=True)
 HEADROOM = 80.0
 """By which a gearbox is expected to warm up; and by how much more if it does not do. [K]"""
 SPEEDS, TORQUES = 7, 7  # Values of the grid on which the losses of a cycle are solved.
-CROWD = 3
+CROWD = 4
 """Further torques next to zero, on each side; 10 change no digit of a cycle at light load. [1]"""
 MOST_STEPS = 2000  # Into which the duration is divided, if a cycle has more rows.
 TOLERANCE = 1e-3  # Largest error of the temperatures in each of these steps. [K]
