@@ -169,10 +169,7 @@ def _stiffness(
     poisson_ratio: float,
     face_terms: int,
 ) -> FloatArray:
-    """Stiffness matrix in (w, theta_s, theta_y), each of height by face terms.
-
-    Theory (E1), (E2).
-    """
+    """Stiffness matrix in (w, theta_s, theta_y), height by face terms each. Theory (E1), (E2)."""
     nu = poisson_ratio
     top = float(height[-1])
     points, weights = _gauss(HEIGHT_TERMS + QUADRATURE_MARGIN)

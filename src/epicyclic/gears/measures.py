@@ -29,10 +29,7 @@ def _pitch_and_base(rack: BasicRack, teeth: int) -> tuple[float, float]:
 def half_angle_from_span(
     rack: BasicRack, teeth: int, internal: bool, measured: float, count: int
 ) -> float:
-    """Half angle at the reference circle of a tooth with span W_k over `count` teeth.
-
-    Theory (G48).
-    """
+    """Half angle at the reference circle with the span W_k over `count` teeth. Theory (G48)."""
     pitch, base = _pitch_and_base(rack, teeth)
     half = (measured - (count - 1) * pitch) / base - involute(rack.transverse_pressure_angle)
     return math.pi / teeth - half if internal else half

@@ -151,6 +151,7 @@ def _chosen_directory() -> Path | None:
 
 
 _CACHE_DIR = _chosen_directory()
+FIRST_RUN = _CACHE_DIR is None or not any(_CACHE_DIR.glob("*.nbi"))  # No machine code was kept.
 
 
 class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]  # numba has no types

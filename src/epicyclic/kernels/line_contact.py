@@ -44,10 +44,7 @@ def hertz_pressure(w: Real, r_eq: Real, e_eq: float) -> Real:
 
 
 def line_load_at_pressure(p_h: Real, r_eq: Real, e_eq: float) -> Real:
-    """W' that gives the Hertz pressure `p_h`: the inverse of `hertz_pressure`. [N/m]
-
-    Theory (C6).
-    """
+    """W' that gives the Hertz pressure `p_h`: inverse of `hertz_pressure`. Theory (C6). [N/m]"""
     return 2 * math.pi * r_eq * p_h**2 / e_eq
 
 

@@ -571,10 +571,7 @@ def _pressed(loaded: BoolArray, along: FloatArray, angle: FloatArray) -> FloatAr
 
 
 def palmgren_loss(coefficient: float, force: float, pitch_diameter: float, speed: float) -> float:
-    """P_mb = f1 F_r d_m omega. Talbot (2012), Eq. 3.1, after Palmgren and Harris. [W]
-
-    Theory (B16).
-    """
+    """P_mb = f1 F_r d_m omega. Talbot (2012), Eq. 3.1, after Palmgren, Harris. Theory (B16). [W]"""
     return coefficient * force * pitch_diameter * abs(speed)
 
 

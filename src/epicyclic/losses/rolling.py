@@ -474,10 +474,7 @@ class _FittedOrFormula(Generic[Fit]):
 
 @dataclass(frozen=True, slots=True)
 class FittedOrSchlenk(NothingToSolve, _FittedOrFormula[FittedFriction]):
-    """The fit to the contacts of an oil, and the mean friction of Schlenk beyond them.
-
-    Theory (O11).
-    """
+    """The fit to contacts of an oil, and the mean friction of Schlenk beyond. Theory (O11)."""
 
     name: ClassVar = "fitted-or-schlenk"
     takes_oil_temperature: ClassVar[bool] = False

@@ -133,10 +133,7 @@ class Planet:
         return self.mass * self.pin_radius * carrier_speed**2
 
     def notes(self, carrier_speed: float, load: PlanetLoad) -> tuple[str, ...]:
-        """That its mass is estimated, and what its rollers weigh, where that matters.
-
-        Theory (B20).
-        """
+        """That its mass is estimated and what its rollers weigh, where it matters. Theory (B20)."""
         force, where = self.centrifugal(carrier_speed), self.key.replace("_", " ")
         found: tuple[str, ...] = ()
         if isinstance(self.bearing, PlanetBearing):

@@ -88,10 +88,7 @@ class MeshFlow:
 
 
 def oil_in_mesh(duty: MeshDuty) -> float:
-    """Share of oil in the pockets of a mesh: that around it, and what is fed into it.
-
-    Theory (N9).
-    """
+    """Share of oil in the pockets of a mesh: around it, and fed into it. Theory (N9)."""
     settings, mesh = duty.gears.models.pockets, duty.gears.mesh
     # volume of all tooth spaces of each gear, half of the ring that the teeth stand in [m^3]
     one, two = (

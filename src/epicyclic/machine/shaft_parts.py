@@ -189,10 +189,7 @@ def linke_bracket(temperature: float, viscosity_40: float) -> float:
 def seal_losses(
     diameter: float, speed: float, temperature: float, viscosity_40: float
 ) -> dict[SealFormula, float]:
-    """The loss after every formula, to see how far they spread. [W]
-
-    Parameters as for `seal_loss`.
-    """
+    """The loss after every formula: how far they spread. Parameters as for `seal_loss`. [W]"""
     return {
         formula: seal_loss(formula, diameter, speed, temperature, viscosity_40)
         for formula in get_args(SealFormula)

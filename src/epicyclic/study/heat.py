@@ -73,10 +73,7 @@ def heat_balance(case: CaseSource) -> HeatBalance:
 
 
 def with_network(case: Case) -> Case:
-    """The case with the network of its parts.
-
-    Raises `InputError` if it has no oil.
-    """
+    """The case with the network of its parts. Raises `InputError` if it has no oil."""
     check_oil(case)
     return case.updated(NETWORK)
 
@@ -108,10 +105,7 @@ class BeyondRange:
 
 
 def beyond_range(case: Case, result: Result) -> BeyondRange | None:
-    """The part of the loss whose oil is too hot for its formula; None if there is none.
-
-    Theory (F5).
-    """
+    """The part of the loss whose oil is too hot for its formula; None if none is. Theory (F5)."""
     hot = [
         flag
         for flag in result.flags

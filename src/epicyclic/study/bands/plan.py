@@ -402,10 +402,7 @@ class SampledCase:
         # Whether to go on behind A and B with A with each of all groups from B.
         mixed: bool = True,
     ) -> FloatArray:
-        """Results at all operating points, in all sets of samples.
-
-        In the order of `Outputs.names`.
-        """
+        """Results at all points in all sets of samples, in the order of `Outputs.names`."""
         losses, powers = self.plan.found(rows)
         return np.array(
             [

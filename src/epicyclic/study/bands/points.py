@@ -197,10 +197,7 @@ class Energies:
         results: FloatArray,  # At the points, as `Outputs.names` has them. [W]
         without: int | None = None,  # Number of a point to leave out.
     ) -> FloatArray:
-        """Energies of the cycle, and its efficiency. Theory (U10).
-
-        [kJ], [1]
-        """
+        """Energies of the cycle, and its efficiency. Theory (U10). [kJ], [1]"""
         time = self.time.copy()
         if without is not None:
             time[without] = 0.0

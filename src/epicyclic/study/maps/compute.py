@@ -314,11 +314,6 @@ class MapPlan(SweepPlan):
 
     kind: ClassVar[str] = "map"
 
-    @property
-    def batch(self) -> int:
-        """Points next to each other that differ in torque only."""
-        return len(self.axes[-1].values)
-
 
 def loss_map(
     case: CaseSource,

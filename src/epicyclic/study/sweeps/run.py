@@ -165,6 +165,7 @@ _OPERATING_TABLES = (
 
 MESHES_TOGETHER = 168  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
+SURELY_LONG = 4000  # Meshes of all points: each takes half a millisecond or more.
 MANY, SMALL_BLOCKS = 48, 3  # Points from which on blocks are full, and blocks of fewer, to share.
 
 
@@ -205,10 +206,17 @@ class CasePlan(Plan):
     @property
     def block(self) -> int:
         """See `Plan`: of as many points as are worth it, if there are enough."""
-        meshes = sum(len(gearing.meshes) for gearing in self.case.gearings.values())
-        most = max(FEWEST_TOGETHER, MESHES_TOGETHER // max(1, meshes))
+        most = max(FEWEST_TOGETHER, MESHES_TOGETHER // max(1, self._meshes))
         size = min(most, self.size if self.size >= MANY else self.size // SMALL_BLOCKS)
         return size if self.together and size >= FEWEST_TOGETHER else 1
+
+    @property
+    def _meshes(self) -> int:
+        return sum(len(gearing.meshes) for gearing in self.case.gearings.values())
+
+    def surely_long(self, count: int) -> bool:
+        """See `Plan`."""
+        return count * self._meshes >= SURELY_LONG
 
     def solve_all(self, indices: Sequence[int]) -> list[Row]:
         """Rows of the points of whole blocks; those of each are solved together."""

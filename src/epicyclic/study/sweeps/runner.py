@@ -42,6 +42,7 @@ from epicyclic.errors import (
     raise_any,
 )
 from epicyclic.files import look_seldom, make_folder
+from epicyclic.kernels.compiling import FIRST_RUN
 
 # The journal of an unfinished study: one line for each finished point, written as it finishes.
 #
@@ -277,6 +278,7 @@ Progress = Callable[..., None]
 Batch = list[tuple[int, Row]]
 
 BATCHES_PER_WORKER = 4  # Fewer would leave workers idle at the end.
+MOST_AT_ONCE = 16  # Points that a worker is given, or one block of them.
 WORKER_START_SECONDS = 2.0
 """Work left, in seconds on one core, below which starting worker processes does not pay: they start
 in one or two, while this process goes on."""
@@ -296,11 +298,6 @@ class Plan(ABC):
     """Kind of the study: ``"sweep"``, ``"map"``."""
     may_fail: ClassVar[bool] = False
     """Whether points without a solution are to be expected."""
-
-    @property
-    def batch(self) -> int:
-        """Largest number of points that a worker is given at once."""
-        return 16
 
     @property
     def block(self) -> int:
@@ -351,6 +348,10 @@ class Plan(ABC):
     @abstractmethod
     def describe(self) -> dict[str, Any]:
         """All that the rows follow, as JSON holds it."""
+
+    def surely_long(self, count: int) -> bool:
+        """Whether so many points pay for workers, before one has told how long it takes."""
+        return False
 
     def prepared(self, indices: Sequence[int], jobs: int | None) -> Self:
         """The plan with what the points `indices` share, made by up to `jobs` threads."""
@@ -419,13 +420,16 @@ class Runner:
             journal.begin(heading(plan, self.shard, self.output))
         if not left:
             return
-        if self.dask is None and _has_workers(self.jobs):
-            _start_workers(plan, self.jobs)  # while this process prepares
+        jobs = self.jobs
+        if jobs is None and self.dask is None and plan.surely_long(len(left)):
+            jobs = _cores()
+        if self.dask is None and _has_workers(jobs) and not FIRST_RUN:  # both would compile
+            _start_workers(plan, jobs)  # while this process prepares
         plan = plan.prepared(left, self.jobs)
         if self.dask is not None:
             yield from _run_on_cluster(plan, left, self.dask, journal)
         else:
-            yield from _run_here(plan, left, self.jobs, journal)
+            yield from _run_here(plan, left, jobs, journal)
 
     def within(self, plan: Plan) -> Runner:
         """The same with a journal of its own for one of several plans, in the folder `journal`."""
@@ -488,14 +492,18 @@ def _run_here(
         if done and not untimed and spent < TRIAL_SECONDS:  # most of it to load kernels
             start, spent, untimed = time.perf_counter(), 0.0, done
         if jobs is None and _workers_pay(done - untimed, spent, len(indices) - done):
-            from loky import cpu_count
-
-            jobs = cpu_count()
+            jobs = _cores()
         if _has_workers(jobs):
             yield from _run_in_workers(plan, indices[done:], jobs, journal)
             return
         yield _solve_batch(plan, blocks[0], journal)
         done += len(blocks.pop(0))
+
+
+def _cores() -> int:
+    from loky import cpu_count
+
+    return int(cpu_count())
 
 
 def _has_workers(jobs: int | None) -> TypeGuard[int]:
@@ -613,7 +621,7 @@ def _belong_to(parent: int) -> None:
 
 def _batches(plan: Plan, indices: list[int], workers: int) -> list[list[int]]:
     """`indices` cut at multiples of one size in the order of all points, whatever is done."""
-    size = min(plan.batch, max(1, len(indices) // (BATCHES_PER_WORKER * workers)))
+    size = min(MOST_AT_ONCE, max(1, len(indices) // (BATCHES_PER_WORKER * workers)))
     return _cut(plan, indices, max(1, size // plan.block) * plan.block)
 
 
