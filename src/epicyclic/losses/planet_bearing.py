@@ -288,13 +288,22 @@ def _solved(
     """What `solve_roller_loads` finds, of one point without its axis."""
     reach = side_by_side([bearing.half_width])[..., None]
     sizes = side_by_side([bearing.slice_width, bearing.diametral_clearance])
-    shape = (points_in(vars(bearing).values()) or 1, bearing.rows, bearing.slices)
-    of_each = ((bearing.slice_positions / reach, shape), (bearing.crown, shape[::2]))
+    count, rows, slices = points_in(vars(bearing).values()) or 1, bearing.rows, bearing.slices
+    at, crown, own = (
+        np.array(np.broadcast_to(table, (count, *shape)), order="C")
+        for table, shape in (
+            (bearing.slice_positions / reach, (rows, slices)),
+            (bearing.crown, (slices,)),
+            (sizes, (2,)),
+        )
+    )
     intensity, state, iterations = solve_roller_loads(
         np.atleast_2d(load),
         np.atleast_2d(start),
         bearing.azimuth,
-        *(np.array(np.broadcast_to(*it), order="C") for it in (*of_each, (sizes, (shape[0], 2)))),
+        at,
+        crown,
+        own,
         TOLERANCE,
         MAX_ITERATIONS,
         held,

@@ -16,7 +16,7 @@ from epicyclic.build.machine import build, layout_of, operation_of
 from epicyclic.build.models import set_cases
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.dataclass import dataclass, replace
-from epicyclic.errors import InputError, Problem, one_problem, raise_any
+from epicyclic.errors import InputError, Problem, Status, one_problem, raise_any
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.element import OIL
 from epicyclic.machine.heat import NetworkModel
@@ -36,7 +36,7 @@ from epicyclic.study.sweeps.run import (
     make_plan,
     to_dataset,
 )
-from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
+from epicyclic.study.sweeps.runner import HERE, Progress, Row, Rows, Runner
 from epicyclic.units import NEWTON_METRE, RPM, WATT, format_number, torque_text
 
 if TYPE_CHECKING:
@@ -212,6 +212,15 @@ def resolving_texts(torques: Iterable[Any]) -> list[Any]:
     return [f"{torque!r} {NEWTON_METRE.display}" for torque in resolving_zero(values)]
 
 
+@dataclass(frozen=True, slots=True)
+class _Totals(PointList):
+    """Points of which nothing but the total loss is read."""
+
+    def _row_of(self, answer: Any) -> Row:
+        converged = answer.status is Status.CONVERGED
+        return Row(str(answer.status), numbers={"total": answer.total} if converged else {})
+
+
 def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]:
     """What a map says of the error of linear interpolation between its torques.
 
@@ -237,7 +246,7 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
         fixed = line.drop_vars("torque").coords.values()
         changes = {key_of(values): written_values(values)[0] for values in fixed}
         points += [changes | {torque.key: torque.text(middle)} for middle in own.tolist()]
-    direct = Runner(jobs=1).run(PointList(case, tuple(points))).numbers("total")
+    direct = Runner(jobs=1).run(_Totals(case, tuple(points))).numbers("total")
     found, texts = [], []
     for speed, line, own in zip(ends, lines, middles, strict=True):
         exact, direct = direct[: own.size], direct[own.size :]

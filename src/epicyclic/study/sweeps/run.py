@@ -126,18 +126,22 @@ def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 def one_after_another(case: Case) -> Callable[[Mapping[str, Any]], Case]:
-    """Makes `case` with some changes of the one that it made before.
+    """Makes `case` with some changes of the nearest of those that it made before.
 
     What only depends on what both have is not checked again.
     """
-    last: tuple[Case, Mapping[str, Any]] = case, {}
+    near: list[tuple[Case, Mapping[str, Any]]] = []
 
     def changed(changes: Mapping[str, Any]) -> Case:
-        nonlocal last
-        own, before = last if last[1].keys() == changes.keys() else (case, {})
-        moved = {key: it for key, it in changes.items() if key not in before or it != before[key]}
-        last = own.updated(moved), changes
-        return last[0]
+        of, moved = case, changes
+        for one, before in near:
+            if before.keys() == changes.keys():
+                new = {key: it for key, it in changes.items() if it != before[key]}
+                of, moved = (one, new) if len(new) < len(moved) else (of, moved)
+        made = of.updated(moved)
+        # the last one, and the last two from which others start
+        near[:] = [*(near if 2 * len(moved) > len(changes) else near[:-1])[-2:], (made, changes)]
+        return made
 
     return changed
 
