@@ -226,10 +226,7 @@ def _wet(table: ThermalTable, gear_sets: Sequence[GearSet], to_gears: float | No
 
 
 def _bath_share(table: ThermalTable, gear_sets: Sequence[GearSet]) -> float:
-    """Share of the gears that dips, as given or as the oil stands; the mean of all gears.
-
-    Theory (N10).
-    """
+    """Share of gears that dips, as given or as the oil stands; mean of all. Theory (N10)."""
     parts = [
         disc.sump.part
         for own in gear_sets

@@ -509,10 +509,7 @@ def tooth_outline(
 
 
 def _involute_start(gear: Gear, cut: Cut) -> tuple[float, float]:
-    """Root form radius, and the angle of the contact normal where the fillet ends there.
-
-    Theory (G34).
-    """
+    """Root form radius, and angle of the contact normal where the fillet ends. Theory (G34)."""
     if cut.last_curvature >= 0.0:
         radius, normal = math.hypot(gear.base_radius, cut.last_curvature), cut.last_normal
     else:

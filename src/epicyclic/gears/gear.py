@@ -118,10 +118,7 @@ class Gear:
         return self.thickness_half_angle + (change if self.internal else -change)
 
     def half_angles_at(self, curvature: NDArray[np.float64]) -> NDArray[np.float64]:
-        """`half_angle_at` of the points where the involute has these radii of curvature.
-
-        Theory (G10).
-        """
+        """`half_angle_at` where the involute has these radii of curvature. Theory (G10)."""
         roll = curvature / self.base_radius
         change = roll - np.arctan(roll) - involute(self.rack.transverse_pressure_angle)
         return self.thickness_half_angle + (change if self.internal else -change)

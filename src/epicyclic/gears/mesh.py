@@ -119,10 +119,7 @@ class Mesh:
         )
 
     def curvature2(self, curvature1: Real) -> Real:
-        """Transverse radius of curvature of member 2 where member 1 has `curvature1`. [m]
-
-        Theory (G16).
-        """
+        """Transverse radius of curvature of member 2 where 1 has `curvature1`. Theory (G16). [m]"""
         return self.line_of_action - self.side * curvature1
 
     def equivalent_radius(self, curvature1: Real) -> Real:

@@ -409,10 +409,7 @@ def weight_of_fit(
     quantity: str,  # A key of its fits.
     contacts: LineContacts,  # n of them.
 ) -> FloatArray:
-    """Weight of a fit at each contact: 1 within its simulations, 0 far beyond them. [1]
-
-    Theory (O11).
-    """
+    """Weight of a fit at each contact: 1 in its simulations, 0 far beyond. Theory (O11). [1]"""
     domain = model.fits[quantity].domain
     modulus = contacts.flanks.equivalent_modulus / model.equivalent_modulus
     beyond: float | FloatArray = max(1.0, modulus, 1 / modulus) / MODULUS_SLACK

@@ -155,10 +155,7 @@ class CylindricalModel(Rollers):
     def parts(
         self, bearing: CatalogueBearing, load: BearingLoad, speed: float, oil: OilState
     ) -> tuple[FrictionPart, ...]:
-        """``viscous``, of the idle bearing, and ``mechanical``, what the load adds. [W]
-
-        Theory (J36).
-        """
+        """``viscous`` of the idle bearing, and ``mechanical``, what load adds. Theory (J36). [W]"""
         moments = skf_moments(self.skf, bearing, load, speed, oil.kinematic_viscosity)
         rolling = cylindrical_rolling(self, bearing, load.radial, speed, oil)
         idle = bearing_viscous_loss(

@@ -111,10 +111,7 @@ class Planet:
     def load(
         self, duties: Mapping[str, MeshDuty], carrier_speed: float
     ) -> tuple[Sequence[MeshDuty], PlanetLoad]:
-        """Duties of its meshes, misaligned if the planet tilts, and the load on its bearing.
-
-        Theory (B3).
-        """
+        """Duties of its meshes, misaligned if it tilts, and load on its bearing. Theory (B3)."""
         contacts = self._contacts(duties)
         centrifugal = self.centrifugal(carrier_speed)
         idle = all(contact.duty.torque1 == 0 for contact in contacts)

@@ -177,10 +177,7 @@ def parse_measurements(
     # The loss that was measured, where the table has no column ``component``.
     component: str = "total",
 ) -> Measurements:
-    """What the cells of a table mean for a case.
-
-    Raises `InputError` with every mistake in the table.
-    """
+    """What the cells of a table mean for a case. Raises `InputError` with every mistake."""
     problems = _Problems(tuple(line for line, _ in grid.rows))
     columns = _columns(grid, case, problems)
     conditions = {
