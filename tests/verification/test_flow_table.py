@@ -24,6 +24,7 @@ from epicyclic.losses.pocket_tables import (
 from epicyclic.machine.pocket_flow import flow_family, flow_request
 from epicyclic.oil.oil import MixtureState
 from epicyclic.study.solve import pocket_flow_numbers
+from epicyclic.study.sweeps import run
 from epicyclic.study.sweeps.run import flows_asked, make_plan
 
 COARSE = {
@@ -143,6 +144,36 @@ def test_a_sweep_interpolates_and_says_so(case):
     np.testing.assert_allclose(read["mesh_pocketing"], solved["mesh_pocketing"], rtol=2 * BOUND)
     assert "interpolated" in read.attrs["pocketing"]
     assert "solved at every point" in solved.attrs["pocketing"]
+
+
+@pytest.mark.parametrize(
+    ("drive", "speeds", "asked"),
+    [
+        ({}, range(700, 3100, 210), 2),  # all scale: the slowest and the fastest tell
+        ({}, range(-9100, 9100, 1300), 14),
+        ({"operation.fixed": None, "operation.second_speed": "9700 rpm"}, range(10, 9700, 880), 12),
+    ],
+)
+def test_tables_hold_the_numbers_of_all_speeds(monkeypatch, drive, speeds, asked):
+    """Where the second shaft turns, the slowest point has the largest number."""
+    case = ep.load_case("talbot-2012").updated(COARSE | {"models.pocketing": "incompressible"})
+    if drive:
+        case = case.updated(drive | {"operation.second_input": "ring"})
+    plan = make_plan(case, {"operation.speed": [f"{speed} rpm" for speed in speeds]})
+    every = {}
+    for index in range(plan.size):
+        for family, number in pocket_flow_numbers(case.updated(plan.changes(index))):
+            every.setdefault(family, set()).add(number)
+    calls = []
+    monkeypatch.setattr(run, "_FEWEST", 3)
+    monkeypatch.setattr(
+        run, "pocket_flow_numbers", lambda own: calls.append(own) or pocket_flow_numbers(own)
+    )
+    monkeypatch.setattr(run, "make_tables", lambda many, *_: many)
+    found = run.flow_tables(plan, range(plan.size))
+    assert found == {family: own for family, own in every.items() if len(own) >= 3}
+    assert len(calls) == asked
+    assert (len(found) == 0) is (asked == 2)
 
 
 @pytest.mark.parametrize(

@@ -35,10 +35,7 @@ SMALLEST_SINGULAR = 1e-10
 
 @dataclass(frozen=True)
 class Regression:
-    """Branches in the film ratio, each the exponential of a sum, blended where they meet.
-
-    Theory (O3).
-    """
+    """Branches in the film ratio, each exp of a sum, blended where they meet. Theory (O3)."""
 
     name: str
     title: str

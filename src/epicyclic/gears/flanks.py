@@ -221,10 +221,7 @@ class FlankDeviations:
 
 
 def active_profile(mesh: Mesh, member: int) -> tuple[float, float]:
-    """Roll lengths at the root end and at the tip end of the active profile of a member. [m]
-
-    Theory (G36).
-    """
+    """Roll lengths at root end and tip end of the active profile of a member. Theory (G36). [m]"""
     if member == 1:
         return mesh.path_start, mesh.path_end
     return mesh.curvature2(mesh.path_end), mesh.curvature2(mesh.path_start)

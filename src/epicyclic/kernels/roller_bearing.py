@@ -92,10 +92,7 @@ def potential(
     gradient: FloatArray,
     hessian: FloatArray,
 ) -> float:
-    """Elastic energy less the work of `load`; fills its `gradient` and `hessian` in `d`.
-
-    Theory (B10).
-    """
+    """Elastic energy less the work of `load`; fills `gradient`, `hessian` in `d`. Theory (B10)."""
     psi, y_over_l, crown, width, clearance = rollers
     energy = 0.0
     gradient[:] = -load

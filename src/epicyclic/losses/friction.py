@@ -574,10 +574,7 @@ _AXES: dict[str, tuple[str, Quantity]] = {
 
 @dataclass(frozen=True, slots=True)
 class FrictionMap:
-    """Linear interpolation in a table over one or two local quantities, constant beyond it.
-
-    Theory (F17).
-    """
+    """Linear in a table over one or two local quantities, constant beyond it. Theory (F17)."""
 
     # Name of a quantity of `MeshContact` and its rising points, SI.
     axes: tuple[tuple[str, tuple[float, ...]], ...]

@@ -45,10 +45,7 @@ class Rig:
         return replace(grid, header=(*grid.header, f"{SENSOR} [{found[2]}]"), rows=rows)
 
     def losses(self, table: Measurements) -> Measurements:
-        """Those of the set under test.
-
-        Raises `InputError` if rows lack the ones that belong to them.
-        """
+        """Those of the set under test. Raises `InputError` if rows lack what belongs to them."""
         if not (self.baseline or self.unloaded):
             return table
         if set(table.component) != {"total"}:

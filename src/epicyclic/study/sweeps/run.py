@@ -16,6 +16,7 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
+from pydantic_core import PydanticCustomError
 
 from epicyclic.arrays import FloatArray, IntArray
 from epicyclic.build.machine import layout_of
@@ -48,7 +49,7 @@ from epicyclic.study.sweeps.axes import (
     unit_of,
 )
 from epicyclic.study.sweeps.runner import TEXTS, Plan, Progress, Row, Rows, Runner
-from epicyclic.units import format_number, percent
+from epicyclic.units import RPM, format_number, percent
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,7 +81,8 @@ def flow_tables(plan: CasePlan, indices: Sequence[int], threads: int | None = No
     """Tables for the points `indices`; none where that does not pay.
 
     A table is made for all points of `plan` that read it, so that it is the same whichever of them
-    are done, and where.
+    are done, and where. Of flows that differ in the speed only the slowest or the fastest has the
+    largest number: where both scale, all do.
     """
     bound = plan.case.numerics.pocket_interpolation
     samples = flows_asked(plan, plan.order())
@@ -90,16 +92,23 @@ def flow_tables(plan: CasePlan, indices: Sequence[int], threads: int | None = No
     wanted = samples if len(indices) == plan.size else flows_asked(plan, indices)
     asked: dict[FlowFamily, set[float]] = defaultdict(set)
     read: set[FlowFamily] = set()
-    changed = one_after_another(plan.case)
+    changed, alike_but = one_after_another(plan.case), defaultdict[Any, list[Any]](list)
     for flow, changes in samples.items():
-        try:
-            numbers = pocket_flow_numbers(changed(changes))
-        except InputError:
-            continue  # the point reports it
-        for family, number in numbers:
-            asked[family].add(number)
-            if flow in wanted:
-                read.add(family)
+        alike_but[_flow(changes, AXES["speed"])].append((_speed(changes), flow))
+    for slowest, *others in map(sorted, alike_but.values()):
+        scale = True
+        for place, (_, flow) in enumerate((slowest, *reversed(others))):
+            if place > 1 and scale:
+                break
+            try:
+                numbers = pocket_flow_numbers(changed(samples[flow]))
+            except InputError:  # the point reports it
+                numbers, scale = (), False
+            for family, number in numbers:
+                scale = False
+                asked[family].add(number)
+                if flow in wanted:
+                    read.add(family)
     many = {
         family: numbers
         for family, numbers in asked.items()
@@ -119,10 +128,19 @@ def flows_asked(plan: CasePlan, indices: Iterable[int]) -> dict[tuple[Any, ...],
     return asked
 
 
-def _flow(changes: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Equal for points that differ in the magnitude of torque only."""
+def _flow(changes: Mapping[str, Any], but: str = "") -> tuple[Any, ...]:
+    """Equal for points that differ in the magnitude of torque only, and in the key `but`."""
     coasting = str(changes.get(_TORQUE, "")).lstrip().startswith("-")
-    return (coasting, *(f"{key}={value}" for key, value in changes.items() if key != _TORQUE))
+    own = (f"{key}={value}" for key, value in changes.items() if key not in (_TORQUE, but))
+    return coasting, *own
+
+
+def _speed(changes: Mapping[str, Any]) -> float:
+    """Speed that changes state; 0 of none, or where it cannot be read, which the point reports."""
+    try:
+        return RPM.parse(changes.get(AXES["speed"], "0 rpm"))
+    except PydanticCustomError:
+        return 0.0
 
 
 def one_after_another(case: Case) -> Callable[[Mapping[str, Any]], Case]:
@@ -167,7 +185,7 @@ _OPERATING_TABLES = (
 )
 
 
-MESHES_TOGETHER = 168  # Of all points of a block, at most: more take memory and hardly less time.
+MESHES_TOGETHER = 160  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
 SURELY_LONG = 4000  # Meshes of all points: each takes half a millisecond or more.
 MANY, SMALL_BLOCKS = 48, 3  # Points from which on blocks are full, and blocks of fewer, to share.
