@@ -293,7 +293,7 @@ def _overlaps(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Problem]:
 def _gap(
     gearing: Gearing, sound: Mapping[str, Gear], angles: tuple[float, ...], one: str, two: str
 ) -> float:
-    """Smallest distance of the tips of two gears on any arms that do not mesh. Theory (K8). [m]"""
+    """Smallest distance of the tip circles of two gears on arms without a mesh. Theory (K8). [m]"""
     first, second = (gearing.pins[gearing.bodies[gear]] for gear in (one, two))
     mates = any({mesh.first, mesh.second} == {one, two} for mesh in gearing.meshes)
     tips = sound[one].tip_radius + sound[two].tip_radius

@@ -200,7 +200,7 @@ class FlankDeviations:
 
     @lru_cache(maxsize=64)  # noqa: B019 - the few deviations that it keeps are small
     def separation(self, mesh: Mesh, lines: ContactLines) -> FloatArray:
-        """Gap of unloaded flanks along the normal on all segments. Theory (G39). [m]"""
+        """Gap of unloaded flanks along the common normal, on all segments. Theory (G39). [m]"""
         # lines that are not in contact lie beyond the path of contact: any place on it serves
         rho1 = np.clip(lines.curvature1, mesh.path_start, mesh.path_end)
         rho2 = mesh.curvature2(rho1)

@@ -156,7 +156,7 @@ def half_angle_from_thickness(
 
 
 def half_angle_from_profile_shift(rack: BasicRack, teeth: int, coefficient: float) -> float:
-    """Half angle at the reference circle for a shift `coefficient`. ISO 21771. Theory (G8)."""
+    """Half angle at the reference circle, profile shift `coefficient`. ISO 21771. Theory (G8)."""
     shift = coefficient * rack.normal_module
     thickness = math.pi * rack.transverse_module / 2 + 2 * shift * math.tan(
         rack.transverse_pressure_angle

@@ -282,10 +282,7 @@ def _reaches(
 
 
 def _growth(volume: Floats, rate: Floats, step: float) -> Floats:
-    """Growth of the volume in both stages of each step, together what it grows in the step.
-
-    Theory (Q17).
-    """
+    """Growth of the volume in both stages of each step, together that in the step. Theory (Q17)."""
     growth = SDIRK * step * rate[1:]
     whole = volume[2::2] - volume[:-1:2]
     missing = whole - (1 - SDIRK) / SDIRK * growth[::2] - growth[1::2]

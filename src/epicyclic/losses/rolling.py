@@ -488,10 +488,7 @@ class FittedOrSchlenk(NothingToSolve, _FittedOrFormula[FittedFriction]):
 
 @dataclass(frozen=True, slots=True)
 class FittedOrGoksem(_FittedOrFormula[FittedRolling]):
-    """The fit to the contacts of an oil, and the loss of Goksem and Hargreaves beyond them.
-
-    Theory (O11).
-    """
+    """The fit to contacts of an oil, and the loss of Goksem and Hargreaves beyond. Theory (O11)."""
 
     name: ClassVar = "fitted-or-goksem-hargreaves"
     beyond: ClassVar[RollingModel] = ROLLING_MODELS["goksem-hargreaves"]

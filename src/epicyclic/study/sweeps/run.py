@@ -81,8 +81,7 @@ def flow_tables(plan: CasePlan, indices: Sequence[int], threads: int | None = No
     """Tables for the points `indices`; none where that does not pay.
 
     A table is made for all points of `plan` that read it, so that it is the same whichever of them
-    are done, and where. Of flows that differ in the speed only the slowest or the fastest has the
-    largest number: where both scale, all do.
+    are done, and where.
     """
     bound = plan.case.numerics.pocket_interpolation
     samples = flows_asked(plan, plan.order())
@@ -92,23 +91,10 @@ def flow_tables(plan: CasePlan, indices: Sequence[int], threads: int | None = No
     wanted = samples if len(indices) == plan.size else flows_asked(plan, indices)
     asked: dict[FlowFamily, set[float]] = defaultdict(set)
     read: set[FlowFamily] = set()
-    changed, alike_but = one_after_another(plan.case), defaultdict[Any, list[Any]](list)
-    for flow, changes in samples.items():
-        alike_but[_flow(changes, AXES["speed"])].append((_speed(changes), flow))
-    for slowest, *others in map(sorted, alike_but.values()):
-        scale = True
-        for place, (_, flow) in enumerate((slowest, *reversed(others))):
-            if place > 1 and scale:
-                break
-            try:
-                numbers = pocket_flow_numbers(changed(samples[flow]))
-            except InputError:  # the point reports it
-                numbers, scale = (), False
-            for family, number in numbers:
-                scale = False
-                asked[family].add(number)
-                if flow in wanted:
-                    read.add(family)
+    for flow, family, number in _numbers(plan.case, samples):
+        asked[family].add(number)
+        if flow in wanted:
+            read.add(family)
     many = {
         family: numbers
         for family, numbers in asked.items()
@@ -126,6 +112,30 @@ def flows_asked(plan: CasePlan, indices: Iterable[int]) -> dict[tuple[Any, ...],
             changes = {key: value for key, value in every if not _NOT_OF_POCKETS.fullmatch(key)}
             asked[_flow(changes)] = changes
     return asked
+
+
+def _numbers(
+    case: Case, samples: Mapping[tuple[Any, ...], Mapping[str, Any]]
+) -> Iterator[tuple[tuple[Any, ...], FlowFamily, float]]:
+    """Flows with the families and numbers that are asked for there; those that scale are left out.
+
+    Of flows that differ in the speed only the slowest or the fastest has the largest number: where
+    both scale, all do.
+    """
+    changed, alike = one_after_another(case), defaultdict[Any, list[Any]](list)
+    for flow, changes in samples.items():
+        alike[_flow(changes, AXES["speed"])].append((_speed(changes), flow))
+    for slowest, *others in map(sorted, alike.values()):
+        scale = True
+        for place, (_, flow) in enumerate((slowest, *reversed(others))):
+            if place > 1 and scale:
+                break
+            try:
+                numbers = pocket_flow_numbers(changed(samples[flow]))
+            except InputError:  # the point reports it
+                numbers, scale = (), False
+            scale = scale and not numbers
+            yield from ((flow, *its) for its in numbers)
 
 
 def _flow(changes: Mapping[str, Any], but: str = "") -> tuple[Any, ...]:
@@ -157,7 +167,7 @@ def one_after_another(case: Case) -> Callable[[Mapping[str, Any]], Case]:
                 new = {key: it for key, it in changes.items() if it != before[key]}
                 of, moved = (one, new) if len(new) < len(moved) else (of, moved)
         made = of.updated(moved)
-        # the last one, and the last two from which others start
+        # the last one, and the last two that changed most keys, from which mixtures of them start
         near[:] = [*(near if 2 * len(moved) > len(changes) else near[:-1])[-2:], (made, changes)]
         return made
 
