@@ -443,10 +443,7 @@ class NearbySimulations(_Data):
         excess: FloatArray,  # See the class.
         weight: FloatArray,  # See the class.
     ) -> NearbySimulations:
-        """What `states` have over a form.
-
-        Raises `ValueError` if a form is too far off to be corrected.
-        """
+        """What `states` have over a form. Raises `ValueError` if one is too far off to correct."""
         taken = np.arange(excess.size)
         if excess.size > MOST_SIMULATIONS:
             taken = np.sort(np.random.default_rng(0).permutation(taken)[:MOST_SIMULATIONS])
