@@ -36,7 +36,8 @@ def contact(pair):
 def stress_at(temperature, pressure, rate, oil):
     """Of the film at a temperature."""
     log_rate = math.log(rate * oil[4] * oil[5] / oil[7])
-    return eyring_stress(temperature, pressure, log_rate, tuple(oil))[0]
+    at = (np.array([value]) for value in (temperature, pressure, log_rate))
+    return eyring_stress(*at, tuple(oil))[0][0]
 
 
 def share(contact):
@@ -129,11 +130,11 @@ def test_a_short_step_behind_a_very_long_one_is_not_the_last():
 
 def test_derivative_of_the_stress_to_the_temperature(contact):
     oil = tuple(model._oil_constants(contact.oil))
-    for pressure, log_rate in ((0.0, -9.0), (0.4e9, -6.0), (1.5e9, -4.0)):
-        low, high = (eyring_stress(oil[0] + d, pressure, log_rate, oil)[0] for d in (-1e-3, 1e-3))
-        slope = eyring_stress(oil[0], pressure, log_rate, oil)[1]
-        assert slope == pytest.approx((high - low) / 2e-3, rel=1e-6)
-        assert slope < 0
+    at = np.array([0.0, 0.4e9, 1.5e9]), np.array([-9.0, -6.0, -4.0])
+    temperatures = (np.full(3, oil[0] + change) for change in (-1e-3, 1e-3, 0.0))
+    (low, _), (high, _), (_, slope) = (eyring_stress(it, *at, oil) for it in temperatures)
+    assert slope == pytest.approx((high - low) / 2e-3, rel=1e-6)
+    assert (slope < 0).all()
 
 
 def test_stress_over_pressure_tends_to_the_limiting_traction(contact):

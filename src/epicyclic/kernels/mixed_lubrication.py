@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 
 import numpy as np
 
@@ -36,55 +35,70 @@ LEFT = 1e-9  # Of the stress: what a step leaves is its cube over the square of 
 CLOSE = 1e-4  # Size of that step over the stress, at most: a longer one may meet another bend. [1]
 
 
-@partial(kernel, inlined=True)
+@kernel
 def eyring_stress(
-    temperature: float, pressure: float, log_rate: float, oil: tuple[float, ...]
-) -> tuple[float, float]:
+    temperature: FloatArray, pressure: FloatArray, log_rate: FloatArray, oil: tuple[float, ...]
+) -> tuple[FloatArray, FloatArray]:
     """tau_E arsinh(eta rate/tau_E) with tau_E = Lambda/alpha, eta of Barus. Theory (Y6). [Pa]
 
     With its derivative to the temperature [Pa/K]. `pressure` [Pa]; `log_rate` of the shear rate
     times rho alpha/Lambda at T0 and 1 mm^2/s; `oil` holds, at its temperature T0 [K],
     ln(nu + 0.7) and ln(nu) with nu in mm^2/s, the slope of ASTM D341, density times 1 mm^2/s
-    [Pa s], alpha [1/Pa], d(ln alpha)/d(ln nu), and the limit Lambda [1].
+    [Pa s], alpha [1/Pa], d(ln alpha)/d(ln nu), and the limit Lambda [1]. Loops are short: the
+    processor works on the next turns while exponentials of one wait for each other.
     """
     T0, log_shifted0, _, slope, _, _, _, _ = oil
-    log_shifted = log_shifted0 * exponential(slope * logarithm(T0 / temperature))
-    shifted = exponential(log_shifted)
-    viscosity = max(shifted - OFFSET, LEAST_VISCOSITY)
-    fall = -slope * shifted * log_shifted / (temperature * viscosity)  # d(ln nu)/dT
-    return _sheared(logarithm(viscosity), fall, pressure, log_rate, oil)
+    log_shifted, log_viscosity = np.empty_like(pressure), np.empty_like(pressure)
+    fall = np.empty_like(pressure)  # d(ln nu)/dT
+    for i in range(len(pressure)):
+        log_shifted[i] = log_shifted0 * exponential(slope * logarithm(T0 / temperature[i]))
+    for i in range(len(pressure)):
+        shifted = exponential(log_shifted[i])
+        viscosity = max(shifted - OFFSET, LEAST_VISCOSITY)
+        fall[i] = -slope * shifted * log_shifted[i] / (temperature[i] * viscosity)
+        log_viscosity[i] = logarithm(viscosity)
+    return _sheared(log_viscosity, fall, pressure, log_rate, oil)
 
 
-@partial(kernel, inlined=True)
+@kernel
 def _sheared(
-    log_viscosity: float, fall: float, pressure: float, log_rate: float, oil: tuple[float, ...]
-) -> tuple[float, float]:
+    log_viscosity: FloatArray, fall: FloatArray, pressure: FloatArray, log_rate: FloatArray,
+    oil: tuple[float, ...],
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """`eyring_stress` at a viscosity, the logarithm of which falls with the temperature [1/K]."""
     _, _, log_viscosity0, _, _, alpha0, exponent, limit = oil
-    log_alpha = exponent * (log_viscosity - log_viscosity0)  # over alpha at T0
-    alpha = alpha0 * exponential(log_alpha)
-    squeezed = alpha * pressure
-    x = log_viscosity + log_alpha + log_rate + squeezed
-    ratio = exponential(min(x, LARGE))
-    root = math.sqrt(1.0 + ratio * ratio)
-    # arsinh(ratio) = ln(1 + more), where what is lost of small ones is added
-    more = ratio + ratio * ratio / (1.0 + root)
-    rounded = 1.0 + more
-    arsinh = logarithm(rounded) + (more - (rounded - 1.0)) / rounded + max(x - LARGE, 0.0)
-    rise = ratio / root * (1.0 + exponent + exponent * squeezed) - exponent * arsinh
-    scale = limit / alpha
-    return scale * arsinh, scale * fall * rise
+    stress, slope = np.empty_like(pressure), np.empty_like(pressure)
+    for i in range(len(pressure)):
+        log_alpha = exponent * (log_viscosity[i] - log_viscosity0)  # over alpha at T0
+        alpha = alpha0 * exponential(log_alpha)
+        stress[i] = log_viscosity[i] + log_alpha + log_rate[i] + alpha * pressure[i]
+        slope[i] = alpha
+    for i in range(len(pressure)):
+        x, alpha = stress[i], slope[i]
+        ratio = exponential(min(x, LARGE))
+        root = math.sqrt(1.0 + ratio * ratio)
+        # arsinh(ratio) = ln(1 + more), where what is lost of small ones is added
+        more = ratio + ratio * ratio / (1.0 + root)
+        rounded = 1.0 + more
+        arsinh = logarithm(rounded) + (more - (rounded - 1.0)) / rounded + max(x - LARGE, 0.0)
+        rise = ratio / root * (1.0 + exponent + exponent * alpha * pressure[i])
+        scale = limit / alpha
+        stress[i] = scale * arsinh
+        slope[i] = scale * fall[i] * (rise - exponent * arsinh)
+    return stress, slope
 
 
 @kernel
 def _bounded(
-    pressure: float, log_rate: float, warm: float, heating: float, oil: tuple[float, ...]
+    pressure: FloatArray, log_rate: FloatArray, warm: float, heating: float, oil: tuple[float, ...]
 ) -> float:
     """`film_stress` where Newton's method runs in circles: bisection where it leaves bounds."""
-    stress, low, high, moved = START * oil[7] * pressure, 0.0, math.inf, math.inf
+    stress: float = START * oil[7] * pressure[0]
+    low, high, moved, temperature = 0.0, math.inf, math.inf, np.empty_like(pressure)
     for _ in range(STEPS):
-        hot, slope = eyring_stress(oil[0] + warm + heating * stress, pressure, log_rate, oil)
-        step = (hot - stress) / (1.0 - heating * slope)
+        temperature[0] = oil[0] + warm + heating * stress
+        hots, slopes = eyring_stress(temperature, pressure, log_rate, oil)
+        hot, step = hots[0], (hots[0] - stress) / (1.0 - heating * slopes[0])
         last, stress, size = stress, stress + step, abs(step)
         close = size <= CLOSE * stress and moved < math.inf
         if close and size * size * size <= LEFT * stress * moved * moved:
@@ -115,23 +129,26 @@ def film_stress(
         As for `eyring_stress`.
     """
     n, its = len(pressure), oil
-    stress, log_rate, moved, left = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    log_rate, cold, falls, temperature = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    moved, left = np.empty(n), np.empty(n)
     own = (its[0], its[1], its[2], its[3], its[4], its[5], its[6], its[7])
     fall = -own[3] * math.exp(own[1]) * own[1] / (own[0] * math.exp(own[2]))
     for i in range(n):
         sheared = rate[i] if rate[i] > 0.0 else 1.0
         log_rate[i] = logarithm(sheared * (own[4] * own[5] / own[7]))
-        # first as of an oil whose stress falls with the temperature as at T0
-        cold, slope = _sheared(own[2], fall, pressure[i], log_rate[i], own)
-        steep = slope / (cold + TINY)
-        warmed = cold * exponential(steep * warm[i])
-        stress[i], moved[i] = warmed / (1.0 - heating[i] * steep * warmed), math.inf
+        cold[i], falls[i], moved[i] = own[2], fall, math.inf
+    # first as of an oil whose stress falls with the temperature as at T0
+    stress, slope = _sheared(cold, falls, pressure, log_rate, own)
+    for i in range(n):
+        steep = slope[i] / (stress[i] + TINY)
+        warmed = stress[i] * exponential(steep * warm[i])
+        stress[i] = warmed / (1.0 - heating[i] * steep * warmed)
     for number in range(QUICK_STEPS):
         for i in range(n):
-            hot, slope = eyring_stress(
-                own[0] + warm[i] + heating[i] * stress[i], pressure[i], log_rate[i], own
-            )
-            step = (hot - stress[i]) / (1.0 - heating[i] * slope)
+            temperature[i] = own[0] + warm[i] + heating[i] * stress[i]
+        hot, slope = eyring_stress(temperature, pressure, log_rate, own)
+        for i in range(n):
+            step = (hot[i] - stress[i]) / (1.0 - heating[i] * slope[i])
             stress[i] += step
             size = abs(step)
             bent = LEFT * stress[i] * moved[i] * moved[i] - size * size * size
@@ -144,7 +161,8 @@ def film_stress(
             break
     for i in range(n):
         if not left[i] >= 0.0:
-            stress[i] = _bounded(pressure[i], log_rate[i], warm[i], heating[i], own)
+            alone = slice(i, i + 1)
+            stress[i] = _bounded(pressure[alone], log_rate[alone], warm[i], heating[i], own)
         if not rate[i] > 0.0:
             stress[i] = 0.0
     return stress
@@ -201,9 +219,10 @@ def mixed_friction(
                     w[i], R[i], u[i], slip, E, viscosity, alpha, thermal * u[i] * u[i]
                 )
         for i in range(n):
-            b = hertz_half_width(w[i], R[i], E)
-            sigma = acting_roughness(power(2.0 * b, exponent), one, cut1, two, cut2)
-            xi = asperity_share(films[i] / sigma)
+            width = 2.0 * hertz_half_width(w[i], R[i], E)
+            share[i] = films[i] / acting_roughness(power(width, exponent), one, cut1, two, cut2)
+        for i in range(n):
+            b, xi = hertz_half_width(w[i], R[i], E), asperity_share(share[i])
             p = np.maximum(MEAN_PRESSURE * hertz_pressure(w[i], R[i], E), LEAST_LOAD)
             half = u_s[i] / 2.0
             # of the flanks for a coefficient of friction of 1
