@@ -12,6 +12,7 @@ from epicyclic.kernels.contact_load import (
     LINEAR_SHARE,
     careful_solution,
     deflections,
+    from_nearest,
     local_law,
     solve_contact_loads,
 )
@@ -23,8 +24,7 @@ def solve(
 ):
     """The contact problem with the local law given by two numbers."""
     lines = len(length)
-    *found, _ = solve_contact_loads(
-        force,
+    teeth, nearest, whole = from_nearest(
         (
             compliance,
             np.zeros((lines, lines)) if coupling is None else coupling,
@@ -32,7 +32,12 @@ def solve(
             length,
             np.full_like(length, local_a),
             local_b,
-        ),
+        )
+    )
+    forces, approach, *found, _ = solve_contact_loads(
+        force,
+        teeth,
+        LINEAR_SHARE * force / whole,
         length if start is None else start,
         np.nan,
         np.nan,
@@ -40,7 +45,7 @@ def solve(
         1e-9,
         1000,
     )
-    return found
+    return forces, approach + nearest, *found
 
 
 @pytest.mark.slow

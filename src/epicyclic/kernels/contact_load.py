@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.arrays import BoolArray, FloatArray
+from epicyclic.arrays import TINY, BoolArray, FloatArray
 from epicyclic.kernels.compiling import kernel
 
 LINEAR_SHARE = 1e-3
@@ -68,28 +68,31 @@ def local_law(q: float, a: float, b: float, floor: float) -> tuple[float, float]
 
 @kernel
 def line_totals(values: FloatArray) -> FloatArray:
-    """Sum of the values of each line."""
-    totals = np.zeros(values.shape[0])
+    """Sum of the values of each line: four sums side by side, so that few wait for a last term."""
+    totals, n = np.empty(values.shape[0]), values.shape[1]
     for line in range(values.shape[0]):
-        for k in range(values.shape[1]):
-            totals[line] += values[line, k]
+        one = two = three = four = 0.0
+        for k in range(0, n - 3, 4):
+            one, two = one + values[line, k], two + values[line, k + 1]
+            three, four = three + values[line, k + 2], four + values[line, k + 3]
+        for k in range(n - n % 4, n):
+            one += values[line, k]
+        totals[line] = (one + two) + (three + four)
     return totals
 
 
 @kernel
 def shared(force: float, weight: FloatArray) -> tuple[FloatArray, BoolArray]:
     """A force in proportion to weights, and where they are positive; nothing where they are not."""
-    whole = 0.0
-    for line in range(weight.shape[0]):
-        for k in range(weight.shape[1]):
-            whole += max(weight[line, k], 0.0)
-    forces = np.zeros(weight.shape)
-    loaded = np.zeros(weight.shape, np.bool_)
+    forces, loaded = np.empty(weight.shape), np.empty(weight.shape, np.bool_)
     for line in range(weight.shape[0]):
         for k in range(weight.shape[1]):
             loaded[line, k] = weight[line, k] > 0.0
-            if loaded[line, k]:
-                forces[line, k] = force * weight[line, k] / whole
+            forces[line, k] = max(weight[line, k], 0.0)
+    each = force / max(line_totals(forces).sum(), TINY)
+    for line in range(weight.shape[0]):
+        for k in range(weight.shape[1]):
+            forces[line, k] *= each
     return forces, loaded
 
 
@@ -131,20 +134,24 @@ def deflections(forces: FloatArray, teeth: Teeth, floor: float) -> tuple[FloatAr
         rim = 0.0
         for other in range(lines):
             rim += coupling[line, other] * totals[other]
-        own, row, bent = forces[line], compliance[line], closed[line]
         for k in range(segments):
-            bent[k] = separation[line, k] + rim
+            closed[line, k] = separation[line, k] + rim
         for j in range(0, segments - 3, 4):  # four rows at once, which takes half the time
-            f1, f2, f3, f4 = own[j], own[j + 1], own[j + 2], own[j + 3]
-            c1, c2, c3, c4 = row[j], row[j + 1], row[j + 2], row[j + 3]
+            f1, f2, f3, f4 = (
+                forces[line, j], forces[line, j + 1], forces[line, j + 2], forces[line, j + 3]
+            )  # fmt: skip
             for k in range(segments):
-                bent[k] += f1 * c1[k] + f2 * c2[k] + f3 * c3[k] + f4 * c4[k]
+                closed[line, k] += (
+                    f1 * compliance[line, j, k] + f2 * compliance[line, j + 1, k]
+                    + f3 * compliance[line, j + 2, k] + f4 * compliance[line, j + 3, k]
+                )  # fmt: skip
         for j in range(segments - segments % 4, segments):
             for k in range(segments):
-                bent[k] += own[j] * row[j, k]
+                closed[line, k] += forces[line, j] * compliance[line, j, k]
         for k in range(segments):
-            law, law_slope = local_law(own[k] / length[line, k], local_a[line, k], local_b, floor)
-            bent[k] += law
+            q = forces[line, k] / length[line, k]
+            law, law_slope = local_law(q, local_a[line, k], local_b, floor)
+            closed[line, k] += law
             slope[line, k] = law_slope / length[line, k]
     return closed, slope
 
@@ -153,21 +160,30 @@ def deflections(forces: FloatArray, teeth: Teeth, floor: float) -> tuple[FloatAr
 def eliminate(system: FloatArray) -> None:
     """Solve a positive definite system whose right sides are its further columns, in place.
 
-    Gauss elimination without pivoting of the upper half; the lower one is not read. The rows of the
-    inner loop are views, counted from zero: only so does it become vector instructions.
+    Gauss elimination without pivoting of the upper half, of whose diagonal the inverse stays; the
+    lower half is not read. Each row takes those above it four at a time. Rows of inner loops are
+    views, counted from zero: only so do these become vector instructions.
     """
     n, columns = system.shape
     for k in range(n):
-        inverse = 1.0 / system[k, k]
-        for r in range(k + 1, n):
-            factor = system[k, r] * inverse
-            upper = system[k, r:]
-            lower = system[r, r:]
-            for c in range(columns - r):
-                lower[c] -= factor * upper[c]
+        row, whole = system[k, k:], k - k % 4
+        for r in range(0, whole, 4):
+            f1, f2 = system[r, k] * system[r, r], system[r + 1, k] * system[r + 1, r + 1]
+            f3, f4 = (
+                system[r + 2, k] * system[r + 2, r + 2],
+                system[r + 3, k] * system[r + 3, r + 3],
+            )
+            u1, u2, u3, u4 = system[r, k:], system[r + 1, k:], system[r + 2, k:], system[r + 3, k:]
+            for c in range(columns - k):
+                row[c] -= f1 * u1[c] + f2 * u2[c] + f3 * u3[c] + f4 * u4[c]
+        for r in range(whole, k):
+            factor, upper = system[r, k] * system[r, r], system[r, k:]
+            for c in range(columns - k):
+                row[c] -= factor * upper[c]
+        system[k, k] = 1.0 / system[k, k]
     for side in range(n, columns):
         for k in range(n - 1, -1, -1):
-            found = system[k, side] = system[k, side] / system[k, k]
+            found = system[k, side] = system[k, side] * system[k, k]
             for r in range(k):  # all sums side by side, so that none waits for its last term
                 system[r, side] -= system[r, k] * found
 
@@ -383,7 +399,8 @@ def careful_solution(
 @kernel
 def solve_contact_loads(
     force: float,  # Normal force of the mesh. [N]
-    teeth: Teeth,
+    teeth: Teeth,  # With gaps from where they are nearest.
+    floor: float,  # Line load below which the local law is a parabola. [N/m]
     # Forces to begin with, whatever their sum, none for those that pull: what is next to the
     # solution saves most of the steps, the lengths do for a start from nothing. [N]
     start: FloatArray,
@@ -412,21 +429,7 @@ def solve_contact_loads(
     rise : ndarray, shape (lines, segments)
         Rise of each force with the total one, before the last step. [1]
     """
-    compliance, coupling, separation, length, local_a, local_b = teeth
-    nearest = np.inf
-    for line in range(length.shape[0]):
-        for k in range(length.shape[1]):
-            if length[line, k] > 0.0:
-                nearest = min(nearest, separation[line, k])
-    gap = np.empty(length.shape)
-    whole = 0.0
-    for line in range(length.shape[0]):
-        for k in range(length.shape[1]):
-            gap[line, k] = separation[line, k] - nearest
-            whole += length[line, k]
-    floor = LINEAR_SHARE * force / whole
-    teeth = (compliance, coupling, gap, length, local_a, local_b)
-    approach -= nearest
+    length = teeth[3]
     forces, loaded = shared(force, start)
     for iteration in range(QUICK_STEPS):
         closed, slope = deflections(forces, teeth, floor)
@@ -434,7 +437,7 @@ def solve_contact_loads(
             return np.zeros(length.shape), approach, stiffness, -1, rise
         enough = tolerance if iteration else UNREFINED * tolerance
         if is_solution(force, forces, approach, closed, length, enough):
-            return forces, approach + nearest, stiffness, iteration, rise
+            return forces, approach, stiffness, iteration, rise
         load_touching(loaded, closed, length, approach, tolerance)
         step, approach, stiffness, rise = newton_step(force, forces, loaded, closed, slope, teeth)
         forces = after_step(forces, 1.0, step)  # let go of all segments that it makes pull
@@ -444,7 +447,23 @@ def solve_contact_loads(
     )
     if iterations > 0:
         iterations += QUICK_STEPS
-    return forces, approach + nearest, stiffness, iterations, rise
+    return forces, approach, stiffness, iterations, rise
+
+
+@kernel
+def from_nearest(teeth: Teeth) -> tuple[Teeth, float, float]:
+    """Teeth with gaps from where they are nearest; the gap there, and the length of all lines."""
+    compliance, coupling, separation, length, local_a, local_b = teeth
+    nearest, gap = np.inf, np.empty(length.shape)
+    for line in range(length.shape[0]):
+        for k in range(length.shape[1]):
+            if length[line, k] > 0.0:
+                nearest = min(nearest, separation[line, k])
+    for line in range(length.shape[0]):
+        for k in range(length.shape[1]):
+            gap[line, k] = separation[line, k] - nearest
+    whole = line_totals(length).sum()
+    return (compliance, coupling, gap, length, local_a, local_b), nearest, whole
 
 
 @kernel
@@ -474,10 +493,13 @@ def solve_points(
     stiffness = np.empty((points, positions))
     iterations = np.empty((points, positions), dtype=np.int64)
     start = np.empty((lines, segments))
-    for i in range(points):
-        given = i < last_forces.size
-        more = forces[i] - (last_forces[i] if given else forces[i - 1])
-        for m in range(positions):
+    for m in range(positions):  # whose influence stays at hand for all points
+        teeth, nearest, whole = from_nearest(
+            (compliance[m], coupling[m], separation[m], length[m], local_a[m], local_b)
+        )
+        for i in range(points):
+            given = i < last_forces.size
+            more = forces[i] - (last_forces[i] if given else forces[i - 1])
             near = last_loads[i, m] if given else loads[i - 1, m]
             slope = last_rise[i, m] if given else rise[i - 1, m]
             stiff = last_stiffness[i, m] if given else stiffness[i - 1, m]
@@ -485,18 +507,11 @@ def solve_points(
             for line in range(lines):
                 for k in range(segments):
                     start[line, k] = near[line, k] * length[m, line, k] + more * slope[line, k]
-            found, approach[i, m], stiffness[i, m], iterations[i, m], rise[i, m] = (
-                solve_contact_loads(
-                    forces[i],
-                    (compliance[m], coupling[m], separation[m], length[m], local_a[m], local_b),
-                    start,
-                    closer + more / stiff,
-                    stiff,
-                    slope,
-                    tolerance,
-                    max_iterations,
-                )
-            )
+            found, closed, stiffness[i, m], iterations[i, m], rise[i, m] = solve_contact_loads(
+                forces[i], teeth, LINEAR_SHARE * forces[i] / whole, start,
+                closer + more / stiff - nearest, stiff, slope, tolerance, max_iterations,
+            )  # fmt: skip
+            approach[i, m] = closed + nearest
             for line in range(lines):
                 for k in range(segments):
                     if length[m, line, k] > 0.0:
