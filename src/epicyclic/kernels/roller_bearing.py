@@ -23,6 +23,7 @@ import numpy as np
 from epicyclic.arrays import FloatArray, IntArray
 from epicyclic.kernels.compiling import kernel
 from epicyclic.kernels.contact_load import eliminate
+from epicyclic.kernels.line_contact import power
 
 DEFLECTION_EXPONENT = 1.11  # Exponent of the line contact, Talbot (2012) Eq. 3.3a. [1]
 LENGTH_EXPONENT = 0.11  # Exponent of the loaded length, Talbot (2012) Eq. 3.3a. [1]
@@ -54,7 +55,8 @@ energy of small forces is rounding. [1]"""
 SMALL_FORCE = 1e-3  # A largest load below this counts as this size in `STALLED`. [N]
 
 Rollers = tuple[FloatArray, FloatArray, FloatArray, float, float]
-"""The parameters of `solve_roller_loads` from `psi` to `clearance`."""
+"""Cosine and sine of the azimuth of each roller, shape (rollers, 2), then the parameters of
+`solve_roller_loads` from `y_over_l` to `clearance`."""
 
 
 @kernel
@@ -70,8 +72,9 @@ def slice_stiffness(loaded_length: float) -> float:
 
 
 @kernel
-def approach_of_races(d: FloatArray, cos: float, sin: float) -> tuple[float, float]:
-    """Approach of the races at an azimuth: in the middle, and by the tilt at the end. [m]"""
+def approach_of_races(d: FloatArray, along: FloatArray, z: int) -> tuple[float, float]:
+    """Approach of the races at a roller: in the middle, and by the tilt at the end. [m]"""
+    cos, sin = along[z, 0], along[z, 1]
     return d[0] * cos + d[1] * sin, d[2] * cos + d[3] * sin
 
 
@@ -93,24 +96,25 @@ def potential(
     hessian: FloatArray,
 ) -> float:
     """Elastic energy less the work of `load`; fills `gradient`, `hessian` in `d`. Theory (B10)."""
-    psi, y_over_l, crown, width, clearance = rollers
+    along, y_over_l, crown, width, clearance = rollers
     energy = 0.0
     gradient[:] = -load
     hessian[:] = 0.0
-    along = np.empty(2)
     rows, slices = y_over_l.shape
-    for z in range(psi.size):
-        along[0], along[1] = np.cos(psi[z]), np.sin(psi[z])
-        radial, tilt = approach_of_races(d, along[0], along[1])
-        forces = np.zeros(2)  # moments of order 0 and 1 along the rollers at this azimuth
-        slopes = np.zeros(3)  # of order 0 to 2
+    # moments along the rollers at one azimuth, of order 0 and 1, and 0 to 2
+    forces, slopes = np.empty(2), np.empty(3)
+    deltas, stiff = np.empty(slices), np.empty(slices)
+    for z in range(len(along)):
+        radial, tilt = approach_of_races(d, along, z)
+        forces[:], slopes[:] = 0.0, 0.0
         for row in range(rows):
             for k in range(slices):
-                y = y_over_l[row, k]
-                delta = slice_deflection(radial, tilt, y, clearance, crown[k])
+                deltas[k] = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])
+                stiff[k] = width * stiffness[row, z] * power(deltas[k], LENGTH_EXPONENT)
+            for k in range(slices):
+                y, delta, slope = y_over_l[row, k], deltas[k], stiff[k]
                 if delta <= 0.0:
                     continue
-                slope = width * stiffness[row, z] * delta**LENGTH_EXPONENT
                 force = slope * delta
                 energy += 2.0 * force * delta / (DEFLECTION_EXPONENT + 1.0)
                 forces[0] += force
@@ -119,9 +123,9 @@ def potential(
                 slopes[1] += slope * y
                 slopes[2] += slope * y * y
         for i in range(4):
-            gradient[i] += forces[i // 2] * along[i % 2]
+            gradient[i] += forces[i // 2] * along[z, i % 2]
             for j in range(4):
-                turned = 0.5 * DEFLECTION_EXPONENT * along[i % 2] * along[j % 2]
+                turned = 0.5 * DEFLECTION_EXPONENT * along[z, i % 2] * along[z, j % 2]
                 hessian[i, j] += slopes[i // 2 + j // 2] * turned
     for i in range(4):
         energy -= load[i] * d[i]
@@ -137,12 +141,12 @@ def loaded_lengths(d: FloatArray, rollers: Rollers, lengths: FloatArray) -> bool
     the end of a roller half a slice still comes or goes at once: where it is so near to that that
     it could be either, by the lengths before, True is returned.
     """
-    psi, y_over_l, crown, width, clearance = rollers
+    along, y_over_l, crown, width, clearance = rollers
     rows, slices = y_over_l.shape
     delta = np.empty(slices)
     doubtful = False
-    for z in range(psi.size):
-        radial, tilt = approach_of_races(d, np.cos(psi[z]), np.sin(psi[z]))
+    for z in range(len(along)):
+        radial, tilt = approach_of_races(d, along, z)
         for row in range(rows):
             for k in range(slices):
                 delta[k] = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])
@@ -286,11 +290,11 @@ def solve_one(
     q: FloatArray,
 ) -> int:
     """As `solve_roller_loads` under one load; moves the state `d`, fills the intensities `q`."""
-    psi, y_over_l, crown, width, clearance = rollers
+    along, y_over_l, crown, width, clearance = rollers
     rows, slices = y_over_l.shape
     if largest(load) == 0.0:
         return 0
-    lengths, stiffness = np.empty((rows, psi.size)), np.empty((rows, psi.size))
+    lengths, stiffness = np.empty((rows, len(along))), np.empty((rows, len(along)))
     total = 0
     for whole in range(0 if near else 1, 2):  # the one solution that begins with whole rollers
         lengths[:] = width * slices
@@ -298,7 +302,7 @@ def solve_one(
         converged = False
         for outer in range(max_iterations):
             for row in range(rows):
-                for z in range(psi.size):
+                for z in range(len(along)):
                     stiffness[row, z] = slice_stiffness(lengths[row, z])
             steps = minimise(d, load, rollers, stiffness, tolerance, max_iterations, held)
             if steps < 0:
@@ -312,8 +316,8 @@ def solve_one(
             return -1
         if not doubtful:
             break
-    for z in range(psi.size):
-        radial, tilt = approach_of_races(d, np.cos(psi[z]), np.sin(psi[z]))
+    for z in range(len(along)):
+        radial, tilt = approach_of_races(d, along, z)
         for row in range(rows):
             for k in range(slices):
                 delta = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])
@@ -349,10 +353,12 @@ def solve_roller_loads(
     """
     points, (bearings, rows, slices) = len(load), y_over_l.shape
     q, d = np.zeros((points, rows, psi.size, slices)), np.empty_like(start)
-    iterations = np.empty(points, np.intp)
+    iterations, along = np.empty(points, np.intp), np.empty((psi.size, 2))
+    for z in range(psi.size):
+        along[z, 0], along[z, 1] = np.cos(psi[z]), np.sin(psi[z])
     for i in range(points):
         own = i % bearings
-        rollers = (psi, y_over_l[own], crown[own], sizes[own, 0], sizes[own, 1])
+        rollers = (along, y_over_l[own], crown[own], sizes[own, 0], sizes[own, 1])
         loaded = i > 0 and iterations[i - 1] > 0 and largest(load[i]) > 0.0
         # first from the point before, which is nearer, and if that leads nowhere from its own start
         for anew in range(0 if loaded and not (near or held) else 1, 2):
