@@ -185,7 +185,8 @@ def row_by_row(
     """A kernel over arrays of shape (points, n), the first of them whole, and rows of numbers."""
     rows = [np.ascontiguousarray(np.atleast_2d(values)) for values in places]
     for table in map(side_by_side, numbers):
-        rows.append(np.ascontiguousarray(np.broadcast_to(table, (len(rows[0]), table.shape[-1]))))
+        # a copy, which may be written to: a kernel is compiled apart for what may not
+        rows.append(np.array(np.broadcast_to(table, (len(rows[0]), table.shape[-1])), order="C"))
     return kernel(*rows).reshape(places[0].shape).view(type(places[0]))
 
 
@@ -226,11 +227,12 @@ def joined(
         looked_for = hasattr(first, "parts")  # what comparing it would look for
         if not looked_for and all(value is first or value == first for value in values):
             return first
-        if any(_kind(value) != _kind(first) for value in values):
+        kind = _kind(first)
+        if any(_kind(value) != kind for value in values):
             return unlike(values)
     if cls is float:
         return of_points(values).reshape(-1, 1)
-    if getattr(cls, "pointwise", False):
+    if getattr(first, "pointwise", False):
         if hasattr(first, "parts"):
             return cls(*own([value.parts for value in values]))
         return cls(

@@ -122,7 +122,7 @@ def _laminar_faces(radius: float, omega: float, mixture: MixtureState) -> float:
 def _turbulent_faces(radius: float, omega: float, mixture: MixtureState) -> float:
     """Second branch of Talbot (2012), Eq. 5.5. Theory (V4). [W]"""
     group = pow(mixture.kinematic_viscosity, 0.14) * pow(omega, 2.86)
-    return 0.025 * math.pi * mixture.density * group * math.pow(radius, 4.72)
+    return 0.025 * math.pi * mixture.density * group * pow(radius, 4.72)
 
 
 def disc_drag_flags(

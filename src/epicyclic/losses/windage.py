@@ -121,10 +121,10 @@ def rim_coefficient(
     turbulent = (SLOPE * w) ** -2
     if gap is not None:
         laminar /= 1 - (1 + gap) ** -2
-        transition = max(transition, TAYLOR_NUMBER * gap**-1.5)
+        transition = larger(transition, TAYLOR_NUMBER * gap**-1.5)
         within = gap * reynolds
         walls = [1.03 / sqrt(within), 0.065 * pow(within, -0.2)]
-        held = math.pow(gap, 0.3) / 2 * norm(walls, LARGEST)
+        held = pow(gap, 0.3) / 2 * norm(walls, LARGEST)
         turbulent = norm([held, turbulent], -LARGEST)
     share = 1 / (1 + pow(transition / reynolds, TRANSITION_POWER))
     return laminar + share * (turbulent - laminar)
@@ -154,8 +154,8 @@ def face_coefficient(
         return free
     creeping = 64 / (3 * reynolds)
     apart = [creeping, 3.7 / root, 0.102 * pow(reynolds, -0.2)]
-    held = norm([math.pow(gap, 0.1) * norm(apart, LARGEST), free], -LARGEST)
-    merged = 0.08 * math.pow(gap, -1 / 6) / sqrt(root)
+    held = norm([pow(gap, 0.1) * norm(apart, LARGEST), free], -LARGEST)
+    merged = 0.08 * pow(gap, -1 / 6) / sqrt(root)
     return norm([2 * math.pi / (gap * reynolds), merged, held], LARGEST)
 
 
@@ -188,7 +188,7 @@ def tooth_coefficient(teeth: Teeth, flange: float | None = None) -> float:
     open_gear = teeth.number / 4 * teeth.width / teeth.pitch_radius * ratio**4
     near = 1.0
     if flange is not None:
-        near = math.pow(flange / (FREE_FLANGE * teeth.pitch_radius), 0.56)
+        near = pow(flange / (FREE_FLANGE * teeth.pitch_radius), 0.56)
         near = norm([near, 1.0], -LARGEST)
     return open_gear * (1 - cosine) * (1 + cosine) ** 3 * near
 
@@ -196,6 +196,8 @@ def tooth_coefficient(teeth: Teeth, flange: float | None = None) -> float:
 @dataclass(frozen=True, slots=True)
 class Turning:
     """A body that turns in the mixture."""
+
+    pointwise = True
 
     radius: float  # [m]
     width: float  # Of its rim. [m]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 
+from epicyclic.arrays import larger
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import (
@@ -91,6 +92,11 @@ class Disc:
     count: int = 1  # Of bodies alike.
 
     @property
+    def pointwise(self) -> bool:
+        """Whether its sizes may be `Points`: not in a sump or under jets."""
+        return self.sump is None and self.jets is None
+
+    @property
     def dips(self) -> bool:
         """Whether it reaches into a sump."""
         return self.sump is not None and self.sump.part.immersed > 0
@@ -137,7 +143,7 @@ def disc_loss(
                     partial(disc_drag_flags, disc.where, body.radius, smooth, speed, mixture)
                 )
             else:
-                mist = state.fluids.mixed(min(disc.oil_fraction, MIST_SHARE))
+                mist = state.fluids.mixed(-larger(-disc.oil_fraction, -MIST_SHARE))
                 viscosity = state.fluids.oil.dynamic_viscosity
                 parts = drag(body, speed, mixture, mist, viscosity, disc.model)
                 watts = disc.count * sum(parts)
