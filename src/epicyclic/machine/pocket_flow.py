@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epicyclic.arrays import Alone, Points, larger
+from epicyclic.arrays import Alone, Points, larger, one_by_one
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.gears.mesh import with_faces
 from epicyclic.losses.pocket_flow import (
@@ -187,11 +187,9 @@ def mesh_flows(
     for key, request in wanted.items():
         figures = None
         if not request[0].scales(*request[1:]):
-            if isinstance(request[1], Points):  # one solved at a time goes on from those known
-                raise Alone(len(request[1]))
-            if request[0] in tables[key]:
-                figures = tables[key][request[0]].figures(*request[1:])
-            figures = known.figures(*request) if figures is None else figures
+            figures = one_by_one(_found_before, *request, tables[key], known)
+            if isinstance(request[1], Points) and not isinstance(figures, FlowFigures):
+                raise Alone(len(request[1]))  # one solved at a time goes on from those known
         if figures is None:
             direct[key] = request
         flows[key] = MeshFlow(figures)
@@ -204,6 +202,20 @@ def mesh_flows(
         if flow.figures is not None:
             known = known.with_flow(*direct[key], flow.figures)
     return flows | solved, known
+
+
+def _found_before(
+    family: FlowFamily, speed: float, mixture: MixtureState, pressure: float, tables: FlowTables,
+    known: KnownFlows,
+) -> FlowFigures | None:  # fmt: skip
+    """Figures from a table, or between known flows; scaled at those of several points that do."""
+    if isinstance(speed, Points):
+        raise Alone(len(speed))
+    at = speed, mixture, pressure
+    figures = family.figures(*at) if family.scales(*at) else None
+    if figures is None and family in tables:
+        figures = tables[family].figures(*at)
+    return known.figures(family, *at) if figures is None else figures
 
 
 def flow_request(duty: MeshDuty, fluids: Fluids) -> FlowRequest:
