@@ -322,10 +322,10 @@ class Built:
         }
 
 
-def solve_all(points: Sequence[Built]) -> list[Settled | Exception]:
+def solve_all(points: Sequence[Built], *, bare: bool = False) -> list[Settled | Exception]:
     """Torques, losses and temperatures that agree at several points of one kind of machine.
 
-    Of each what is wrong where nothing agrees.
+    Of each what is wrong where nothing agrees; `bare` as for `solve_machines`.
     """
     heated = [(it.machine, it.operation, it.thermal) for it in points if it.thermal is not None]
     if heated:
@@ -334,7 +334,7 @@ def solve_all(points: Sequence[Built]) -> list[Settled | Exception]:
         wanted = [Wanted(it.machine, it.operation, it.known_fluids) for it in points]
         found = [
             it if isinstance(it, Exception) else Settled(it[0], Answer({}), 1)
-            for it in solve_machines(wanted)
+            for it in solve_machines(wanted, bare=bare)
         ]
     for number, it in enumerate(found):
         losses = {} if isinstance(it, Exception) else it.solution.losses

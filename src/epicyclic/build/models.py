@@ -373,11 +373,11 @@ def mesh_models(
         jet_in = table.method == "jet" and table.nozzle_side == "in-mesh"
         if table.method == "flow" or jet_in:
             fed = table.oil_flow / (len(keys) * (planets or 1))
-    file = models.pocketing_table
+    file, friction, rolling = models.pocketing_table, case.friction, case.rolling
     return {
         key: MeshModels(
-            friction=case.friction,
-            rolling=case.rolling,
+            friction=friction,
+            rolling=rolling,
             by_loss_factor=models.mesh == "loss-factor",
             load_distribution=models.load_distribution,
             positions=numerics.mesh_positions,

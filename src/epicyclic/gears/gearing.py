@@ -146,12 +146,23 @@ class Gearing:
         Raises `ValueError` if its thickness is given, or the middle of measuring balls lies, in the
         base circle.
         """
-        assert self.shared is not None
-        table, shared = self.tables[name], self.shared
-        addendum = shared.addendum_coefficient
-        if table.tip_diameter is None:
-            addendum -= self.tip_shortenings.get(name, 0.0) / self.racks[name].normal_module
-        return _gear(name, table, self.racks[name], addendum, shared.dedendum_coefficient)
+        if name not in self._made:
+            assert self.shared is not None
+            table, rack, addendum = (
+                self.tables[name],
+                self.racks[name],
+                self.shared.addendum_coefficient,
+            )
+            if table.tip_diameter is None:
+                addendum -= self.tip_shortenings.get(name, 0.0) / rack.normal_module
+            dedendum = self.shared.dedendum_coefficient
+            self._made[name] = _gear(name, table, rack, addendum, dedendum)
+        return self._made[name]
+
+    @cached_property
+    def _made(self) -> dict[str, Gear]:
+        """Those that `gear` made."""
+        return {}
 
     @cached_property
     def tip_shortenings(self) -> dict[str, float]:
