@@ -430,6 +430,8 @@ def _together(wanted: Sequence[Wanted]) -> Wanted:
 
 def solve_machines(
     wanted: Sequence[Wanted],  # All whole, or none; all with `earlier`, or none.
+    *,
+    bare: bool = False,  # True if nobody reads more of the elements than their losses.
 ) -> list[tuple[Solution, bool] | Exception]:
     """As `solve_machine` has each of them, or what that raises."""
     found: dict[int, tuple[Solution, bool] | Exception] = {}
@@ -458,7 +460,9 @@ def solve_machines(
                     raise KeyboardInterrupt from error
             else:
                 results = solution.results
-                if not (agree or wanted[rows[0]].whole):  # what is a step on the way nobody reads
+                if bare:
+                    results = {key: ElementResult(it.losses) for key, it in results.items()}
+                elif not (agree or wanted[rows[0]].whole):  # a step on the way
                     results = {key: replace(it, flags=(), notes=()) for key, it in results.items()}
                 state = replace(solution.state, fluids=fluids, earlier={})
                 one = replace(solution, results=results, state=state)

@@ -117,7 +117,8 @@ def _each_of(
             gc.disable()
             after.callback(gc.enable)
         for those in built.values():
-            every = solve_all([one for _, one in those.values()])
+            bare = found_of is _losses_and_power
+            every = solve_all([one for _, one in those.values()], bare=bare)
             for (number, of), settled in zip(those.items(), every, strict=True):
                 found[number] = settled
                 if not isinstance(settled, Exception):
