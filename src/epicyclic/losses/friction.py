@@ -614,7 +614,6 @@ FRICTION_MODELS = {
     for model in (
         FrictionFormula(
             name="mixed-lubrication",
-            several=True,
             title="film and asperities sharing the load",
             source="S. Aihara, J. Tribol. 109 (1987) 471; P. K. Gupta et al., J. Tribol. 114 "
             "(1992) 55; C. R. Evans and K. L. Johnson, Proc. IMechE C 200 (1986) 303",
@@ -627,7 +626,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="mixed-ehl",
-            several=True,
             title="mixed-EHL friction regression",
             source=f"{REGRESSION_SOURCE}, Eq. 5.8",
             reliability="regression of simulated contacts, whose error against them is not "
@@ -639,6 +637,7 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="mixed-ehl+pairing",
+            several=False,
             title="mixed-EHL friction regression, pairing of unequal flanks from the solver",
             source=f"{REGRESSION_SOURCE}, Eq. 5.8; solver for line contacts of this package",
             reliability="mixed-ehl where both flanks are equally rough; the effect of a smoother "
@@ -649,7 +648,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="xu-2007",
-            several=True,
             title="EHL friction regression of Xu et al.",
             source="Xu, Kahraman, Anderson, Maddock, J. Mech. Des. 129 (2007) 58",
             reliability="regression of simulated contacts; 24 to 36 % error against the measured "
@@ -667,7 +665,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="benedict-kelley",
-            several=True,
             title="local friction of Benedict and Kelley",
             source="G. H. Benedict and B. W. Kelley, ASLE Trans. 4 (1961) 59",
             reliability=f"fitted to disc tests; {_NOT_COMPARED}",
@@ -677,7 +674,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="matsumoto",
-            several=True,
             title="film share of Matsumoto and Morikawa",
             source="S. Matsumoto and K. Morikawa, Int. Gear Conf. Lyon (2014) 1078",
             reliability=f"film and dry friction are estimates in the case; {_NOT_COMPARED}",
@@ -686,7 +682,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="doleschel",
-            several=True,
             title="film share of Doleschel",
             source="A. Doleschel, Diss. TU Muenchen (2002)",
             reliability=f"film and dry friction are estimates in the case; {_NOT_COMPARED}",
@@ -695,7 +690,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="schlenk",
-            several=True,
             title="mean friction of ISO/TR 14179-2",
             source="L. Schlenk, Diss. TU Muenchen (1994); ISO/TR 14179-2:2001",
             reliability=_SCATTER_UNKNOWN,
@@ -705,7 +699,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="niemann-winter",
-            several=True,
             title="mean friction after Michaelis, Niemann and Winter",
             source="K. Michaelis, Diss. TU Muenchen (1987); Niemann and Winter, vol. II",
             reliability=_SCATTER_UNKNOWN,
@@ -715,7 +708,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="constant",
-            several=True,
             title="constant friction",
             source="the case",
             reliability="given by the case",
@@ -723,7 +715,6 @@ FRICTION_MODELS = {
         ),
         FrictionFormula(
             name="table",
-            several=True,
             title="friction table",
             source="the case",
             reliability="given by the case",

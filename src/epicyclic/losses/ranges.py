@@ -129,7 +129,7 @@ class Formula(RangeFlags):
     reliability: str  # How well it is known to be right, and against what, as a phrase.
     ranges: tuple[Range, ...] = ()
     made_for: RegressionFluid | None = None
-    several: bool = False  # Whether contacts may be those of several points.
+    several: bool = True  # Whether contacts may be those of several points.
 
 
 @dataclass(frozen=True, slots=True)

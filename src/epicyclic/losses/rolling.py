@@ -114,7 +114,6 @@ def goksem_hargreaves(contact: MeshContact, oil_held: bool) -> FloatArray:
 
 CONTAINED = RollingFormula(
     name="contained",
-    several=True,
     title="rolling loss contained in the friction",
     source="the tests of the friction model",
     reliability="that of the friction, which was fitted to the whole load-dependent loss",
@@ -127,7 +126,6 @@ ROLLING_MODELS = {
     for model in (
         RollingFormula(
             name="mixed-ehl",
-            several=True,
             title="mixed-EHL rolling-loss regression",
             source=f"{REGRESSION_SOURCE}, Eq. 5.10",
             reliability="its scale is a reconstruction, correct within a factor of about 2 "
@@ -138,6 +136,7 @@ ROLLING_MODELS = {
         ),
         RollingFormula(
             name="mixed-ehl+pairing",
+            several=False,
             title="mixed-EHL rolling-loss regression, pairing of unequal flanks from the solver",
             source=f"{REGRESSION_SOURCE}, Eq. 5.10; solver for line contacts of this package",
             reliability="mixed-ehl where both flanks are equally rough; the effect of a smoother "
@@ -148,7 +147,6 @@ ROLLING_MODELS = {
         ),
         RollingFormula(
             name="goksem-hargreaves",
-            several=True,
             title="rolling loss of Goksem and Hargreaves",
             source="Goksem and Hargreaves, J. Lubr. Technol. 100 (1978) 346; light load: "
             "H. M. Martin, Engineering 102 (1916) 119",
