@@ -40,6 +40,8 @@ if sys.platform == "linux":
 
 _can_be_copied = sys.platform == "linux"  # elsewhere a copy is not safe, or there is none
 _is_copy = False
+_copy_tells = -1  # Where a copy writes the names of kernels.
+_told: set[bytes] = set()  # Kernels that listeners know of: copies may compile one each for itself.
 _telling = threading.Lock()
 
 
@@ -75,29 +77,26 @@ def _start_copy(work: Callable[[], object]) -> tuple[int, int]:
 def _follow(child: int, reader: int) -> bool:
     """Tell of the kernels of a copy until it ends; whether it has done its work."""
     try:
-        while os.read(reader, 1):
-            with _telling:
-                for tell in listeners:
-                    tell()
+        with os.fdopen(reader, "rb") as names:
+            for name in names:
+                _tell(name)
     except BaseException:
         os.kill(child, signal.SIGKILL)
         raise
     finally:
-        os.close(reader)
         _, status = os.waitpid(child, 0)
     return status == 0
 
 
 def _work_and_end(work: Callable[[], object], reader: int, writer: int) -> NoReturn:
     """What the copy does. It never returns into what the original was doing."""
-    global _can_be_copied, _is_copy
+    global _can_be_copied, _is_copy, _copy_tells
     code = 1
     try:
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         os.close(reader)
-        _can_be_copied, _is_copy = False, True
-        listeners[:] = [lambda: _tell(writer)]
+        _can_be_copied, _is_copy, _copy_tells = False, True, writer
         ahead.clear()
         gc.disable()  # a fifteenth of the time: a copy ends before it needs the memory
         warnings.simplefilter("ignore")  # the original meets the same
@@ -106,8 +105,16 @@ def _work_and_end(work: Callable[[], object], reader: int, writer: int) -> NoRet
         os._exit(code)
 
 
-def _tell(writer: int) -> None:
-    os.write(writer, b".")
+def _tell(name: bytes) -> None:
+    """Tell listeners of a kernel, once."""
+    if _is_copy:
+        os.write(_copy_tells, name)
+        return
+    with _telling:
+        if name not in _told:
+            _told.add(name)
+            for tell in listeners:
+                tell()
 
 
 # The one decorator for compiled kernels, and where their machine code is kept.
@@ -300,9 +307,9 @@ class _Listener(event.Listener):
     """Tells of kernels of this package that are compiled, not of what numba compiles for them."""
 
     def on_start(self, event: Any) -> None:
-        if event.data["dispatcher"].py_func.__module__.startswith("epicyclic."):
-            for tell in listeners:
-                tell()
+        function = event.data["dispatcher"].py_func
+        if function.__module__.startswith("epicyclic."):
+            _tell(f"{function.__module__}.{function.__qualname__}\n".encode())
 
     def on_end(self, event: Any) -> None:
         """Ignored."""
