@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
 from epicyclic.arrays import points_in, taken
@@ -104,6 +104,7 @@ def fluids_at(
     return Fluids(state, mixture, pressure, Flags(partial(oil_flags, oil, temperature)))
 
 
+@lru_cache(maxsize=64)
 def oil_flags(oil: Oil, temperature: float) -> tuple[ValidityFlag, ...]:
     """Where properties of an oil at a temperature leave the data behind them."""
     viscosity = extrapolated_viscosity(oil, temperature)
