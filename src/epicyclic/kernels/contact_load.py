@@ -499,6 +499,11 @@ def solve_points(
         )
         for i in range(points):
             given = i < last_forces.size
+            if not given and forces[i] == forces[i - 1]:  # points of one torque, in the first pass
+                loads[i, m], rise[i, m] = loads[i - 1, m], rise[i - 1, m]
+                approach[i, m], stiffness[i, m] = approach[i - 1, m], stiffness[i - 1, m]
+                iterations[i, m] = min(iterations[i - 1, m], 0)
+                continue
             more = forces[i] - (last_forces[i] if given else forces[i - 1])
             near = last_loads[i, m] if given else loads[i - 1, m]
             slope = last_rise[i, m] if given else rise[i - 1, m]
