@@ -10,9 +10,11 @@ blocks are cut by the numbers of the points, whoever solves them.
 from __future__ import annotations
 
 import cmath
+import ctypes
 import dataclasses
 import math
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache, partial, reduce
 from itertools import repeat
 from types import MethodType, MethodWrapperType
@@ -31,6 +33,12 @@ TINY = 1e-300  # In place of a divisor of 0.
 # The allocator of most Linux systems gives memory of arrays back and asks for it again until it has
 # met a larger one, of 32 MB at most; operations on the arrays of a block took twice as long.
 np.empty(2**25 - 2**16, np.uint8)
+
+
+def give_memory_back() -> None:
+    """Give the system what the allocator kept, for what is no array."""
+    with suppress(AttributeError, OSError, TypeError):  # other systems have no such function
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 class Apart(Exception):  # noqa: N818 - no error: the points of a block part

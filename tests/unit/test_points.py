@@ -431,7 +431,7 @@ def test_a_point_does_not_depend_on_shards_or_interruptions(tmp_path: Path) -> N
     speeds = [f"{speed} rpm" for speed in (800, 1300, 1900, 2600, 3100, 3700)]
     case = ep.load_case("talbot-2012")
     plan = make_plan(case, {"operation.speed": speeds, "operation.torque": torques})
-    assert plan.block == 72
+    assert plan.block == 108
     whole = Runner(jobs=1).run(plan)
     journal = tmp_path / "half.partial"
     first = Runner(jobs=1, journal=journal, shard=(1, 2)).run(plan)

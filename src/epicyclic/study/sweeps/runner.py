@@ -30,7 +30,7 @@ from typing import Any, BinaryIO, ClassVar, Protocol, Self, TypeGuard
 import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from epicyclic.arrays import FloatArray, itself
+from epicyclic.arrays import FloatArray, give_memory_back, itself
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import (
     EpicyclicError,
@@ -403,6 +403,8 @@ class Runner:
             done += len(finished)
             if self.progress is not None:
                 self.progress(done, total, *([failed] if self.tell_failures else []))
+        if plan.surely_long(total):
+            give_memory_back()
         return rows
 
     def _finished(self, plan: Plan) -> Iterator[Batch]:
