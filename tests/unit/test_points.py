@@ -122,6 +122,9 @@ PARTS = {
         "planet_bearing.race_roughness": (0.11, "um"),
         "planet_bearing.viscous_factor": (2.2, ""),
         "carrier.width": (21.0, "mm"),
+        "carrier.outer_diameter": (187.0, "mm"),
+        "carrier.shroud_gap": (3.1, "mm"),
+        "carrier.flange_gap": (2.3, "mm"),
         "surroundings.oil_air_ratio": (0.011, ""),
         "losses.ring_mesh_sliding.factor": (0.83, ""),
     },
@@ -132,6 +135,11 @@ PARTS = {
     },
 }
 """What cases have of their own, beside their operation: the least of each number."""
+DIPS = {
+    "lubrication.method": "dip",
+    "lubrication.oil_level": "-61 mm",
+    "lubrication.oil_volume": "2.3 l",
+}
 
 
 def _with_parts(name: str, **changes: Any) -> list[ep.PlanetaryCase]:
@@ -153,6 +161,11 @@ def _with_parts(name: str, **changes: Any) -> list[ep.PlanetaryCase]:
         *((name, {}) for name in PARTS),
         *((name, {"models.preset": "talbot-2012"}) for name in PARTS),
         *(("talbot-2012", {"models.bearing": bearing}) for bearing in ("palmgren", "fitted")),
+        *(
+            ("talbot-2012", {"models.drag": drag})
+            for drag in ("seetharaman-kahraman", "diab-ville-velex", "anderson-loewenthal")
+        ),
+        ("talbot-2012", DIPS),
         *(
             ("talbot-2012-pair", {"models.friction": friction})
             for friction in ("xu-2007", "benedict-kelley", "doleschel", "matsumoto", "schlenk")

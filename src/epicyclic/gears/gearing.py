@@ -148,11 +148,8 @@ class Gearing:
         """
         if name not in self._made:
             assert self.shared is not None
-            table, rack, addendum = (
-                self.tables[name],
-                self.racks[name],
-                self.shared.addendum_coefficient,
-            )
+            table, rack = self.tables[name], self.racks[name]
+            addendum = self.shared.addendum_coefficient
             if table.tip_diameter is None:
                 addendum -= self.tip_shortenings.get(name, 0.0) / rack.normal_module
             dedendum = self.shared.dedendum_coefficient

@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from epicyclic.arrays import TINY, BoolArray, FloatArray
+from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.kernels.compiling import kernel
 
 LINEAR_SHARE = 1e-3
@@ -88,8 +88,9 @@ def shared(force: float, weight: FloatArray) -> tuple[FloatArray, BoolArray]:
     for line in range(weight.shape[0]):
         for k in range(weight.shape[1]):
             loaded[line, k] = weight[line, k] > 0.0
-            forces[line, k] = max(weight[line, k], 0.0)
-    each = force / max(line_totals(forces).sum(), TINY)
+            forces[line, k] = weight[line, k] if loaded[line, k] else 0.0
+    whole = line_totals(forces).sum()
+    each = force / whole if whole > 0.0 else 0.0
     for line in range(weight.shape[0]):
         for k in range(weight.shape[1]):
             forces[line, k] *= each
