@@ -45,20 +45,18 @@ def gear_disc(case: SetCase, name: str, bodies: Mapping[str, str]) -> Disc:
     gearing = case.gearing
     gear, table, place = gearing.gear(name), gearing.tables[name], gearing.bodies[name]
     radius, oil = outside_radius(gear, table), case.lubrication
-    jets = sump = None
-    if oil is not None and oil.method == "dip":
-        part = Dipped(
-            radius=radius if gear.internal else gear.reference_radius,
-            tip_radius=radius,
-            width=gear.face_width,
-            depth=0.0,
-            module=gear.rack.normal_module,
-            teeth=0 if gear.internal else gear.teeth,
-            tooth_height=abs(gear.tip_radius - gear.root_radius),
-            pressure_angle=gear.rack.normal_pressure_angle,
-            helix_angle=abs(gear.rack.helix_angle),
-        )
-        sump = _sump(case, name, place, part)
+    part = Dipped(
+        radius=radius if gear.internal else gear.reference_radius,
+        tip_radius=radius,
+        width=gear.face_width,
+        depth=0.0,
+        module=gear.rack.normal_module,
+        teeth=0 if gear.internal else gear.teeth,
+        tooth_height=abs(gear.tip_radius - gear.root_radius),
+        pressure_angle=gear.rack.normal_pressure_angle,
+        helix_angle=abs(gear.rack.helix_angle),
+    )
+    jets = None
     if oil is not None and oil.method == "jet" and oil.oil_flow:
         jets = Jets(oil.oil_flow, oil.jet_speed, oil.nozzle_side, gear.reference_radius)
     teeth = None
@@ -66,7 +64,8 @@ def gear_disc(case: SetCase, name: str, bodies: Mapping[str, str]) -> Disc:
         space = 2 * (math.pi / gear.teeth - gear.half_angle_at(radius))
         teeth = Teeth(gear.teeth, gear.reference_radius, radius, gear.face_width, space)
     turning = Turning(radius, gear.face_width, teeth, table.shroud_gap, table.flange_gap)
-    share, model = oil_share(case).share, cast(DragModel, case.chosen["drag"])
+    share, sump = oil_share(case).share, _sump(case, name, place, part)
+    model = cast(DragModel, case.chosen["drag"])
     return Disc(name, bodies[place], turning, share, model, sump, jets)
 
 

@@ -39,8 +39,7 @@ if sys.platform == "linux":
     import fcntl
 
 _can_be_copied = sys.platform == "linux"  # elsewhere a copy is not safe, or there is none
-_is_copy = False
-_copy_tells = -1  # Where a copy writes the names of kernels.
+_copy_tells = -1  # Where a copy of a process writes the names of kernels; -1 if this is none.
 _told: set[bytes] = set()  # Kernels that listeners know of: copies may compile one each for itself.
 _telling = threading.Lock()
 
@@ -90,13 +89,13 @@ def _follow(child: int, reader: int) -> bool:
 
 def _work_and_end(work: Callable[[], object], reader: int, writer: int) -> NoReturn:
     """What the copy does. It never returns into what the original was doing."""
-    global _can_be_copied, _is_copy, _copy_tells
+    global _can_be_copied, _copy_tells
     code = 1
     try:
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         os.close(reader)
-        _can_be_copied, _is_copy, _copy_tells = False, True, writer
+        _can_be_copied, _copy_tells = False, writer
         ahead.clear()
         gc.disable()  # a fifteenth of the time: a copy ends before it needs the memory
         warnings.simplefilter("ignore")  # the original meets the same
@@ -107,7 +106,7 @@ def _work_and_end(work: Callable[[], object], reader: int, writer: int) -> NoRet
 
 def _tell(name: bytes) -> None:
     """Tell listeners of a kernel, once."""
-    if _is_copy:
+    if _copy_tells >= 0:
         os.write(_copy_tells, name)
         return
     with _telling:
@@ -246,7 +245,7 @@ class _KernelCache(caching.FunctionCache):  # type: ignore[misc]  # numba has no
         if found is None:
             with _unasked():  # what compiling needs, once for all copies
                 target_context.refresh()
-        if found is None and _is_copy and self._locked is None:  # it is, after a failure
+        if found is None and _copy_tells >= 0 and self._locked is None:  # it is, after a failure
             self._lock()
             found = load()
             if found is not None:

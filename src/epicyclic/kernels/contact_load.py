@@ -422,7 +422,7 @@ def solve_contact_loads(
     forces : ndarray, shape (lines, segments)
         [N]
     approach : float
-        Approach of the gears along the common normal, from where unmodified flanks touch. [m]
+        Approach of the gears along the common normal, from where the flanks touch first. [m]
     stiffness : float
         Stiffness of the total normal force against the approach. [N/m]
     iterations : int
