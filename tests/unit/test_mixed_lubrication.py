@@ -195,3 +195,14 @@ def test_running_in_smooths(pair):
         )
     ]
     assert losses[0] < losses[1] < losses[2]
+
+
+@pytest.mark.parametrize("stated", [{"exact": True}, {"normal": "7 %"}])
+def test_an_uncertain_friction_of_asperities_stays_while_other_models_are_tried(stated):
+    """A case leaves its value to the oil: bands failed where they compare models."""
+    case = ep.load_case("talbot-2012-pair").updated(
+        {"uncertainty": {"models.boundary_friction": stated}}
+    )
+    other = case.updated({"models.friction": "schlenk"})
+    assert other.given()["uncertainty"] == {"models.boundary_friction": stated}
+    assert "models.boundary_friction" not in ep.uncertainty(other, samples=16)["input"].values

@@ -140,7 +140,9 @@ def _own(case: CaseTable, key: str, table: DistributionTable) -> UncertainValue 
     """What the case states of one of its keys; None if it is exact."""
     parameter = parameter_of(case, key)
     if isinstance(parameter, Problem):
-        return replace(parameter, key=_name(key))
+        # only mixed lubrication takes it from the oil: it stays while other models are tried
+        of_oil = key.endswith("models.boundary_friction") and field_at(case, key) is not None
+        return None if of_oil else replace(parameter, key=_name(key))
     if problem := owner_without_keys(case.given(), key):
         return replace(problem, key=_name(key), value=_given(table))
     if not has_effect(case, key):
