@@ -550,7 +550,7 @@ def load_mesh_elastically(
 def load_meshes_next_to(
     last: Sequence[LoadedMesh], forces: Sequence[float], deviations: FlankDeviations = UNMODIFIED
 ) -> list[LoadedMesh]:
-    """A mesh under several loads, each near that of its `last`, or only the first near the one.
+    """A mesh under several loads, each near that of its `last`, or all near the one.
 
     That saves most of the work. Parameters as for `load_mesh_elastically`, which has the same
     solutions but for its tolerance.
@@ -583,6 +583,7 @@ def _loaded(
         lines.length,
         compliance.local_a,
         compliance.local_b,
+        np.argsort(normal, kind="stable"),
         np.array(last) / slope,
         *start,
         TOLERANCE,

@@ -34,11 +34,15 @@ UNREFINED = 0.1
 ENOUGH_DESCENT = 0.1
 """A step is short enough when the slope of the energy has fallen to this part of its start. [1]"""
 MOST_HALVINGS = 30
+FARTHEST = 4.0
+"""Step over the distance of two solutions up to which their parabola is followed. [1]"""
 
 Teeth = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, float]
 """C, influence coefficients of both teeth [m/N]; G, deflection of each line under a unit total
 force on each [m/N]; s, gap of the unloaded flanks along the common normal [m]; lengths of the
 segments, zero where a line is not in contact [m]; A and B of delta_c [m^2/N]."""
+Solutions = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""Forces, and what `solve_points` has for each of them but the iterations, in its order."""
 
 
 @kernel
@@ -468,6 +472,32 @@ def from_nearest(teeth: Teeth) -> tuple[Teeth, float, float]:
 
 
 @kernel
+def foreseen(
+    force: float, m: int, length: FloatArray, one: tuple[Solutions, int], two: tuple[Solutions, int]
+) -> tuple[FloatArray, float, float, FloatArray]:
+    """Forces under a total `force`, and what else a solution has, from two known ones.
+
+    On the tangent of the nearer one, or on the parabola that ends at the other.
+    """
+    if abs(one[0][0][one[1]] - force) > abs(two[0][0][two[1]] - force):
+        one, two = two, one
+    (forces, loads, approach, stiffness, rise), i = one
+    (others, other_loads, other_approach, _, _), j = two
+    step, apart = force - forces[i], others[j] - forces[i]
+    bend = step / apart**2 if abs(step) < FARTHEST * abs(apart) else 0.0
+    start, slope = np.empty(length.shape), np.empty(length.shape)
+    for line in range(length.shape[0]):
+        for k in range(length.shape[1]):
+            near, tangent = loads[i, m, line, k] * length[line, k], rise[i, m, line, k]
+            off = bend * (other_loads[j, m, line, k] * length[line, k] - near - apart * tangent)
+            start[line, k] = near + step * (tangent + off)
+            slope[line, k] = tangent + 2.0 * off
+    ease = 1.0 / stiffness[i, m]
+    off = bend * (other_approach[j, m] - approach[i, m] - apart * ease)
+    return start, approach[i, m] + step * (ease + off), 1.0 / (ease + 2.0 * off), slope
+
+
+@kernel
 def solve_points(
     forces: FloatArray,  # Shape (points,). [N]
     compliance: FloatArray,
@@ -476,8 +506,8 @@ def solve_points(
     length: FloatArray,
     local_a: FloatArray,
     local_b: float,
-    # Solutions to start from along their tangents: one for each force, or the first ones; the
-    # others start from the one before.
+    order: NDArray[np.intp],  # From the least to the greatest of them.
+    # Solutions to start from, one for each force, or one for the least.
     last_forces: FloatArray,
     last_loads: FloatArray,
     last_approach: FloatArray,
@@ -493,29 +523,26 @@ def solve_points(
     approach = np.empty((points, positions))
     stiffness = np.empty((points, positions))
     iterations = np.empty((points, positions), dtype=np.int64)
-    start = np.empty((lines, segments))
+    known = last_forces, last_loads, last_approach, last_stiffness, last_rise
+    made = forces, loads, approach, stiffness, rise
     for m in range(positions):  # whose influence stays at hand for all points
         teeth, nearest, whole = from_nearest(
             (compliance[m], coupling[m], separation[m], length[m], local_a[m], local_b)
         )
-        for i in range(points):
-            given = i < last_forces.size
-            if not given and forces[i] == forces[i - 1]:  # points of one torque, in the first pass
-                loads[i, m], rise[i, m] = loads[i - 1, m], rise[i - 1, m]
-                approach[i, m], stiffness[i, m] = approach[i - 1, m], stiffness[i - 1, m]
-                iterations[i, m] = min(iterations[i - 1, m], 0)
+        for place in range(points):
+            i, before = order[place], order[max(place - 1, 0)]
+            if place and forces[i] == forces[before]:  # points of one torque, in the first pass
+                loads[i, m], rise[i, m] = loads[before, m], rise[before, m]
+                approach[i, m], stiffness[i, m] = approach[before, m], stiffness[before, m]
+                iterations[i, m] = min(iterations[before, m], 0)
                 continue
-            more = forces[i] - (last_forces[i] if given else forces[i - 1])
-            near = last_loads[i, m] if given else loads[i - 1, m]
-            slope = last_rise[i, m] if given else rise[i - 1, m]
-            stiff = last_stiffness[i, m] if given else stiffness[i - 1, m]
-            closer = last_approach[i, m] if given else approach[i - 1, m]
-            for line in range(lines):
-                for k in range(segments):
-                    start[line, k] = near[line, k] * length[m, line, k] + more * slope[line, k]
+            own = known, i if last_forces.size == points else 0
+            start, closer, stiff, slope = foreseen(
+                forces[i], m, length[m], (made, before) if place else own, own
+            )
             found, closed, stiffness[i, m], iterations[i, m], rise[i, m] = solve_contact_loads(
                 forces[i], teeth, LINEAR_SHARE * forces[i] / whole, start,
-                closer + more / stiff - nearest, stiff, slope, tolerance, max_iterations,
+                closer - nearest, stiff, slope, tolerance, max_iterations,
             )  # fmt: skip
             approach[i, m] = closed + nearest
             for line in range(lines):

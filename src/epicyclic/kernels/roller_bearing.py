@@ -87,6 +87,12 @@ def slice_deflection(
 
 
 @kernel
+def is_free(radial: float, tilt: float, y_over_l: FloatArray, clearance: float) -> bool:
+    """True if even without crown no slice of a roller would be pressed."""
+    return radial + max(y_over_l[0] * tilt, y_over_l[-1] * tilt) <= 0.5 * clearance
+
+
+@kernel
 def potential(
     d: FloatArray,
     load: FloatArray,
@@ -108,6 +114,8 @@ def potential(
         radial, tilt = approach_of_races(d, along, z)
         forces[:], slopes[:] = 0.0, 0.0
         for row in range(rows):
+            if is_free(radial, tilt, y_over_l[row], clearance):
+                continue
             for k in range(slices):
                 deltas[k] = slice_deflection(radial, tilt, y_over_l[row, k], clearance, crown[k])
                 stiff[k] = width * stiffness[row, z] * power(deltas[k], LENGTH_EXPONENT)
