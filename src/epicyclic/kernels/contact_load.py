@@ -477,24 +477,29 @@ def foreseen(
 ) -> tuple[FloatArray, float, float, FloatArray]:
     """Forces under a total `force`, and what else a solution has, from two known ones.
 
-    On the tangent of the nearer one, or on the parabola that ends at the other.
+    On the tangent of the nearer one, or on the parabola from there through the other: shares of the
+    force over its logarithm, where they bend a tenth as much as forces do.
     """
     if abs(one[0][0][one[1]] - force) > abs(two[0][0][two[1]] - force):
         one, two = two, one
     (forces, loads, approach, stiffness, rise), i = one
     (others, other_loads, other_approach, _, _), j = two
-    step, apart = force - forces[i], others[j] - forces[i]
+    step, apart = np.log(force / forces[i]), np.log(others[j] / forces[i])
     bend = step / apart**2 if abs(step) < FARTHEST * abs(apart) else 0.0
     start, slope = np.empty(length.shape), np.empty(length.shape)
     for line in range(length.shape[0]):
         for k in range(length.shape[1]):
-            near, tangent = loads[i, m, line, k] * length[line, k], rise[i, m, line, k]
-            off = bend * (other_loads[j, m, line, k] * length[line, k] - near - apart * tangent)
-            start[line, k] = near + step * (tangent + off)
-            slope[line, k] = tangent + 2.0 * off
-    ease = 1.0 / stiffness[i, m]
-    off = bend * (other_approach[j, m] - approach[i, m] - apart * ease)
-    return start, approach[i, m] + step * (ease + off), 1.0 / (ease + 2.0 * off), slope
+            share = loads[i, m, line, k] * length[line, k] / forces[i]
+            other = other_loads[j, m, line, k] * length[line, k] / others[j]
+            tangent = rise[i, m, line, k] - share
+            off = bend * (other - share - apart * tangent)
+            share += step * (tangent + off)
+            start[line, k], slope[line, k] = force * share, share + tangent + 2.0 * off
+    share, other = approach[i, m] / forces[i], other_approach[j, m] / others[j]
+    tangent = 1.0 / stiffness[i, m] - share
+    off = bend * (other - share - apart * tangent)
+    share += step * (tangent + off)
+    return start, force * share, 1.0 / (share + tangent + 2.0 * off), slope
 
 
 @kernel

@@ -195,7 +195,7 @@ _OPERATING_TABLES = (
 )
 
 
-MESHES_TOGETHER = 216  # Of all points of a block, at most: more take memory and hardly less time.
+MESHES_TOGETHER = 324  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
 SURELY_LONG = 4000  # Meshes of all points: each takes half a millisecond or more.
 MANY, SMALL_BLOCKS = 48, 3  # Points from which on blocks are full, and blocks of fewer, to share.
