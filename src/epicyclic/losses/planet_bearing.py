@@ -449,9 +449,10 @@ def _beyond_flags(share: float, flags: SomeFlags) -> SomeFlags:
 
 
 def _carried(loads: RollerLoads) -> FloatArray:
-    """Load of each loaded slice; of each slice at every point where there are several. [N/m]"""
+    """Load of each loaded slice; of several points of each that is loaded at any. [N/m]"""
     if isinstance(loads.intensity, Points):
-        return loads.intensity.reshape(len(loads.intensity), -1)
+        each = loads.intensity.reshape(len(loads.intensity), -1)
+        return each[:, np.asarray(each > 0).any(axis=0)]
     return loads.intensity[loads.intensity > 0]
 
 
