@@ -440,11 +440,11 @@ def test_blocks_of_a_sweep_go_by_torque_then_speed() -> None:
 
 
 def test_a_point_does_not_depend_on_shards_or_interruptions(tmp_path: Path) -> None:
-    torques = [f"{torque} N*m" for torque in np.linspace(-90, 960, 50)]
+    torques = [f"{torque} N*m" for torque in np.linspace(-90, 960, 70)]
     speeds = [f"{speed} rpm" for speed in (800, 1300, 1900, 2600, 3100, 3700)]
     case = ep.load_case("talbot-2012")
     plan = make_plan(case, {"operation.speed": speeds, "operation.torque": torques})
-    assert plan.block == 108
+    assert plan.block == 162
     whole = Runner(jobs=1).run(plan)
     journal = tmp_path / "half.partial"
     first = Runner(jobs=1, journal=journal, shard=(1, 2)).run(plan)
@@ -452,7 +452,7 @@ def test_a_point_does_not_depend_on_shards_or_interruptions(tmp_path: Path) -> N
     journal.write_bytes(b"".join(lines[:-5]))  # ended within a block
     again = Runner(jobs=1, journal=journal).run(plan)
     shards = [Runner(jobs=1, shard=(number, 3)).run(plan) for number in (1, 2, 3)]
-    assert sum(status == "converged" for status in first.status) == 108
+    assert sum(status == "converged" for status in first.status) == 162
     for name in whole.names:
         expected = whole.numbers(name)
         found = np.array([shard.numbers(name) for shard in shards])
