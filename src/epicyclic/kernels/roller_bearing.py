@@ -89,7 +89,8 @@ def slice_deflection(
 @kernel
 def is_free(radial: float, tilt: float, y_over_l: FloatArray, clearance: float) -> bool:
     """True if even without crown no slice of a roller would be pressed."""
-    return radial + max(y_over_l[0] * tilt, y_over_l[-1] * tilt) <= 0.5 * clearance
+    free: bool = radial + max(y_over_l[0] * tilt, y_over_l[-1] * tilt) <= 0.5 * clearance
+    return free
 
 
 @kernel

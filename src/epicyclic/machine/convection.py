@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from epicyclic.arrays import FloatArray, between, pow, sqrt
+from epicyclic.arrays import FloatArray, between, pow, sqrt, total
 from epicyclic.dataclass import dataclass
 from epicyclic.oil.oil import AIR_GAS_CONSTANT, MixtureState, air_viscosity
 
@@ -222,11 +222,11 @@ def roller_conductance(
     2.59
     """
     loaded = (inner_half_width > 0) & (outer_half_width > 0)
-    inner, outer = inner_half_width[loaded], outer_half_width[loaded]
+    inner, outer = inner_half_width + ~loaded, outer_half_width + ~loaded  # with logarithms
     races = np.log(inner_pitch / (math.pi * inner)) + np.log(outer_pitch / (math.pi * outer))
     roller = np.log(2 * roller_diameter / inner) + np.log(2 * roller_diameter / outer)
     resistance = (races + roller) / (math.pi * conductivity)
-    return float((np.broadcast_to(length, loaded.shape)[loaded] / resistance).sum())
+    return total(loaded * length / resistance)
 
 
 # Heat that a gearbox gives to the air and to what it stands on: ISO/TR 14179-2 and -1.

@@ -16,6 +16,7 @@ from epicyclic.arrays import (
     FloatArray,
     Points,
     either,
+    hypot,
     larger,
     most,
     phase,
@@ -534,6 +535,8 @@ class BearingFigures:
     `flattening` and `resistance` as of `MeshFigures`, the latter at the speed of the pitch circle.
     """
 
+    pointwise = True
+
     loads: RollerLoads | None
     flattening: float
     resistance: float
@@ -646,7 +649,7 @@ def solve_bearing(
         notes = (_rubbing_note(where, rubbed),)
     carried = load.force if loaded else math.inf
     limits = partial(_limit_notes, where, own, carried, abs(speed), watts)
-    figures = partial(_bearing_figures, own, loads, load, speed, oil, watts)
+    figures = AtOnce(_bearing_figures, own, loads, load, speed, oil, watts)
     idle = speed, bearing.pitch_diameter, oil.dynamic_viscosity
     return BearingResult(
         {
@@ -778,23 +781,24 @@ def _bearing_figures(
     oil: OilState,
     loss: float,
 ) -> BearingFigures:
-    bearing = own.bearing
-    rollers = loads.intensity.sum(axis=2) * bearing.slice_width
-    row, most = np.unravel_index(int(rollers.argmax()), rollers.shape)
+    bearing, intensity = own.bearing, loads.intensity
+    points = intensity.shape[:-3]
+    rollers = intensity.sum(axis=-1).reshape(*points, -1) * bearing.slice_width
+    hardest = np.arange(rollers.shape[-1]) == np.asarray(rollers).argmax(axis=-1)[..., None]
+    azimuth = total((hardest * np.tile(loads.azimuth, bearing.rows)).view(type(rollers)))
     extremes = _bearing_extremes(own, loads, speed, loss)
+    slices = intensity.reshape(*points, -1)
     inner, outer = (
-        hertz_half_width(
-            loads.intensity, np.full_like(loads.intensity, radius), bearing.equivalent_modulus
-        )
+        hertz_half_width(slices, radius * np.ones_like(slices), bearing.equivalent_modulus)
         for radius in (bearing.inner_radius, bearing.outer_radius)
     )
     return BearingFigures(
         radial_force=load.force,
-        moment=math.hypot(load.moment_x, load.moment_y),
+        moment=hypot(load.moment_x, load.moment_y),
         speed=abs(speed),
-        rollers_loaded=float(np.count_nonzero(rollers)),
-        roller_load_max=float(rollers[row, most]),
-        roller_azimuth=math.remainder(float(loads.azimuth[most]), 2 * math.pi),
+        rollers_loaded=total(1.0 * (rollers > 0)),
+        roller_load_max=most(rollers),
+        roller_azimuth=azimuth - 2 * math.pi * np.round(azimuth / (2 * math.pi)),
         hertz_pressure_max=extremes.pressure,
         flattening=extremes.flattening,
         resistance=extremes.resistance,
