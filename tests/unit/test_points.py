@@ -386,7 +386,7 @@ def test_loads_start_from_those_at_the_temperature_before(monkeypatch: pytest.Mo
     near, solve_points = [], elastic_teeth.solve_points
 
     def noted(forces: Any, *parts: Any) -> object:
-        last = parts[7]
+        last = parts[2][0]
         near.extend(np.abs(forces[: len(last)] / last - 1) < 0.02)
         near.extend([False] * (len(forces) - len(last)))
         return solve_points(forces, *parts)

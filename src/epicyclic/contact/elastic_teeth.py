@@ -556,12 +556,9 @@ def load_meshes_next_to(
     solutions but for its tolerance.
     """
     parts = "line_load", "normal_approach", "normal_stiffness", "rise"
-    loads, approach, stiffness, rise = (
-        np.array([getattr(one, part) for one in last]) for part in parts
-    )
-    start = loads, approach, stiffness, rise
-    before = [one.force for one in last]
-    return _loaded(last[0].mesh, last[0].compliance, forces, deviations, before, start)
+    start: Any = tuple(np.array([getattr(each, part) for each in last]) for part in parts)
+    one, before = last[0], [each.force for each in last]
+    return _loaded(one.mesh, one.compliance, forces, deviations, before, start)
 
 
 def _loaded(
@@ -575,20 +572,11 @@ def _loaded(
     """The mesh under transverse `forces`."""
     lines, slope = compliance.lines, math.cos(mesh.gear1.rack.base_helix_angle)
     normal = np.array(forces) / slope
-    *found, iterations = solve_points(
-        normal,
-        compliance.influence,
-        compliance.coupling,
-        deviations.separation(mesh, lines),
-        lines.length,
-        compliance.local_a,
-        compliance.local_b,
-        np.argsort(normal, kind="stable"),
-        np.array(last) / slope,
-        *start,
-        TOLERANCE,
-        STEPS_PER_SEGMENT * lines.length[0].size,
-    )
+    stiff = compliance.influence, compliance.coupling, deviations.separation(mesh, lines)
+    teeth = *stiff, lines.length, compliance.local_a, compliance.local_b
+    order, known = np.argsort(normal, kind="stable"), (np.array(last) / slope, *start)
+    most = STEPS_PER_SEGMENT * lines.length[0].size
+    *found, iterations = solve_points(normal, order, teeth, known, TOLERANCE, most)
     if iterations.min() < 0:
         lost = normal[iterations.min(axis=1) < 0][0]
         raise ConvergenceError(

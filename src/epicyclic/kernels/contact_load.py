@@ -296,8 +296,7 @@ def is_solution(
                 return False
     for carried in line_totals(forces):
         lacking -= carried
-    balanced: bool = abs(lacking) <= tolerance * force
-    return balanced
+    return bool(abs(lacking) <= tolerance * force)
 
 
 @kernel
@@ -505,35 +504,24 @@ def foreseen(
 @kernel
 def solve_points(
     forces: FloatArray,  # Shape (points,). [N]
-    compliance: FloatArray,
-    coupling: FloatArray,
-    separation: FloatArray,
-    length: FloatArray,
-    local_a: FloatArray,
-    local_b: float,
     order: NDArray[np.intp],  # From the least to the greatest of them.
-    # Solutions to start from, one for each force, or one for the least.
-    last_forces: FloatArray,
-    last_loads: FloatArray,
-    last_approach: FloatArray,
-    last_stiffness: FloatArray,
-    last_rise: FloatArray,
+    mesh: Teeth,  # At all mesh positions, axis 0.
+    last: Solutions,  # To start from: one for each force, or one for the least.
     tolerance: float,
     max_iterations: int,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
     """`solve_contact_loads` for points (axis 0) and positions (1); line loads, not forces. [N/m]"""
+    compliance, coupling, separation, length, local_a, local_b = mesh
     points, (positions, lines, segments) = forces.size, length.shape
     loads = np.zeros((points, positions, lines, segments))
     rise = np.zeros(loads.shape)
     approach = np.empty((points, positions))
     stiffness = np.empty((points, positions))
     iterations = np.empty((points, positions), dtype=np.int64)
-    known = last_forces, last_loads, last_approach, last_stiffness, last_rise
     made = forces, loads, approach, stiffness, rise
     for m in range(positions):  # whose influence stays at hand for all points
-        teeth, nearest, whole = from_nearest(
-            (compliance[m], coupling[m], separation[m], length[m], local_a[m], local_b)
-        )
+        here = compliance[m], coupling[m], separation[m], length[m], local_a[m], local_b
+        teeth, nearest, whole = from_nearest(here)
         for place in range(points):
             i, before = order[place], order[max(place - 1, 0)]
             if place and forces[i] == forces[before]:  # points of one torque, in the first pass
@@ -541,10 +529,9 @@ def solve_points(
                 approach[i, m], stiffness[i, m] = approach[before, m], stiffness[before, m]
                 iterations[i, m] = min(iterations[before, m], 0)
                 continue
-            own = known, i if last_forces.size == points else 0
-            start, closer, stiff, slope = foreseen(
-                forces[i], m, length[m], (made, before) if place else own, own
-            )
+            own = last, i if last[0].size == points else 0
+            near = (made, before) if place else own
+            start, closer, stiff, slope = foreseen(forces[i], m, length[m], near, own)
             found, closed, stiffness[i, m], iterations[i, m], rise[i, m] = solve_contact_loads(
                 forces[i], teeth, LINEAR_SHARE * forces[i] / whole, start,
                 closer - nearest, stiff, slope, tolerance, max_iterations,

@@ -67,8 +67,7 @@ def slice_stiffness(loaded_length: float) -> float:
     """
     length_mm = loaded_length * MM
     compliance: float = DEFLECTION_CONSTANT * length_mm**LENGTH_EXPONENT
-    stiffness: float = MM * MM**DEFLECTION_EXPONENT / compliance
-    return stiffness
+    return float(MM * MM**DEFLECTION_EXPONENT / compliance)
 
 
 @kernel
@@ -89,8 +88,7 @@ def slice_deflection(
 @kernel
 def is_free(radial: float, tilt: float, y_over_l: FloatArray, clearance: float) -> bool:
     """True if even without crown no slice of a roller would be pressed."""
-    free: bool = radial + max(y_over_l[0] * tilt, y_over_l[-1] * tilt) <= 0.5 * clearance
-    return free
+    return bool(radial + max(y_over_l[0] * tilt, y_over_l[-1] * tilt) <= 0.5 * clearance)
 
 
 @kernel
@@ -283,8 +281,7 @@ def clearance_length(clearance: float) -> float:
 @kernel
 def clearance_scale(clearance: float) -> float:
     """delta^0.11 at that length."""
-    power: float = clearance_length(clearance) ** LENGTH_EXPONENT
-    return power
+    return float(clearance_length(clearance) ** LENGTH_EXPONENT)
 
 
 @kernel

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -289,7 +289,7 @@ def _solved(
     reach = side_by_side([bearing.half_width])[..., None]
     sizes = side_by_side([bearing.slice_width, bearing.diametral_clearance])
     count, rows, slices = points_in(vars(bearing).values()) or 1, bearing.rows, bearing.slices
-    at, crown, own = (
+    of_bearing = (
         np.array(np.broadcast_to(table, (count, *shape)), order="C")
         for table, shape in (
             (bearing.slice_positions / reach, (rows, slices)),
@@ -297,24 +297,11 @@ def _solved(
             (sizes, (2,)),
         )
     )
-    intensity, state, iterations = solve_roller_loads(
-        np.atleast_2d(load),
-        np.atleast_2d(start),
-        bearing.azimuth,
-        at,
-        crown,
-        own,
-        TOLERANCE,
-        MAX_ITERATIONS,
-        held,
-        near,
-    )
-    points = load.shape[:-1]
-    return (
-        intensity.reshape(points + intensity.shape[1:]),
-        state.reshape(load.shape),
-        iterations.reshape(points),
-    )
+    under: Any = *map(np.atleast_2d, (load, start)), bearing.azimuth, *of_bearing
+    how: Any = TOLERANCE, MAX_ITERATIONS, held, near
+    found: Any = solve_roller_loads(*under, *how)
+    intensity, state, steps = (it.reshape(load.shape[:-1] + it.shape[1:]) for it in found)
+    return intensity, state, steps
 
 
 def tilting_moments(

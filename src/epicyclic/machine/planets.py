@@ -787,11 +787,13 @@ def _bearing_figures(
     hardest = np.arange(rollers.shape[-1]) == np.asarray(rollers).argmax(axis=-1)[..., None]
     azimuth = total((hardest * np.tile(loads.azimuth, bearing.rows)).view(type(rollers)))
     extremes = _bearing_extremes(own, loads, speed, loss)
-    slices = intensity.reshape(*points, -1)
+    slices, turn = intensity.reshape(*points, -1), math.pi / bearing.rollers_per_row
     inner, outer = (
         hertz_half_width(slices, radius * np.ones_like(slices), bearing.equivalent_modulus)
         for radius in (bearing.inner_radius, bearing.outer_radius)
     )
+    sizes = bearing.slice_width, bearing.roller_diameter
+    pitches = turn * bearing.inner_diameter, turn * bearing.outer_diameter
     return BearingFigures(
         radial_force=load.force,
         moment=hypot(load.moment_x, load.moment_y),
@@ -803,15 +805,7 @@ def _bearing_figures(
         flattening=extremes.flattening,
         resistance=extremes.resistance,
         contact_temperature=oil.temperature,
-        heat_conductance=roller_conductance(  # through the loaded rollers
-            inner,
-            outer,
-            bearing.slice_width,
-            bearing.roller_diameter,
-            math.pi * bearing.inner_diameter / bearing.rollers_per_row,
-            math.pi * bearing.outer_diameter / bearing.rollers_per_row,
-            own.conductivity,
-        ),
+        heat_conductance=roller_conductance(inner, outer, *sizes, *pitches, own.conductivity),
         loads=loads,
     )
 
