@@ -11,6 +11,7 @@ import pytest
 from numpy.polynomial import legendre
 
 import epicyclic as ep
+from epicyclic.contact import elastic_teeth
 from epicyclic.contact.elastic_teeth import (
     ElasticRing,
     GearBody,
@@ -23,6 +24,7 @@ from epicyclic.contact.elastic_teeth import (
 )
 from epicyclic.gears.cutting import default_tool
 from epicyclic.gears.flanks import FlankDeviations, MicroGeometry, Relief, Topography
+from epicyclic.kernels.contact_load import solve_points
 from epicyclic.machine.solve import NEAR, STEEP
 
 STEEL = GearBody(206e9, 0.3)
@@ -308,6 +310,27 @@ def test_loads_next_to_known_ones_are_those_from_nothing(talbot_meshes):
         # `TOLERANCE` of the iteration, and the tangent that the stiffness may be of
         np.testing.assert_allclose(found.normal_approach, wanted.normal_approach, rtol=1e-9)
         np.testing.assert_allclose(found.normal_stiffness, wanted.normal_stiffness, rtol=5e-6)
+
+
+def test_between_two_known_loads_hardly_a_step_is_left(talbot_meshes, monkeypatch):
+    """Where a tangent has an error of some 1e-8, a parabola has one below the tolerance."""
+    design, steps = (talbot_meshes[1], STEEL, STEEL, 12, 9), []
+
+    def noted(*args):
+        found = solve_points(*args)
+        steps.append(found[-1])
+        return found
+
+    first = load_mesh_elastically(*design, 5000.0)
+    forces = [5009.7, 5004.1, 5007.3, 5001.9, 5005.6]
+    monkeypatch.setattr(elastic_teeth, "solve_points", noted)
+    found = load_meshes_next_to([first] * 5, forces)
+    (own,) = steps
+    assert own[3].min() == 1  # the least of them, from the tangent
+    assert np.delete(own, 3, axis=0).sum() <= 5  # of 52, where a segment begins to carry
+    for force, it in zip(forces, found, strict=True):
+        wanted = load_mesh_elastically(*design, force).line_load
+        np.testing.assert_allclose(it.line_load, wanted, atol=1e-8 * wanted.max(), rtol=0)
 
 
 # --- the rim of a ring gear -----------------------------------------------------------------------
