@@ -34,8 +34,9 @@ UNREFINED = 0.1
 ENOUGH_DESCENT = 0.1
 """A step is short enough when the slope of the energy has fallen to this part of its start. [1]"""
 MOST_HALVINGS = 30
-FARTHEST = 4.0
-"""Step over the distance of two solutions up to which their parabola is followed. [1]"""
+FARTHEST, SHARPEST = 4.0, 2500.0
+"""Step over the distance of two solutions, and over its square, up to which their parabola is
+followed: the slope has twice the latter times their error. [1]"""
 
 Teeth = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, float]
 """C, influence coefficients of both teeth [m/N]; G, deflection of each line under a unit total
@@ -476,15 +477,15 @@ def foreseen(
 ) -> tuple[FloatArray, float, float, FloatArray]:
     """Forces under a total `force`, and what else a solution has, from two known ones.
 
-    On the tangent of the nearer one, or on the parabola from there through the other: shares of the
-    force over its logarithm, where they bend a tenth as much as forces do.
+    On the tangent of the nearer one, with its stiffness, or on the parabola from there through the
+    other: shares of the force over its logarithm, where they bend a tenth as much as forces do.
     """
     if abs(one[0][0][one[1]] - force) > abs(two[0][0][two[1]] - force):
         one, two = two, one
     (forces, loads, approach, stiffness, rise), i = one
     (others, other_loads, other_approach, _, _), j = two
     step, apart = np.log(force / forces[i]), np.log(others[j] / forces[i])
-    bend = step / apart**2 if abs(step) < FARTHEST * abs(apart) else 0.0
+    bend = step / apart**2 if abs(step) < min(FARTHEST, SHARPEST * abs(apart)) * abs(apart) else 0.0
     start, slope = np.empty(length.shape), np.empty(length.shape)
     for line in range(length.shape[0]):
         for k in range(length.shape[1]):
@@ -498,7 +499,8 @@ def foreseen(
     tangent = 1.0 / stiffness[i, m] - share
     off = bend * (other - share - apart * tangent)
     share += step * (tangent + off)
-    return start, force * share, 1.0 / (share + tangent + 2.0 * off), slope
+    stiff = 1.0 / (share + tangent + 2.0 * off) if bend != 0.0 else stiffness[i, m]
+    return start, force * share, stiff, slope
 
 
 @kernel
@@ -515,8 +517,7 @@ def solve_points(
     points, (positions, lines, segments) = forces.size, length.shape
     loads = np.zeros((points, positions, lines, segments))
     rise = np.zeros(loads.shape)
-    approach = np.empty((points, positions))
-    stiffness = np.empty((points, positions))
+    approach, stiffness = np.empty((points, positions)), np.empty((points, positions))
     iterations = np.empty((points, positions), dtype=np.int64)
     made = forces, loads, approach, stiffness, rise
     for m in range(positions):  # whose influence stays at hand for all points

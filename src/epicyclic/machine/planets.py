@@ -781,8 +781,7 @@ def _bearing_figures(
     oil: OilState,
     loss: float,
 ) -> BearingFigures:
-    bearing, intensity = own.bearing, loads.intensity
-    points = intensity.shape[:-3]
+    bearing, intensity, points = own.bearing, loads.intensity, loads.intensity.shape[:-3]
     rollers = intensity.sum(axis=-1).reshape(*points, -1) * bearing.slice_width
     hardest = np.arange(rollers.shape[-1]) == np.asarray(rollers).argmax(axis=-1)[..., None]
     azimuth = total((hardest * np.tile(loads.azimuth, bearing.rows)).view(type(rollers)))
