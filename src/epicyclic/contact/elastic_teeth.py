@@ -471,8 +471,8 @@ class LoadedMesh:
         Approach of the gears along the common normal of the flanks, from where flanks without
         deviations touch unloaded. [m]
     normal_stiffness : ndarray, shape (positions,)
-        Slope of the normal force over the normal approach, at this load or at one so near that
-        this one is on its tangent: a few millionths off then. [N/m]
+        Slope of the normal force over the normal approach, at this load or as loads so near that
+        this one is foreseen by them have it: some 1e-5 off at most. [N/m]
     rise : ndarray, shape (positions, lines, segments)
         Rise of the force on each segment with the normal force of the mesh. [1]
     """
@@ -572,8 +572,8 @@ def _loaded(
     """The mesh under transverse `forces`."""
     lines, slope = compliance.lines, math.cos(mesh.gear1.rack.base_helix_angle)
     normal = np.array(forces) / slope
-    stiff = compliance.influence, compliance.coupling, deviations.separation(mesh, lines)
-    teeth = *stiff, lines.length, compliance.local_a, compliance.local_b
+    coupled = compliance.influence, compliance.coupling, deviations.separation(mesh, lines)
+    teeth = *coupled, lines.length, compliance.local_a, compliance.local_b
     order, known = np.argsort(normal, kind="stable"), (np.array(last) / slope, *start)
     most = STEPS_PER_SEGMENT * lines.length[0].size
     *found, iterations = solve_points(normal, order, teeth, known, TOLERANCE, most)

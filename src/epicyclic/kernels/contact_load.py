@@ -36,7 +36,7 @@ ENOUGH_DESCENT = 0.1
 MOST_HALVINGS = 30
 FARTHEST, SHARPEST = 4.0, 2500.0
 """Step over the distance of two solutions, and over its square, up to which their parabola is
-followed: the slope has twice the latter times their error. [1]"""
+followed: an error of either becomes 5000 times as large in its slope, at most. [1]"""
 
 Teeth = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, float]
 """C, influence coefficients of both teeth [m/N]; G, deflection of each line under a unit total
@@ -467,18 +467,18 @@ def from_nearest(teeth: Teeth) -> tuple[Teeth, float, float]:
     for line in range(length.shape[0]):
         for k in range(length.shape[1]):
             gap[line, k] = separation[line, k] - nearest
-    whole = line_totals(length).sum()
-    return (compliance, coupling, gap, length, local_a, local_b), nearest, whole
+    return (compliance, coupling, gap, length, local_a, local_b), nearest, line_totals(length).sum()
 
 
 @kernel
 def foreseen(
     force: float, m: int, length: FloatArray, one: tuple[Solutions, int], two: tuple[Solutions, int]
 ) -> tuple[FloatArray, float, float, FloatArray]:
-    """Forces under a total `force`, and what else a solution has, from two known ones.
+    """Forces [N] at position `m` under a total `force` [N], from two solutions and their points.
 
     On the tangent of the nearer one, with its stiffness, or on the parabola from there through the
     other: shares of the force over its logarithm, where they bend a tenth as much as forces do.
+    Returns `start`, `approach`, `stiffness` and `rise` as `solve_contact_loads` takes them.
     """
     if abs(one[0][0][one[1]] - force) > abs(two[0][0][two[1]] - force):
         one, two = two, one

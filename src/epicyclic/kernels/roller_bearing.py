@@ -65,8 +65,7 @@ def slice_stiffness(loaded_length: float) -> float:
 
     Theory (B9).
     """
-    length_mm = loaded_length * MM
-    compliance: float = DEFLECTION_CONSTANT * length_mm**LENGTH_EXPONENT
+    compliance: float = DEFLECTION_CONSTANT * (loaded_length * MM) ** LENGTH_EXPONENT
     return float(MM * MM**DEFLECTION_EXPONENT / compliance)
 
 

@@ -289,7 +289,7 @@ def _solved(
     reach = side_by_side([bearing.half_width])[..., None]
     sizes = side_by_side([bearing.slice_width, bearing.diametral_clearance])
     count, rows, slices = points_in(vars(bearing).values()) or 1, bearing.rows, bearing.slices
-    of_bearing = (
+    at, crown, own = (
         np.array(np.broadcast_to(table, (count, *shape)), order="C")
         for table, shape in (
             (bearing.slice_positions / reach, (rows, slices)),
@@ -297,9 +297,10 @@ def _solved(
             (sizes, (2,)),
         )
     )
-    under: Any = *map(np.atleast_2d, (load, start)), bearing.azimuth, *of_bearing
-    how: Any = TOLERANCE, MAX_ITERATIONS, held, near
-    found: Any = solve_roller_loads(*under, *how)
+    found: Any = solve_roller_loads(
+        np.atleast_2d(load), np.atleast_2d(start), bearing.azimuth, at, crown, own,
+        TOLERANCE, MAX_ITERATIONS, held, near,
+    )  # fmt: skip
     intensity, state, steps = (it.reshape(load.shape[:-1] + it.shape[1:]) for it in found)
     return intensity, state, steps
 

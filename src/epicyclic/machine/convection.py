@@ -222,7 +222,7 @@ def roller_conductance(
     2.59
     """
     loaded = (inner_half_width > 0) & (outer_half_width > 0)
-    inner, outer = inner_half_width + ~loaded, outer_half_width + ~loaded  # with logarithms
+    inner, outer = inner_half_width + ~loaded, outer_half_width + ~loaded  # logarithms of all
     races = np.log(inner_pitch / (math.pi * inner)) + np.log(outer_pitch / (math.pi * outer))
     roller = np.log(2 * roller_diameter / inner) + np.log(2 * roller_diameter / outer)
     resistance = (races + roller) / (math.pi * conductivity)
