@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property, lru_cache
 from html import escape
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple,
 
 from pydantic import BaseModel, Field, PrivateAttr, TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic_core import PydanticCustomError, ValidationError
 
 from epicyclic import library
 from epicyclic.case.expand import expand
@@ -58,6 +59,7 @@ from epicyclic.case.tables.operation import (
     PlanetaryOperation,
     Surroundings,
     ThermalTable,
+    check_outlet,
     needs_level,
 )
 from epicyclic.case.tables.strength import STRENGTH, StrengthTable
@@ -116,6 +118,8 @@ _BESIDE_GEARS = {
 
 
 _OPERATED = {"operation", "title"}
+_MAGNITUDES = {"torque", "speed", "oil_inlet_temperature"}
+"""Of [operation]: whatever they are, the case moves or stands as it was checked to."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +137,11 @@ class Design:
 
 class CaseTable(Table):
     if TYPE_CHECKING:  # every kind has them, each in its place
+        operation: Any
         lubrication: LubricationTable | None
         surroundings: Surroundings
+        thermal: ThermalTable
+        uncertainty: dict[str, DistributionTable]
 
         @property
         def gearings(self) -> Mapping[str, Gearing]: ...
@@ -191,7 +198,9 @@ class CaseTable(Table):
             With every problem of the changed case.
         """
         changed = with_changes(type(self), self._tables or self.given(), changes)
-        made = type(self).from_tables(changed.tables, self._source, changed.problems, self)
+        made = None if changed.problems else self._with_magnitudes(changed.tables)
+        if made is None:
+            made = type(self).from_tables(changed.tables, self._source, changed.problems, self)
         stands = (one for one in self._replaced if value_at(changed.tables, path_of(one.key)))
         made._replaced = (*stands, *changed.replaced)
         return made
@@ -207,6 +216,20 @@ class CaseTable(Table):
         others = (tables.keys() | own.keys()) - _OPERATED
         alike = bool(own) and all(tables.get(key) is own.get(key) for key in others)
         return alike and not self._design.names_files
+
+    def _with_magnitudes(self, tables: dict[str, Any]) -> Self | None:
+        """The case of `tables`, if they differ in `_MAGNITUDES` only and nothing is wrong."""
+        old, new = (it.get("operation", {}) for it in (self._tables, tables))
+        changed = {key for key in {*old, *new} if new.get(key) is not old.get(key)}
+        alike = changed <= _MAGNITUDES & old.keys() & new.keys() and self._only_operated(tables)
+        if alike and tables.get("title") is self._tables.get("title") and not self.uncertainty:
+            with suppress(ValidationError):
+                operation = type(self.operation).model_validate(new, strict=True)
+                if not any(check_outlet(self.thermal, operation.oil_inlet_temperature)):
+                    made = self.model_copy(update={"operation": operation})
+                    made._tables, made._sound = tables, {**self._sound, "operation": operation}
+                    return made
+        return None
 
     def _unchanged(self, tables: Mapping[str, Any]) -> dict[str, Table]:
         """Those of its own tables that `tables`, made from them by changes, still have."""
@@ -270,7 +293,7 @@ class CaseTable(Table):
         if case is not None:
             case._tables, case._source = tables, source
             case._design = Design(tables) if design is None else design
-        if case is not None and getattr(case, "uncertainty", {}):
+        if case is not None and case.uncertainty:
             problems = [*problems, *stated_values(case)[1]]
         if case is None or problems:
             raise InputError(sorted(problems, key=lambda problem: _position(cls, problem)), source)
@@ -438,7 +461,6 @@ def _position(kind: type[Table], problem: Problem) -> int:
 # A train: gear sets joined by shafts, with brakes, clutches, bearings, seals and other drags.
 
 
-_MAGNITUDES = {"torque", "speed", "oil_inlet_temperature"}  # Of these a train moves at any or none.
 _SHARED = ("models", "numerics", "friction_table", "lubrication")
 """Tables of a train that its computed sets take over where they have none of their own."""
 
@@ -590,10 +612,8 @@ class TrainCase(_TrainHead):
             and _joined_members(named, tables["operation"])
             == _joined_members(named, before._tables["operation"])
         ):
-            own = {key: getattr(before, key) for key in cls.model_fields}
-            own |= {key: getattr(whole.case, key) for key in _OPERATED}
-            train = cls.model_construct(**own)
-            train._found, train._sound, train._shape = before._found, whole.sections, before._shape
+            train = before.model_copy(update={it: getattr(whole.case, it) for it in _OPERATED})
+            train._sound = whole.sections
             old, new = before._tables["operation"], tables["operation"]
             turned = any(old.get(key) != new.get(key) for key in {*old, *new} - _MAGNITUDES)
             wrong = [*operation_problems(train, True, turned), *bearing_force_problems(train, True)]

@@ -222,7 +222,7 @@ MOST_TORQUE = 1e15
 other up. [N m]"""
 MOST_BRANCHES = 8  # Directions of the rolling powers that are tried with the losses of elements.
 FEWEST = 4  # Points from which on they are solved together: fewer take longer than one by one.
-FEWEST_APART = 8  # Points of either part where a block parts only to spare evaluations.
+FEWEST_APART = 16  # Points of either part where a block parts only to spare evaluations.
 MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 

@@ -187,7 +187,7 @@ def resolving_zero(
     >>> resolving_zero([0.0, 40.0, 80.0], crowd=4)
     [0.0, 2.5, 5.0, 10.0, 20.0, 40.0, 80.0]
     >>> resolving_zero([-40.0, -5.0, 30.0], crowd=1)
-    [-40.0, -20.0, -10.0, -5.0, -2.5, 0.0, 15.0, 30.0]
+    [-40.0, -20.0, -10.0, -5.0, 0.0, 15.0, 30.0]
     """
     given = np.unique(np.array(list(torques), dtype=float))
     if not given.size or given[0] > 0 or given[-1] < 0:
@@ -195,9 +195,12 @@ def resolving_zero(
     found = [*given, 0.0]
     for sign in (-1.0, 1.0):
         end, second = [*np.sort(sign * given[sign * given > 0])[:2], 0.0, 0.0][:2]
-        found += [sign * end * RATIO**-step for step in range(1, crowd + 1)]
-        # an even spacing that misses zero leaves a wide gap behind the first torque
-        steps = math.floor(math.log(second / end, RATIO) + 0.5) if second else 0
+        # the first torque of an even spacing that misses zero is nearer to it
+        spacing = end if 0.0 in given else max(end, second - end)
+        nearer = round(math.log(spacing / end, RATIO)) if end else 0
+        found += [sign * end * RATIO**-step for step in range(1, crowd - nearer + 1)]
+        # and leaves a wide gap behind it
+        steps = round(math.log(second / end, RATIO)) if second else 0
         found += [sign * second * RATIO**-step for step in range(1, steps)]
     return list(map(float, np.unique(found) + 0.0))  # no -0.0
 
