@@ -25,7 +25,7 @@ from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.gears.rules import tooth_notes
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.friction import CONTAINS_ROLLING, TALBOT_FLUID
-from epicyclic.losses.ranges import SomeFlags, ValidityFlag
+from epicyclic.losses.ranges import Item, ModelUse, SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
 from epicyclic.losses.windage import DRAG_METHODS, LAMINAR_RIMS, DragModel
@@ -400,17 +400,17 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
     )
 
 
-class _WhenRead(Mapping[str, str]):
-    """Texts that are made when somebody reads them, which sweeps do not."""
+class _WhenRead(Mapping[str, Item]):
+    """What is made when somebody reads it, which sweeps do not."""
 
-    def __init__(self, make: Callable[[], Iterator[tuple[str, str]]]) -> None:
+    def __init__(self, make: Callable[[], Iterator[tuple[str, Item]]]) -> None:
         self._make = make
 
     @cached_property
-    def _made(self) -> dict[str, str]:
+    def _made(self) -> dict[str, Item]:
         return dict(self._make())
 
-    def __getitem__(self, key: str) -> str:
+    def __getitem__(self, key: str) -> Item:
         return self._made[key]
 
     def __iter__(self) -> Iterator[str]:
@@ -456,7 +456,13 @@ def _flags(solution: Solution) -> Iterator[ValidityFlag]:
             yield from result.flags
             continue
         for flag in result.flags:
-            yield replace(flag, use=replace(flag.use, where=f"{key}: {flag.use.where}"))
+            yield replace(flag, use=_within(key, flag.use))
+
+
+@lru_cache(maxsize=256)
+def _within(key: str, use: ModelUse) -> ModelUse:
+    """The use of a model in a set of a train."""
+    return replace(use, where=f"{key}: {use.where}")
 
 
 def _methods(built: Built) -> Iterator[tuple[str, tuple[str, str]]]:
@@ -562,19 +568,21 @@ def _train(case: Case, built: Built, solution: Solution) -> Train | None:
         return None
     ends = case.operation.input, case.operation.output
     driven, output = (case.shape.shaft_of(name) or "" for name in ends)
-    shafts = {*built.layout.members, HOUSING}
     return Train(
         state=case.operation.state or "",
         ratio=solution.ratio,
         power_ratio=solution.power_ratio,
         rolling={key: solution.rolling[key] for key in built.layout.rolling},
         clutches=solution.couplings,
-        stages={
-            name: {body: torque for body, torque in taken.items() if body in shafts}
-            for name, taken in stage_torques(built.machine, solution).items()
-        },
+        stages=_WhenRead(partial(_stages, built, solution)),
         self_locking=solution.self_locking,
         jammed=solution.jammed,
         input=driven,
         output=output,
     )
+
+
+def _stages(built: Built, solution: Solution) -> Iterator[tuple[str, dict[str, float]]]:
+    shafts = {*built.layout.members, HOUSING}
+    for name, taken in stage_torques(built.machine, solution).items():
+        yield name, {body: torque for body, torque in taken.items() if body in shafts}

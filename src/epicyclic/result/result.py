@@ -690,8 +690,8 @@ def number_fields(layout: Layout) -> tuple[NumberField, ...]:
 
 def _number_fields(layout: Layout) -> Iterator[tuple[str, str, str, Callable[[Result], float]]]:
     watt = WATT.display
-    for name in layout.losses:
-        yield name, in_words(name), watt, partial(lambda own, it: it.losses[own], name)
+    for place, name in enumerate(layout.losses):
+        yield name, in_words(name), watt, partial(lambda own, it: it.terms[own].watts, place)
     yield "load_dependent", "load-dependent loss", watt, lambda it: it.load_dependent
     yield "load_independent", "load-independent loss", watt, lambda it: it.load_independent
     yield "total", "total loss", watt, lambda it: it.total
@@ -736,6 +736,7 @@ def in_words(name: str) -> str:
     return name.replace("_", " ").replace(".", ": ")
 
 
+@lru_cache(maxsize=1024)
 def _same_words(name: str) -> str:
     """A key, or a place as sentences name it: both in the same words, ``"S: a b mesh"``."""
     return in_words(name).replace("-", " ")

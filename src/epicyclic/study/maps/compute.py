@@ -217,7 +217,9 @@ def resolving_texts(torques: Iterable[Any]) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class _Totals(PointList):
-    """Points of which nothing but the total loss is read."""
+    """Points of which nothing but the total loss is read, in one process."""
+
+    many: ClassVar[int] = 1
 
     def _row_of(self, answer: Any) -> Row:
         converged = answer.status is Status.CONVERGED
