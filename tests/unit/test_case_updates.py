@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+import epicyclic as ep
 from epicyclic import library
 from epicyclic.build.machine import build
-from epicyclic.case.case import Design, PlanetaryCase, read_case
+from epicyclic.case.case import CaseTable, Design, PlanetaryCase, read_case
 from epicyclic.errors import InputError
 from epicyclic.messages import written
 from epicyclic.units import registry
@@ -347,3 +348,30 @@ def test_machines_of_one_design_have_their_parts_in_common():
     hotter = build(case.updated({"operation.oil_inlet_temperature": "71 degC"}))
     assert hotter.machine is build(case).machine
     assert hotter.fluids.oil.temperature == pytest.approx(344.15)
+
+
+@pytest.mark.parametrize("name", ["talbot-2012", "talbot-2012-pair", "train-8hp70", "train-eaxle"])
+def test_other_magnitudes_make_the_case_that_is_read_afresh(name, monkeypatch):
+    def changed(case):
+        magnitudes = {"torque": "-173.5 N*m", "speed": "910 rpm", "oil_inlet_temperature": "67 degC"}
+        return case.updated({f"operation.{key}": value for key, value in magnitudes.items()})
+
+    case = read_case(name)
+    found = changed(case)
+    monkeypatch.setattr(CaseTable, "_with_magnitudes", lambda *_: None)
+    afresh = changed(case)
+    assert changed(found).inputs() == afresh.inputs()
+    assert found.inputs() == afresh.inputs()
+    assert (found.found, found.source, found.design) == (afresh.found, afresh.source, case.design)
+    assert case.inputs() != found.inputs()
+    assert ep.solve(found).total == ep.solve(afresh).total
+
+
+def test_wrong_magnitudes_are_told_as_in_a_case_that_is_read():
+    outlet = {"thermal.oil_outlet_temperature": "97 degC"}
+    case = read_case("talbot-2012", outlet)
+    for key, value in (("oil_inlet_temperature", "98 degC"), ("torque", "5 rpm"), ("speed", None)):
+        changes = {f"operation.{key}": value}
+        told = problems_of(case.updated, changes)
+        assert told == problems_of(read_case, "talbot-2012", outlet | changes)
+        assert len(told) == 1

@@ -34,6 +34,9 @@ def test_torques_crowd_on_each_side_that_reaches_zero():
     assert found == [-80.0, -40.0, -20.0, -10.0, -5.0, 0.0, 12.5, 25.0, 50.0, 100.0]
     assert resolving_zero([-7.0, 7.0], crowd=1) == [-7.0, -3.5, 0.0, 3.5, 7.0]
     assert resolving_zero([0.0, 6.0], crowd=1) == [0.0, 3.0, 6.0]
+    # spacings of 36 that miss zero: both sides end near 36 / 8
+    found = resolving_zero([-67.0, -31.0, 5.0, 41.0], crowd=3)
+    assert found == [-67.0, -31.0, -15.5, -7.75, -3.875, 0.0, 5.0, 10.25, 20.5, 41.0]
     assert resolving_zero([300.0, 100.0]) == [100.0, 300.0]
     assert resolving_zero([0.0]) == [0.0]
 

@@ -268,9 +268,9 @@ def test_points_that_agree_rest_while_others_are_evaluated(monkeypatch: pytest.M
     case = ep.load_case("talbot-2012")
     cases = [
         case.updated(
-            {"operation.torque": f"{torque} N*m", "operation.speed": f"{900 + 210 * number} rpm"}
+            {"operation.torque": f"{torque} N*m", "operation.speed": f"{900 + 105 * number} rpm"}
         )
-        for number in range(8)
+        for number in range(16)
         for torque in (870 + 13 * number, 2.5 + 0.3 * number)
     ]
     asked = []
