@@ -353,7 +353,11 @@ def test_machines_of_one_design_have_their_parts_in_common():
 @pytest.mark.parametrize("name", ["talbot-2012", "talbot-2012-pair", "train-8hp70", "train-eaxle"])
 def test_other_magnitudes_make_the_case_that_is_read_afresh(name, monkeypatch):
     def changed(case):
-        magnitudes = {"torque": "-173.5 N*m", "speed": "910 rpm", "oil_inlet_temperature": "67 degC"}
+        magnitudes = {
+            "torque": "-173.5 N*m",
+            "speed": "910 rpm",
+            "oil_inlet_temperature": "67 degC",
+        }
         return case.updated({f"operation.{key}": value for key, value in magnitudes.items()})
 
     case = read_case(name)
