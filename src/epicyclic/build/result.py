@@ -324,17 +324,10 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
     losses = solution.losses
     terms = tuple(
         LossTerm(
-            name,
-            loss.watts,
-            loss.group,
-            loss.method,
-            loss.source,
-            loss.factor,
-            loss.left_out,
-            dict(loss.shares),
+            name, it.watts, it.group, it.method, it.source, it.factor, it.left_out, dict(it.shares)
         )
         for name in built.layout.losses
-        for loss in (losses[name],)
+        for it in (losses[name],)
     )
     flow = PowerFlow(
         {

@@ -117,14 +117,13 @@ _BESIDE_GEARS = {
 """Tables on which gears do not depend."""
 
 
-_OPERATED = {"operation", "title"}
 _MAGNITUDES = {"torque", "speed", "oil_inlet_temperature"}
 """Of [operation]: whatever they are, the case moves or stands as it was checked to."""
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """What cases have in common that differ in [operation] and title only; it equals itself."""
+    """What cases have in common that differ in [operation] only; it equals itself."""
 
     tables: Mapping[str, Any]  # Of the first of them.
 
@@ -198,7 +197,7 @@ class CaseTable(Table):
             With every problem of the changed case.
         """
         changed = with_changes(type(self), self._tables or self.given(), changes)
-        made = None if changed.problems else self._with_magnitudes(changed.tables)
+        made = None if changed.problems else self._operated(changed.tables)
         if made is None:
             made = type(self).from_tables(changed.tables, self._source, changed.problems, self)
         stands = (one for one in self._replaced if value_at(changed.tables, path_of(one.key)))
@@ -207,29 +206,30 @@ class CaseTable(Table):
 
     @property
     def design(self) -> Design:
-        """All that it states but [operation] and title."""
+        """All that it states but [operation]."""
         return self._design
 
-    def _only_operated(self, tables: Mapping[str, Any]) -> bool:
-        """True if `tables`, made from its own by changes, are of the same design."""
+    def _operated(self, tables: dict[str, Any]) -> Self | None:
+        """The case of `tables`, if they differ in [operation] only and nothing is wrong there."""
         own = self._tables
-        others = (tables.keys() | own.keys()) - _OPERATED
-        alike = bool(own) and all(tables.get(key) is own.get(key) for key in others)
-        return alike and not self._design.names_files
-
-    def _with_magnitudes(self, tables: dict[str, Any]) -> Self | None:
-        """The case of `tables`, if they differ in `_MAGNITUDES` only and nothing is wrong."""
-        old, new = (it.get("operation", {}) for it in (self._tables, tables))
-        changed = {key for key in {*old, *new} if new.get(key) is not old.get(key)}
-        alike = changed <= _MAGNITUDES & old.keys() & new.keys() and self._only_operated(tables)
-        if alike and tables.get("title") is self._tables.get("title") and not self.uncertainty:
-            with suppress(ValidationError):
-                operation = type(self.operation).model_validate(new, strict=True)
-                if not any(check_outlet(self.thermal, operation.oil_inlet_temperature)):
-                    made = self.model_copy(update={"operation": operation})
-                    made._tables, made._sound = tables, {**self._sound, "operation": operation}
-                    return made
+        old, new = (it.get("operation", {}) for it in (own, tables))
+        others = (tables.keys() | own.keys()) - {"operation"}
+        if not old or any(tables.get(key) is not own.get(key) for key in others):
+            return None
+        with suppress(ValidationError):
+            operation = type(self.operation).model_validate(new, strict=True)
+            made = self.model_copy(update={"operation": operation})
+            made._tables, made._sound = tables, {**self._sound, "operation": operation}
+            wrong = [*check_outlet(self.thermal, operation.oil_inlet_temperature)]
+            wrong += stated_values(made)[1] if self.uncertainty else []
+            if not wrong and old.keys() == new.keys() and not self._design.names_files:
+                turned = any(new[key] is not old[key] for key in old.keys() - _MAGNITUDES)
+                return made if not turned or made._runs(self) else None
         return None
+
+    def _runs(self, before: Self) -> bool:
+        """Whether [operation] is right, in which alone it differs from a sound case."""
+        return not any(cross_check({"operation": self.operation}, (), Path()))
 
     def _unchanged(self, tables: Mapping[str, Any]) -> dict[str, Table]:
         """Those of its own tables that `tables`, made from them by changes, still have."""
@@ -273,8 +273,7 @@ class CaseTable(Table):
             validation.case._source = source
             found += _part_problems(validation.case, {name: name for name in _SHAFTS}, {})
         sound = None if validation.problems else validation.case
-        design = before._design if before is not None and before._only_operated(tables) else None
-        made = cls._made(sound, tables, source, list(dict.fromkeys(found)), design)
+        made = cls._made(sound, tables, source, list(dict.fromkeys(found)))
         made._found, made._sound = told, valid.sections
         if gearing is not None:
             made._gearings = {"": gearing}
@@ -282,19 +281,12 @@ class CaseTable(Table):
 
     @classmethod
     def _made(
-        cls,
-        case: Self | None,
-        tables: dict[str, Any],
-        source: str,
-        problems: list[Problem],
-        design: Design | None = None,  # That of a former case, if it is the same.
+        cls, case: Self | None, tables: dict[str, Any], source: str, problems: list[Problem]
     ) -> Self:
         """The case with what it was made from; an error with all problems, if there are any."""
         if case is not None:
-            case._tables, case._source = tables, source
-            case._design = Design(tables) if design is None else design
-        if case is not None and case.uncertainty:
-            problems = [*problems, *stated_values(case)[1]]
+            case._tables, case._source, case._design = tables, source, Design(tables)
+            problems = [*problems, *(stated_values(case)[1] if case.uncertainty else ())]
         if case is None or problems:
             raise InputError(sorted(problems, key=lambda problem: _position(cls, problem)), source)
         return case
@@ -604,20 +596,6 @@ class TrainCase(_TrainHead):
             raise one_problem("sets", f"{len(named)} sets", allowed, remedy, source)
         sound = {} if before is None else before._unchanged(tables)
         whole = validate(_TrainHead, {k: v for k, v in tables.items() if k != "sets"}, sound, named)
-        if (
-            isinstance(before, TrainCase)
-            and whole.case is not None
-            and not problems
-            and before._only_operated(tables)
-            and _joined_members(named, tables["operation"])
-            == _joined_members(named, before._tables["operation"])
-        ):
-            train = before.model_copy(update={it: getattr(whole.case, it) for it in _OPERATED})
-            train._sound = whole.sections
-            old, new = before._tables["operation"], tables["operation"]
-            turned = any(old.get(key) != new.get(key) for key in {*old, *new} - _MAGNITUDES)
-            wrong = [*operation_problems(train, True, turned), *bearing_force_problems(train, True)]
-            return cls._made(cast(Self, train), tables, source, wrong, before._design)
         known = {problem.key for problem in problems}
         own_tables = {k: v for k, v in whole.sections.items() if k != "operation"}
         # whether the sets have a bearing is checked with them
@@ -671,6 +649,11 @@ class TrainCase(_TrainHead):
         found += operation_problems(train, complete)
         found += bearing_force_problems(train, complete)
         return cls._made(cast(Self, train), tables, source, found)
+
+    def _runs(self, before: Self) -> bool:
+        sets, tables = list(self.sets), [it._tables["operation"] for it in (before, self)]
+        members = [_joined_members(sets, it) for it in tables]
+        return members[0] == members[1] and not operation_problems(self, complete=True)
 
 
 _OWN_TABLE = re.compile(r"\[(?=(carrier|gear|mesh|pinion|planet|ring|sun|thrust)\w*[].])")

@@ -557,14 +557,13 @@ def _gears(train: TrainCase, shaft: str) -> Iterator[str]:
                 yield f"{name}.{gear}"
 
 
-def operation_problems(train: TrainCase, complete: bool, turned: bool = True) -> list[Problem]:
+def operation_problems(train: TrainCase, complete: bool) -> list[Problem]:
     """What cannot be about the states and the operation of a train.
 
     Of a shape that is not `complete`, because some members or meshes are wrong, only that is told
-    which these cannot change: a train that is blocked without them is blocked with them. Unless
-    `turned`, it moves as one that was checked.
+    which these cannot change: a train that is blocked without them is blocked with them.
     """
-    named = named_problems(train) if turned else []
+    named = named_problems(train)
     problems = [
         *named,
         *check_outlet(train.thermal, train.operation.oil_inlet_temperature),
@@ -578,7 +577,7 @@ def operation_problems(train: TrainCase, complete: bool, turned: bool = True) ->
     ]
     if complete:
         problems += [*_position_problems(train), *lubrication_problems(train)]
-    return problems if named or not turned else [*problems, *motion_problems(train, complete)]
+    return problems if named else [*problems, *motion_problems(train, complete)]
 
 
 def _temperature_problems(train: TrainCase) -> Iterator[Problem]:

@@ -112,16 +112,10 @@ class _Network:
 
     def _solve(self, lowest: float, carries: bool, eased: bool) -> tuple[int, FloatArray]:
         """Periods, and the boundary work of each step; fills the history."""
+        pockets = self._volume, self._cells.live, self._openings
+        limits = POCKETS_PER_PITCH, (PERIODS_MOST, PERIOD_TOLERANCE)
         periods = periodic_network(
-            self._volume,
-            self._cells.live,
-            self._openings,
-            (self._turn, lowest, carries),
-            eased,
-            POCKETS_PER_PITCH,
-            (PERIODS_MOST, PERIOD_TOLERANCE),
-            self._history,
-            np.zeros(2),
+            *pockets, (self._turn, lowest, carries), eased, *limits, self._history, np.zeros(2)
         )
         return int(periods), -(self._history[0][:, 1:-1, 1:-1] * self._growth).sum(axis=(1, 2))
 

@@ -218,15 +218,8 @@ class GearSeat:
 
         The axial force acts at the pitch point: its moment about the axis is r_w F_z e x z.
         """
-        force = mesh_force(
-            self.lever * torque,
-            self.radius,
-            self.pressure_angle,
-            self.helix_tangent,
-            self.hand,
-            self.direction,
-            internal=self.internal,
-        )
+        angles = self.pressure_angle, self.helix_tangent, self.hand, self.direction
+        force = mesh_force(self.lever * torque, self.radius, *angles, internal=self.internal)
         x, y, z = map(float, force)
         if self.around:
             return ShaftLoad(self.position, (0.0, 0.0, z))
