@@ -217,9 +217,7 @@ def resolving_texts(torques: Iterable[Any]) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class _Totals(PointList):
-    """Points of which nothing but the total loss is read, in one process."""
-
-    many: ClassVar[int] = 1
+    """Points of which nothing but the total loss is read."""
 
     def _row_of(self, answer: Any) -> Row:
         converged = answer.status is Status.CONVERGED

@@ -198,15 +198,13 @@ _OPERATING_TABLES = (
 MESHES_TOGETHER = 324  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
 SURELY_LONG = 4000  # Meshes of all points: each takes half a millisecond or more.
-SMALL_BLOCKS = 3  # Of points that are fewer than `CasePlan.many`: processes share them.
+MANY, SMALL_BLOCKS = 48, 3  # Points from which on blocks are full, and blocks of fewer, to share.
 
 
 @dataclass(frozen=True, slots=True)
 class CasePlan(Plan):
     """Cases to be solved: one case, and what each point changes in it."""
 
-    many: ClassVar[int] = 48
-    """Points from which on blocks are full."""
     case: Case
     # Tables of flows through pockets that points share, see `prepared`.
     flow_tables: FlowTables = field(default_factory=dict, kw_only=True, repr=False)
@@ -241,7 +239,7 @@ class CasePlan(Plan):
     def block(self) -> int:
         """See `Plan`: of as many points as are worth it, if there are enough."""
         most = max(FEWEST_TOGETHER, MESHES_TOGETHER // max(1, self._meshes))
-        size = min(most, self.size if self.size >= self.many else self.size // SMALL_BLOCKS)
+        size = min(most, self.size if self.size >= MANY else self.size // SMALL_BLOCKS)
         return size if self.together and size >= FEWEST_TOGETHER else 1
 
     @property
