@@ -74,7 +74,7 @@ class Points(np.ndarray[Any, Any]):
     def __float__(self) -> float:
         raise TypeError("several points are no number")
 
-    def __hash__(self) -> int:  # type: ignore[override]
+    def __hash__(self) -> int:  # type: ignore[override]  # arrays have none
         return id(self)
 
 

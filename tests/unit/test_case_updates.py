@@ -379,3 +379,30 @@ def test_wrong_magnitudes_are_told_as_in_a_case_that_is_read():
         told = problems_of(case.updated, changes)
         assert told == problems_of(read_case, "talbot-2012", outlet | changes)
         assert len(told) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "value"),
+    [
+        ("talbot-2012", "fixed", "sun"),
+        ("talbot-2012", "second_speed", "170 rpm"),
+        ("train-8hp70", "state", "12"),
+        ("train-8hp70", "output", "P1.ring"),
+        ("train-eaxle", "input", "nobody"),
+        ("train-eaxle", "oil_inlet_temperature", None),
+    ],
+)
+def test_an_operation_that_cannot_be_is_told_as_in_a_case_that_is_read(name, key, value):
+    changes = {f"operation.{key}": value}
+    told = problems_of(read_case(name).updated, changes)
+    assert told == problems_of(read_case, name, changes)
+    assert told[0].key == f"operation.{key}"
+
+
+def test_another_state_is_that_of_a_case_that_is_read():
+    changes = {"operation.state": "5", "operation.torque": "-173.5 N*m"}
+    train = read_case("train-8hp70")
+    found, afresh = train.updated(changes), read_case("train-8hp70", changes)
+    assert found.inputs() == afresh.inputs() != train.inputs()
+    assert found.design is train.design
+    assert ep.solve(found).total == ep.solve(afresh).total

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property, lru_cache, partial
 from itertools import chain
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from epicyclic.gears.mesh import are_evenly_spaced
 from epicyclic.gears.rules import tooth_notes
 from epicyclic.losses.contact import LOAD_DISTRIBUTIONS
 from epicyclic.losses.friction import CONTAINS_ROLLING, TALBOT_FLUID
-from epicyclic.losses.ranges import Item, ModelUse, SomeFlags, ValidityFlag
+from epicyclic.losses.ranges import ModelUse, SomeFlags, ValidityFlag
 from epicyclic.losses.reliability import RELIABILITY
 from epicyclic.losses.shaft_bearing import SHAFT_BEARING_RELIABILITY
 from epicyclic.losses.windage import DRAG_METHODS, LAMINAR_RIMS, DragModel
@@ -391,6 +391,9 @@ def assemble(case: Case, built: Built, settled: Settled) -> Result:
         heat=_heat(case, built, settled),
         lubrication=supplies,
     )
+
+
+Item = TypeVar("Item")
 
 
 class _WhenRead(Mapping[str, Item]):

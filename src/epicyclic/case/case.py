@@ -224,10 +224,10 @@ class CaseTable(Table):
             wrong += stated_values(made)[1] if self.uncertainty else []
             if not wrong and old.keys() == new.keys() and not self._design.names_files:
                 turned = any(new[key] is not old[key] for key in old.keys() - _MAGNITUDES)
-                return made if not turned or made._runs(self) else None
+                return made if not turned or made._operation_holds(self) else None
         return None
 
-    def _runs(self, before: Self) -> bool:
+    def _operation_holds(self, before: Self) -> bool:
         """Whether [operation] is right, in which alone it differs from a sound case."""
         return not any(cross_check({"operation": self.operation}, (), Path()))
 
@@ -650,7 +650,7 @@ class TrainCase(_TrainHead):
         found += bearing_force_problems(train, complete)
         return cls._made(cast(Self, train), tables, source, found)
 
-    def _runs(self, before: Self) -> bool:
+    def _operation_holds(self, before: Self) -> bool:
         sets, tables = list(self.sets), [it._tables["operation"] for it in (before, self)]
         members = [_joined_members(sets, it) for it in tables]
         return members[0] == members[1] and not operation_problems(self, complete=True)

@@ -166,7 +166,8 @@ RATIO = 2.0
 that rises. [1]"""
 CROWD = 8
 """Torques between zero and the smallest of an even spacing, which is 250 times the least: more make
-no map of the test article or of an eight-speed gearbox 2 % better anywhere."""
+no map of the test article or of an eight-speed gearbox 2 % better anywhere. Fewer where the spacing
+misses zero, so that the least is that part of it too."""
 CHECKED_NEAR_ZERO, CHECKED_WHERE_BENT, CHECKED_BEYOND = 4, 4, 4
 """Intervals on each side of zero, where the loss bends most, and of all others, in whose middle a
 map is checked."""
