@@ -407,13 +407,13 @@ def _flags(
     if not outside.any():
         return []
     values, weights = (np.broadcast_to(it, outside.shape) for it in (values, np.asarray(weight)))
-    whole = np.sum(weights, axis=1, where=held)
+    whole = np.where(held, weights, 0.0).sum(axis=1)  # its own `where` takes four times as long
     with np.errstate(invalid="ignore"):
-        share = np.sum(weights, axis=1, where=outside) / whole
+        share = np.where(outside, weights, 0.0).sum(axis=1) / whole
     share = np.where(whole > 0, np.minimum(share, 1.0), 1.0)
     scale, offset = item.unit.scale_and_offset()
-    least = np.min(values, axis=1, where=held, initial=np.inf) * scale + offset
-    most = np.max(values, axis=1, where=held, initial=-np.inf) * scale + offset
+    least = np.where(held, values, np.inf).min(axis=1, initial=np.inf) * scale + offset
+    most = np.where(held, values, -np.inf).max(axis=1, initial=-np.inf) * scale + offset
     made = partial(ValidityFlag, use, item.label)
     ends = item.low, item.high, item.unit.display
     left = np.atleast_1d(outside.any(axis=1))
