@@ -124,6 +124,11 @@ def either(truth: Any, one: Any, two: Any) -> Any:
     return one if truth else two
 
 
+def agreed(truth: Any) -> Any:
+    """A truth as one where it is the same for all points."""
+    return truth if isinstance(truth, Points) and truth.any() != truth.all() else bool(truth)
+
+
 def larger(one: float, two: float) -> float:
     """The larger of two numbers, point by point."""
     several = isinstance(one, Points) or isinstance(two, Points)
@@ -284,6 +289,23 @@ def one_by_one(function: Callable[..., Any], *args: Any) -> Any:
             raise
         (count,) = alone.args
     return joined([function(*own) for own in taken(args, range(count))], Each)
+
+
+def for_alike(truths: Sequence[Any], function: Callable[..., Any], *args: Any) -> Any:
+    """A call as `one_by_one`, for the points of which the same truths hold together."""
+    sides = [np.asarray(truth)[:, 0] for truth in truths if isinstance(truth, Points)]
+    if not sides:
+        return one_by_one(function, *args)
+    _, kinds = np.unique(sides, axis=1, return_inverse=True)
+    places = [np.flatnonzero(kinds == kind) for kind in range(kinds.max() + 1)]
+    found: dict[int, Any] = {}
+    for rows, own in zip(places, taken(args, places), strict=True):
+        try:
+            answers = taken(one_by_one(function, *own), range(len(rows)))
+        except Apart as parting:
+            raise Apart(np.isin(np.arange(len(kinds)), rows[parting.rows])) from None
+        found.update(zip(rows.tolist(), answers, strict=True))
+    return joined([found[row] for row in range(len(kinds))], Each)
 
 
 def _alike(values: Sequence[Any]) -> None:

@@ -109,10 +109,7 @@ def test_load_is_the_resultant_of_the_tooth_forces(make_gear, beta, centrifugal,
         MeshDuty(SimpleNamespace(mesh=meshes[0]), torque, 100.0, True),
         MeshDuty(SimpleNamespace(mesh=meshes[1]), -planet_torque, -80.0, True),
     )
-    contacts = [
-        PlanetContact(duties[0], 2, (0.0, 1.0), 1),
-        PlanetContact(duties[1], 1, (0.0, -1.0), -1),
-    ]
+    contacts = [PlanetContact(duties[0], 2, 1j, 1), PlanetContact(duties[1], 1, -1j, -1)]
     load = planet_load(contacts, centrifugal)
     force = np.array([0.0, centrifugal, 0.0])
     moment = np.zeros(3)

@@ -20,7 +20,9 @@ from epicyclic.arrays import (
     Apart,
     Each,
     Points,
+    agreed,
     apart,
+    for_alike,
     joined,
     larger,
     largest,
@@ -263,32 +265,51 @@ def test_equal_notes_of_points_concern_their_own_losses() -> None:
     assert [[note.watts for note in own.notes] for own in found] == [[6.0], [14.0]]
 
 
-def test_points_that_agree_rest_while_others_are_evaluated(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Loads next to none take more passes than large ones."""
+def test_directions_of_power_leave_points_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Next to no torque, drag turns the power of some meshes round."""
     case = ep.load_case("talbot-2012")
     cases = [
-        case.updated(
-            {"operation.torque": f"{torque} N*m", "operation.speed": f"{900 + 105 * number} rpm"}
-        )
-        for number in range(16)
-        for torque in (870 + 13 * number, 2.5 + 0.3 * number)
+        case.updated({"operation.torque": f"{torque} N*m", "operation.speed": f"{speed} rpm"})
+        for torque in (0.21, 0.43, 0.83, 1.37)
+        for speed in (770, 1290, 2150, 3070, 3910)
     ]
     asked = []
     evaluate = gear_set.GearSet.evaluate
 
     def counted(self: gear_set.GearSet, state: solve.State, *last: object) -> object:
-        asked.append(np.size(state.torques[".sun_mesh"]))
+        asked.append((np.size(state.torques[".sun_mesh"]), np.size(state.drives[".sun_mesh"])))
         return evaluate(self, state, *last)
 
-    monkeypatch.setattr(gear_set.GearSet, "evaluate", counted)
-    for case in cases:
-        ep.solve(case)
-    alone = sum(asked)
-    asked.clear()
-    solve_together(cases, {})
-    assert max(asked) == len(cases)
-    assert sum(asked) <= 1.1 * alone
-    assert asked[-1] == len(cases) / 2
+    with monkeypatch.context() as patch:
+        patch.setattr(gear_set.GearSet, "evaluate", counted)
+        together = solve_together(cases, {})
+    assert (len(cases), len(cases)) in asked, "the power has one direction in all"
+    assert {several for several, _ in asked} == {len(cases)}
+    for case, found in zip(cases, together, strict=True):
+        assert not isinstance(found, Exception)
+        one = ep.solve(case)
+        assert found.losses == pytest.approx(one.losses, rel=1e-9, abs=1e-7 * one.total)
+
+
+def test_calls_for_those_alike_see_one_truth() -> None:
+    column, first = _column(2.0, 3.0, 5.0, 7.0), _column(1.0, -1.0, 1.0, -1.0) > 0
+    seen = []
+
+    def tripled(truths: Sequence[Any], values: Points) -> dict[str, Any]:
+        seen.append([agreed(truth) for truth in truths])
+        return {"values": 3 * values + float(seen[-1][0])}
+
+    found = for_alike([first, True], tripled, (first, True), column)
+    assert seen == [[False, True], [True, True]]
+    assert found["values"][:, 0].tolist() == [7.0, 9.0, 16.0, 21.0]
+    assert agreed(first) is first
+
+    def parting(_: Sequence[Any], values: Points) -> bool:
+        return bool(values > 4)
+
+    with pytest.raises(Apart) as apart_here:  # rows are those of all points
+        for_alike([first], parting, (first,), column)
+    assert apart_here.value.rows.tolist() == [False, False, False, True]
 
 
 @pytest.mark.parametrize("slowest", [9100, 2300])

@@ -348,7 +348,7 @@ def test_two_equal_meshes_on_opposite_sides_leave_no_force():
     couples of the axial forces; only these themselves add up."""
     mesh = build(ep.load_case(listed_trains.stepped())).sets["S"].meshes[0]
     duty = MeshDuty(mesh, 12.0, 100.0, True)
-    contacts = [PlanetContact(duty, 2, (0.0, side), 1, -1) for side in (1.0, -1.0)]
+    contacts = [PlanetContact(duty, 2, side * 1j, 1, -1) for side in (1.0, -1.0)]
     load = planet_load(contacts, 0.0)
     alone = planet_load(contacts[:1], 0.0)
     assert load.force < 1e-12 * alone.force

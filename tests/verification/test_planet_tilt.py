@@ -50,7 +50,7 @@ def test_bearing_and_meshes_are_in_balance(talbot):
         assert force.sum(axis=(1, 2)) == pytest.approx(mesh.force, rel=1e-4), key
         moments.append(float((force * height).sum(axis=(1, 2)) @ mesh.compliance.lines.weight))
     sun, ring = duties
-    contacts = [PlanetContact(sun, 2, (0.0, 1.0), 1), PlanetContact(ring, 1, (0.0, -1.0), -1)]
+    contacts = [PlanetContact(sun, 2, 1j, 1), PlanetContact(ring, 1, -1j, -1)]
     load = planet_load(contacts, 0.0, moments)
     bearing = roller_bearing(talbot.planet_bearing, talbot.numerics)
     tilt = roller_loads(bearing, load.force, 0.0, load.moment_x, load.moment_y).displacement[2:]

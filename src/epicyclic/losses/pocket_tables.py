@@ -120,7 +120,7 @@ class FlowFamily:
 
     def figures(self, speed: float, mixture: MixtureState, pressure: float) -> FlowFigures:
         """Figures of the flow itself. Parameters as for `pocket_flow`."""
-        least = bool(self.number(speed, mixture, pressure) == LEAST_NUMBER)
+        least = every(self.number(speed, mixture, pressure) == LEAST_NUMBER)
         if least or self.scales(speed, mixture, pressure):
             scaled = kept_figures(self, LEAST_NUMBER)
             if np.isfinite(scaled).all():

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from epicyclic.arrays import Apart, FloatArray, apart, hypot, largest, side_by_side
+from epicyclic.arrays import Apart, FloatArray, agreed, apart, either, hypot, largest, side_by_side
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING
 from epicyclic.machine.machine import Machine, Operation, Terms
@@ -233,7 +233,8 @@ class Statics:
         for row in rows:  # the term of the driven gear is reduced
             lost = 1.0 if efficiencies is None else efficiencies[row.key]
             first = drives is None or drives[row.key]
-            column, length = self._column(row.terms(1.0, lost) if first else row.terms(lost, 1.0))
+            one, two = either(first, 1.0, lost), either(first, lost, 1.0)
+            column, length = self._column(row.terms(one, two))
             columns.append(column)
             scale.append(length)
         fixed, lengths, unknown = self._fixed
@@ -328,7 +329,7 @@ def drives_first(powers: Mapping[str, float], before: Mapping[str, bool]) -> dic
     """For each mesh whether its first gear drives; as `before` where no power flows."""
     limit = NO_POWER * largest(powers.values())
     return {
-        key: before[key] if abs(power) <= limit else bool(power > 0)
+        key: agreed(either(abs(power) <= limit, before[key], power > 0))
         for key, power in powers.items()
     }
 

@@ -90,6 +90,7 @@ from epicyclic.units import (
 PEAK_SHARE = 0.01
 """Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""
 MOSTLY_ENOUGH = 0.1  # Of the points that carry most, among which is where that share ends. [1]
+UNMODIFIED = FlankDeviations()
 NOWHERE = 1e300  # Film ratio of what does not touch. [1]
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
@@ -155,12 +156,12 @@ class MeshDuty:
     def deviations(self) -> FlankDeviations:
         """Of the flanks in contact: with the power reversed, those behind."""
         own = self.gears.deviations
-        return own if self.drives1 else replace(own, mirrored=True)
+        return own if own == UNMODIFIED or self.drives1 else replace(own, mirrored=True)
 
     def misaligned(self, by: float) -> MeshDuty:
         """The same with a further misalignment, along y of the contact lines, in metres."""
         deviations = self.gears.deviations
-        by = -by if self.deviations.mirrored else by
+        by = by if self.drives1 else -by
         tilted = replace(deviations, misalignment=deviations.misalignment + by)
         return replace(self, gears=replace(self.gears, deviations=tilted))
 

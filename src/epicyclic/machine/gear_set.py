@@ -7,7 +7,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
-from epicyclic.arrays import Each, one_by_one
+import numpy as np
+
+from epicyclic.arrays import Each, agreed, either, for_alike, one_by_one
 from epicyclic.dataclass import dataclass, replace
 from epicyclic.gears.gear import HOUSING
 from epicyclic.kernels import ahead
@@ -81,7 +83,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True)
 class PlanetMesh:
-    """How a mesh stands to a planet. Attributes as of `PlanetContact`, the mesh by its key."""
+    """How a mesh stands to a planet, as in `PlanetContact`; the mesh by its key, (t, r) outward."""
 
     mesh: str
     member: int
@@ -158,13 +160,13 @@ class Planet:
 
     def _contacts(self, duties: Mapping[str, MeshDuty]) -> Sequence[PlanetContact]:
         # a mesh turns both of its external gears against the torque that gear 1 brings in
-        senses = [-1 if duties[own.mesh].torque1 > 0 else 1 for own in self.meshes]
+        senses = [either(duties[own.mesh].torque1 > 0, -1, 1) for own in self.meshes]
         turn = senses[0]  # axes turned about r by half a turn if -1; no -0.0, which prints oddly
         return [
             PlanetContact(
                 duties[own.mesh],
                 own.member,
-                (turn * own.outward[0] + 0.0, own.outward[1]),
+                turn * own.outward[0] + 1j * own.outward[1],
                 turn * sense,
                 own.hand,
                 turn * own.position + 0.0,
@@ -195,7 +197,7 @@ class GearSetResult(ElementResult):
     # Share of the load that each planet carries; empty without planets. [1]
     shares: tuple[float, ...] = ()
     drags: Drags
-    flows: Mapping[tuple[bool, ...], Flows]  # By which gears drive.
+    flows: Mapping[tuple[bytes, ...], Flows]  # By which gears drive, at each point of a block.
     # By their key and the number of the share of the load, the largest first.
     meshes: Mapping[tuple[str, int], MeshResult]
     bearings: Mapping[tuple[str, int], BearingResult]
@@ -254,7 +256,8 @@ class GearSet:
                 replace(duty, drives1=state.drives[f"{self.key}.{duty.gears.key}"])
                 for duty in duties
             )
-        driving = tuple(duty.drives1 for duty in duties)
+        sides = [duty.drives1 for duty in duties]
+        driving = tuple(np.asarray(side).tobytes() for side in sides)
         earlier = state.earlier.get(self.key)
         loaded = {} if earlier is None else earlier.loaded
         if last is None:
@@ -267,7 +270,7 @@ class GearSet:
             none = {duty.gears.key: MeshFlow() for duty in duties}
             of_first = partial(self._branch, state, torques, (0, shares[0]), 1)
             ahead[:] = [partial(of_first, none, {}, {}, loaded)]
-            flows[driving], known = one_by_one(mesh_flows, duties, state.fluids, known)
+            flows[driving], known = for_alike(sides, mesh_flows, duties, state.fluids, known)
             ahead.clear()
         branches = []
         for place, share in enumerate(sorted(set(shares), reverse=True)):
@@ -390,7 +393,7 @@ class GearSet:
         duties = []
         for mesh in self.meshes:
             torque, speed = share * torques[mesh.key], state.speeds[mesh.bodies[0]] - carrier
-            duties.append(MeshDuty(mesh, torque, speed, bool(torque * speed >= 0)))
+            duties.append(MeshDuty(mesh, torque, speed, agreed(torque * speed >= 0)))
         return tuple(duties)
 
     def shares(self, state: State, torques: Mapping[str, float]) -> tuple[float, ...]:

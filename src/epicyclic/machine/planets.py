@@ -232,9 +232,9 @@ class PlanetContact:
 
     duty: MeshDuty
     member: int  # Which of its gears sits on the planet, 1 or 2.
-    # Unit vector along t and r from the pitch point to the axis of the planet: the sense in which
-    # the radial force of the mesh pushes the planet.
-    outward: tuple[float, float]
+    # Unit vector t + i r from the pitch point to the axis of the planet: the sense in which the
+    # radial force of the mesh pushes the planet.
+    outward: complex
     sense: int  # +1 if the mesh turns the planet from t to r, else -1.
     hand: int = 1  # +1 if a positive `sense` pushes the planet along y, else -1.
     position: float = 0.0  # Position of the middle of the face, along y. [m]
@@ -252,7 +252,7 @@ class PlanetContact:
         """Unit vector of the transverse force on the planet, t + i r."""
         angle = self.duty.gears.mesh.operating_pressure_angle
         # its arm is -outward, and z x is i times
-        return complex(*self.outward) * complex(math.sin(angle), -self.sense * math.cos(angle))
+        return self.outward * (math.sin(angle) - 1j * self.sense * math.cos(angle))
 
     @property
     def axial_force(self) -> float:
@@ -284,7 +284,7 @@ def planet_load(
         mesh = contact.duty.gears.mesh
         radius = mesh.operating_radius1 if contact.member == 1 else mesh.operating_radius2
         couple = contact.axial_force * radius  # operating radius of the planet in this mesh
-        moment += couple * complex(*contact.outward)
+        moment += couple * contact.outward
     force = radial_force(contacts, centrifugal)
     turned = moment * abs(force) / force if force else moment
     # the bore of a pushed planet meets its pin on the other side: those rollers carry

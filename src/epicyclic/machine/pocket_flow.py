@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epicyclic.arrays import Alone, Points, larger, one_by_one
+from epicyclic.arrays import Alone, Points, agreed, larger, one_by_one
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.gears.mesh import with_faces
 from epicyclic.losses.pocket_flow import (
@@ -103,7 +103,7 @@ def oil_in_mesh(duty: MeshDuty) -> float:
 
 def flow_family(duty: MeshDuty) -> FlowFamily:
     """The flows that that of a mesh belongs to."""
-    settings, tools, drives1 = duty.gears.models.pockets, duty.gears.tools, duty.drives1
+    settings, tools, drives1 = duty.gears.models.pockets, duty.gears.tools, agreed(duty.drives1)
     # what reaches beyond the common face is no part of the pockets
     mesh = with_faces(duty.gears.mesh, duty.gears.mesh.face_width)
     # time steps follow a tooth of gear 1 of the pockets; of equal gears it is the one that drives

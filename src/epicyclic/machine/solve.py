@@ -85,8 +85,7 @@ class Answer:
         """Losses that the element would answer; the loads by which those that follow them serve.
 
         If all do, they are off by no more than `allowed` together. Figures and flags are those of
-        the last answer, to loads no farther off than `NEAR`. Raises `Apart` if all serve for a part
-        of the points that is worth it.
+        the last answer, to loads no farther off than `NEAR`.
         """
         before, known = (self.before or self).result.losses, self.result.losses
         follows, bent = zip(*((loss.follows, loss.bent) for loss in known.values()), strict=True)
@@ -110,10 +109,6 @@ class Answer:
         holds = reduce(and_, near.values(), alike & (sum(off.values()) <= most))
         if every(holds):
             return losses, frozenset(loads)
-        if isinstance(holds, Points):
-            rows = np.asarray(holds)[:, 0]
-            if min(rows.sum(), (~rows).sum()) >= FEWEST_APART:
-                raise Apart(rows)
         serve = {it: near[it] & (len(off) * error <= most) for it, error in off.items()}
         return losses, frozenset(key for it in serve if every(serve[it]) for key in it)
 
@@ -222,7 +217,6 @@ MOST_TORQUE = 1e15
 other up. [N m]"""
 MOST_BRANCHES = 8  # Directions of the rolling powers that are tried with the losses of elements.
 FEWEST = 4  # Points from which on they are solved together: fewer take longer than one by one.
-FEWEST_APART = 16  # Points of either part where a block parts only to spare evaluations.
 MOST_OF_A_MESH = 0.5
 """Share of the rolling power of a mesh up to which a loss is a share of it, else friction. [1]"""
 
@@ -531,7 +525,7 @@ def _answered(
     }
     last_one = None if known is None else known.result
     loads = element.loads(state, last_one)
-    if known is None or known.drives != drives:
+    if known is None or not all(every(known.drives[key] == it) for key, it in drives.items()):
         result = element.evaluate(state, last_one)
         return _Known(Answer(loads, result), result, loads, drives)
     if _agrees(known.loads, loads):
