@@ -205,6 +205,8 @@ class Balance:
     powers: Mapping[str, float]
     residual: float  # Largest torque left over, relative to the largest one. [1]
     unique: bool  # False if meshes or clutches share a load in more than one possible way.
+    # Of the meshes, where torques and losses agree.
+    efficiencies: Mapping[str, float] | None = None
 
     @property
     def holds(self) -> bool:

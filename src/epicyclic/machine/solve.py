@@ -366,9 +366,7 @@ def solve_machine(
     drives = directions.drives
     branch = _Branch(machine, operation, start, fluids, trail, earlier, drives)
     if earlier is None:  # as the losses of one pass turn them
-        found = branch.follow()
-        balance = found.balance if isinstance(found, _Pass) else found
-        drives = drives_first(balance.powers, drives)
+        drives = drives_first(branch.follow().powers, drives)
     else:
         one, other = (drives_first(powers, dict.fromkeys(powers, way)) for way in (True, False))
         undecided = {key for key in powers if one[key] != other[key]}
@@ -378,14 +376,15 @@ def solve_machine(
         tried.append(drives)
         branch = replace(branch, drives=drives, passes=0)
         last = _converged(branch)
-        drives = drives_first(last.balance.powers, drives)
-    floating = frozenset(key for key, first in drives.items() if first != last.drives[key])
+        drives = drives_first(last.powers, drives)
+    floating = frozenset(key for key, first in drives.items() if first != branch.drives[key])
     if floating:
-        branch = replace(branch, drives=last.drives, braking=floating, passes=0)
+        branch = replace(branch, braking=floating, passes=0)
         last = _converged(branch)
-    if last.efficiencies != start.efficiencies and not directions.jammed:
-        directions = find_directions(start.statics, start.lossless, last.efficiencies)
-    return branch.solution(last.balance, directions), True
+    efficiencies = cast(Mapping[str, float], last.efficiencies)
+    if efficiencies != start.efficiencies and not directions.jammed:
+        directions = find_directions(start.statics, start.lossless, efficiencies)
+    return branch.solution(last, directions), True
 
 
 def _one_pass(wanted: Wanted, start: Start, trail: Trail) -> tuple[Solution, bool] | None:
@@ -400,8 +399,7 @@ def _one_pass(wanted: Wanted, start: Start, trail: Trail) -> tuple[Solution, boo
         return None
     branch = _Branch(machine, operation, start, fluids, trail, earlier, drives, braking)
     found = branch.follow()
-    balance = found.balance if isinstance(found, _Pass) else found
-    return branch.solution(balance, start.directions), isinstance(found, _Pass)
+    return branch.solution(found, start.directions), found.efficiencies is not None
 
 
 def _together(wanted: Sequence[Wanted]) -> Wanted:
@@ -487,8 +485,8 @@ class Trail:
     """What has been found so far: where a block parts, its parts go on from there."""
 
     # Torques after each pass of the block that parted, which this is to follow.
-    ahead: list[Balance | _Pass] = field(default_factory=list["Balance | _Pass"])
-    passed: list[Balance | _Pass] = field(default_factory=list["Balance | _Pass"])  # The same here.
+    ahead: list[Balance] = field(default_factory=list[Balance])
+    passed: list[Balance] = field(default_factory=list[Balance])  # The same here.
     known: dict[str, _Known] = field(default_factory=dict[str, "_Known"])  # By key of the element.
     begun: Balance | None = None  # Torques that the pass under way began with.
     state: State | None = None  # That the elements saw last.
@@ -538,17 +536,6 @@ def _answered(
     result = element.evaluate(replace(state, serve=serve), known.result)
     whole = replace(result, losses=_mixed(result.losses, predicted, serve))
     return _Known(last.then(loads, result, serve), whole, loads, drives)
-
-
-@dataclass(frozen=True, slots=True)
-class _Pass:
-    """Torques that agree with the losses."""
-
-    pointwise = True
-
-    balance: Balance
-    drives: Mapping[str, bool]
-    efficiencies: Mapping[str, float]
 
 
 @dataclass
@@ -606,9 +593,7 @@ class _Branch:
             key: given if key.partition(".")[0] in whole else LIKELY * given
             for key, given in self.start.efficiencies.items()
         }
-        found = self.start.statics.balance(self.drives, likely)
-        one, two = (drives_first(it.powers, self.drives) for it in (found, self.unlost))
-        return found if one == two else self.unlost
+        return self.start.statics.balance(self.drives, likely)
 
     def under(self, found: Balance, meshes: Mapping[str, float]) -> Balance:
         """`found` with other loads of the meshes."""
@@ -619,8 +604,8 @@ class _Branch:
         }
         return replace(found, meshes=meshes, powers=powers)
 
-    def follow(self, last: Balance | None = None) -> Balance | _Pass:
-        """Torques with the losses that those of `last` lead to; a `_Pass` if they agree.
+    def follow(self, last: Balance | None = None) -> Balance:
+        """Torques with the losses that those of `last` lead to; with efficiencies if they agree.
 
         Without, with those of the torques to begin with. Raises `ConvergenceError` if losses or
         torques grow beyond all bounds.
@@ -656,7 +641,7 @@ class _Branch:
         if not agrees and not largest(new.meshes.values()) < MOST_TORQUE:
             raise self.disagreement()
         trail.begun = None
-        trail.passed.append(_Pass(new, self.drives, efficiencies) if agrees else new)
+        trail.passed.append(replace(new, efficiencies=efficiencies) if agrees else new)
         return trail.passed[-1]
 
     def disagreement(self) -> ConvergenceError:
@@ -677,7 +662,7 @@ class _Branch:
         return self.start.statics.balance(self.drives, efficiencies, frictions), efficiencies
 
 
-def _converged(branch: _Branch) -> _Pass:
+def _converged(branch: _Branch) -> Balance:
     """Torques and losses that agree, with these directions of the rolling powers.
 
     Nearly always plain repetition finds them. Half steps settle most loads that steep losses throw
@@ -685,38 +670,36 @@ def _converged(branch: _Branch) -> _Pass:
     """
     found = _repeated(branch, None, 1.0, PLAIN_PASSES)
     found = _repeated(branch, found, *SMALL_STEPS[0])
-    if not isinstance(found, _Pass):
+    if found.efficiencies is None:
         found = _by_secants(branch, found)
     found = _repeated(branch, found, *SMALL_STEPS[1])
-    if isinstance(found, _Pass):
-        return found
-    raise branch.disagreement()
+    if found.efficiencies is None:
+        raise branch.disagreement()
+    return found
 
 
-def _repeated(
-    branch: _Branch, found: Balance | _Pass | None, share: float, passes: int
-) -> Balance | _Pass:
+def _repeated(branch: _Branch, found: Balance | None, share: float, passes: int) -> Balance:
     """After so many passes, or when losses and torques agree; loads go that share of each step."""
     for _ in range(passes):
-        if isinstance(found, _Pass):
+        if found is not None and found.efficiencies is not None:
             break
         new = branch.follow(found)
-        if found is not None and isinstance(new, Balance) and share < 1:
+        if found is not None and new.efficiencies is None and share < 1:
             meshes = {
                 key: old + share * (new.meshes[key] - old) for key, old in found.meshes.items()
             }
             new = branch.under(new, meshes)
         found = new
-    return cast(Balance | _Pass, found)
+    return cast(Balance, found)
 
 
-def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
+def _by_secants(branch: _Branch, first: Balance) -> Balance:
     """By Broyden's method on the loads of the meshes; as the `first` where that leads nowhere."""
     if any(isinstance(load, Points) for load in first.meshes.values()):
         raise Alone
     from scipy.optimize import NoConvergence, broyden1  # takes a third of a second, rarely needed
 
-    last: Balance | _Pass = first
+    last = first
     start = np.array(list(first.meshes.values()))
     size = np.where(start, np.abs(start), 1.0)
 
@@ -727,11 +710,10 @@ def _by_secants(branch: _Branch, first: Balance) -> Balance | _Pass:
         tried = branch.under(first, dict(zip(first.meshes, map(float, values * size), strict=True)))
         with np.errstate(divide="warn", invalid="warn"):
             last = branch.follow(tried)
-        new = last.balance if isinstance(last, _Pass) else last
-        return np.array(list(new.meshes.values())) / size - values
+        return np.array(list(last.meshes.values())) / size - values
 
     def left(_: FloatArray) -> float:
-        return 0.0 if isinstance(last, _Pass) else 1.0
+        return 1.0 if last.efficiencies is None else 0.0
 
     try:
         with np.errstate(divide="ignore", invalid="ignore"):  # secants through one point
