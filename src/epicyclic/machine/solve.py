@@ -381,9 +381,8 @@ def solve_machine(
     if floating:
         branch = replace(branch, braking=floating, passes=0)
         last = _converged(branch)
-    efficiencies = cast(Mapping[str, float], last.efficiencies)
-    if efficiencies != start.efficiencies and not directions.jammed:
-        directions = find_directions(start.statics, start.lossless, efficiencies)
+    if last.efficiencies != start.efficiencies and not directions.jammed:
+        directions = find_directions(start.statics, start.lossless, last.efficiencies or {})
     return branch.solution(last, directions), True
 
 
@@ -518,9 +517,7 @@ def _answered(
     allowed: float,  # Relative error of predicted losses.
 ) -> _Known:
     """The answer of an element to a state: the last one, one predicted from it, or a new one."""
-    drives = {
-        key: first for key, first in state.drives.items() if key.partition(".")[0] == element.key
-    }
+    drives = {key: it for key, it in state.drives.items() if key.startswith(f"{element.key}.")}
     last_one = None if known is None else known.result
     loads = element.loads(state, last_one)
     if known is None or not all(every(known.drives[key] == it) for key, it in drives.items()):

@@ -49,7 +49,7 @@ from epicyclic.study.sweeps.axes import (
     unit_of,
 )
 from epicyclic.study.sweeps.runner import TEXTS, Plan, Progress, Row, Rows, Runner
-from epicyclic.units import RPM, format_number, percent
+from epicyclic.units import NEWTON_METRE, RPM, Quantity, format_number, percent
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -124,7 +124,7 @@ def _numbers(
     """
     changed, alike = one_after_another(case), defaultdict[Any, list[Any]](list)
     for flow, changes in samples.items():
-        alike[_flow(changes, AXES["speed"])].append((_speed(changes), flow))
+        alike[_flow(changes, AXES["speed"])].append((_number(changes, AXES["speed"], RPM), flow))
     for slowest, *others in map(sorted, alike.values()):
         scale = True
         for place, (_, flow) in enumerate((slowest, *reversed(others))):
@@ -145,10 +145,10 @@ def _flow(changes: Mapping[str, Any], but: str = "") -> tuple[Any, ...]:
     return coasting, *own
 
 
-def _speed(changes: Mapping[str, Any]) -> float:
-    """Speed that changes state; 0 of none, or where it cannot be read, which the point reports."""
+def _number(changes: Mapping[str, Any], key: str, unit: Quantity) -> float:
+    """Number that changes state of a key; 0 of none, or of what the point reports as wrong."""
     try:
-        return RPM.parse(changes.get(AXES["speed"], "0 rpm"))
+        return unit.parse(changes.get(key, f"0 {unit.display}"))
     except PydanticCustomError:
         return 0.0
 
@@ -417,20 +417,20 @@ class PointList(CasePlan):
         return dict(self.points[index])
 
     def order(self) -> list[int]:
-        """Indices of all points, by geometry, then operation, then torque, as in a loss map."""
+        """Indices of all points, by geometry, then torque, then operation, as in a loss map."""
         return sorted(range(self.size), key=self._place)
 
     def describe(self) -> dict[str, Any]:
         """The case and the points."""
         return {**CasePlan.describe(self), "points": plain(self.points)}
 
-    def _place(self, index: int) -> tuple[list[str], list[str], str]:
+    def _place(self, index: int) -> tuple[list[str], float, list[str]]:
         changes = {key: str(value) for key, value in sorted(self.points[index].items())}
         inner = [key for key in changes if _is_operating(key)]
         return (
             [f"{key}={text}" for key, text in changes.items() if key not in inner],
+            _number(changes, _TORQUE, NEWTON_METRE),
             [f"{key}={changes[key]}" for key in inner if key != _TORQUE],
-            changes.get(_TORQUE, ""),
         )
 
 

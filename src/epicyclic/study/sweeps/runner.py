@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import errno
 import hashlib
 import json
@@ -609,9 +610,10 @@ def _received(sent: bytes) -> Plan:
 def _belong_to(parent: int) -> None:
     """Make this process, a child of `parent`, one of the program.
 
-    It ends soon after its parent, even in compiled code.
+    It ends soon after its parent, even in compiled code, and at once when it is told to.
     """
     look_seldom()
+    atexit.register(os._exit, 0)  # its parent waits, a fifth of a second, while memory is freed
 
     def watch() -> None:
         while os.getppid() == parent:
