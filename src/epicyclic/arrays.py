@@ -292,7 +292,7 @@ def one_by_one(function: Callable[..., Any], *args: Any) -> Any:
 
 
 def for_alike(truths: Sequence[Any], function: Callable[..., Any], *args: Any) -> Any:
-    """A call as `one_by_one`, for the points of which the same truths hold together."""
+    """A call as by `one_by_one`, made at once for those points for which the same truths hold."""
     sides = [np.asarray(truth)[:, 0] for truth in truths if isinstance(truth, Points)]
     if not sides:
         return one_by_one(function, *args)

@@ -90,7 +90,7 @@ from epicyclic.units import (
 PEAK_SHARE = 0.01
 """Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""
 MOSTLY_ENOUGH = 0.1  # Of the points that carry most, among which is where that share ends. [1]
-UNMODIFIED = FlankDeviations()
+UNMODIFIED = FlankDeviations()  # The same whichever gear drives.
 NOWHERE = 1e300  # Film ratio of what does not touch. [1]
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
