@@ -26,7 +26,7 @@ from epicyclic.arrays import (
     one_by_one,
     total,
 )
-from epicyclic.contact.elastic_teeth import GearBody, LoadedMesh, load_mesh_elastically
+from epicyclic.contact.elastic_teeth import UNMODIFIED, GearBody, LoadedMesh, load_mesh_elastically
 from epicyclic.contact.line_contact import Flanks
 from epicyclic.contact.temperatures import Solid
 from epicyclic.dataclass import dataclass, fields, replace
@@ -90,7 +90,6 @@ from epicyclic.units import (
 PEAK_SHARE = 0.01
 """Part of the contact that the largest line load and pressure of a mesh leave out. [1]"""
 MOSTLY_ENOUGH = 0.1  # Of the points that carry most, among which is where that share ends. [1]
-UNMODIFIED = FlankDeviations()  # The same whichever gear drives.
 NOWHERE = 1e300  # Film ratio of what does not touch. [1]
 OHLENDORF_SOURCE = "loss factor: H. Ohlendorf, Diss. TH Muenchen (1958)"
 
@@ -156,12 +155,12 @@ class MeshDuty:
     def deviations(self) -> FlankDeviations:
         """Of the flanks in contact: with the power reversed, those behind."""
         own = self.gears.deviations
-        return own if own == UNMODIFIED or self.drives1 else replace(own, mirrored=True)
+        return own if self.drives1 else replace(own, mirrored=True)
 
     def misaligned(self, by: float) -> MeshDuty:
         """The same with a further misalignment, along y of the contact lines, in metres."""
         deviations = self.gears.deviations
-        by = by if self.drives1 else -by
+        by = -by if self.deviations.mirrored else by
         tilted = replace(deviations, misalignment=deviations.misalignment + by)
         return replace(self, gears=replace(self.gears, deviations=tilted))
 
@@ -235,9 +234,10 @@ def distribute_load(duty: MeshDuty, last: LoadedMesh | None = None) -> LineLoads
 
     `last`, the mesh under nearly that torque, saves work.
     """
-    models = duty.gears.models
+    own, models = duty.gears.deviations, duty.gears.models
     distribution = LOAD_DISTRIBUTIONS[models.load_distribution]
-    load = MeshLoad(duty.gears.mesh, duty.force, duty.gears.solids, duty.deviations, last)
+    deviations = own if own == UNMODIFIED else duty.deviations  # alike on both flanks
+    load = MeshLoad(duty.gears.mesh, duty.force, duty.gears.solids, deviations, last)
     return distribution.distribute(load, models.positions, models.segments)
 
 
