@@ -39,7 +39,7 @@ from epicyclic.machine import gear_set, heat, solve
 from epicyclic.machine.element import LOAD_INDEPENDENT, ElementResult, Fluids, Loss, Note, State
 from epicyclic.machine.shaft_parts import ShaftPart
 from epicyclic.study.solve import solve_together
-from epicyclic.study.sweeps.run import make_plan
+from epicyclic.study.sweeps.run import PointList, make_plan
 from epicyclic.study.sweeps.runner import Runner
 
 TORQUES = (-310.0, -75.0, 0.0, 6.5, 48.0, 130.0, 270.0, 410.0, 555.0, 690.0, 820.0, 930.0)
@@ -458,6 +458,15 @@ def test_blocks_of_a_sweep_go_by_torque_then_speed() -> None:
     )
     assert torques == [torque for torque in vary["operation.torque"] for _ in range(18)]
     assert speeds == 4 * [speed for speed in vary["operation.speed"] for _ in range(2)]
+
+
+def test_single_points_go_by_torque_as_a_number() -> None:
+    at = [("110 N*m", 1700), ("-0.03 kN*m", 2300), ("9 N*m", 2900), ("9 N*m", 1300), (None, 1900)]
+    points = tuple(
+        {"operation.speed": f"{speed} rpm", **({"operation.torque": torque} if torque else {})}
+        for torque, speed in at
+    )
+    assert PointList(ep.load_case("talbot-2012"), points).order() == [1, 4, 3, 2, 0]
 
 
 def test_a_point_does_not_depend_on_shards_or_interruptions(tmp_path: Path) -> None:

@@ -205,7 +205,7 @@ class Balance:
     powers: Mapping[str, float]
     residual: float  # Largest torque left over, relative to the largest one. [1]
     unique: bool  # False if meshes or clutches share a load in more than one possible way.
-    # Of the meshes, where torques and losses agree.
+    # Of the meshes, if torques and losses agree; else None. [1]
     efficiencies: Mapping[str, float] | None = None
 
     @property
