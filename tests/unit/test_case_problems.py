@@ -223,6 +223,14 @@ def test_a_wrong_centre_distance_is_told_as_such():
     assert "Without profile shift it is 92.15 mm." in found.remedy
 
 
+def test_a_centre_distance_too_small_for_both_meshes_is_told_once():
+    tables = builtin_case("talbot-2012")
+    tables["gears"]["center_distance"] = "70 mm"
+    found = only(problems_of(read_case, tables))
+    assert found.key == "gears.center_distance"
+    assert "the sum of the base radii of sun and planet" in found.allowed
+
+
 @pytest.mark.parametrize(
     ("tables", "key", "words"),
     [

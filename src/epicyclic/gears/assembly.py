@@ -43,7 +43,9 @@ def set_problems(gearing: Gearing) -> list[Problem]:
             placed = True
     if gearing.planets and gearing.count is not None:
         problems += _assembly_problems(gearing, sound, placed=placed)
-    return list(dict.fromkeys(problems))  # a planet that cannot be cut is found in both meshes
+    # a planet that cannot be cut is found in both meshes, and so is a centre distance that is wrong
+    first = {(it.key, it.value, it.remedy): it for it in reversed(problems)}
+    return [it for it in problems if it is first[it.key, it.value, it.remedy]]
 
 
 # --- gears ----------------------------------------------------------------------------------------
