@@ -34,8 +34,7 @@ def set_problems(gearing: Gearing) -> list[Problem]:
     if not problems:
         sound, problems = sound_gears(gearing)
         problems += _hand_problems(gearing, sound)
-        distances = list(_distance_problems(gearing))
-        problems += distances
+        problems += (distances := list(_distance_problems(gearing)))
         thick = all(table.states_thickness for table in gearing.tables.values())
         complete = thick and None not in gearing.distances.values()
         if complete and not distances:  # else what is wrong with sizes shows in every mesh
@@ -105,8 +104,7 @@ def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
         if distances[mesh.key] is None and not math.isclose(*modules):
             one, two = mesh.pair
             own = f"mesh.{one}-{two}.center_distance"
-            remedy = f"Give gears.center_distance, or {own}."
-            yield Problem(own, "", "is missing.", remedy)
+            yield Problem(own, "", "is missing.", f"Give gears.center_distance, or {own}.")
     for body in gearing.planets:
         # all its meshes with central gears must put its pin at one radius
         found = [
