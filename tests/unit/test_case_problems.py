@@ -228,7 +228,7 @@ def test_a_centre_distance_too_small_for_both_meshes_is_told_once():
     tables["gears"]["center_distance"] = "70 mm"
     found = only(problems_of(read_case, tables))
     assert found.key == "gears.center_distance"
-    assert "the sum of the base radii of sun and planet" in found.allowed
+    assert "of the base radii of" in found.allowed
 
 
 @pytest.mark.parametrize(

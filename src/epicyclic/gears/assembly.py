@@ -42,9 +42,9 @@ def set_problems(gearing: Gearing) -> list[Problem]:
             placed = True
     if gearing.planets and gearing.count is not None:
         problems += _assembly_problems(gearing, sound, placed=placed)
-    # a planet that cannot be cut is found in both meshes, and so is a centre distance that is wrong
-    first = {(it.key, it.value, it.remedy): it for it in reversed(problems)}
-    return [it for it in problems if it is first[it.key, it.value, it.remedy]]
+    # a planet that cannot be cut is found in both meshes, and so is a wrong centre distance
+    told = {("center_distance" in it.key and (it.key, it.remedy)) or it: it for it in problems}
+    return list(told.values())
 
 
 # --- gears ----------------------------------------------------------------------------------------
