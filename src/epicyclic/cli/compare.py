@@ -32,9 +32,9 @@ from epicyclic.messages import refused
 from epicyclic.units import NUMBER
 
 if TYPE_CHECKING:
+    from epicyclic.case.tables.models import LoadDependent
     from epicyclic.study.measured.compare import ComparisonPlan
     from epicyclic.study.measured.comparison import MeasuredComparison
-    from epicyclic.study.sweeps.run import LoadDependent
     from epicyclic.study.sweeps.runner import Rows, Runner
     from epicyclic.study.table_file import TableForm
 

@@ -125,8 +125,8 @@ class ToothPlate:
 @lru_cache(maxsize=64)
 def tooth_plate(
     gear: Gear,
-    elastic_modulus: float,  # [Pa], [1]
-    poisson_ratio: float,  # [Pa], [1]
+    elastic_modulus: float,  # [Pa]
+    poisson_ratio: float,  # [1]
     face_terms: int,  # Polynomials along the tooth: more for teeth long against their height.
     tool: Tool,  # The tool that leaves the root fillet.
 ) -> ToothPlate:
@@ -256,8 +256,8 @@ class ElasticRing:
     radius: float  # Radius of its middle line. [m]
     thickness: float  # [m]
     width: float  # [m]
-    modulus: float  # [Pa], [1]
-    poisson_ratio: float  # [Pa], [1]
+    modulus: float  # [Pa]
+    poisson_ratio: float  # [1]
 
     @property
     def shear_stiffness(self) -> float:
@@ -321,8 +321,8 @@ def rim_coupling(
     mesh: Mesh,  # Its member 2 is the ring gear.
     lines: ContactLines,
     rim: Rim,
-    modulus: float,  # [Pa], [1]
-    poisson_ratio: float,  # [Pa], [1]
+    modulus: float,  # [Pa]
+    poisson_ratio: float,  # [1]
 ) -> FloatArray:
     """Deflection along the normal at each contact line under a unit force on each. Theory (E7).
 
@@ -368,8 +368,8 @@ to each other. One takes 0.25 MB with the default resolution, and 120 MB with th
 class GearBody:
     """What makes a gear yield beside its geometry."""
 
-    modulus: float  # [Pa], [1]
-    poisson_ratio: float  # [Pa], [1]
+    modulus: float  # [Pa]
+    poisson_ratio: float  # [1]
     tool: Tool | None = None  # The tool that leaves the root fillet; None for `default_tool`.
     rim: Rim | None = None  # Rim of a ring gear; None for a body that only yields under each tooth.
 

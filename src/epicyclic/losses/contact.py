@@ -116,14 +116,14 @@ def _touching(mesh: Mesh, lines: ContactLines) -> _Touching:
 
 
 def mesh_contact(
-    mesh: Mesh,  # The mesh and its contact lines.
-    lines: ContactLines,  # The mesh and its contact lines.
+    mesh: Mesh,
+    lines: ContactLines,  # Of the mesh.
     line_load: FloatArray,  # Load per length of each segment. [N/m]
     *,
     force: float,  # Transverse force along the line of action, positive. [N]
     speed1: float,  # Angular speed of member 1 relative to the carrier, positive. [rad/s]
-    oil: OilState,  # Oil at the contacts, and the surfaces.
-    flanks: Flanks[float],  # Oil at the contacts, and the surfaces.
+    oil: OilState,  # At the contacts.
+    flanks: Flanks[float],  # The surfaces.
     around: OilState | None = None,  # Oil around the gears, if its temperature differs.
 ) -> MeshContact:
     """Conditions at the loaded segments of `lines`. Theory (C2)."""
@@ -164,7 +164,7 @@ def mesh_contact(
 # .. math:: W'(x) = F_n\, k(x) \Big/ \int k\,\mathrm{d}l ,
 #
 # which balances the force exactly at every mesh position; ``compliance`` solves the contact of
-# elastic teeth (`epicyclic.elasticity`).
+# elastic teeth (`epicyclic.contact.elastic_teeth`).
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,7 +27,7 @@ _CAGE = re.compile(r"K(?P<bore>\d+)X(?P<outside>\d+)X(?P<width>\d+)")
 # Diameter of the rolling elements over D - d, share of the pitch circle that they fill, length over
 # the width of all rows; estimates after a few bearings whose rollers are known. Balls of deep
 # groove bearings fill an arc, over which the rings can be assembled.
-_ELEMENTS: Mapping[str, tuple[float, float, float]] = {
+ELEMENTS: Mapping[str, tuple[float, float, float]] = {
     "deep-groove": (0.3, math.nan, 0.0),
     "angular-contact": (0.3, 0.9, 0.0),
     "cylindrical": (0.275, 0.83, 0.65),
@@ -199,7 +199,7 @@ def with_elements(bearing: DesignatedBearing, diameter: float | None = None) -> 
 
     The elements of thrust bearings are left open, and so are their load ratings.
     """
-    share, fill, length = _ELEMENTS.get(bearing.type, (math.nan, 0.0, math.nan))
+    share, fill, length = ELEMENTS.get(bearing.type, (math.nan, 0.0, math.nan))
     pitch = (bearing.bore + bearing.outside_diameter) / 2
     if diameter is None:
         diameter = share * (bearing.outside_diameter - bearing.bore)

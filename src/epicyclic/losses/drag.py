@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
-from epicyclic.arrays import larger, pow, sqrt
+from epicyclic.arrays import between, larger, pow, sqrt
 from epicyclic.dataclass import dataclass
 from epicyclic.losses.ranges import OF_THIS_PACKAGE, ModelUse, Range, ValidityFlag, check_ranges
-from epicyclic.losses.windage import rim_coefficient
+from epicyclic.losses.windage import RIM_TRANSITION, rim_coefficient
 from epicyclic.oil.oil import MixtureState
 from epicyclic.units import METRE_PER_SECOND, MILLIMETRE, MILLIPASCAL_SECOND, NUMBER
 
@@ -45,7 +45,9 @@ _CREEPING = Range(
     "Hydrodynamics",
 )
 _RIM_SOURCE = "laminar flow around a cylinder, Theodorsen and Regier, NACA Report 793 (1944)"
-_RIM = Range("reynolds_number", "Reynolds number of the rim", None, 60.0, NUMBER, _RIM_SOURCE)
+_RIM = Range(
+    "reynolds_number", "Reynolds number of the rim", None, RIM_TRANSITION, NUMBER, _RIM_SOURCE
+)
 
 
 def bearing_viscous_loss(
@@ -84,8 +86,8 @@ def speed_parameter(speed: float, pitch_diameter: float) -> float:
 class DiscDrag(NamedTuple):
     """Drag of a disc, in two parts."""
 
-    rim: float  # Losses at the rim and at both faces. [W]
-    faces: float  # Losses at the rim and at both faces. [W]
+    rim: float  # [W]
+    faces: float  # Of both. [W]
 
 
 def disc_drag(
@@ -262,7 +264,7 @@ def changenet_velex(
     if not (omega**2) or not part.immersed:
         return 0.0
     parameter = acceleration_parameter(part, omega)
-    slow = 1 - larger(1 - larger((FAST - parameter) / (FAST - SLOW), 0.0), 0.0)
+    slow: float = between((FAST - parameter) / (FAST - SLOW), 0.0, 1.0)
     if oil.smooth:
         slow = slow**2 * (3 - 2 * slow)
     coefficient = slow * _slow_coefficient(part, omega, oil)

@@ -318,10 +318,14 @@ def pitch_point_pressure(contact: MeshContact) -> float:
     )
 
 
+def _mean_rms(contact: MeshContact) -> float:
+    """Mean rms roughness of both flanks. [m]"""
+    return (contact.flanks.roughness1 + contact.flanks.roughness2) / 2
+
+
 def mean_roughness_ra(contact: MeshContact) -> float:
     """(Ra1 + Ra2)/2 from the rms values of the flanks. Theory (F14). [m]"""
-    flanks = contact.flanks
-    return RA_OVER_RQ * (flanks.roughness1 + flanks.roughness2) / 2
+    return RA_OVER_RQ * _mean_rms(contact)
 
 
 # Friction formulas fitted to gear and disc tests, each held within the range of its tests.
@@ -368,11 +372,6 @@ def _relative_roughness(contact: MeshContact) -> float:
     """Ra/d1 in um/mm, as in the X_R of Niemann and Winter; d1 is that of the pinion."""
     pinion = min(contact.mesh.gear1.reference_radius, contact.mesh.gear2.reference_radius)
     return mean_roughness_ra(contact) * 1e6 / (2e3 * pinion)
-
-
-def _mean_rms(contact: MeshContact) -> float:
-    """Mean rms roughness of both flanks. [m]"""
-    return (contact.flanks.roughness1 + contact.flanks.roughness2) / 2
 
 
 def schlenk(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
@@ -487,7 +486,7 @@ def doleschel(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
 
 def matsumoto(contact: MeshContact, settings: FrictionSettings) -> FloatArray:
     """xi = log10(D)/2 within 0 to 1, D = (Rz1 + Rz2)/h_min. Theory (F10)."""
-    rz = RZ_OVER_RA * RA_OVER_RQ * (contact.flanks.roughness1 + contact.flanks.roughness2)
+    rz = RZ_OVER_RA * 2 * mean_roughness_ra(contact)
     return _mixed(np.clip(np.log10(rz / contact.minimum_film) / 2, 0.0, 1.0), settings)
 
 

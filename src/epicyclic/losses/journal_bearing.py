@@ -181,10 +181,8 @@ def asperity_force(bearing: JournalBearing, eccentricity: FloatArray) -> FloatAr
 
 def film_viscosity(oil: OilState, temperature: float) -> float:
     """Dynamic viscosity near the state of an oil, on its line of ASTM D341. Theory (Z6). [Pa s]"""
-    nu = oil.kinematic_viscosity / MM2_PER_S
-    Z = nu + D341_OFFSET
-    slope = oil.temperature * oil.thermoviscosity * nu / (Z * math.log(Z))
-    log_Z = math.log(Z) * math.pow(oil.temperature / temperature, slope)
+    Z = oil.kinematic_viscosity / MM2_PER_S + D341_OFFSET
+    log_Z = math.log(Z) * math.pow(oil.temperature / temperature, oil.d341_slope)
     return oil.density * MM2_PER_S * max(math.exp(log_Z) - D341_OFFSET, 0.0)
 
 

@@ -95,13 +95,11 @@ def _oil_constants(oil: OilState) -> tuple[float, ...]:
     """As `eyring_stress` takes them: the line of ASTM D341 that touches at this temperature."""
     viscosity = oil.kinematic_viscosity / MM2_PER_S
     shifted = viscosity + D341_OFFSET
-    # -d(log log(nu + 0.7))/d(log T) from beta = -d(ln nu)/dT
-    slope = oil.thermoviscosity * oil.temperature * viscosity / (shifted * log(shifted))
     return (
         oil.temperature,
         log(shifted),
         log(viscosity),
-        slope,
+        oil.d341_slope,
         oil.density * MM2_PER_S,
         oil.pressure_viscosity,
         oil.pressure_viscosity_exponent,

@@ -182,6 +182,10 @@ class RollerBearing:
             azimuth=azimuth,
         )
 
+    def roller_mass(self, density: float) -> float:
+        """Mass of one roller. [kg]"""
+        return density * math.pi / 4 * self.roller_diameter**2 * self.roller_length
+
     def rolling_speed(self, speed: float) -> float:
         """u_r = d_m omega (1 - d_r^2/d_m^2)/4. Talbot (2012), Eq. 3.4. Theory (B12). [m/s]"""
         ratio = self.roller_diameter / self.pitch_diameter
@@ -223,8 +227,8 @@ class BearingLoss:
 @lru_cache(maxsize=1024)
 def roller_loads(
     bearing: RollerBearing,
-    force_x: float,  # Radial load of the outer race. [N]
-    force_y: float,  # Radial load of the outer race. [N]
+    force_x: float,  # Radial load of the outer race along x. [N]
+    force_y: float,  # The same along y. [N]
     # moment_x, moment_y: Moments that tilt the outer race in the plane of the axis and x, and of
     # the axis and y: a load F_x at height z has the moment_x F_x z. [N m]
     moment_x: float,
@@ -308,8 +312,8 @@ def _solved(
 def tilting_moments(
     bearing: RollerBearing,
     force: float,  # [N]
-    tilt_x: float,  # In the planes of the axis and x, and of the axis and y. [rad]
-    tilt_y: float,  # In the planes of the axis and x, and of the axis and y. [rad]
+    tilt_x: float,  # In the plane of the axis and x. [rad]
+    tilt_y: float,  # In that of the axis and y. [rad]
 ) -> tuple[float, float]:
     """Moments that hold the outer race tilted under a radial force along x. Theory (B10). [N m]
 
@@ -481,10 +485,9 @@ def centrifugal_forces(
 
     Theory (B20). Rollers turn around the pin with their cage, and with the carrier.
     """
-    mass = density * math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
     cage = carrier + speed / 2 * (1 + bearing.roller_diameter / bearing.pitch_diameter)
     orbit = pin_radius * carrier**2 * np.cos(outward - azimuth)
-    return mass * (orbit + bearing.pitch_diameter / 2 * cage**2)
+    return bearing.roller_mass(density) * (orbit + bearing.pitch_diameter / 2 * cage**2)
 
 
 def pressed_alone(loads: RollerLoads, forces: FloatArray, length: float) -> RollerLoads:

@@ -250,9 +250,6 @@ class PocketFlow:
     mass_error: float
     periods: int  # Mesh periods from rest until the flow repeated.
     periodic: bool  # False if it did not; powers are then means of the last half of the periods.
-    # Speed of sound of the mixture in the model at ambient pressure; infinite for an incompressible
-    # one. [m/s]
-    sound_speed: float
     angle: FloatArray  # Rotation of gear 1 at the end of each step, one pitch in all. [rad]
     # Angle of each pocket at the beginning, at the first end of the face: of its tooth or space of
     # gear 1 from the line of centres. [rad]
@@ -366,7 +363,6 @@ def _compressible_flow(
         mass_error=(come - out - gone - stored) / come,
         periods=abs(periods),
         periodic=periods > 0,
-        sound_speed=sound_speed(mixture, pressure),
         pressure=pressure * history[0],
         axial_speed=history[1],
         gap_speed=history[2],
@@ -397,7 +393,6 @@ def _scaled_up(
         mass_error=flow.mass_error,
         periods=abs(flow.periods),
         periodic=flow.periods > 0,
-        sound_speed=math.inf,
         pressure=head * flow.pressure,
         axial_speed=speed * flow.axial_speed,
         gap_speed=speed * flow.gap_speed,

@@ -199,8 +199,8 @@ class Cells:
     volume: Floats  # [m^3]
     # Growth of the volume in a stage of a step, at the rate of the end of the stage. [m^3]
     growth: Floats
-    axial: Floats  # Areas of openings. [m^2]
-    gap: Floats  # Areas of openings. [m^2]
+    axial: Floats  # Areas of the openings between slices. [m^2]
+    gap: Floats  # Areas of the openings between pockets. [m^2]
     axial_reach: Floats  # Distances of openings from the cells before and behind. [m]
     gap_reach: Floats  # Distances of openings from the cells before and behind. [m]
     live: NDArray[np.bool_]  # Which cells are pockets.

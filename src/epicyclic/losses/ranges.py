@@ -218,7 +218,6 @@ class Sought(Generic[Item]):
 
 
 class Flags(Sought[ValidityFlag]):
-    pointwise = True
     __slots__ = ()
 
     def __add__(self, other: Flags | tuple[ValidityFlag, ...]) -> Flags:

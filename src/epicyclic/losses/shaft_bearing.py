@@ -177,8 +177,8 @@ class FrictionPart:
     key: str  # ``"mechanical"``, ``"viscous"``, ``"drag"`` or ``"friction"``.
     by_load: bool  # True if the part grows with the load.
     watts: float  # [W]
-    method: str  # The model and where it is printed.
-    source: str  # The model and where it is printed.
+    method: str  # The model.
+    source: str  # Where it is printed.
 
 
 def bearing_types(model: str) -> tuple[BearingType, ...]:

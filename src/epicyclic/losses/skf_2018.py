@@ -56,12 +56,12 @@ _SUPPLY = Range(
 class SkfConstants:
     """Constants of one series in SKF's model."""
 
-    rolling_1: float  # R1 and R2 of G_rr.
-    rolling_2: float  # R1 and R2 of G_rr.
-    sliding_1: float  # S1 and S2 of G_sl.
-    sliding_2: float  # S1 and S2 of G_sl.
-    bearing_factor: float  # K_Z and K_L. [1]
-    roller_length_factor: float  # K_Z and K_L. [1]
+    rolling_1: float  # R1 of G_rr.
+    rolling_2: float  # R2 of G_rr.
+    sliding_1: float  # S1 of G_sl.
+    sliding_2: float  # S2 of G_sl.
+    bearing_factor: float  # K_Z. [1]
+    roller_length_factor: float  # K_L. [1]
     ball_rows: int  # i_rw; 0 for rollers.
     # True if R and S were checked against a publication; False if they are second hand.
     is_read: bool

@@ -24,6 +24,7 @@ from epicyclic.kernels.line_contact import (
     hertz_pressure,
     inlet_film_factor,
 )
+from epicyclic.losses.designations import ELEMENTS
 from epicyclic.losses.drag import (
     SPEED_PARAMETER,
     VISCOUS_METHOD,
@@ -57,13 +58,12 @@ RIB_HEIGHT = 0.03
 """Height of the contact on the rib over D - d: with it `RIB_FRICTION` gives the starting friction
 of SKF's series 302 to 323 within 12 %. [1]"""
 ROLLER_SHARES: Mapping[BearingType, tuple[float, float, float]] = {
-    "tapered": (0.26, 0.87, 0.7),
-    "cylindrical": (0.275, 0.83, 0.65),
+    "tapered": ELEMENTS["tapered"],
+    "cylindrical": ELEMENTS["cylindrical"],
     "thrust-roller": (0.29, 0.66, 0.29),
 }
-"""Roller diameter over D - d, share of the pitch circle that rollers fill, roller length over B, of
-thrust bearings over D - d. Estimates, those of bearings by designation; those of thrust bearings
-have with ISO 76 the static rating of an 81107. [1]"""
+"""As `ELEMENTS`, the length of thrust rollers over D - d: these have with ISO 76 the static rating
+of an 81107. [1]"""
 THRUST_ROUGHNESS = (0.15e-6, 0.1e-6)
 """Rms of race and roller, estimates, those of planets by designation. [m]"""
 AS_MADE = Surfaces(running_in=1.0)

@@ -35,6 +35,7 @@ def solution_of(matrix: FloatArray, right: FloatArray) -> FloatArray | None:
 
 SINGULAR = 1e-10
 """Singular values below this share of the largest count as zero: rows are scaled to length 1."""
+LOOSE = 1e-8  # Part of a body in what stays open, from which its speed is open. [1]
 TOGETHER = 1e-12  # Speeds that differ by less, relative to the fastest body, are one speed. [1]
 
 
@@ -58,7 +59,7 @@ def freedom(
     free = _null_space(np.vstack([others, np.eye(len(bodies))[bodies.index(driven)]]))
     blocked = bool(np.abs(_null_space(others)[bodies.index(driven)]).max(initial=0.0) < SINGULAR)
     loose = tuple(
-        body for body, row in zip(bodies, free, strict=True) if np.abs(row).max(initial=0.0) > 1e-8
+        body for body, row in zip(bodies, free, strict=True) if np.abs(row).max(initial=0.0) > LOOSE
     )
     return Freedom(blocked, loose, free.shape[1])
 
@@ -171,8 +172,6 @@ def _null_space(matrix: FloatArray) -> FloatArray:
 # A torque is the one that acts on a body from outside, so that torque times speed is the power that
 # enters there.
 
-UNBALANCED = 1e-9
-"""Torque left over, relative to the largest one, beyond which there is no balance. [1]"""
 SINGULAR_BALANCE = 1e-13  # Singular values below this share of the largest count as zero.
 LARGEST_FACTOR = 1e6
 """Torques over the given ones beyond which the rank of the system is looked at. [1]"""
@@ -203,15 +202,9 @@ class Balance:
     # Rolling power of each mesh: what it would pass with its carrier at rest, positive if the first
     # gear drives. [W]
     powers: Mapping[str, float]
-    residual: float  # Largest torque left over, relative to the largest one. [1]
     unique: bool  # False if meshes or clutches share a load in more than one possible way.
     # Of the meshes, if torques and losses agree; else None. [1]
     efficiencies: Mapping[str, float] | None = None
-
-    @property
-    def holds(self) -> bool:
-        """False if no torques balance: the output is not connected to the input."""
-        return self.residual <= UNBALANCED
 
 
 @dataclass(frozen=True)
@@ -262,7 +255,6 @@ class Statics:
         values = apart(found)
         size = largest((*apart(known), *values))
         values = [value * (abs(value) > ROUNDING * size) + 0.0 for value in values]  # no -0.0
-        left = (matrix @ side_by_side(values)[..., None])[..., 0] + known
         lambdas = [value / length for value, length in zip(values, scale, strict=False)]
         outside = given | dict(zip(unknown, values[len(scale) :], strict=True))
         meshes = {row.key: -value * row.teeth[0] for row, value in zip(rows, lambdas, strict=False)}
@@ -276,7 +268,6 @@ class Statics:
             powers={
                 row.key: meshes[row.key] * (speeds[row.first] - speeds[row.carrier]) for row in rows
             },
-            residual=largest(apart(left)) / size if size else 0.0,
             unique=unique,
         )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 
-from epicyclic.arrays import larger
+from epicyclic.arrays import between
 from epicyclic.dataclass import dataclass
 from epicyclic.gears.gear import HOUSING
 from epicyclic.losses.drag import (
@@ -143,7 +143,7 @@ def disc_loss(
                     partial(disc_drag_flags, disc.where, body.radius, smooth, speed, mixture)
                 )
             else:
-                mist = state.fluids.mixed(-larger(-disc.oil_fraction, -MIST_SHARE))
+                mist = state.fluids.mixed(between(disc.oil_fraction, None, MIST_SHARE))
                 viscosity = state.fluids.oil.dynamic_viscosity
                 parts = drag(body, speed, mixture, mist, viscosity, disc.model)
                 watts = disc.count * sum(parts)

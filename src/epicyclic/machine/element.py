@@ -271,8 +271,8 @@ class Loss(NamedTuple):
 
     group: str  # `LOAD_DEPENDENT` or `LOAD_INDEPENDENT`.
     watts: float = 0.0  # Never negative. [W]
-    method: str = ""  # The model and where it is printed.
-    source: str = ""  # The model and where it is printed.
+    method: str = ""  # The model.
+    source: str = ""  # Where it is printed.
     left_out: str = ""  # Why there is no such loss; empty if there is.
     # Two bodies each whose relative motion the loss brakes, and its share there. [1]
     brakes: tuple[tuple[str, str, float], ...] = ()

@@ -105,8 +105,8 @@ class MeshModels:
     # True for mean friction times Ohlendorf's loss factor, without rolling loss.
     by_loss_factor: bool
     load_distribution: str  # A key of `LOAD_DISTRIBUTIONS`.
-    positions: int  # Resolution: mesh positions, segments of a contact line.
-    segments: int  # Resolution: mesh positions, segments of a contact line.
+    positions: int  # Of the mesh in one period that are solved.
+    segments: int  # Of a contact line.
     pockets: PocketSettings
 
     @property
@@ -222,8 +222,6 @@ class MeshFigures:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeshResult(ElementResult):
     """Losses, figures and flags of one mesh, and what the next pass goes on from."""
-
-    pointwise = True
 
     elastic: LoadedMesh | None  # The teeth under load, if they are elastic.
     friction: FrictionModel  # With what it has solved.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -137,8 +136,8 @@ class Planet:
         found: tuple[str, ...] = ()
         if isinstance(self.bearing, PlanetBearing):
             rollers = self.bearing.bearing
-            volume = math.pi / 4 * rollers.roller_diameter**2 * rollers.roller_length
-            pull = self.bearing.roller_density * volume * self.pin_radius * carrier_speed**2
+            mass = rollers.roller_mass(self.bearing.roller_density)
+            pull = mass * self.pin_radius * carrier_speed**2
             count = rollers.rows * rollers.rollers_per_row
             if pull > LEAST_PULL and count * pull > WORTH_A_NOTE * load.force:
                 found = (self._roller_note(where, pull, load.force),)
@@ -192,8 +191,6 @@ class GearSetResult(ElementResult):
     From `drags` on: what the next evaluation goes on from.
     """
 
-    pointwise = True
-
     # Share of the load that each planet carries; empty without planets. [1]
     shares: tuple[float, ...] = ()
     drags: Drags
@@ -217,8 +214,6 @@ class GearSetResult(ElementResult):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Branch(ElementResult):
     """Losses of all planets with one and the same share, and the figures of one."""
-
-    pointwise = True
 
     meshes: Mapping[tuple[str, int], MeshResult]
     bearings: Mapping[tuple[str, int], BearingResult]

@@ -52,7 +52,7 @@ class ShaftLoad:
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
-    """BearingLoad of a bearing on the shaft."""
+    """Force of a bearing on the shaft."""
 
     x: float  # [N]
     y: float  # [N]
@@ -174,7 +174,7 @@ def mesh_force(
     *,
     internal: bool = False,  # True for a ring gear.
 ) -> FloatArray:
-    """BearingLoad of a mesh on a gear, shape (3,). Theory (J19). [N]
+    """Force of a mesh on a gear, shape (3,). Theory (J19). [N]
 
     Let e be the unit vector from the axis of the gear to the pitch point and t = z x e, the sense
     in which the gear turns there about +z. A torque tau about +z is the moment of the component
@@ -267,9 +267,9 @@ class MeshRow:
     """Two gears in mesh, each on a body, seen from a carrier."""
 
     key: str  # ``"P1.sun_mesh"``.
-    first: str  # Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
-    second: str  # Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
-    carrier: str  # Bodies of gear 1, gear 2 and the carrier; `HOUSING` for axes that stand still.
+    first: str  # The body of gear 1.
+    second: str  # The body of gear 2.
+    carrier: str  # `HOUSING` for axes that stand still.
     teeth: tuple[float, float]  # Numbers of teeth of gear 1 and gear 2. [1]
     internal: bool = False  # True if gear 2 is a ring gear around gear 1.
     # Given: power that leaves the mesh over power that enters, with the carrier at rest. Losses of
@@ -305,8 +305,8 @@ class Operation:
 
     pointwise = True
 
-    input: str  # The body of given torque, and the one whose torque balances.
-    output: str  # The body of given torque, and the one whose torque balances.
+    input: str  # The body of given torque.
+    output: str  # The body whose torque balances.
     torque: float  # On the input, from outside. [N m]
     # Given speeds: of the input, of bodies that are held, of bodies that are driven as well.
     # [rad/s]

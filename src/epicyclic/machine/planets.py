@@ -220,8 +220,8 @@ class PlanetLoad:
     pointwise = True
 
     force: float  # Radial. [N]
-    moment_x: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
-    moment_y: float  # Tilting moments in the planes of the axis and x, and of the axis and y. [N m]
+    moment_x: float  # Tilting moment in the plane of the axis and x. [N m]
+    moment_y: float  # The same in that of the axis and y. [N m]
     # Azimuth of the way outward from the axis of the set, from the most loaded rollers. [rad]
     outward: float = 0.0
 
@@ -561,8 +561,6 @@ Carried = RollerLoads | JournalState | None
 class BearingResult(ElementResult):
     """Losses of the planet bearings, and the figures of one of them."""
 
-    pointwise = True
-
     loads: Carried = None  # On its rollers or film: what the next pass goes on from.
 
 
@@ -642,8 +640,7 @@ def solve_bearing(
     if own.model == FULL_COMPLEMENT:
         if isinstance(load.force, Points):
             raise Alone
-        volume = math.pi / 4 * bearing.roller_diameter**2 * bearing.roller_length
-        pull = own.roller_density * volume * pin_radius * carrier**2
+        pull = bearing.roller_mass(own.roller_density) * pin_radius * carrier**2
         rubbed = rubbing(bearing, loads, speed, oil, pull, load.outward)
         watts += rubbed.between + rubbed.skewed
         notes = (_rubbing_note(where, rubbed),)

@@ -33,6 +33,8 @@ from epicyclic.arrays import (
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError, EpicyclicError, is_interrupt
 from epicyclic.machine.balance import (
+    NO_POWER,
+    ROUNDING,
     Balance,
     Directions,
     Friction,
@@ -63,7 +65,6 @@ Losses = Mapping[str, Loss]
 CAUTION = 2.0  # How much larger the error of predicted losses is taken to be than its estimate. [1]
 STEEP, STEEPEST = 3.0, 10.0  # Power with which few losses rise with a load, and none. [1]
 NEAR = 3e-5  # Change of a load over which the figures of an answer serve. [1]
-ROUNDING = 1e-14  # Change, relative to the largest load, that is rounding. [1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -205,7 +206,6 @@ PREDICTED = 0.1
 are small beside powers, so that the error leaves less of the change than a pass does. [1]"""
 LOSS_AGREEMENT = 1e-7
 """Error of predicted losses, at most, however little losses move the loads. [1]"""
-NO_POWER = 1e-12  # Power, relative to the largest one, that is rounding. [1]
 LIKELY = 0.9985  # Efficiency of a mesh that the first pass begins with. [1]
 PLAIN_PASSES, SECANTS = 15, 40
 """Passes in which loads follow the losses, and of a method of secants."""
@@ -227,8 +227,8 @@ class Solution:
 
     pointwise = True
 
-    speeds: Mapping[str, float]  # Speeds of every body, and torques from outside. [rad/s], [N m]
-    torques: Mapping[str, float]  # Speeds of every body, and torques from outside. [rad/s], [N m]
+    speeds: Mapping[str, float]  # Of every body. [rad/s]
+    torques: Mapping[str, float]  # From outside, on every body. [N m]
     couplings: Mapping[str, float]  # Torque through each clutch. [N m]
     # Torque that each mesh takes up at its first gear, at the load of its driving gear. [N m]
     meshes: Mapping[str, float]

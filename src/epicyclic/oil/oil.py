@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from epicyclic.arrays import FloatArray, pow
+from epicyclic.arrays import FloatArray, log, pow
 from epicyclic.dataclass import dataclass
 from epicyclic.units import (
     CELSIUS,
@@ -303,6 +303,13 @@ class OilState:
     pressure_viscosity_exponent: float  # d(ln alpha)/d(ln nu). [1]
     limiting_traction: float  # Lambda, of the shear stress at high pressure. [1]
     boundary_friction: float  # mu_b, of asperities. [1]
+
+    @property
+    def d341_slope(self) -> float:
+        """-d(log log(nu + 0.7))/d(log T) of the line of ASTM D341 that touches here. [1]"""
+        nu = self.kinematic_viscosity / MM2_PER_S
+        shifted = nu + D341_OFFSET
+        return self.temperature * self.thermoviscosity * nu / (shifted * log(shifted))
 
     def thermal_load(self, speed: Real) -> Real:
         """mu beta u^2/k of an inlet with this rolling speed. Theory (R6). [1]"""

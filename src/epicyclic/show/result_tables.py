@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from epicyclic.case.case import Case
+from epicyclic.case.tables.models import AS_TESTED
 from epicyclic.errors import ConvergenceError
 from epicyclic.machine.element import Figure, figures
 from epicyclic.machine.gear_mesh import MeshFigures
@@ -128,7 +129,7 @@ def losses_table(result: Result, *, most: int | None = None) -> Table:
         shown_from = max(sorted(losses.values(), reverse=True)[:most][-1], least)
     rows: list[tuple[Cell, ...]] = []
     strong = []
-    tested = ", as tested" if result.inputs["models"].get("load_dependent") == "as-tested" else ""
+    tested = ", as tested" if result.inputs["models"].get("load_dependent") == AS_TESTED else ""
     for group in dict.fromkeys(groups.values()):
         key, rest = group.replace("-", "_"), 0.0
         for name, watts in losses.items():

@@ -13,6 +13,7 @@ from rich.console import Group, RenderableType
 from rich.table import Column, Table
 from rich.text import Text
 
+from epicyclic.case.tables.models import AS_TESTED
 from epicyclic.messages import one_line
 from epicyclic.result.result import in_words, of_gear
 from epicyclic.show.page import MISSING, error_text, shown
@@ -20,7 +21,6 @@ from epicyclic.show.terminal import Sentence, number_table, plain_table, spaced,
 from epicyclic.study.measured.comparison import CALIBRATED, ErrorFigures, MeasuredComparison
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.operating import OPERATING
-from epicyclic.study.sweeps.run import AS_TESTED
 from epicyclic.units import decimals_of, format_number, percent, unit_text
 
 if TYPE_CHECKING:

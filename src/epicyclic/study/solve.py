@@ -11,6 +11,7 @@ from typing import Any
 from epicyclic.build.machine import Built, build, solve_all
 from epicyclic.build.result import assemble
 from epicyclic.case.case import Case, TrainCase
+from epicyclic.case.tables.models import AS_TESTED, COMPUTED
 from epicyclic.contact.elastic_teeth import LoadedMesh
 from epicyclic.errors import one_problem
 from epicyclic.losses.contact import MeshContact
@@ -76,7 +77,7 @@ def solve_together(
     tested = {
         number: case
         for number, case in enumerate(cases)
-        if case.models.load_dependent == "as-tested" and not isinstance(found[number], Exception)
+        if case.models.load_dependent == AS_TESTED and not isinstance(found[number], Exception)
     }
     unloaded = _each_of(assemble, list(tested.values()), flow_tables, without_torque)
     for number, other in zip(tested, unloaded, strict=True):
@@ -137,7 +138,7 @@ def _losses_and_power(case: Case, built: Built, settled: Settled) -> tuple[dict[
 
 def without_torque(case: Case) -> Case:
     """The case with no torque but that which its losses cause."""
-    changes = {"models.load_dependent": "computed", AXES["torque"]: "0 N*m"}
+    changes = {"models.load_dependent": COMPUTED, AXES["torque"]: "0 N*m"}
     if isinstance(case, TrainCase):
         changes |= {f"operation.torques.{shaft}": "0 N*m" for shaft in case.operation.torques}
     return case.updated(changes)

@@ -23,7 +23,7 @@ from epicyclic.arrays import FloatArray
 from epicyclic.case.case import Case, TrainCase, read_case
 from epicyclic.case.keys import value_of
 from epicyclic.case.tables.elements import ShaftBearingTable
-from epicyclic.case.tables.models import GearPairModels
+from epicyclic.case.tables.models import AS_TESTED, COMPUTED, GearPairModels
 from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import ConvergenceError, InputError, Problem, one_problem, raise_any
 from epicyclic.files import read_text
@@ -35,7 +35,7 @@ from epicyclic.study.bands.study import quick_band
 from epicyclic.study.measured.table import LOAD_DEPENDENT, loss_names, parts_of
 from epicyclic.study.operating import AXES
 from epicyclic.study.solve import solve
-from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, PointList, as_tested, with_unloaded
+from epicyclic.study.sweeps.run import PointList, as_tested, with_unloaded
 from epicyclic.study.sweeps.runner import HERE, Runner
 from epicyclic.units import NEWTON_METRE, NUMBER, WATT, Quantity
 

@@ -44,6 +44,10 @@ LoadPressure = Annotated[
 
 PRESSURE_NAMES: dict[type[PressureLaw], Any] = {law: name for name, law in PRESSURE_LAWS.items()}
 USUAL = PRESETS[DEFAULT]
+LoadDependent = Literal["computed", "as-tested"]
+"""What load-dependent losses are; `study.sweeps.run` says how a rig forms them."""
+COMPUTED: LoadDependent = "computed"
+AS_TESTED: LoadDependent = "as-tested"
 PresetName = Literal["usual", "as-published"]
 PRESET = (
     "Assumptions for keys that are not given; as-published: those made before the comparison "
@@ -331,10 +335,10 @@ class GearPairModels(Table):
         "set without its own losses at the given torque, as in the source.",
         "with-losses",
     )
-    load_dependent: Literal["computed", "as-tested"] = option(
+    load_dependent: LoadDependent = option(
         "Definition of the load-dependent loss: the sum of the load-dependent terms, or, as on "
         "a test rig, the increase of the total due to torque.",
-        "computed",
+        COMPUTED,
     )
     mesh: Literal["local", "loss-factor"] = option(
         "local: along the contact lines; loss-factor: mean friction times Ohlendorf's.", "local"

@@ -14,18 +14,20 @@ import numpy as np
 
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.case.case import Case
+from epicyclic.case.tables.models import AS_TESTED
 from epicyclic.case.tables.uncertainty import UncertainValue
 from epicyclic.dataclass import dataclass
 from epicyclic.errors import EpicyclicError, Problem, Status, one_problem, raise_any
 from epicyclic.losses.pocket_tables import FlowTables
+from epicyclic.machine.balance import NO_POWER
 from epicyclic.machine.element import LOAD_DEPENDENT
-from epicyclic.machine.solve import LOSS_AGREEMENT, NO_POWER
+from epicyclic.machine.solve import LOSS_AGREEMENT
 from epicyclic.result.result import LossTerm, Result
 from epicyclic.schema.read import plain
 from epicyclic.study.bands.inputs import model_form_of, uncertain_values
 from epicyclic.study.bands.samples import Samples, groups_of, make_samples
 from epicyclic.study.solve import flows_around, losses_and_powers, without_torque
-from epicyclic.study.sweeps.run import AS_TESTED, CasePlan
+from epicyclic.study.sweeps.run import CasePlan
 from epicyclic.study.sweeps.runner import Row, Rows, Runner
 
 # From losses and factors of models to the results that have a band.

@@ -25,7 +25,7 @@ from epicyclic.result.result import Layout, number_fields
 from epicyclic.study.heat import with_network
 from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.tables import SUMS, Lookup, check_map, map_case, map_inputs
-from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, axis_name, key_of
+from epicyclic.study.operating import AXES, CASE_KEY, OPERATING, STATE, STATE_KEY, axis_name, key_of
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.axes import Axis
 from epicyclic.study.sweeps.run import (
@@ -94,9 +94,9 @@ class Sample:
 def further_values(data: xr.Dataset) -> dict[str, Any]:
     """The keys of the axes of a map beyond its own, which have one value each, and these."""
     return {
-        str(values.attrs["case_key"]): written_values(values)[0]
+        str(values.attrs[CASE_KEY]): written_values(values)[0]
         for name, values in data.coords.items()
-        if "case_key" in values.attrs and name not in (*AXES, STATE)
+        if CASE_KEY in values.attrs and name not in (*AXES, STATE)
     }
 
 
@@ -447,7 +447,7 @@ def stored_plan(data: xr.Dataset) -> MapPlan:
         raise one_problem("case", "", allowed, "Compute the map again.", "the map")
     values = {str(name): written_values(data[name]) for name in data["torque_loss"].dims}
     own = {name: values.pop(name, None) for name in (*AXES, STATE)}
-    further = {str(data[name].attrs["case_key"]): texts for name, texts in values.items()}
+    further = {str(data[name].attrs[CASE_KEY]): texts for name, texts in values.items()}
     speed, torque, temperature, states = own.values()
     return map_plan(case, speed or (), torque or (), temperature, further, states)
 
@@ -539,7 +539,7 @@ def to_map(plan: MapPlan, rows: Rows) -> xr.Dataset:
     if "ratio" in data and not operation_of(plan.case).driven:
         data["ratio"] = _one_ratio(data["ratio"])
     for axis in plan.axes:
-        data[axis_name(axis.key)].attrs["case_key"] = axis.key
+        data[axis_name(axis.key)].attrs[CASE_KEY] = axis.key
     data.attrs = _attributes(plan, data.attrs)
     return data[["torque_loss", *(name for name in data.data_vars if name != "torque_loss")]]
 

@@ -13,6 +13,7 @@ import numpy as np
 from epicyclic.arrays import BoolArray
 from epicyclic.case.case import Case, CaseTable, build_case
 from epicyclic.case.keys import OFF_OPEN_BOUND, Parameter, no_start, parameter_of
+from epicyclic.case.tables.models import AS_TESTED, COMPUTED, LoadDependent
 from epicyclic.case.tables.uncertainty import MODEL_FORM, model_forms
 from epicyclic.dataclass import asdict, dataclass, field, replace
 from epicyclic.errors import Problem, one_problem, raise_any
@@ -39,7 +40,7 @@ from epicyclic.study.measured.table import (
     parts_of,
     read_grid,
 )
-from epicyclic.study.sweeps.run import AS_TESTED, COMPUTED, CasePlan, LoadDependent, PointList
+from epicyclic.study.sweeps.run import CasePlan, PointList
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
 from epicyclic.study.table_file import AS_IT_IS, TableForm
 

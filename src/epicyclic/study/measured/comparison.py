@@ -14,6 +14,7 @@ from pydantic_core import to_jsonable_python
 from epicyclic.arrays import BoolArray, FloatArray
 from epicyclic.build.result import NOT_INCLUDED
 from epicyclic.case.case import Case
+from epicyclic.case.tables.models import LoadDependent
 from epicyclic.case.tables.uncertainty import MODEL_FORM, model_forms
 from epicyclic.dataclass import asdict, dataclass
 from epicyclic.errors import first_of
@@ -24,7 +25,6 @@ from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.measured.residuals import Computed
 from epicyclic.study.measured.table import Measurements
 from epicyclic.study.operating import OPERATING
-from epicyclic.study.sweeps.run import LoadDependent
 from epicyclic.units import CELSIUS, format_number
 
 if TYPE_CHECKING:

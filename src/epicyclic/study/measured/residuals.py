@@ -15,21 +15,14 @@ import numpy as np
 from epicyclic.arrays import BoolArray, FloatArray, IntArray
 from epicyclic.case.case import Case
 from epicyclic.case.keys import Parameter
+from epicyclic.case.tables.models import AS_TESTED, COMPUTED, LoadDependent
 from epicyclic.dataclass import dataclass, field, replace
 from epicyclic.errors import ConvergenceError, InputError
 from epicyclic.losses.pocket_flow import NETWORK_MODELS
 from epicyclic.losses.pocket_tables import FlowFamily, FlowTable, FlowTables
 from epicyclic.study.measured.table import LOAD_DEPENDENT, Measurements, parts_of
 from epicyclic.study.solve import pocket_flow_numbers
-from epicyclic.study.sweeps.run import (
-    AS_TESTED,
-    COMPUTED,
-    LoadDependent,
-    PointList,
-    as_tested,
-    flows_asked,
-    with_unloaded,
-)
+from epicyclic.study.sweeps.run import PointList, as_tested, flows_asked, with_unloaded
 from epicyclic.study.sweeps.runner import HERE, Rows, Runner
 
 # Flows through pockets for cases next to each other, read between flows at fixed numbers.

@@ -13,7 +13,7 @@ from contextlib import closing, suppress
 from functools import partial
 from pathlib import Path
 from threading import Lock
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from pydantic_core import PydanticCustomError
@@ -779,11 +779,6 @@ def to_table(dataset: xr.Dataset) -> pd.DataFrame:
 # loaded oil is hotter and drags less, so that this is less than the loss that depends on the load.
 
 Points = tuple[dict[str, Any], ...]
-
-LoadDependent = Literal["computed", "as-tested"]
-"""What load-dependent losses are: the sum of the losses that depend on the load, or as above."""
-COMPUTED: LoadDependent = "computed"
-AS_TESTED: LoadDependent = "as-tested"
 
 
 def with_unloaded(points: Sequence[Mapping[str, Any]]) -> tuple[Points, IntArray]:
