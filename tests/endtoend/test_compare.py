@@ -65,6 +65,10 @@ def test_negative_losses_are_told_with_their_lines(call, tmp_path):
     assert done.returncode == 0, done.stderr
     told = " ".join(done.stdout.split())
     assert "measured losses are negative: -4.5 W in line 3, -1 W in line 4." in told
+    assert "exceed the power" not in told
+    path.write_text("speed [rpm],torque [N*m],loss [kW]\n2000,300,989\n1700,130,4.5\n900,0,1\n")
+    told = " ".join(call("train-8hp70", str(path)).stdout.split())
+    assert "measured losses exceed the power at the input: 989000 W in line 2." in told
 
 
 @pytest.mark.slow

@@ -299,6 +299,16 @@ def test_command_reports_failed_points(tmp_path, epicyclic):
     assert len(pd.read_csv(tmp_path / "s.csv")) == 2
 
 
+def test_a_key_that_changes_no_loss_is_told(tmp_path, epicyclic, coarse_options):
+    done = epicyclic(
+        *("sweep", "talbot-2012", *coarse_options, "--vary", "thermal.oil_volume=2,3 l"),
+        *("--vary", "operation.torque=310,700 N*m", "-o", str(tmp_path / "s.csv")),
+    )
+    assert done.returncode == 0
+    assert "Note: no loss changes with thermal.oil_volume.\n" in done.stderr
+    assert "operation.torque." not in done.stderr
+
+
 @pytest.mark.parametrize(
     ("output", "words"), [("s.xls", ".parquet"), ("missing/s.csv", "does not exist")]
 )

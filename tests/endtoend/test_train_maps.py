@@ -370,6 +370,7 @@ def test_a_column_of_states_means_nothing_to_a_single_set(pair_map):
     cycle = {"duration [s]": [1.0], "speed [rpm]": [2000], "torque [N*m]": [50], "state": ["on"]}
     result = ep.duty_cycle(pair_map, cycle, ["40 degC"], samples=1)
     assert "state" not in result.dims
+    assert result.attrs["cycle"] == "the cycle, 1 row; columns not used: state"
 
 
 def test_the_command_shows_the_energy_of_each_state(data, tmp_path, epicyclic):
@@ -383,6 +384,9 @@ def test_the_command_shows_the_energy_of_each_state(data, tmp_path, epicyclic):
     text, other = (output.partition("\ncycle: ")[0] for output in shown)
     assert text == other
     assert "States: energy in kJ" in text
+    rows = [line.split() for line in text.partition("States:")[2].splitlines()]
+    durations = {row[0]: row[4] for row in rows if row and row[0] in CYCLE["state"]}
+    assert durations == {"1": "2.5", "2": "5.0", "R": "5.0", "8": "2.5"}
 
 
 # --- sweeps and measurements ----------------------------------------------------------------------

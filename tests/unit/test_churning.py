@@ -13,6 +13,7 @@ from epicyclic.losses.drag import (
     acceleration_parameter,
     changenet_velex,
     churning_flags,
+    displaced,
     iso_14179_1,
     jet_loss,
     wetted_area,
@@ -119,19 +120,28 @@ def test_regimes_join(limit):
 
 
 def test_what_leaves_its_range_is_flagged():
-    assert churning_flags("changenet-velex", "gear", GEAR, 300.0) == ()
+    def flags(model, part, speed, volume=1.7e-3):
+        return churning_flags(model, "gear", part, speed, volume)
+
+    assert flags("changenet-velex", GEAR, 300.0) == ()
     deep = replace(GEAR, depth=60e-3)
-    (flag,) = churning_flags("changenet-velex", "gear", deep, 300.0)
+    (flag,) = flags("changenet-velex", deep, 300.0)
     assert flag.quantity == "immersion depth over the diameter"
     assert flag.found_high == pytest.approx(60 / 100.4)
-    (flag,) = churning_flags("changenet-velex", "gear", replace(GEAR, radius=20e-3), 300.0)
+    (flag,) = flags("changenet-velex", replace(GEAR, radius=20e-3), 300.0)
     assert (flag.quantity, flag.low) == ("immersed pitch diameter", 50.0)
-    (flag,) = churning_flags("iso-14179-1", "gear", GEAR, 500.0)
+    (flag,) = flags("iso-14179-1", GEAR, 500.0)
     assert flag.found_high == pytest.approx(500 * 50.2e-3)
-    (flag,) = churning_flags("iso-14179-1", "gear", replace(GEAR, module=0.6e-3), 300.0)
+    (flag,) = flags("iso-14179-1", replace(GEAR, module=0.6e-3), 300.0)
     assert flag.quantity == "transverse module"
     assert iso_14179_1(replace(GEAR, module=0.5e-3), 300.0, OIL) > 0
-    assert churning_flags("changenet-velex", "gear", deep, 0.0) == ()
+    assert flags("changenet-velex", deep, 0.0) == ()
+    # a gear that dips to its axis displaces half a cylinder
+    half = replace(GEAR, depth=GEAR.tip_radius)
+    assert displaced(half) == pytest.approx(math.pi * 50.2e-3**2 * 22e-3 / 2)
+    (flag,) = flags("changenet-velex", half, 300.0, 0.9 * displaced(half))
+    assert flag.found_low == pytest.approx(0.9)
+    assert flags("changenet-velex", half, 300.0, 1.1 * displaced(half)) == ()
 
 
 def test_momentum_of_jets_by_hand():

@@ -31,10 +31,11 @@ from epicyclic.plugins.rexs.importing import read_rexs
 from epicyclic.show.record import open_map
 from epicyclic.show.template import case_text
 from epicyclic.study.maps.cycle import open_cycle
-from epicyclic.study.measured.table import parse_measurements, read_grid
+from epicyclic.study.measured.table import parse_measurements
 from epicyclic.study.sweeps.axes import columns_of
 from epicyclic.study.sweeps.run import SweepPlan, make_plan, write_dataset
 from epicyclic.study.sweeps.runner import Journal, Row, Runner, gather
+from epicyclic.study.table_file import read_grid
 from limits import MOST_MEMORY, is_soon, peak_memory
 
 QUICK, SLOW, ALL = 12, 200, 1000

@@ -210,6 +210,19 @@ def test_table_of_points(case, tmp_path):
     assert list(data.gears_normal_module.values) == [1.8, 1.8, 1.7]
     frame = pd.DataFrame({"sun.teeth": [73, 74], "operation.torque [N*m]": [1.5, 2.5]})
     assert columns_of(frame) == {"sun.teeth": [73, 74], "operation.torque": ["1.5 N*m", "2.5 N*m"]}
+    frame = pd.DataFrame({"losses.sun_drag.include": [True, False], "sun.roughness": ["a", "3 um"]})
+    assert columns_of(frame) == frame.to_dict("list")
+
+
+def test_the_operating_point_has_the_short_names_of_other_tables(case, tmp_path):
+    file = tmp_path / "points.csv"
+    file.write_text("n [1/min],Torque [N*m],oil temperature [degC],planet.count\n1300,700,47,5\n")
+    assert columns_of(file) == {
+        "operation.speed": ["1300 rpm"],
+        "operation.torque": ["700 N*m"],
+        "operation.oil_inlet_temperature": ["47 degC"],
+        "planet.count": [5],
+    }
 
 
 @pytest.mark.parametrize(
@@ -220,6 +233,7 @@ def test_table_of_points(case, tmp_path):
         ("sun.teeth,planet.count\n73,3,4,5\n74,3\n", "2 columns, but line 2 has 4"),
         ("sun.teeth,sun.teeth\n1,2\n", "two columns"),
         ("sun.teeth [1],sun.teeth\n1,2\n", "two columns"),
+        ("# two\nsun.teeth,planet.count\n73,3\n74,\n", "planet.count: has no value in line 4"),
     ],
 )
 def test_a_bad_table_is_told(tmp_path, content, words):

@@ -456,6 +456,16 @@ def test_a_set_of_a_train_is_lubricated_as_alone(tables, table):
         assert found.losses[f"S.{name}"] == pytest.approx(single.losses[name], rel=1e-9)
 
 
+def test_a_level_that_no_set_dips_by_is_told():
+    shared = {f"lubrication.{key}": value for key, value in DIP.items()}
+    own = {f"sets.{name}.{key}": it for name in ("pair", "planets") for key, it in shared.items()}
+    words = "lubrication.oil_level has no effect: no set dips by it."
+    assert words not in ep.solve(small_axle(**shared)).notes
+    assert words not in ep.solve(small_axle(**own | {"lubrication.method": "drained"})).notes
+    own |= {f"sets.{name}.lubrication.oil_level": "-3 mm" for name in ("pair", "planets")}
+    assert words in ep.solve(small_axle(**shared | own)).notes
+
+
 def test_each_set_of_a_train_may_have_its_own_method():
     shared = {"lubrication.method": "jet", "lubrication.oil_flow": "1.3 l/min"}
     own = shared | {"sets.planets.lubrication.method": "drained"}

@@ -16,9 +16,10 @@ from epicyclic.case.keys import Parameter
 from epicyclic.show.plots.measured import measured_figure
 from epicyclic.study.measured.fit import fit_parameters
 from epicyclic.study.measured.residuals import MeasuredPoints
-from epicyclic.study.measured.table import Measurements, parse_measurements, read_grid
+from epicyclic.study.measured.table import Measurements, parse_measurements
 from epicyclic.study.sweeps.run import with_unloaded
 from epicyclic.study.sweeps.runner import Row, Rows, failed_row
+from epicyclic.study.table_file import read_grid
 
 TRUTH = {"mesh_sliding": 1.2, "drag": 0.8}
 KEYS = [f"losses.{name}.factor" for name in TRUTH]

@@ -9,7 +9,8 @@ import pandas as pd
 import pytest
 
 import epicyclic as ep
-from epicyclic.study.measured.table import parse_measurements, read_grid
+from epicyclic.study.measured.table import parse_measurements
+from epicyclic.study.table_file import read_grid
 
 GOOD = """\
 # test rig 3, gear set 12
@@ -57,6 +58,13 @@ def test_an_efficiency_is_of_the_power_that_enters(read):
     found = read(f"{text}1000,500,90,98.3\n1000,-300,90,97.1\n").loss
     powers = np.array([500, 300]) * 1000 * np.pi / 30
     assert found == pytest.approx(powers * [1 - 0.983, 1 / 0.971 - 1])
+
+
+def test_shares_below_a_heading_of_per_cent_are_refused(read):
+    text = "speed [rpm],torque [N*m],temperature [degC],efficiency [%]\n1000,500,90,"
+    with pytest.raises(ep.InputError, match=re.escape('Call it "efficiency [1]"')):
+        read(f"{text}0.983\n700,310,90,0.977\n")
+    assert len(read(f"{text}0.983\n700,310,90,97.7\n")) == 2  # next to no torque it may be so
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])

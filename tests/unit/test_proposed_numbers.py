@@ -13,8 +13,9 @@ from epicyclic.cli.common import parse_changes
 from epicyclic.losses.loss_table import read_loss_table
 from epicyclic.schema.fields import quantity_of
 from epicyclic.study.maps.cycle import open_cycle
-from epicyclic.study.measured.table import parse_measurements, read_grid
+from epicyclic.study.measured.table import parse_measurements
 from epicyclic.study.sweeps.run import parse_vary
+from epicyclic.study.table_file import read_grid
 from epicyclic.units import registry
 from rexs_files import pair
 

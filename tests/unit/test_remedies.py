@@ -179,7 +179,7 @@ def test_the_pressure_of_voids_that_a_remedy_names_is_taken(pressure):
     ("value", "remedy"),
     [("-31", "Increase it to 5"), ("2", "Increase it to 5"), ("7000", "Reduce it to 2000"),
      ("37", "Write 37, without quotes."), ("37.0", "Write 37."), ("37.5", "Round it."),
-     (float("nan"), "Give a finite number.")],
+     (float("nan"), "Give a finite number."), (1e300, "Reduce it to 2000"), (0.5, "Increase")],
 )  # fmt: skip
 def test_a_number_in_quotes_that_would_not_do_is_not_proposed(value, remedy):
     (problem,) = problems("talbot-2012-pair", {"gear.teeth": value})

@@ -11,7 +11,8 @@ import pytest
 import epicyclic as ep
 from epicyclic.study.measured.compare import ComparisonPlan, ask
 from epicyclic.study.measured.rig import Rig
-from epicyclic.study.measured.table import parse_measurements, read_grid
+from epicyclic.study.measured.table import parse_measurements
+from epicyclic.study.table_file import read_grid
 
 RIG = """\
 speed [rpm],torque [N*m],temperature [degC],torque_loss [N*m],planet.count,reaction

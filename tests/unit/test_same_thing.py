@@ -361,9 +361,24 @@ def test_too_many_sets_are_refused_at_once():
 def test_shares_that_do_not_sum_to_one_are_told_with_their_factor(shares, told):
     cycle = {"share": shares, "speed [rpm]": [310, 500, 970], "torque [N*m]": [2, 3, 5]}
     found = open_cycle(cycle)
-    assert found.title.partition("; ")[2] == told
+    assert found.title().partition("; ")[2] == told
     (piece,) = found.pieces()
     assert piece.duration == pytest.approx(3600 * np.array(shares) / sum(shares), rel=1e-12)
+
+
+def test_a_cycle_knows_the_keys_of_a_case_and_names_what_it_does_not_use():
+    cycle = {
+        "duration [s]": [3, 5],
+        "operation.speed [rpm]": [310, 500],
+        "operation.torque [N*m]": [2, 3],
+        "operation.oil_inlet_temperature [degC]": [20, 70],
+        "planet.count": [3, 4],
+    }
+    found = open_cycle(cycle)
+    assert found.ranges["temperature"] == (20.0, 70.0)
+    assert found.title({"temperature"}).partition("; ")[2] == (
+        "columns not used: temperature [degC], planet.count"
+    )
 
 
 @pytest.mark.parametrize("name", ["share", "duration [s]"])

@@ -51,6 +51,8 @@ def test_command_line_form(case, option, key, values):
         (["operation.speed=1 rpm:2 rad/s:3"], "differ"),
         (["operation.speed=a:b:3"], "must be numbers"),
         (["operation.speed=1:2:0 rpm"], "1 or more"),
+        (["operation.speed=1:2:1 rpm"], "a count of 1 leaves out the stop"),
+        (["operation.speed=1:2:2.5 rpm"], "a,b,c or start:stop:count"),
         (["operation.speed=1:2:1000000000000 rpm"], "1000000 or less"),
         (["planet.count=3,4", "planet.count=5,6"], "again"),
     ],
@@ -58,6 +60,15 @@ def test_command_line_form(case, option, key, values):
 def test_unreadable_option(case, options, words):
     with pytest.raises(ep.InputError, match=words):
         parse_vary(case, options)
+
+
+@pytest.mark.parametrize("text", ["1700,nan rpm", "nan:1700:2 rpm", "inf,1700 rpm"])
+def test_what_is_no_number_takes_no_unit_from_others(case, text):
+    with pytest.raises(ep.InputError) as error:
+        make_plan(case, parse_vary(case, [f"operation.speed={text}"]))
+    (problem,) = error.value.problems
+    assert "1700" not in problem.value
+    assert "is not a number" in problem.allowed
 
 
 @pytest.mark.parametrize(

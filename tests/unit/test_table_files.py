@@ -13,8 +13,8 @@ import pytest
 
 import epicyclic as ep
 from epicyclic.study.maps.cycle import open_cycle
-from epicyclic.study.measured.table import parse_measurements, read_grid
-from epicyclic.study.table_file import TableForm, parse_form
+from epicyclic.study.measured.table import parse_measurements
+from epicyclic.study.table_file import TableForm, parse_form, read_grid
 
 SPEED, TORQUE, TIME = [420, 890], [310, 28.5], [0, 7]
 GERMAN = "Zeit [s];Drehzahl [1/min];Drehmoment [Nm]\n0,0;420;310,0\n7,0;890;28,5\n"

@@ -309,6 +309,15 @@ def test_teeth_that_leave_no_room():
     assert set(told(tables)) == {"sets.a.ring.teeth", "sets.b.planet.teeth", "sets.c.gear.teeth"}
 
 
+def test_sizes_that_no_bearing_has():
+    tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
+    tables["bearings"]["motor_rear"] |= {"position": "0.06 mm", "outside_diameter": "710 mm"}
+    found = told(tables)
+    assert "0.06 mm from the other bearing of motor" in found["bearings.motor_front.position"]
+    assert "over 6 bores" in found["bearings.motor_rear.outside_diameter"]
+    assert len(found) == 2
+
+
 def test_positions_are_those_of_gears_on_shafts():
     tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
     tables["positions"] = tables["positions"] | {"pair.pinon": "3 mm", "planets.planet": "4 mm"}

@@ -276,6 +276,14 @@ def test_bad_files_are_refused(folder, old, new, message):
         read_sets(file)
 
 
+def test_a_case_is_no_file_of_measurements(folder):
+    file = folder / "case.toml"
+    file.write_text('kind = "train"\n[operation]\ninput = "a"\n')
+    with pytest.raises(ep.InputError) as error:
+        read_sets(file)
+    assert [problem.key for problem in error.value.problems] == ["set"]
+
+
 def test_a_folder_without_sets_is_refused(folder):
     with pytest.raises(ep.InputError, match="has no file that ends in"):
         read_sets(folder / "sets")

@@ -518,6 +518,10 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     for value in stated_values(case)[0].values() if getattr(case, "uncertainty", {}) else ():
         if value is not None and value.remark:
             yield f'uncertainty."{value.key}": {value.remark}. Correct the limits or the value.'
+    if isinstance(case, TrainCase) and getattr(case.lubrication, "oil_level", None) is not None:
+        tables = (table.lubrication for _, table in case.computed_sets)
+        if case.lubrication not in tables:
+            yield "lubrication.oil_level has no effect: no set dips by it."
     if solution.jammed and isinstance(case, TrainCase):
         yield (
             "Self-locking: under this torque on the input, friction in the meshes keeps the "

@@ -151,7 +151,7 @@ def compare(
     loaded = load_with(case, changes)
     if runner.shard is not None:
         from epicyclic.study.measured.compare import ComparisonPlan, ask
-        from epicyclic.study.measured.table import read_grid
+        from epicyclic.study.table_file import read_grid
 
         question = ask(loaded, read_grid(measured, form), component, load_dependent, group, rig)
         plan, file = ComparisonPlan.of(question), Path(str(json_file))

@@ -141,6 +141,8 @@ def sweep_writer(plan: SweepPlan, output: Path) -> Write:
     dataset.check_output(output)
 
     def write(rows: Rows) -> str:
+        for key in dataset.idle_keys(plan, rows):
+            echo(f"Note: no loss changes with {key}.", err=True)
         dataset.write_dataset(dataset.to_dataset(plan, rows), output)
         return points_written(rows, output)
 

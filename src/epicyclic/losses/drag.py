@@ -231,6 +231,12 @@ def wetted_area(part: Dipped) -> float:
     return faces + rim + flanks
 
 
+def displaced(part: Dipped) -> float:
+    """Volume of a part below the oil at rest, its teeth taken as full. [m^3]"""
+    theta = part.wetted_angle
+    return part.tip_radius**2 * (theta - math.sin(2 * theta) / 2) * part.width
+
+
 def acceleration_parameter(part: Dipped, speed: float) -> float:
     """omega^2 (R b m)^(1/3), which tells the regimes of flow apart. Theory (N6). [m/s^2]
 
@@ -367,13 +373,14 @@ _SPLASH_SOURCE = (
     "dip lubrication is recommended below it: P. Walter, after Forsch. Ingenieurwes. 84 (2020), "
     "doi 10.1007/s10010-020-00423-0"
 )
-_SPLASH = Range(
-    "tip_speed", "speed of the immersed rim", None, 20.0, METRE_PER_SECOND, _SPLASH_SOURCE
+_ANY_SUMP = (
+    Range("tip_speed", "speed of the immersed rim", None, 20.0, METRE_PER_SECOND, _SPLASH_SOURCE),
+    Range("oil", "oil volume over that of the immersed part", 1.0, None, NUMBER, OF_THIS_PACKAGE),
 )
 
 
 def churning_flags(
-    model: ChurningModel, where: str, part: Dipped, speed: float
+    model: ChurningModel, where: str, part: Dipped, speed: float, volume: float
 ) -> tuple[ValidityFlag, ...]:
     """Flags of the churning of the part called `where`."""
     if not speed or not part.immersed:
@@ -383,8 +390,9 @@ def churning_flags(
         "immersed": part.immersed,
         "module": part.module / math.cos(part.helix_angle) if part.teeth else math.inf,
         "tip_speed": abs(speed) * part.tip_radius,
+        "oil": volume / displaced(part),
     }
-    return check_ranges(ModelUse("drag", model, where), (*_RANGES[model], _SPLASH), values)
+    return check_ranges(ModelUse("drag", model, where), (*_RANGES[model], *_ANY_SUMP), values)
 
 
 # Momentum that gears give to the oil of jets.

@@ -127,12 +127,11 @@ def disc_loss(
     for disc in discs:
         speed = state.speeds[disc.body] - state.speeds[disc.against]
         body = disc.turning
-        if disc.sump is not None and disc.dips:
-            model = CHURNING_MODELS[disc.sump.model]
-            watts = disc.sump.power(disc.sump.model, speed, state)
-            flags += Flags(
-                partial(churning_flags, disc.sump.model, disc.where, disc.sump.part, speed)
-            )
+        if (sump := disc.sump) is not None and disc.dips:
+            model = CHURNING_MODELS[sump.model]
+            watts = sump.power(sump.model, speed, state)
+            about = sump.model, disc.where, sump.part, speed, sump.volume
+            flags += Flags(partial(churning_flags, *about))
             title, methods[model.title] = model.title, model.source
         else:
             mixture = state.fluids.mixed(disc.oil_fraction)

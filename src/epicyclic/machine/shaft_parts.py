@@ -129,15 +129,13 @@ TORQUE_PER_DIAMETER: Mapping[str, float] = {"iso-14179-1-viton": 3.736, "iso-141
 
 _KELVIN = 273.15  # 0 degC in kelvin.
 _LIMIT = "usual limit of the material, DIN 3760, general knowledge"
+_VITON = Range("lip_speed", "speed of the shaft at the seal", None, 38.0, METRE_PER_SECOND, _LIMIT)
 _RANGES: Mapping[SealFormula, tuple[Range, ...]] = {
-    "iso-14179-1-viton": (
-        Range("lip_speed", "speed of the shaft at the seal", None, 38.0, METRE_PER_SECOND, _LIMIT),
-    ),
-    "iso-14179-1-buna-n": (
-        Range("lip_speed", "speed of the shaft at the seal", None, 14.0, METRE_PER_SECOND, _LIMIT),
-    ),
-    "iso-14179-2": (),
+    "iso-14179-1-viton": (_VITON,),
+    "iso-14179-1-buna-n": (replace(_VITON, high=14.0),),
+    "iso-14179-2": (_VITON,),  # which stands the highest speed of all materials of lips
     "linke": (
+        _VITON,
         Range(
             "bracket",
             "factor of temperature and viscosity of Linke's seal formula",

@@ -150,7 +150,8 @@ def _remedy(place: Place, kind: str, value: Any) -> str:
     if kind in ("int_type", "float_type"):
         low, high, is_open = bounds_of(place.annotation, place.metadata)
         match = _PLAIN_NUMBER.fullmatch(value[:100]) if isinstance(value, str) else None
-        number = None if match is None or match[2] else float(match[1])
+        number = value if isinstance(value, float) and math.isfinite(value) else None
+        number = number if match is None or match[2] else float(match[1])
         if number is not None and not _is_within(number, low, high, is_open):
             return range_remedy(number, low, high, open_low=is_open)
         is_whole = kind == "int_type" and match is not None and not match[1].isdigit()

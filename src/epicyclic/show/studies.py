@@ -406,12 +406,13 @@ def _tables(data: xr.Dataset, title: str) -> list[RenderableType]:
 def _states_table(data: xr.Dataset, decimals: int) -> Table:
     heads = ("", "entering", "leaving", "lost", "duration s", "efficiency")
     table = number_table("States: energy in kJ", *heads)
+    of_time = decimals_of(float(data["duration"].sum()))
     for name in data["state"].values:
         own = data.sel(state=name)
         values = own["state_energy_in"], own["state_energy_out"], own["state_energy_lost"].sum()
         cells = [f"{float(it):z.{decimals}f}" for it in values]
         efficiency = float(own["state_efficiency"])
-        cells += [f"{float(own['state_duration']):.0f}"]
+        cells += [f"{float(own['state_duration']):.{of_time}f}"]
         table.add_row(str(name), *cells, "" if math.isnan(efficiency) else percent(efficiency, 3))
     return table
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from epicyclic.arrays import FloatArray
 from epicyclic.dataclass import dataclass
 from epicyclic.units import CELSIUS, NEWTON_METRE, RPM, Quantity, torque_text, unit_text
 
@@ -43,12 +44,19 @@ PLANE = ("speed", "torque")  # Axes of the tables and pictures of a map.
 STATE, STATE_KEY = "state", "operation.state"
 """Axis, column and key of the states of a train that has any."""
 CASE_KEY = "case_key"  # Attribute of a coordinate: the key that it varies.
-_NAMES = {key: name for name, key in AXES.items()} | {STATE_KEY: STATE}
+NAMES = {key: name for name, key in AXES.items()} | {STATE_KEY: STATE}
+"""The same by its key."""
+
+
+def shaft_power(torque: FloatArray, speed: FloatArray) -> FloatArray:
+    """Power in W of a torque in N m at a speed in rpm."""
+    to_rpm, _ = RPM.scale_and_offset()
+    return torque * speed / to_rpm
 
 
 def axis_name(key: str) -> str:
     """Name of the dimension of a key: ``"speed"``, ``"planet_count"`` for ``"planet.count"``."""
-    return _NAMES.get(key, re.sub(r"\W", "_", key))
+    return NAMES.get(key, re.sub(r"\W", "_", key))
 
 
 def key_of(array: xr.DataArray) -> str:

@@ -26,6 +26,7 @@ from epicyclic.dataclass import dataclass, field
 from epicyclic.errors import InputError, Problem, first_of, one_problem, problems_in, raise_any
 from epicyclic.files import check_archive, read_bytes, refuse
 from epicyclic.messages import one_line, sentence
+from epicyclic.study.operating import NAMES
 from epicyclic.units import CELSIUS, NEWTON_METRE, NUMBER, RPM, SECOND, WATT, Quantity, one_of
 
 if TYPE_CHECKING:
@@ -72,7 +73,8 @@ COLUMNS: dict[str, tuple[Quantity | None, tuple[str, ...]]] = {
     "torque": (NEWTON_METRE, ("m", "t", "drehmoment", "moment", "input torque",
                "antriebsmoment", "eingangsmoment")),
     "temperature": (CELSIUS, ("t", "theta", "ϑ", "temp", "temperatur",
-                    "oil temperature", "oil temp", "t oil", "öltemperatur")),
+                    "oil temperature", "oil temp", "t oil", "öltemperatur",
+                    "oil inlet temperature", "inlet temperature")),
     "loss": (WATT, ("losses", "power loss", "loss power", "verlust", "verlustleistung", "p loss",
              "ploss", "pv", "p v")),
     "torque_loss": (NEWTON_METRE, ("torque loss", "drag torque", "friction torque",
@@ -180,6 +182,50 @@ def open_table(table: Any, form: TableForm = AS_IT_IS) -> Source:
         if suffix in PARQUET:
             return _of_parquet(path, name, form)
         return _of_cells(_Workbook(path, form) if suffix in EXCEL else _Text(path), name, form)
+
+
+MOST_ROWS = 10_000
+"""Of measurements, each of which is computed; tables of more rows are recordings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Cells of a table."""
+
+    header: tuple[str, ...]
+    # Line in the file, or row of the sheet, and its cells; as many as the header has.
+    rows: tuple[tuple[int, tuple[str, ...]], ...]
+    source: str  # Where it comes from.
+
+
+def read_grid(
+    table: Any,
+    form: TableForm = AS_IT_IS,
+    most: int = MOST_ROWS,
+    fewer: str = "Average the records of each point.",  # What to do with more rows.
+) -> Grid:
+    """The cells of a file, or of a table in memory, numbers as Python writes them.
+
+    Raises `InputError` if it cannot be read as such, is empty, or has more than `most` rows.
+    """
+    source = open_table(table, form)
+    header = source.headers
+    with problems_in(source.name):
+        if not header:
+            refuse("has no columns.", "Give a header such as: speed [rpm],torque [N*m],...")
+        rows: list[tuple[int, tuple[str, ...]]] = []
+        for piece in source.batches(header):
+            columns = [
+                plain_numbers(source, name, piece.columns[name]).to_pylist() for name in header
+            ]
+            for line, *cells in zip(piece.lines.tolist(), *columns, strict=True):
+                if any(cell is not None and cell != "" for cell in cells):
+                    rows.append((line, tuple(map(cell_text, cells))))
+            if len(rows) > most:
+                refuse(f"has more than {most} rows.", fewer)
+        if not rows:
+            refuse("has no rows below its header.", "Give one row for each point.")
+    return Grid(header, tuple(rows), source.name)
 
 
 # --- cells of text --------------------------------------------------------------------------------
@@ -332,7 +378,8 @@ def _shown_cell(cell: Any) -> str:
 
 def cell_text(value: object) -> str:
     """A cell as text, numbers with all their digits."""
-    return "" if value is None else str(value).strip()
+    text = "" if value is None else str(value).strip()
+    return text.lower() if isinstance(value, bool) else text
 
 
 # --- the head -------------------------------------------------------------------------------------
@@ -536,7 +583,8 @@ def _recognised(text: str, unit: str = "") -> tuple[str, str, bool] | None:
             measure = own or unit
             if quantity is RPM and _folded(measure) in _TURNS:
                 measure = "rpm"
-            called, alike = _folded(name) == _folded(known), _folded(name) in others
+            called = _folded(name) == _folded(known)
+            alike = _folded(name) in others or NAMES.get(name) == known
             fits = (called or alike) and _measures(quantity, measure)  # else pint is loaded in vain
             if called and (fits or not divided):
                 return known, measure, True

@@ -187,6 +187,9 @@ def read_sets(path: Path | None = None) -> tuple[MeasuredSet, ...]:
 def _sets_of(path: Path) -> Iterator[MeasuredSet]:
     try:
         tables = tomllib.loads(read_text(path, "file of measurements", _LARGEST_FILE))
+        if "set" not in tables:
+            remedy = "The manual, validation, shows such a file."
+            raise one_problem("set", "", "is missing in a file of measurements.", remedy)
         file = _FileTable.model_validate(tables)
     except ValidationError as error:
         raise InputError([

@@ -273,6 +273,9 @@ _OF_TAPERED = ("rollers", "roller_diameter", "roller_length", "rib_height", "rib
 _OF_OTHERS = {"cylindrical": 3, "thrust-roller": 3, "deep-groove": 2, "thrust-ball": 2}  # of these
 
 
+_THICKEST = 6.0  # Outside diameter over bore that no bearing has; a 633 has 4.3 (catalogues). [1]
+
+
 class ShaftBearingTable(ElementTable):
     """A rolling bearing of a shaft."""
 
@@ -399,6 +402,9 @@ class ShaftBearingTable(ElementTable):
         if self.bore >= self.outside_diameter:
             reason = f"must be less than outside_diameter, {millimetres(self.outside_diameter)}."
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
+        elif self.outside_diameter > _THICKEST * self.bore:
+            shown, reason = millimetres(self.outside_diameter), f"is over {_THICKEST:g} bores."
+            yield Problem("outside_diameter", shown, reason, "Correct one of the two.")
         if (kind, self.cage) not in TYPE_CONSTANTS:
             remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'
             yield Problem("cage", written(self.cage), f"is not made for {kind} bearings.", remedy)

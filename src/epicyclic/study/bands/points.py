@@ -42,8 +42,8 @@ from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.compute import MapPlan, changes_at, further_values, stored_plan
 from epicyclic.study.maps.cycle import Cycle, open_cycle
 from epicyclic.study.maps.duty import Sums, add_up, cycle_map, parse_temperatures
-from epicyclic.study.maps.tables import loss_power, map_case
-from epicyclic.study.operating import AXES, axis_name
+from epicyclic.study.maps.tables import map_case
+from epicyclic.study.operating import AXES, axis_name, shaft_power
 from epicyclic.study.solve import solve
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
 from epicyclic.units import KILOJOULE, NEWTON_METRE, RPM
@@ -279,11 +279,11 @@ def _energies(sums: Sums, outputs: Outputs) -> Energies:
     by_name = dict(zip(lookup.components, lookup.torques, strict=True))
     nothing = np.zeros(lookup.size)
     torques = np.array([by_name.get(name, nothing).ravel() for name in outputs.losses])
-    interpolated = loss_power((torques[:, nodes] * weights).sum(axis=1), speed)
+    interpolated = shaft_power((torques[:, nodes] * weights).sum(axis=1), np.abs(speed))
     return Energies(
         outputs,
         tuple(changes_at(lookup, row) for row in rows.tolist()),
-        loss_power(torque, speed) * np.sign(speed),
+        shaft_power(torque, speed),
         rows[:, -1] / rows[:, -2] / chance,
         interpolated,
         torques @ totals.node_work.sum(axis=0),
@@ -320,7 +320,7 @@ class CycleStudy(Study):
             **about_study(
                 self.case, energies.outputs, self.plan.count, self.seed, data.attrs["failed"]
             ),
-            cycle=self.cycle.title,
+            cycle=self.cycle.title(),
             points=len(energies.points),
         )
 

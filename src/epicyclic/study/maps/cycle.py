@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -87,10 +87,12 @@ class Cycle:
     states: tuple[str, ...] = ()
     whole: float = 1.0  # Sum of its shares, by which they are divided. [1]
 
-    @property
-    def title(self) -> str:
-        """Its name, its rows, and the factor of shares whose sum is neither 1 nor 100 %."""
-        told = f"{self.source.name}, {self.rows} rows"
+    def title(self, idle: Collection[str] = ()) -> str:
+        """Its name, its rows, columns that count for nothing, the factor of shares to be scaled."""
+        told = f"{self.source.name}, {self.rows} row{'' if self.rows == 1 else 's'}"
+        used = {own.header for name, own in self.columns.items() if name not in idle}
+        unused = [one_line(header) for header in self.source.headers if header not in used]
+        told += f"; columns not used: {first_of(unused)}" if unused else ""
         if any(math.isclose(self.whole, whole, rel_tol=SUMS_TO_ONE) for whole in (1.0, 100.0)):
             return told
         return f"{told}; its {shares_text(self.whole)}"

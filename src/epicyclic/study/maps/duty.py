@@ -28,9 +28,9 @@ from epicyclic.study.maps.compute import (
     to_map,
 )
 from epicyclic.study.maps.cycle import Cycle, Piece, open_cycle
-from epicyclic.study.maps.tables import Lookup, loss_power, make_lookup, map_case
+from epicyclic.study.maps.tables import Lookup, make_lookup, map_case
 from epicyclic.study.meshes import Variable, variable
-from epicyclic.study.operating import STATE
+from epicyclic.study.operating import STATE, shaft_power
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
 from epicyclic.study.table_file import AS_IT_IS, TableForm
 from epicyclic.units import (
@@ -349,10 +349,10 @@ def _go_through(
     for piece in cycle.pieces(celsius):
         point = point_of(lookup, cycle, piece)
         corners, weights = lookup.corners(*point)
-        loss = loss_power((torque_loss[corners] * weights).sum(axis=0), piece.speed)
-        at_shaft = loss_power(piece.torque, piece.speed) * np.sign(piece.speed)
+        loss = shaft_power((torque_loss[corners] * weights).sum(axis=0), np.abs(piece.speed))
+        at_shaft = shaft_power(piece.torque, piece.speed)
         mode = np.select([at_shaft > 0, at_shaft < 0], [0, 1], 2)
-        turned = loss_power(piece.duration, piece.speed)
+        turned = shaft_power(piece.duration, np.abs(piece.speed))
         totals.node_work += np.bincount(
             (corners + nodes * mode).ravel(), (weights * turned).ravel(), modes * nodes
         ).reshape(modes, nodes)
@@ -452,10 +452,11 @@ def _attributes(data: xr.Dataset, cycle: Cycle, clamp: bool) -> dict[str, str]:
     shaft, output = data.attrs["reference_shaft"], data.attrs["output_shaft"]
     basis = {"time": "time series, trapezoidal rule over time", "duration": "histogram"}
     outside = "evaluated at its boundary" if clamp else "none; points outside are refused"
+    idle = {"temperature", STATE} - set(map(str, data["torque_loss"].dims))
     return {
         "title": data.attrs["title"],
         "source": data.attrs.get("source", ""),
-        "cycle": cycle.title,
+        "cycle": cycle.title(idle),
         "reference_shaft": shaft,
         "output_shaft": output,
         "sign_convention": data.attrs.get("sign_convention", ""),

@@ -17,7 +17,7 @@ from epicyclic.errors import InputError, Problem, one_problem, raise_any
 from epicyclic.messages import one_line
 from epicyclic.study.operating import AXES, OPERATING, PLANE, STATE
 from epicyclic.study.sweeps.run import csv_safe, to_table
-from epicyclic.units import NEWTON_METRE, RPM, WATT
+from epicyclic.units import NEWTON_METRE, WATT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -148,9 +148,9 @@ def check_gaps(data: xr.Dataset) -> None:
     if not gaps.any():
         return
     reasons = data["message"].values[gaps] if "message" in data else []
-    reason = next((f" The first: {one_line(str(text))}" for text in reasons if text), "")
+    reason = next((f" The first: {one_line(str(text), 300)}" for text in reasons if text), "")
     allowed = f"is missing at {int(gaps.sum())} points, but all are needed.{reason}"
-    raise one_problem("torque_loss", "", allowed, "Leave these points out.", "the map")
+    raise one_problem("torque_loss", "", allowed, "Leave such torques and speeds out.", "the map")
 
 
 def write_csv(data: xr.Dataset, path: Path) -> None:
@@ -257,12 +257,6 @@ def _bracket(axis: FloatArray, values: FloatArray) -> tuple[IntArray, FloatArray
 def slack(axis: FloatArray) -> float:
     """By how much a point may leave an axis before it lies outside."""
     return _ROUNDING * max(float(np.ptp(axis)), float(np.abs(axis).max()))
-
-
-def loss_power(torque_loss: FloatArray, speed: FloatArray) -> FloatArray:
-    """Power in W of a torque loss in N m at a speed in rpm."""
-    to_rpm, _ = RPM.scale_and_offset()
-    return torque_loss * np.abs(speed) / to_rpm
 
 
 def make_lookup(data: xr.Dataset) -> Lookup:

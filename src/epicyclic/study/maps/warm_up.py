@@ -31,9 +31,9 @@ from epicyclic.study.load import CaseSource, as_case
 from epicyclic.study.maps.compute import held_shaft
 from epicyclic.study.maps.cycle import TIME, Cycle, open_cycle
 from epicyclic.study.maps.duty import grid_plan, point_of, texts_of
-from epicyclic.study.maps.tables import Lookup, driven_problem, loss_power
+from epicyclic.study.maps.tables import Lookup, driven_problem
 from epicyclic.study.meshes import variable
-from epicyclic.study.operating import AXES, STATE, axis_name
+from epicyclic.study.operating import AXES, STATE, axis_name, shaft_power
 from epicyclic.study.sweeps.run import SweepPlan, make_plan
 from epicyclic.study.sweeps.runner import Progress
 from epicyclic.units import (
@@ -289,7 +289,7 @@ def warm_up(
     if hottest > HOTTEST:
         raise _runaway(tables, course)
     found = _to_dataset(warm, tables, drive, told, seconds, settled)
-    return found if driven is None else found.assign_attrs(cycle=driven.title)
+    return found if driven is None else found.assign_attrs(cycle=driven.title())
 
 
 def _with_fixed_jets(case: Case) -> Case:
@@ -422,8 +422,8 @@ def _steps(cycle: Cycle, grid: Lookup, width: float) -> Iterator[_Step]:
         if cycle.weighting == TIME:
             number = np.minimum((ends - piece.duration) / width, MOST_STEPS).astype(np.intp)
         corners, weights = grid.corners(*point_of(grid, cycle, piece))
-        power = loss_power(piece.torque, piece.speed) * np.sign(piece.speed)
-        turned = loss_power(piece.duration, piece.speed)
+        power = shaft_power(piece.torque, piece.speed)
+        turned = shaft_power(piece.duration, np.abs(piece.speed))
         for sums, amount in (
             (heating, turned),
             (coasting, turned * (power <= 0)),
@@ -439,7 +439,7 @@ def _steps(cycle: Cycle, grid: Lookup, width: float) -> Iterator[_Step]:
             sums += np.bincount(number, amount, count)
     # losses over the speed are nearer to straight lines than losses
     speeds = grid.axes[grid.names.index("speed")]
-    per_speed = loss_power(np.ones_like(speeds), speeds)
+    per_speed = shaft_power(np.ones_like(speeds), speeds)
     speeds_of_nodes = np.broadcast_to(per_speed[:, None], grid.torques.shape[1:]).ravel()
     for row in np.flatnonzero(duration[:MOST_STEPS]):
         yield _Step(

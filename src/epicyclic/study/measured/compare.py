@@ -34,15 +34,13 @@ from epicyclic.study.measured.residuals import Computed, MeasuredPoints
 from epicyclic.study.measured.rig import NO_RIG, Rig, rows_where
 from epicyclic.study.measured.table import (
     LOAD_DEPENDENT,
-    Grid,
     Measurements,
     parse_measurements,
     parts_of,
-    read_grid,
 )
 from epicyclic.study.sweeps.run import CasePlan, PointList
 from epicyclic.study.sweeps.runner import HERE, Progress, Rows, Runner
-from epicyclic.study.table_file import AS_IT_IS, TableForm
+from epicyclic.study.table_file import AS_IT_IS, Grid, TableForm, read_grid
 
 if TYPE_CHECKING:
     import pandas as pd

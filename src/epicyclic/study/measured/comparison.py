@@ -24,7 +24,7 @@ from epicyclic.study.bands.inputs import factors_of_kind
 from epicyclic.study.measured.intervals import Fit, FittedParameter
 from epicyclic.study.measured.residuals import Computed
 from epicyclic.study.measured.table import Measurements
-from epicyclic.study.operating import OPERATING
+from epicyclic.study.operating import OPERATING, shaft_power
 from epicyclic.units import CELSIUS, format_number
 
 if TYPE_CHECKING:
@@ -335,16 +335,17 @@ def notes_on(table: Measurements, computed: Computed) -> Iterator[str]:
             f"{len(flagged)} of {len(table)} points use a model outside its range, the first in "
             f"line {flagged[0]}; 'epicyclic run' at its conditions names the model."
         )
-    negative = [
-        f"{loss:.6g} W in line {line}"
-        for line, loss in zip(table.lines, table.loss, strict=True)
-        if loss < 0
-    ]
-    if negative:
-        yield (
-            f"measured losses are negative: {first_of(negative)}. Unless they scatter about zero, "
-            "correct their sign or the zeros of the torques."
-        )
+    power = np.abs(shaft_power(table.conditions["torque"], table.conditions["speed"]))
+    for wrong, what, remedy in (
+        (table.loss < 0, "are negative", "they scatter about zero, correct their sign or the zeros "
+         "of the torques"),
+        ((table.loss > 1.01 * power) & (power > 0), "exceed the power at the input", "the output "
+         "is driven too, correct their unit"),
+    ):  # fmt: skip
+        rows = np.flatnonzero(wrong)
+        shown = [f"{table.loss[row]:.6g} W in line {table.lines[row]}" for row in rows]
+        if shown:
+            yield f"measured losses {what}: {first_of(shown)}. Unless {remedy}."
 
 
 def _fit_dict(fit: Fit) -> dict[str, Any]:

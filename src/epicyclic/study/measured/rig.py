@@ -11,8 +11,9 @@ from epicyclic.dataclass import dataclass, replace
 from epicyclic.errors import first_of, one_problem
 from epicyclic.messages import one_line
 from epicyclic.study.measured.comparison import near_values
-from epicyclic.study.measured.table import LOAD_DEPENDENT, SENSOR, Grid, Measurements, beside_point
+from epicyclic.study.measured.table import LOAD_DEPENDENT, SENSOR, Measurements, beside_point
 from epicyclic.study.operating import AXES, STATE_KEY
+from epicyclic.study.table_file import Grid
 
 EQUAL = {"speed": (0.01, 0.0), "torque": (0.02, 0.1), "temperature": (0.0, 2.0)}
 """How much conditions that are meant to be equal differ at most: relatively, and absolutely in

@@ -15,68 +15,14 @@ from epicyclic.build.machine import build, layout_of
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys
 from epicyclic.dataclass import dataclass, field, replace
-from epicyclic.errors import InputError, Problem, first_of, problems_in, raise_any
-from epicyclic.files import refuse
+from epicyclic.errors import InputError, Problem, first_of, raise_any
 from epicyclic.messages import did_you_mean, misspelt, one_line, sentence
 from epicyclic.schema.fields import is_array, is_text, quantity_of
 from epicyclic.schema.read import parse_value
-from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY
+from epicyclic.study.operating import AXES, OPERATING, STATE, STATE_KEY, shaft_power
 from epicyclic.study.sweeps.axes import known_field
-from epicyclic.study.table_file import (
-    AS_IT_IS,
-    HEADER,
-    TableForm,
-    cell_text,
-    missing_remedy,
-    open_table,
-    plain_numbers,
-    unit_problem,
-)
+from epicyclic.study.table_file import HEADER, Grid, missing_remedy, unit_problem
 from epicyclic.units import NEWTON_METRE, NUMBER, RPM, WATT, Quantity, format_number
-
-# Tables as users keep them (CSV, Excel, Parquet) as rows of plain cells.
-
-MOST_ROWS = 10_000
-"""Every row is a computation; tables of more rows are recordings, to be averaged first."""
-_MOST_COLUMNS = 200
-
-
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """Cells of a table."""
-
-    header: tuple[str, ...]
-    # Line in the file, or row of the sheet, and its cells; as many as the header has.
-    rows: tuple[tuple[int, tuple[str, ...]], ...]
-    source: str  # Where it comes from.
-
-
-def read_grid(table: Any, form: TableForm = AS_IT_IS) -> Grid:
-    """The cells of a file, or of a table in memory, numbers as Python writes them.
-
-    Raises `InputError` if it cannot be read as such, is empty, or has more than `MOST_ROWS` rows.
-    """
-    source = open_table(table, form)
-    header = source.headers
-    with problems_in(source.name):
-        if not header:
-            refuse("has no columns.", "Give a header such as: speed [rpm],torque [N*m],...")
-        if len(header) > _MOST_COLUMNS:
-            refuse(f"has more than {_MOST_COLUMNS} columns.", "Keep the columns that are compared.")
-        rows: list[tuple[int, tuple[str, ...]]] = []
-        for piece in source.batches(header):
-            columns = [
-                plain_numbers(source, name, piece.columns[name]).to_pylist() for name in header
-            ]
-            for line, *cells in zip(piece.lines.tolist(), *columns, strict=True):
-                if any(cell is not None and cell != "" for cell in cells):
-                    rows.append((line, tuple(map(cell_text, cells))))
-            if len(rows) > MOST_ROWS:
-                refuse(f"has more than {MOST_ROWS} rows.", "Average the records of each point.")
-        if not rows:
-            refuse("has no rows below its header.", "Give one row for each measurement.")
-    return Grid(header, tuple(rows), source.name)
-
 
 # Measurements as a table states them: conditions, loss, which loss it is, uncertainty.
 
@@ -90,7 +36,6 @@ _PERCENT, _UNIT_OF_PARTS = "%", "dimensionless"
 _EFFICIENCY, _TORQUE_OUT, _SPEED_OUT = "efficiency", "output_torque", "output_speed"
 _TORQUE_LOSS = "torque_loss"
 """Columns from which the total loss follows where it is no column itself."""
-_RAD_PER_S = math.pi / 30  # One rpm.
 _NUMBER_WITH_UNIT = re.compile(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?\s*(?![eE][+-]?\d)[^\d\s.,].*")
 
 
@@ -231,7 +176,6 @@ def _states(case: Case) -> dict[str, str]:
 def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
     """The columns by name; the conditions under their short names."""
     own = _conditions(case) | _states(case)
-    short = {key: name for name, key in own.items()}
     columns: dict[str, _Column] = {}
     for number, header in enumerate(grid.header):
         match = HEADER.fullmatch(header)
@@ -241,7 +185,7 @@ def _columns(grid: Grid, case: Case, problems: _Problems) -> dict[str, _Column]:
             problems.found.append(Problem(place, one_line(header), allowed, remedy))
             continue
         name = match["name"]
-        name = name.lower() if name.lower() in (*_OWN, *own) else short.get(name, name)
+        name = name.lower() if name.lower() in (*_OWN, *own) else name
         cells = tuple(row[number] for _, row in grid.rows)
         column = _Column(header, name, (match["unit"] or "").strip(), cells)
         if name in columns:
@@ -330,10 +274,10 @@ class _Stated:
         """The measured loss, or that which an efficiency or a second torque implies. [W]"""
         if _TORQUE_LOSS in self.columns and "loss" not in self.columns:
             taken = _numbers(self.columns[_TORQUE_LOSS], NEWTON_METRE, self.problems)
-            return taken * np.abs(self.conditions["speed"]) * _RAD_PER_S
+            return shaft_power(taken, np.abs(self.conditions["speed"]))
         if not self.by_two_torques:
             return _numbers(self.columns.get("loss"), WATT, self.problems)
-        power = self.conditions["torque"] * self.conditions["speed"] * _RAD_PER_S
+        power = shaft_power(self.conditions["torque"], self.conditions["speed"])
         if _EFFICIENCY in self.columns:
             column = self.columns[_EFFICIENCY]
             if not column.unit:
@@ -346,10 +290,13 @@ class _Stated:
             for row in np.flatnonzero((share <= 0) | (share > 1)):
                 remedy = "Give it as a share, or in per cent with [%] in the header."
                 self.problems.cell(column, int(row), "must be > 0 and at most 1, or 100 %.", remedy)
+            if column.unit == _PERCENT and share.max(initial=0) <= 1 / 100:  # NaN: told already
+                allowed, remedy = "is below 1 % in every row.", f'Call it "{_EFFICIENCY} [1]".'
+                self.problems.found.append(Problem(column.header, "", allowed, remedy))
             with np.errstate(divide="ignore", invalid="ignore"):
                 return np.where(power > 0, power * (1 - share), -power * (1 / share - 1))
         torque = _numbers(self.columns[_TORQUE_OUT], NEWTON_METRE, self.problems)
-        leaving = np.abs(torque * self._speed_out()) * _RAD_PER_S
+        leaving = np.abs(shaft_power(torque, self._speed_out()))
         return np.where(power > 0, power - leaving, leaving + power)
 
     def uncertainty(self, loss: FloatArray) -> FloatArray | None:
@@ -372,16 +319,16 @@ class _Stated:
     def _of_torques(self, loss: FloatArray) -> FloatArray:
         """The same from the uncertainty of one torque, or of two independent ones. [W]"""
         column, two = self.columns[SENSOR], self.by_two_torques
-        entering = np.abs(self.conditions["torque"] * self.conditions["speed"]) * _RAD_PER_S
+        entering = np.abs(shaft_power(self.conditions["torque"], self.conditions["speed"]))
         powers = [entering, np.abs(entering - loss)] if two else [np.abs(loss)]
         if column.unit == _PERCENT:
             share = _read(column, self.problems, _finite) / 100
             parts = [share * power for power in powers]
         else:
-            torque = _numbers(column, NEWTON_METRE, self.problems) * _RAD_PER_S
+            torque = _numbers(column, NEWTON_METRE, self.problems)
             speeds = [self.conditions["speed"]]
             speeds += [self._speed_out()] if two else []
-            parts = [torque * np.abs(speed) for speed in speeds]
+            parts = [np.abs(shaft_power(torque, speed)) for speed in speeds]
         found = np.sqrt(sum(part**2 for part in parts))
         for row in np.flatnonzero(found <= 0):
             remedy = "Give the standard uncertainty of the torque as [N*m]."

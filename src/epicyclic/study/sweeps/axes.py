@@ -19,8 +19,7 @@ from pydantic_core import PydanticCustomError
 from epicyclic.case.case import Case
 from epicyclic.case.keys import field_at, known_keys, value_of
 from epicyclic.dataclass import asdict, dataclass, replace
-from epicyclic.errors import InputError, Problem, one_problem, problems_in, raise_any
-from epicyclic.files import refuse
+from epicyclic.errors import InputError, Problem, first_of, one_problem, raise_any
 from epicyclic.messages import did_you_mean, one_line, path_of, refused, sentence, value_at, written
 from epicyclic.schema.fields import (
     all_keys,
@@ -32,7 +31,8 @@ from epicyclic.schema.fields import (
     table_of,
 )
 from epicyclic.schema.read import parse_value, plain
-from epicyclic.study.table_file import HEADER, cell_text, open_table, plain_numbers
+from epicyclic.study.operating import AXES, STATE, STATE_KEY
+from epicyclic.study.table_file import HEADER, read_grid
 from epicyclic.units import Quantity, format_number, in_unit, one_of, pure_number, with_unit
 
 if TYPE_CHECKING:
@@ -225,53 +225,29 @@ def columns_of(points: str | Path | pd.DataFrame) -> dict[str, list[Any]]:
     """Keys of a table of points with their values, as a case file has them.
 
     Units stand in the header, ``gears.normal_module [mm]``, or with the values. Raises `InputError`
-    if the file cannot be read, a cell is empty, or a key has two columns.
+    if the table cannot be read, a cell is empty, or a key has two columns.
     """
-    if not isinstance(points, str | Path):
-        return _point_columns({str(name): column.tolist() for name, column in points.items()})
-    with problems_in(one_line(str(points), 500)):
-        return _point_columns(_read(Path(points)))
-
-
-def _read(path: Path) -> dict[str, list[str]]:
-    source = open_table(path)
-    repeated = {name for name in source.headers if source.headers.count(name) > 1}
-    if repeated:
-        refuse(f"has two columns {', '.join(sorted(repeated))}.", "Keep one of them.")
-    values: dict[str, list[str]] = {name: [] for name in source.headers}
-    count = 0
-    for piece in source.batches(source.headers):
-        count += len(piece.lines)
-        if count > MOST_POINTS:
-            refuse(f"has more than {MOST_POINTS} rows.", "Give fewer points, or several tables.")
-        for name, cells in values.items():
-            cells += map(cell_text, plain_numbers(source, name, piece.columns[name]).to_pylist())
-    if not count:
-        refuse("has no rows below a header.", "Give a header of keys, and a row for each point.")
-    return values
-
-
-def _point_columns(table: dict[str, Any]) -> dict[str, list[Any]]:
+    grid = read_grid(points, most=MOST_POINTS, fewer="Give fewer points, or several tables.")
     columns: dict[str, list[Any]] = {}
     problems = []
-    for header, cells in table.items():
+    for place, header in enumerate(grid.header):
         match = HEADER.fullmatch(header)
-        key, unit = (match["name"], match["unit"] or "") if match else (header, "")
+        name, unit = (match["name"], match["unit"] or "") if match else (header, "")
+        key = {**AXES, STATE: STATE_KEY}.get(name, name)
         if key in columns:
             problems.append(Problem(key, "", "has two columns.", "Keep one of them."))
-        # a cell that is not itself is NaN of a frame
-        empty = [str(n) for n, it in enumerate(cells, 1) if it is None or it == "" or it != it]
+        empty = [str(line) for line, cells in grid.rows if not cells[place]]
         if empty:
-            allowed = f"has no value in row {', '.join(empty[:5])}{' ...' * (len(empty) > 5)}."
-            problems.append(Problem(key, "", allowed, "Give every row a value."))
-        columns[key] = [_value(cell, unit) for cell in cells]
-    raise_any(problems, "the table of points")
+            allowed = f"has no value in line {first_of(empty)}."
+            problems.append(Problem(key, "", allowed, "Give every point a value."))
+        columns[key] = [_value(cells[place], unit) for _, cells in grid.rows]
+    raise_any(problems, grid.source)
     return columns
 
 
-def _value(cell: Any, unit: str) -> Any:
+def _value(cell: str, unit: str) -> Any:
     """A cell as a case file has it, a bare number with the unit of its column."""
-    value = parse_value(cell) if isinstance(cell, str) else cell
+    value = parse_value(cell)
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return f"{value!r} {unit}" if unit not in ("", "1") and is_number else value
 

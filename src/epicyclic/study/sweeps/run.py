@@ -177,9 +177,9 @@ def one_after_another(case: Case) -> Callable[[Mapping[str, Any]], Case]:
 # What a sweep varies: keys, their values, and the cases of the full product.
 
 _RANGE = re.compile(
-    r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d][^:,]*)?"
+    r"\s*(?P<start>[^:,]+?)\s*:\s*(?P<stop>[^:,]+?)\s*:\s*(?P<count>\d+)\s*(?P<unit>[^:,\d.][^:,]*)?"
 )
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+_NUMBER = re.compile(r"\s*([+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|(?:nan|inf)\b))\s*(.*?)\s*")
 
 _TRIED = 100  # Points at which links are tried before anything is computed.
 
@@ -575,6 +575,8 @@ def _values(case: Case, key: str, text: str) -> Iterator[Any]:
             raise ValueError("the count must be 1 or more")
         if count > MOST_POINTS:
             raise ValueError(f"the count must be {MOST_POINTS} or less")
+        if count == 1 and start[1] != stop[1]:
+            raise ValueError("a count of 1 leaves out the stop", "Give 2 or more, or one value.")
         units = {unit for unit in (start[2], stop[2], (match["unit"] or "").strip()) if unit}
         if len(units) > 1:
             raise ValueError(f"the units {' and '.join(sorted(units))} differ")
@@ -652,6 +654,16 @@ def _with_temperatures(plan: SweepPlan) -> Iterator[Case]:
         for value in dict.fromkeys(part.values if part.key == "models.temperatures" else ()):
             with suppress(InputError):  # the points report it
                 yield plan.case.updated({part.key: value})
+
+
+def idle_keys(plan: SweepPlan, rows: Rows) -> list[str]:
+    """Axes along which no loss changes, because other keys of the case decide."""
+    total = rows.numbers("total").reshape(plan.shape)
+    return [
+        axis.key
+        for number, axis in enumerate(plan.axes)
+        if len(axis.values) > 1 and np.allclose(total, total.take([0], number), rtol=1e-9, atol=0)
+    ]
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
