@@ -218,6 +218,19 @@ def test_gross_backlash_is_warned_of_and_usual_backlash_is_not():
     )
 
 
+def test_a_gear_far_wider_than_its_mates_is_named():
+    widths = [31.0, 23.0, 23.0]
+    for sun, meshes_named in ((45.9, 0), (46.1, 1)):
+        widths[0] = sun
+        gears = zip(("sun", "planet", "ring"), widths, strict=True)
+        wide = changed(**{name: {"face_width": f"{width} mm"} for name, width in gears})
+        found = list(tooth_notes(load_case(wide).gearings[""]))
+        assert len(found) == meshes_named
+    assert found == [
+        "The face widths of the sun mesh are 46.1 mm and 23 mm; only the latter carries load."
+    ]
+
+
 def test_sets_of_trains_find_theirs_too():
     train = {
         "kind": "train",

@@ -383,6 +383,7 @@ ROUNDING = 1e-9  # Clearances count as negative beyond this: drawings may state 
 LARGEST_SHIFT = 1.2
 """Magnitude of usual profile shifts, general knowledge: larger ones mostly are a wrong number of
 teeth, module or diameter. [1]"""
+MOST_WIDER = 2.0  # Face width over that of the mate above which a result says so; an estimate. [1]
 GROSS = 5.0  # Backlash over the recommended one from which a result says so; an estimate. [1]
 
 TOO_THIN = "its teeth are too thin for their centre distance"
@@ -406,7 +407,7 @@ def _check_backlash(gearing: Gearing, mesh: Mesh, distance_key: str) -> list[Pro
 
 
 def tooth_notes(gearing: Gearing) -> Iterator[str]:
-    """A note on every gear of unusual profile shift, and mesh whose teeth are far too thin."""
+    """Gears of unusual profile shift; meshes of unlike widths, or with teeth far too thin."""
     for gear in {gear.name: gear for mesh in gearing.geometries for gear in mesh.gears}.values():
         if abs(shift := gear.profile_shift_coefficient) > LARGEST_SHIFT:
             yield (
@@ -414,6 +415,10 @@ def tooth_notes(gearing: Gearing) -> Iterator[str]:
                 "teeth, a diameter or the centre distance is probably wrong."
             )
     for mesh in gearing.geometries:
+        narrow, wide = sorted(gear.face_width for gear in mesh.gears)
+        if wide > MOST_WIDER * narrow:
+            shown = f"{millimetres(wide)} and {millimetres(narrow)}"
+            yield f"The face widths of the {mesh.name} are {shown}; only the latter carries load."
         backlash = mesh.normal_backlash
         usual = recommended_backlash(mesh.gear1.rack, mesh.center_distance)
         if backlash <= GROSS * usual:
