@@ -52,7 +52,7 @@ def test_heat_draws_the_network(epicyclic, tmp_path):
     done = epicyclic("heat", *CASE, *FLOW, "--plot", str(picture))
     assert f"Wrote {picture}." in done.stdout
     text = picture.read_text()
-    for words in ("pinion", "gear", "oil inlet", "90.0 °C", "Heat: oil at"):
+    for words in ("pinion", "gear", "oil inlet", "90.0 °C", "Heat: oil in the gearbox"):
         assert words in text, words
 
 

@@ -150,7 +150,7 @@ def test_a_file_holds_the_map(data, tmp_path, epicyclic, coarse_options):
     done = epicyclic(*COMMAND, *coarse_options, "-o", str(output))
     assert done.returncode == 0
     assert done.stderr.startswith(
-        "Interpolated linear in the torque; the largest error of the total loss is"
+        "Interpolated linearly in torque; the largest error of the total loss is"
     )
     assert done.stdout == f"Wrote 30 points to {output}.\n"
     assert names_in(tmp_path) == [output.name]
@@ -164,7 +164,7 @@ def test_a_map_warns_as_run_does_where_most_is_lost(tmp_path, epicyclic, coarse_
     done = epicyclic("map", "talbot-2012", *axes, *cold, "-o", str(tmp_path / "map.nc"))
     head, *rest = done.stderr[done.stderr.index("Warning") :].splitlines()
     assert head.endswith(
-        "where most is lost: input sun, 2000 rpm, 700 N·m, ring fixed, oil at -40 °C"
+        "at the greatest loss: input sun, 2000 rpm, 700 N·m, ring fixed, oil at -40 °C"
     )
     at = "--set", "operation.speed=2000 rpm", "--set", "operation.torque=700 N*m"
     screen = " ".join(epicyclic("run", "talbot-2012", *at, *cold).stdout.split())

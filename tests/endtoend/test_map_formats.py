@@ -315,7 +315,7 @@ def test_the_command_writes_by_suffix_or_name(
         "-o", str(tmp_path / name), *options, *coarse_options,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert done.stderr == "" or done.stderr.startswith("Interpolated linear in the torque; ")
+    assert done.stderr == "" or done.stderr.startswith("Interpolated linearly in torque; ")
     assert (tmp_path / name).read_bytes().startswith(start)
     assert [path.name for path in tmp_path.iterdir()] == [name]
 

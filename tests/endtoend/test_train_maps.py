@@ -173,7 +173,7 @@ def test_keys_of_sets_are_axes_of_a_map(gearbox):
 def test_netcdf_and_tables_keep_the_states(data, tmp_path, epicyclic):
     done = epicyclic(*COMMAND, "-o", str(tmp_path / "map.nc"))
     assert done.returncode == 0, done.stderr
-    assert done.stderr == "" or done.stderr.startswith("Interpolated linear in the torque; ")
+    assert done.stderr == "" or done.stderr.startswith("Interpolated linearly in torque; ")
     with xr.open_dataset(tmp_path / "map.nc") as stored:
         xr.testing.assert_identical(stored.drop_attrs(), data.drop_attrs())
     ep.write_map(data, tmp_path / "map.csv")
@@ -399,7 +399,7 @@ def test_states_are_swept_as_names(tmp_path, epicyclic):
         "--vary", "sets.P1.efficiency=0.97,0.98", "-o", str(output),
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert done.stderr == "" or done.stderr.startswith("Interpolated linear in the torque; ")
+    assert done.stderr == "" or done.stderr.startswith("Interpolated linearly in torque; ")
     with xr.open_dataset(output) as stored:
         assert list(stored["operation.state"].values) == ["1", "2", "3"]
         assert list(stored["sets.P1.efficiency"].values) == [0.97, 0.98]

@@ -86,7 +86,7 @@ def test_the_recommended_model_and_the_largest_warning_are_told():
     case = ep.load_case("talbot-2012").updated({**QUICK, "models.preset": "talbot-2012"})
     result = ep.solve(case)
     own = model_remarks(case, result)
-    assert any("mixed-ehl suits; it was made for this oil" in text for text in own)
+    assert any("mixed-ehl is suitable; it was made for this oil" in text for text in own)
     other = case.updated({"models.friction": "niemann-winter"})
     assert any(
         "would suit this case better" in text for text in model_remarks(other, ep.solve(other))
@@ -121,7 +121,7 @@ def test_no_model_of_friction_is_advised_where_nothing_slides(case):
 def test_the_standard_stands_beside_the_result_with_a_reason_where_they_part(case):
     bare = {"losses.planet_bearing_mechanical.include": False, "models.running_in": "run-in"}
     (near,), own, by_it = standard(ep.load_case("talbot-2012").updated(QUICK), **bare)
-    ratio = f"{by_it / own:.2f} times this result."
+    ratio = f"{by_it / own:.2f} times their loss here."
     assert near == f"ISO/TR 14179-2 gives {by_it:.0f} W for the meshes under load, {ratio}"
     (told,), own, by_it = standard(case)
     assert f"gives {by_it:.0f} W for the meshes under load, {by_it / own:.2f} times" in told

@@ -153,7 +153,10 @@ def _film_model(table: ShaftBearingTable, oil: Oil) -> BearingModel | None:
     if table.type in bearing_types("houpert") or table.type == "thrust-roller":
         if not chosen and (stated or table.viscous_factor is not None):
             return None
-        return _thrust_model(table, oil) if table.type == "thrust-roller" else _balls(table, oil)
+        if table.type != "thrust-roller":
+            return _balls(table, oil)
+        supply = skf_supply(table.type)
+        return ThrustRollerModel(*_rollers(table), skf=_skf_model(table, oil, supply))
     if not _roller_length(table):
         return None
     if table.type == "tapered":
@@ -181,10 +184,6 @@ def _balls(table: ShaftBearingTable, oil: Oil) -> BallModel:
         static_load_rating=table.static_load_rating or fits.static_load_rating,
         skf=_skf_model(table, oil, skf_supply(table.type)),
     )
-
-
-def _thrust_model(table: ShaftBearingTable, oil: Oil) -> ThrustRollerModel:
-    return ThrustRollerModel(*_rollers(table), skf=_skf_model(table, oil, skf_supply(table.type)))
 
 
 def _rollers(table: ShaftBearingTable) -> tuple[int, float, float]:

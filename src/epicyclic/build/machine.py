@@ -37,7 +37,7 @@ from epicyclic.machine.convection import (
     oil_heat_capacity,
 )
 from epicyclic.machine.element import OIL, Element, Fluids, State, joined_key, oil_at, oil_flags
-from epicyclic.machine.gear_mesh import GearMesh, MeshDuty
+from epicyclic.machine.gear_mesh import MeshDuty
 from epicyclic.machine.gear_set import GearSet
 from epicyclic.machine.heat import (
     Answer,
@@ -101,7 +101,10 @@ def term_nodes(machine: Machine) -> dict[tuple[str, str], tuple[str, ...]]:
     found: dict[tuple[str, str], tuple[str, ...]] = {}
     for own in machine.elements:
         if isinstance(own, GearSet):
-            parts = [(mesh.key, _at_flanks(mesh)) for mesh in own.meshes]
+            parts: list[tuple[str, tuple[str, ...]]] = [  # some frictions are those of the oil
+                (it.key, ("sliding", "rolling")[it.models.friction.takes_oil_temperature :])
+                for it in own.meshes
+            ]
             parts += [(planet.key, ("mechanical", "viscous")) for planet in own.planets]
             found |= {
                 (own.key, f"{key}_{name}"): nodes[joined_key(own.key, key)]
@@ -111,11 +114,6 @@ def term_nodes(machine: Machine) -> dict[tuple[str, str], tuple[str, ...]]:
         elif isinstance(own, ShaftBearing):
             found |= {(own.key, name): nodes[own.key] for name in own.terms}
     return found
-
-
-def _at_flanks(mesh: GearMesh) -> tuple[str, ...]:
-    """Losses of a mesh that depend on the temperature of its flanks, and not on the oil's."""
-    return ("rolling",) if mesh.models.friction.takes_oil_temperature else ("sliding", "rolling")
 
 
 def _fluids_at(

@@ -320,7 +320,7 @@ class TrainOperation(Table):
     )
     speed: RotationalSpeed = Field(description="Speed of the input shaft.")
     oil_inlet_temperature: Temperature | None = option(
-        "Oil temperature at all contacts; needed for computed losses."
+        "Oil temperature at the inlet; needed for computed losses."
     )
     speeds: dict[str, RotationalSpeed] = option(
         "Speeds of further driven shafts, if the train has more degrees of freedom.", {}

@@ -103,8 +103,8 @@ def telling_contacts(case: Case) -> Iterator[None]:
 def check(case: str, changes: tuple[str, ...]) -> None:
     """Check a case and show what follows from it, as a data sheet, without computing losses.
 
-    For a train it also shows the ratio of every state; with [strength], the safeties, which are
-    computed.
+    For a train it also shows the ratio of every state; with [strength], the safety factors, which
+    are computed.
     """
     from epicyclic.show.data_sheet import data_sheet, reservations, state_tables
     from epicyclic.show.result_tables import details

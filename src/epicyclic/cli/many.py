@@ -375,7 +375,7 @@ def tell_warnings(plan: MapPlan, rows: Rows) -> None:
     case = plan.case.updated(plan.changes(worst))
     found = first_warnings(solve(case))
     if found.items:
-        head = f"{found.title}, where most is lost: {point_of(case)}"
+        head = f"{found.title} at the greatest loss: {point_of(case)}"
         echo("\n• ".join((head, *found.items)), err=True)
 
 

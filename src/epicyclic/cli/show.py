@@ -58,7 +58,7 @@ def oils(name: str | None) -> None:
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path), default=Path("case.toml"))
 @click.option("--kind", type=click.Choice(["planetary", "gear_pair", "train"]))
-@click.option("--minimal", is_flag=True, help="Write only the required keys.")
+@click.option("--minimal", is_flag=True, help="A short file: required keys and a few others.")
 @click.option("--like", metavar="CASE", help="Use the values of a built-in case or a file.")
 def init(file: Path, kind: str | None, minimal: bool, like: str | None) -> None:
     """Write a commented case FILE (default case.toml) to start from."""

@@ -70,6 +70,8 @@ def case_template(kind: str) -> str:
     ]
     # a case of one's own starts from the default models
     example = {key: table for key, table in library.builtin_case(name).items() if key != "models"}
+    if kind == "gear_pair":  # that case is one without load
+        example["operation"] = {**example["operation"], "torque": "60 N*m"}
     return case_text(example, head)
 
 

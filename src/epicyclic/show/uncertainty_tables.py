@@ -262,9 +262,9 @@ def pair_tables(data: xr.Dataset) -> RenderableType:
         chance = aligned(MISSING if same else percent(float(one["probability"])))
         rows.append((Cell(_label(name)), *cells, chance))
     strong = frozenset({names.index("total"), names.index("efficiency")})
-    head = ("", "first", "second", "mean diff.", "u", "95 % from", "to", "2nd smaller")
+    head = ("", "first", "second", "mean diff.", "u", "95 % from", "to", "P(2nd < 1st)")
     first, second = (one_line(data.attrs[f"{name}_title"]) for name in ("first", "second"))
-    table = Table(head, tuple(rows), "Second less first", strong, "Losses in W.")
+    table = Table(head, tuple(rows), "Second minus first", strong, "Losses in W.")
     total = data.sel(result="total")
     notes = [
         f"Shared: {data.attrs['shared'] or 'nothing'}.",
@@ -358,8 +358,8 @@ def _budget(data: xr.Dataset) -> Table | Listing:
         note = note.replace("alone and with all interactions; ", "each alone; ")
     elif (above := float((total[orders[0]] - total[orders[1]]).max())) > SCATTER:
         note += (
-            f" They scatter: one alone is {percent(above)} of the variance above that with "
-            "interactions, which it cannot exceed. More samples reduce that."
+            f" They scatter: one share alone exceeds that with interactions by {percent(above)} of "
+            "the variance, which is impossible. More samples reduce that."
         )
     return _causes(heads[: len(heads) + len(orders) - 2], rows, note)
 

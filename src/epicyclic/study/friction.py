@@ -135,7 +135,7 @@ def standard_beside(rows: Sequence[FrictionComparison], result: Result) -> str |
     ratio = standard.quick / own
     told = (
         f"{STANDARD} gives {known_text(standard.quick)} for the meshes under load, "
-        f"{ratio:.2f} times this result"
+        f"{ratio:.2f} times their loss here"
     )
     if 1 / PARTED < ratio < PARTED:
         return f"{told}."

@@ -549,7 +549,8 @@ def unit_problem(
 ) -> Problem:
     """The problem of a column whose unit is not read, with the one that is meant if it is clear."""
     assert quantity is not None
-    allowed = sentence(error.message(), capital=False)
+    wrong = sentence(error.message(), capital=False)
+    allowed = wrong if unit else f"has no unit; it must be {quantity.noun}."
     shown, meant = f'"{one_line(header)}"', quantity.meant_unit(unit or "")
     if not unit or meant:
         return Problem(name, shown, allowed, f'Call it "{name} [{meant or quantity.display}]".')

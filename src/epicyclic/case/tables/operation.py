@@ -58,7 +58,7 @@ class PlanetaryOperation(Table):
         description="Torque on the input member; negative: coasting, power flows back through it."
     )
     speed: RotationalSpeed = Field(description="Speed of the input member.")
-    oil_inlet_temperature: Temperature = Field(description="Oil temperature at all contacts.")
+    oil_inlet_temperature: Temperature = Field(description="Oil temperature at the inlet.")
 
 
 class GearPairOperation(Table):
@@ -68,7 +68,7 @@ class GearPairOperation(Table):
 
     torque: Torque = Field(description="Torque on the pinion; negative: coasting.")
     speed: RotationalSpeed = Field(description="Speed of the pinion.")
-    oil_inlet_temperature: Temperature = Field(description="Oil temperature at all contacts.")
+    oil_inlet_temperature: Temperature = Field(description="Oil temperature at the inlet.")
 
 
 class Lubricant(Table):

@@ -55,7 +55,7 @@ class MeshStrength(Table):
 
 
 class StrengthTable(MeshStrength):
-    """Loads, lives and strengths, for safeties after ISO 6336 and ISO 281."""
+    """Loads, lives and strengths, for safety factors after ISO 6336 and ISO 281."""
 
     STAND_INS: ClassVar[dict[str, object]] = {"gears": {}, "meshes": {}}
 
@@ -82,4 +82,4 @@ class StrengthTable(MeshStrength):
         return hash((self.life, self.application_factor, self.face_load_factor))
 
 
-STRENGTH: Any = option("For safeties against damage, shown beside the losses.")
+STRENGTH: Any = option("For safety factors against damage, shown beside the losses.")

@@ -1,4 +1,4 @@
-"""Choosing gears: safeties, masses, relief, and the search for designs."""
+"""Choosing gears: safety factors, masses, relief, and the search for designs."""
 
 from epicyclic.registry import PlugIn
 

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 def strength(
     case: str, changes: tuple[str, ...], json_file: str | None, rotor: Path | None
 ) -> None:
-    """Show safeties against damage, bearing lives and masses of a case.
+    """Show safety factors against damage, bearing lives and masses of a case.
 
     Pitting and bending after ISO 6336-2, -3, loads after -1 with K_Hbeta from the computed load
     along the contact lines; micropitting after ISO/TS 6336-22 and scuffing after -20, -21 from
@@ -74,6 +74,7 @@ def strength(
     found = rate(loaded)
     if rotor is not None:
         write_file(rotor, rotor_text(rotor_dynamics(loaded), rotor.suffix))
+        echo(f"Wrote {rotor}.", err=True)
     show(
         lambda: titled(
             loaded.title or loaded.kind,
@@ -121,7 +122,7 @@ def design(
 
     \b
     ratio = 4.2
-    [operation]  # where the safeties hold; [[cycle]]: where the loss is averaged
+    [operation]  # where the safety factors hold; [[cycle]]: where the loss is averaged
     torque = "180 N*m"
     speed = "6000 rpm"
     oil_inlet_temperature = "80 degC"

@@ -67,7 +67,7 @@ def fates_table(found: Found) -> Table:
     if LIKELY in found.fates:
         notes.append(
             f"Probably beaten: a solved design is better even if they lose only {LOSS_MARGIN:.0%} "
-            f"of what {ENOUGH_SOLVED} or more solved designs of their arrangement let expect."
+            f"of what {ENOUGH_SOLVED} or more solved designs of their arrangement suggest."
         )
     shares = [point.share for point in found.task.cycle]
     whole, stated = sum(shares), any(share != 1 for share in shares)
@@ -295,7 +295,7 @@ def variants_table(data: xr.Dataset) -> Table:
 
 
 def relief_figure(data: xr.Dataset) -> Figure:
-    """The first two objectives, with bands, and the front as a line."""
+    """The first two objectives, with bands, and the front, as a line if there are only two."""
     names = [it for it in SHOWN if it in data]
     one, two = (*names, names[0])[:2]
     with styled_figure(1, 1, data.attrs["title"]) as (figure, axes):
@@ -307,7 +307,7 @@ def relief_figure(data: xr.Dataset) -> Figure:
                 bars[axis] = np.array([low, high])
         ax.errorbar(data[one], data[two], fmt="o", alpha=0.6, label="all", **bars)
         front = data.isel(variant=np.flatnonzero(data["front"])).sortby(one)
-        ax.plot(front[one], front[two], "-", label="not beaten")
+        ax.plot(front[one], front[two], "-" if len(names) <= 2 else "s", label="not beaten")
         ax.set(xlabel=SHOWN[one][0], ylabel=SHOWN[two][0])
         ax.legend()
     return figure

@@ -73,12 +73,12 @@ USUAL_SHARE = 0.6  # Of a computed safety in its bound, before any is solved. [1
 LOSS_MARGIN = 0.8  # Of the smallest solved loss over its bound, for candidates not solved. [1]
 ENOUGH_SOLVED = 16  # Designs of an arrangement that tell this.
 BEATEN = "beaten by a bound"  # Of friction.
-LIKELY = "probably beaten, as losses of solved designs tell"
+LIKELY = "probably beaten, judging by solved designs"
 POLISH_REACH, POLISH_STEPS = 0.15, 8
 
 
 def evaluate(task: Task, row: Mapping[str, Any]) -> dict[str, float]:
-    """Loss over the cycle, transmission error and safeties of one candidate, solved in full."""
+    """Loss over the cycle, transmission error and safety of one candidate, solved in full."""
     total = sum(point.share for point in task.points)
     loss = 0.0
     for number, point in enumerate(task.points):
@@ -357,8 +357,8 @@ def _least_ratios(found: Found, rows: Any) -> FloatArray:
 def _next(found: Found, left: Any, count: int) -> list[int]:
     """The next designs to solve: fronts of their bounds, those first that will probably hold.
 
-    Solved designs tell how far safeties stay below their bounds. That only changes the order, and
-    so does one design of every arrangement of which none is solved yet.
+    Solved designs tell how far safety factors stay below their bounds. That only changes the order,
+    and so does one design of every arrangement of which none is solved yet.
     """
     bounds = _objectives(found, left, "bound")
     rank = np.log(np.maximum(bounds, 1e-12)).sum(axis=1)

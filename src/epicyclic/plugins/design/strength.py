@@ -48,7 +48,7 @@ from epicyclic.units import percent
 FACE_BINS = 8  # Parts of the face over which the load is averaged for K_Hbeta.
 MATERIAL_STIFFNESS = 0.8  # C_M of ISO 6336-1: measured over theoretical stiffness. [1]
 AFTER = {
-    "pitting": "after ISO 6336-2: stresses and factors of method B, without warm or static cases",
+    "pitting": "after ISO 6336-2: stresses and factors of method B, without static strength",
     "bending": "after ISO 6336-3: method B, without thin rims, protuberance and grinding notches",
     "loads": "after ISO 6336-1: K_v and K_Halpha of method B, K_Hbeta from the computed load",
     "micropitting": "after ISO/TS 6336-22: film thickness at the computed pressure and friction",

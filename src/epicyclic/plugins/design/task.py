@@ -111,7 +111,7 @@ class Task(Table):
 
     title: str = ""
     ratio: Number = Field(gt=1, le=1000, description="Speed of the input over that of the output.")
-    operation: DutyPoint = Field(description="Where the safeties hold.")
+    operation: DutyPoint = Field(description="Where the safety factors hold.")
     cycle: tuple[DutyPoint, ...] = option("Where the loss is averaged. Default: operation.", ())
     choices: Choices
     limits: Limits = Limits()

@@ -522,7 +522,8 @@ def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> floa
     """
     try:
         gears = tables["gears"]
-        teeth = sum(_signed_teeth(tables, name) for name in (member1, member2))
+        signs = {it: -1 if _is_internal(tables, it) else 1 for it in (member1, member2)}
+        teeth = sum(sign * int(tables[it]["teeth"]) for it, sign in signs.items())  # ISO 21771
         x1 = float(tables[member1]["profile_shift_coefficient"])
         module, center = (
             MILLIMETRE.parse(gears[it]) for it in ("normal_module", "center_distance")
@@ -532,11 +533,6 @@ def closing_shift(tables: Mapping[str, Any], member1: str, member2: str) -> floa
         return profile_shift_sum(rack, teeth, center) - x1
     except (KeyError, ValueError, ArithmeticError):  # lacking, or no gears: told elsewhere
         return None
-
-
-def _signed_teeth(tables: Mapping[str, Any], name: str) -> int:
-    """Number of teeth as in ISO 21771: negative for internal gears."""
-    return (-1 if _is_internal(tables, name) else 1) * int(tables[name]["teeth"])
 
 
 def _is_internal(tables: Mapping[str, Any], name: str) -> bool:

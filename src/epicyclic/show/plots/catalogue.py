@@ -640,9 +640,9 @@ def _field(field: QuadMesh | TriMesh, labels: tuple[str, str]) -> dict[str, Any]
     """A field with its values at corners or at scattered points (``shading="gouraud"``)."""
     masked: Any = np.ma.asarray(field.get_array())
     if isinstance(field, QuadMesh):
-        corners = np.asarray(field.get_coordinates())
-        x, y = corners[0, :, 0], corners[:, 0, 1]
-        values = masked.filled(math.nan).reshape(corners.shape[:2])
+        whole, step = np.asarray(field.get_coordinates()), loss_map.FINER
+        x, y = whole[0, ::step, 0], whole[::step, 0, 1]
+        values = masked.filled(math.nan).reshape(whole.shape[:2])[::step, ::step]
     else:
         known = field._triangulation  # type: ignore[attr-defined]  # Matplotlib has no other access
         x, y = (np.linspace(one.min(), one.max(), GRID) for one in (known.x, known.y))

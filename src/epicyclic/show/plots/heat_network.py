@@ -128,7 +128,7 @@ def plot_heat_network(heat: HeatBalance, ax: Axes) -> Axes:
     ax.set(xlim=(0, SLIDE[0]), ylim=(0, SLIDE[1]))
     whole = _power(sum(heat.sources.values()))
     oil = unit_text(f"{CELSIUS.to_display(heat.oil):.1f} {CELSIUS.display}")
-    ax.set_title(f"Heat: oil at {oil}, losses {whole}", fontsize=13, x=0.008)
+    ax.set_title(f"Heat: oil in the gearbox {oil}, losses {whole}", fontsize=13, x=0.008)
     parts, rail, shell = layout.rows
     _rail(ax, layout, OIL, (LEFT, RIGHT), rail)
     if layout.has_housing:

@@ -9,10 +9,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import FuncNorm, Normalize
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import MaxNLocator
+from scipy.interpolate import RegularGridInterpolator
 
+from epicyclic.arrays import FloatArray
 from epicyclic.result.result import in_words
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
@@ -32,6 +35,7 @@ Limits = tuple[float, float] | None
 
 HALF_WIDTH = "half_width"
 LEVELS = 7
+FINER = 8  # Parts of an interval between points of a field.
 EFFICIENCIES = (50, 70, 80, 90, 95, 97, 98, 98.5, 99, 99.3, 99.5, 99.7, 99.9)
 """Efficiencies that get a line and a tick. [%]"""
 LEAST_EFFICIENCY, BEST_EFFICIENCY = 50.0, 99.95
@@ -131,9 +135,7 @@ def plot_map(
     speed, torque = (data[axis].to_numpy() for axis in PLANE)
     of_efficiency = name == "efficiency"
     norm = _efficiency_norm(low, high) if of_efficiency else Normalize(low, high)
-    field = ax.pcolormesh(
-        speed, torque, values, shading="gouraud", cmap=COLOUR_MAP, norm=norm, rasterized=True
-    )
+    field = draw_field(ax, speed, torque, values.to_numpy(), norm=norm)
     below = of_efficiency and low < LEAST_EFFICIENCY
     bar = ax.figure.colorbar(
         field, ax=ax, label=label_of(values), extend="min" if below else "neither"
@@ -150,6 +152,16 @@ def plot_map(
     draw_lines(ax, (speed, torque, values.to_numpy()), levels)
     ax.grid(visible=False)
     return labelled(ax, _axis_label(data, "speed"), _axis_label(data, "torque"), title_of(values))
+
+
+def draw_field(ax: Axes, x: FloatArray, y: FloatArray, z: FloatArray, **how: Any) -> QuadMesh:
+    """Colours of `z`, (y, x), linear between its points; shading alone would mix their colours."""
+    places = [np.linspace(0, one.size - 1, FINER * (one.size - 1) + 1) for one in (x, y)]
+    known = np.arange(y.size), np.arange(x.size)
+    fine = RegularGridInterpolator(known, z)(tuple(np.meshgrid(*reversed(places), indexing="ij")))
+    fine[::FINER, ::FINER] = z  # also beside points without a value
+    ends = (np.interp(at, np.arange(it.size), it) for at, it in zip(places, (x, y), strict=True))
+    return ax.pcolormesh(*ends, fine, shading="gouraud", cmap=COLOUR_MAP, rasterized=True, **how)
 
 
 def draw_lines(
@@ -169,7 +181,7 @@ def draw_lines(
     edge: list[AbstractPathEffect] = [withStroke(linewidth=2.0, foreground="0.25")]
     chosen = drawn[:: -(-len(drawn) // LABELS)] if even else drawn[-LABELS:]
     to_axes, kept = ax.transData - ax.transAxes, np.empty((0, 2))
-    for text in ax.clabel(lines, chosen, fontsize="small", fmt="%g", inline=False):
+    for text in reversed(ax.clabel(lines, chosen, fontsize="small", fmt="%g", inline=False)):
         text.set_path_effects(edge)
         place = to_axes.transform(text.get_position())
         is_cut = np.abs(place - 0.5).max() > 0.5 - EDGE
@@ -205,7 +217,7 @@ def plot_map_lines(data: xr.Dataset, name: str, over: str, ax: Axes, limits: Lim
             ls=LINE_STYLES[number],
             marker=".",
             ms=3,
-            label=f"{format_number(float(line[other]), 3)} {unit}",
+            label=f"{format_number(float(line[other]))} {unit}",
         )
     legend_below(ax, title=other, title_fontsize="small", ncols=3)
     if limits is not None and limits[1] > 0:

@@ -18,7 +18,7 @@ from matplotlib.ticker import MaxNLocator
 
 from epicyclic.arrays import FloatArray
 from epicyclic.errors import first_of
-from epicyclic.show.plots.loss_map import draw_lines
+from epicyclic.show.plots.loss_map import draw_field, draw_lines
 from epicyclic.show.plots.style import (
     COLOUR_MAP,
     COLOURS,
@@ -161,7 +161,7 @@ def plot_sweep_field(data: xr.Dataset, name: str, ax: Axes) -> Axes:
     values = in_percent(part[name]).transpose(up, across).sortby([up, across])
     x, y, z = (array.to_numpy() for array in (values[across], values[up], values))
     if np.isfinite(z).any():
-        field = ax.pcolormesh(x, y, z, shading="gouraud", cmap=COLOUR_MAP, rasterized=True)
+        field = draw_field(ax, x, y, z)
         ax.figure.colorbar(field, ax=ax, label=label_of(values))
         draw_lines(ax, (x, y, z), LEVELS)
     points = [grid.ravel() for grid in np.meshgrid(x, y)]

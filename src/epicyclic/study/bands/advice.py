@@ -158,7 +158,8 @@ def in_few_words(name: str) -> str:
         return name
     *owners, last = name.replace("_", " ").split(".")
     owner = ": ".join(one for one in owners if one not in _OF_ALL)
-    return f"{last} of {owner}" if owner else last
+    whole = f"number of {owner}s" if last == "count" else f"{last} of {owner}"
+    return whole if owner else last
 
 
 def main_causes(known: Known) -> str:
@@ -218,7 +219,7 @@ def _friction(case: Case, result: Result, brief: bool) -> Iterator[str]:
     except ConvergenceError:  # of a model that is not that of the case
         return
     best, why = recommended(rows)
-    does = "suits" if best.chosen else BETTER
+    does = "is suitable" if best.chosen else BETTER
     if best.chosen and best.outside > MOSTLY:
         does = "is only the nearest, because no model covers most of the loss"
     yield f"Friction: {best.name} {does}; {why}."

@@ -255,7 +255,7 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     for speed, line, own in zip(ends, lines, middles, strict=True):
         exact, direct = direct[: own.size], direct[own.size :]
         with np.errstate(divide="ignore", invalid="ignore"):  # of no loss there is no part
-            error = np.abs(np.interp(own, torques, line["total"].values) / exact - 1)
+            error = np.abs(np.interp(own, torques, line["total"].values) / exact - 1).round(12)
         if np.isfinite(error).any():
             worst = int(np.nanargmax(error))
             found.append(float(f"{error[worst]:.2g}"))
@@ -266,7 +266,7 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
         return {}
     return {
         "torque_interpolation_error": found[0],
-        "torque_interpolation": "linear in the torque; the largest error of the total loss is "
+        "torque_interpolation": "linearly in torque; the largest error of the total loss is "
         f"{', '.join(texts)}: {len(points)} points between torques solved directly",
     }
 

@@ -285,19 +285,12 @@ def make_lookup(data: xr.Dataset) -> Lookup:
     shape = [chosen.sizes[name] for name in names]
     watts = np.array([chosen[name].transpose(*names).fillna(0).values for name in components])
     watts = watts.reshape(len(components), *shape)
-    watts = watts[:, _nearest_moving(axes[0])]
+    moving = np.flatnonzero(axes[0])[::-1]  # rest takes the nearest of these, rather the positive
+    watts = watts[:, moving[np.abs(moving[:, None] - np.arange(axes[0].size)).argmin(axis=0)]]
     total = watts.sum(axis=0)
     shares = watts / np.where(total > 0, total, 1.0)
     torque_loss = chosen["torque_loss"].transpose(*names).values
     return Lookup(names, axes, states, tuple(components), shares * torque_loss)
-
-
-def _nearest_moving(speed: FloatArray) -> IntArray:
-    """For each speed its own number, for rest that of the nearest, rather the positive one."""
-    moving = np.flatnonzero(speed)[::-1]
-    distance = np.abs(moving[:, None] - np.arange(speed.size))
-    nearest: IntArray = moving[distance.argmin(axis=0)]
-    return nearest
 
 
 def _check_usable(data: xr.Dataset) -> None:

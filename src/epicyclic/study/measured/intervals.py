@@ -422,8 +422,8 @@ class Combination:
         effect = f"changes the losses by {format_number(self.change, 2)} of their scatter"
         if len(self.keys) == 1:
             return (
-                f"these points depend too little on {self.text}, which {effect}. Do not fit it, "
-                "or add points at which it matters."
+                f"these points depend too little on one input: {self.text} {effect}. Do not fit "
+                "it, or add points at which it matters."
             )
         return (
             f"these points cannot separate some inputs: {self.text} {effect}. Fix all but one of "
