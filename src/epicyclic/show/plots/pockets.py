@@ -30,7 +30,6 @@ from epicyclic.show.plots.style import (
     labelled,
     legend_below,
     styled_figure,
-    title_of,
 )
 from epicyclic.units import known_text
 
@@ -120,7 +119,7 @@ def plot_over_life(
     colours = _face_colours(mesh).to_rgba(place.to_numpy())
     for number in np.unique(np.linspace(0, place.size - 1, DRAWN_SLICES).round()).astype(int):
         ax.plot(mesh["roll_angle"][kind], values[:, number], color=colours[number], lw=1.0)
-    return _over_roll(mesh, values, ax, f"{title_of(values)}: {_name(mesh, kind)}")
+    return _over_roll(mesh, values, ax, _name(mesh, kind).capitalize())
 
 
 def _face_colours(mesh: xr.Dataset) -> ScalarMappable:
