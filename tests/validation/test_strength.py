@@ -16,7 +16,7 @@ import pytest
 from asymmetric import oil_table
 from epicyclic import validation
 from epicyclic.case.tables.operation import Lubricant
-from epicyclic.gears.cutting import RackTool, ShaperTool
+from epicyclic.gears.cutting import RackTool, ShaperTool, fit_tool
 from epicyclic.gears.mesh import Mesh
 from epicyclic.kernels.line_contact import flash_temperature
 from epicyclic.plugins.design import iso_6336 as iso
@@ -154,6 +154,17 @@ def test_pitting_and_bending_are_as_printed(one):
         assert stress * bending / 1e6 == pytest.approx(one.root[member], rel=ROUND)
         bears = root_limit(materials[member], root, one.cycles[member], 20e-6, one.mean[member])
         assert bears / (stress * bending) == pytest.approx(one.bending[member], rel=ROUND)
+
+
+@pytest.mark.parametrize("member", [0, 1])
+def test_no_tool_is_rounder_than_its_tip_is_wide(member):
+    (mesh,) = load_case("talbot-2012-pair").gearings[""].geometries
+    gear, ratio = mesh.gears[member], mesh.transverse_contact_ratio
+    full = fit_tool(gear, RackTool(1.0)).tool_radius
+    assert 0.2 < full / gear.rack.normal_module < 0.7
+    widest = iso.tooth_root(gear, RackTool(full), ratio)
+    assert iso.tooth_root(gear, RackTool(3 * full), ratio) == widest
+    assert iso.tooth_root(gear, RackTool(0.9 * full), ratio).radius < widest.radius
 
 
 def test_dynamic_and_transverse_factor_are_as_printed():

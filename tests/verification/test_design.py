@@ -497,6 +497,17 @@ def test_relief_under_no_load_is_an_input_error():
     assert [problem.key for problem in caught.value.problems] == ["loads"]
 
 
+def test_relief_of_a_set_of_a_train():
+    case = load_case("train-eaxle")
+    vary = {"sets.pair.pinion.micro_geometry.lead_crown": ["0 um", "5 um"]}
+    data = relief_front(Relief(case, "pair.mesh", vary), Runner(1))
+    assert float(data.transmission_error[1]) < float(data.transmission_error[0])
+    idle = load_case("talbot-2012-pair")
+    vary = {"pinion.micro_geometry.lead_crown": ["0 um", "5 um"]}
+    with pytest.raises(InputError, match="the mesh carries no load"):
+        relief_front(Relief(idle, "mesh", vary), Runner(1))
+
+
 @pytest.mark.slow
 def test_relief_of_the_test_article():
     """As this package computed it before; the loss there has 122 W of pocketing on top."""

@@ -18,8 +18,8 @@ from typing import Literal
 import numpy as np
 
 from epicyclic.arrays import FloatArray
-from epicyclic.dataclass import dataclass
-from epicyclic.gears.cutting import RackTool, ShaperTool, Tool
+from epicyclic.dataclass import dataclass, replace
+from epicyclic.gears.cutting import RackTool, ShaperTool, Tool, fit_tool
 from epicyclic.gears.gear import Gear, involute
 from epicyclic.gears.mesh import Mesh
 
@@ -123,7 +123,8 @@ def tooth_root(gear: Gear, tool: Tool, transverse_contact_ratio: float) -> Tooth
     teeth = sign * gear.teeth / (base * math.cos(rack.helix_angle))
     shift = gear.profile_shift_coefficient
     depth = sign * (gear.reference_radius - gear.root_radius) / module + shift  # h_fP
-    radius = _tool_radius(tool, depth, module)
+    rounding = fit_tool(gear, tool).tool_radius  # less than stated where the tip of the tool ends
+    radius = _tool_radius(replace(tool, tip_radius=rounding), depth, module)
     limit, narrow, short = math.pi / 3, math.sqrt(3), 1.0
     if gear.internal:
         limit, narrow, short = math.pi / 6, 1.0, math.sqrt(3)

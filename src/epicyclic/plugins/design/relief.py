@@ -88,7 +88,7 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
     over_loads = []  # Of each objective: variants, as they are and then with one amount off.
     for name in relief.objectives:
         figure = OBJECTIVES[name]
-        key = figure if name == "loss" else f"{relief.mesh.replace('.', '_')}_{figure}"
+        key = figure if name == "loss" else f"{relief.mesh}_{figure}"
         values = rows.numbers(key).reshape(len(variants), len(relief.loads), 1 + len(shifted))
         over_loads.append(values.mean(axis=1) if name == "loss" else values.max(axis=1))
     found = np.array(over_loads)
@@ -96,8 +96,8 @@ def relief_front(relief: Relief, runner: Runner | None = None) -> xr.Dataset:
     half = np.sqrt(((found[..., 1:] - found[..., :1]) ** 2).sum(axis=2))
     solved = np.isfinite(nominal).all(axis=0)
     if not solved.any():
-        first = next(iter(rows.failures), "nothing was solved")
-        raise one_problem("--vary", "", f"leads to no result: {first}", "Narrow it.")
+        first = next(iter(rows.failures), "the mesh carries no load.")
+        raise one_problem("--vary", "", f"leads to no result: {first}", "Narrow it, or load it.")
     front = np.zeros(len(variants), dtype=bool)
     front[solved] = ~dominated(nominal.T[solved], nominal.T[solved])
     data: dict[str, Any] = {

@@ -33,6 +33,7 @@ from epicyclic.plugins.design.search import (
 )
 from epicyclic.plugins.design.tables import mass_table, strength_tables
 from epicyclic.plugins.design.task import read_task, task_tables
+from epicyclic.result.result import in_words
 from epicyclic.show.data_sheet import data_sheet
 from epicyclic.show.page import Cell, Drawing, Listing, Table, number
 from epicyclic.show.plots.catalogue import Panel, drawing
@@ -290,7 +291,7 @@ def variants_table(data: xr.Dataset) -> Table:
         rows.append((*cells, Cell("yes" if one["front"].item() else "")))
     short = [key.replace(".micro_geometry", "") for key in keys]
     head = (*short, *(f"{it.replace('_', ' ')} [{data[it].attrs['units']}]" for it in names))
-    title = f"{data.attrs['mesh'].replace('_', ' ').capitalize()} of {data.attrs['title']}"
+    title = f"{in_words(data.attrs['mesh']).capitalize()} of {data.attrs['title']}"
     return Table((*head, "not beaten"), tuple(rows), title)
 
 
