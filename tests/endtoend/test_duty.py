@@ -420,11 +420,18 @@ def test_maps_that_cannot_be_used_are_refused(data):
     cycle = {"speed [rpm]": [100], "torque [N*m]": [1], "duration [s]": [1]}
     with pytest.raises(ep.InputError, match="is not a loss map"):
         ep.duty_cycle(xr.Dataset(), cycle)
-    gap = data.copy(deep=True)
-    gap["torque_loss"][0, 0, 0] = np.nan
-    gap["message"][0, 0, 0] = "planets overlap"
+    gap, near = data.copy(deep=True), {"speed": 100, "torque": 1, "temperature": 90}
+    place = {name: int(np.abs(data[name].values - it).argmin()) for name, it in near.items()}
+    gap["torque_loss"][place] = np.nan
+    gap["message"][place] = "planets overlap"
     with pytest.raises(ep.InputError, match=r"missing at 1 points.*planets overlap"):
         ep.duty_cycle(gap, cycle, ["90 degC"])
+    # a gap where the cycle does not go is none of its business
+    place["speed"] = data.sizes["speed"] - 1
+    elsewhere = data.copy(deep=True)
+    elsewhere["torque_loss"][place] = np.nan
+    found, whole = (ep.duty_cycle(it, cycle, ["90 degC"]) for it in (elsewhere, data))
+    assert float(found["energy_lost"].sum()) == float(whole["energy_lost"].sum()) > 0
     with pytest.raises(ep.InputError, match="is driven"):
         ep.duty_cycle(data.assign_attrs(held_shaft=""), cycle, ["90 degC"])
     with pytest.raises(ep.InputError, match="has only the value zero"):

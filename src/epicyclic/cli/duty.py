@@ -232,7 +232,7 @@ def _map(
         plan = cycle_plan(case, cycle, celsius)
         rows = replace(runner, progress=progress).within(plan).run(plan)
     data = to_map(plan, rows)
-    tell_warnings(plan, rows)
+    tell_warnings(plan, rows, " of a map over its ranges")
     if map_file is not None:
         _write_map(data, map_file)
     return data

@@ -362,8 +362,8 @@ def _print_thin_teeth(rows: Rows) -> None:
         )
 
 
-def tell_warnings(plan: MapPlan, rows: Rows) -> None:
-    """Say what `run` would warn of where most is lost."""
+def tell_warnings(plan: MapPlan, rows: Rows, where: str = "") -> None:
+    """Say what `run` would warn of where most is lost, and `where` that is."""
     from numpy import nan_to_num
 
     from epicyclic.show.summary import first_warnings
@@ -375,7 +375,7 @@ def tell_warnings(plan: MapPlan, rows: Rows) -> None:
     case = plan.case.updated(plan.changes(worst))
     found = first_warnings(solve(case))
     if found.items:
-        head = f"{found.title} at the greatest loss: {point_of(case)}"
+        head = f"{found.title} at the greatest loss{where}: {point_of(case)}"
         echo("\n• ".join((head, *found.items)), err=True)
 
 

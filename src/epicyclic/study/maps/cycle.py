@@ -169,9 +169,6 @@ def open_cycle(
     return Cycle(source, columns, weighting, checks.rows, ranges, states, whole)
 
 
-# --- headers --------------------------------------------------------------------------------------
-
-
 def _find_columns(headers: tuple[str, ...]) -> tuple[dict[str, Column], list[Problem]]:
     """The columns that a cycle needs, in what there is; none of those that are not clear."""
     found: dict[str, list[tuple[str, str | None]]] = {name: [] for name in _QUANTITIES}
@@ -220,9 +217,6 @@ def _missing(found: Mapping[str, list[Any]], headers: tuple[str, ...]) -> list[P
         allowed = "exclude each other."
         problems.append(Problem(" and ".join(weightings), "", allowed, "Keep one of them."))
     return problems
-
-
-# --- values ---------------------------------------------------------------------------------------
 
 
 def _numbers(source: Source, header: str, piece: TablePiece) -> FloatArray:

@@ -28,7 +28,7 @@ from epicyclic.study.maps.compute import (
     to_map,
 )
 from epicyclic.study.maps.cycle import Cycle, Piece, open_cycle
-from epicyclic.study.maps.tables import Lookup, make_lookup, map_case
+from epicyclic.study.maps.tables import Lookup, check_gaps, make_lookup, map_case
 from epicyclic.study.meshes import Variable, variable
 from epicyclic.study.operating import STATE, shaft_power
 from epicyclic.study.sweeps.runner import HERE, Progress, Runner
@@ -254,7 +254,9 @@ def add_up(
     """Go through a checked cycle; raises `InputError` if it leaves the map."""
     if samples < 0:
         raise one_problem("samples", str(samples), "must be 0 or more.", "Take 20.", "the command")
-    lookup = make_lookup(data)
+    lookup = make_lookup(data, gaps=True)
+    lost = data["torque_loss"].transpose(*lookup.names, ...).values
+    gaps = np.isnan(lost).reshape(lookup.size, -1)[:, 0]  # of the first of further keys
     if len(lookup.states) > 1 or (lookup.states and cycle.states):
         check_states(cycle, lookup.states)
     totals = []
@@ -262,6 +264,8 @@ def add_up(
         found = _go_through(lookup, cycle, value, Sample(samples), progress)
         if found.outside and not clamp:
             raise _outside(lookup, cycle, value, found)
+        if found.node_work[:, gaps].any():  # points that failed matter only where the cycle goes
+            check_gaps(data)
         totals.append(found)
     return Sums(lookup, celsius, clamp, tuple(totals))
 

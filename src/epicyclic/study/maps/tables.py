@@ -259,16 +259,17 @@ def slack(axis: FloatArray) -> float:
     return _ROUNDING * max(float(np.ptp(axis)), float(np.abs(axis).max()))
 
 
-def make_lookup(data: xr.Dataset) -> Lookup:
+def make_lookup(data: xr.Dataset, *, gaps: bool = False) -> Lookup:
     """A loss map for interpolation.
 
     At rest, where no power is lost, the torque loss is split between the components as at the
-    slowest speed beside it. Raises `InputError` if `data` is no map, has gaps, further axes, or two
-    driven members.
+    slowest speed beside it. Raises `InputError` if `data` is no map, has `gaps` that it may not
+    have, further axes, or two driven members.
     """
     check_map(data)
     _check_usable(data)
-    check_gaps(data)
+    if not gaps:
+        check_gaps(data)
     names = tuple(name for name in (*AXES, STATE) if name in data["torque_loss"].dims)
     chosen = data.isel({name: 0 for name in data["torque_loss"].dims if name not in names})
     states = tuple(map(str, chosen[STATE].values)) if STATE in names else ()
@@ -289,7 +290,7 @@ def make_lookup(data: xr.Dataset) -> Lookup:
     watts = watts[:, moving[np.abs(moving[:, None] - np.arange(axes[0].size)).argmin(axis=0)]]
     total = watts.sum(axis=0)
     shares = watts / np.where(total > 0, total, 1.0)
-    torque_loss = chosen["torque_loss"].transpose(*names).values
+    torque_loss = np.nan_to_num(chosen["torque_loss"].transpose(*names).values)
     return Lookup(names, axes, states, tuple(components), shares * torque_loss)
 
 
