@@ -83,8 +83,8 @@ def struck(process, number, seconds):
     except subprocess.TimeoutExpired:
         process.send_signal(number)
         code, _ = ended(process)
-        assert code == ENDS[number]
-        return True
+        assert code in (0, ENDS[number])  # 0: the signal came when all was written
+        return code != 0
     ended(process)
     return False
 
@@ -93,8 +93,10 @@ def struck(process, number, seconds):
 def test_a_command_that_is_told_to_end_goes_on_later(tmp_path, whole, output):
     random.seed(output)
     expected, seconds = whole(output)
-    hits = 0
+    hits, tries = 0, 0
     while hits < 4:
+        tries += 1
+        assert tries < 40, "signals end nothing"
         number = (signal.SIGTERM, signal.SIGINT)[hits % 2]
         hits += struck(started(output, tmp_path), number, random.uniform(0.3, 0.9) * seconds)
     assert ended(started(output, tmp_path))[0] == 0

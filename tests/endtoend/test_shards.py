@@ -169,8 +169,8 @@ def test_shards_of_another_plan_are_refused(call, tmp_path, shards):
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (lambda text: "", "does not state the study"),
-        (lambda text: "my notes\n" * 3, "does not state the study"),
+        (lambda text: "", "is no file of a shard"),
+        (lambda text: "my notes\n" * 3, "is no file of a shard"),
         (lambda text: text.replace('"version":"', '"version":"0.0.0-'), "was made by version"),
         (lambda text: text.replace('"pinion.face_width"', '"pinion.face"'), "was altered"),
         (lambda text: text.replace('"kind":"sweep"', '"kind":"swept"'), "was altered"),
@@ -269,7 +269,7 @@ def test_a_killed_shard_goes_on(call, tmp_path):
     code, printed, errors = call(*command, "--shard", "2/2")
     assert code == 0, errors
     assert "Continuing from" in errors
-    assert "202 of 400 points are in" in printed  # 7 of 13 blocks of up to 33
+    assert "76 of 400 points are in" in printed  # the second of two blocks of up to 324
     assert call(*command, "--shard", "1/2")[0] == 0
     assert call("merge", *files_of(tmp_path, "s.csv"), "-o", tmp_path / "s.csv")[0] == 0
     assert call(*command[:-4], "-o", tmp_path / "whole.csv", "--jobs", "1")[0] == 0
