@@ -174,7 +174,7 @@ def test_options_of_a_loss_are_reported(epicyclic, as_json):
     assert result["losses"]["ring_mesh_rolling"] == 0
     assert result["not_included"]["ring_mesh_rolling"] == "left out by the case"
     assert result["factors"] == {"sun_drag": 2.0}
-    assert any("sun_drag is multiplied by 2" in warning for warning in result["warnings"])
+    assert any("sun drag is multiplied by 2" in warning for warning in result["warnings"])
 
 
 def test_all_problems_of_a_case_are_reported_together(epicyclic, tmp_path):

@@ -214,6 +214,21 @@ def test_one_problem_for_one_mistake(table, key, value, place, words):
     assert len(problem.value) < 80
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("planet_bearing.roller_length", "41 mm", "is 82 mm in all, in planets 24.4 mm wide"),
+        ("planet_bearing.row_gap", "57 mm", "is 76.04 mm in all"),
+        ("carrier.outer_diameter", "184 mm", "must reach the circle of the pins, 184.26 mm"),
+    ],
+)
+def test_parts_that_do_not_fit_the_set(key, value, words):
+    table, name = key.split(".")
+    tables = builtin_case("talbot-2012")
+    tables[table][name] = value
+    assert words in only(problems_of(read_case, tables)).allowed
+
+
 def test_a_wrong_centre_distance_is_told_as_such():
     tables = builtin_case("talbot-2012")
     tables["gears"]["center_distance"] = "200 mm"

@@ -223,6 +223,9 @@ def test_a_result_says_if_nothing_dips():
     assert result.lubrication[""].churning == {}
     assert "no turning part reaches the oil" in result.standing["lubrication"]
     assert "no turning part" not in ep.solve(pair(DIP)).standing["lubrication"]
+    words = "no turning part reaches the oil of the sump."
+    assert words in result.notes
+    assert words not in ep.solve(pair(DIP)).notes
 
 
 def test_depths_of_single_parts_are_those_of_a_level():

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import pytest
 
+import epicyclic as ep
 from epicyclic import library
 from epicyclic.oil.oil import Oil, air_viscosity, mixture_state, oil_state
 
@@ -217,3 +218,24 @@ def test_pao_thins_less_than_mineral_oil_of_the_same_grade():
             for base in ("mineral", "pao")
         )
         assert 1.1 < pao / mineral < 2.0
+
+
+def test_a_viscosity_of_no_lubricant_is_told():
+    words = "changes with temperature as that of no lubricant does"
+    base = ep.load_case("talbot-2012-pair").updated({"losses.mesh_pocketing.include": False})
+    for at_100, is_told in (("19 mm^2/s", False), ("190 mm^2/s", True), ("1.9 mm^2/s", True)):
+        oil = {"iso_vg": 220, "kind": "mineral", "viscosity_100": at_100}
+        notes = ep.solve(base.updated({"lubricant.oil": oil})).notes
+        assert any(words in note for note in notes) == is_told
+
+
+def test_keys_without_effect_are_told():
+    case = ep.load_case("talbot-2012-pair").updated(
+        {"losses.mesh_pocketing.include": False, "models.constant_friction": 0.07}
+    )
+    words = "models.constant_friction has no effect with models.friction = mixed-lubrication."
+    assert words in ep.solve(case).notes
+    used = case.updated({"models.friction": "constant"})
+    assert not any("has no effect" in note for note in ep.solve(used).notes)
+    usual = case.updated({"models.constant_friction": 0.04})
+    assert words not in ep.solve(usual).notes

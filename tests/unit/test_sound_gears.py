@@ -63,7 +63,7 @@ def planetary(zs, zp, zr, xs=0.0, xp=0.0, *, module=2.0, beta=0.0, alpha=20.0, c
     at_ring = math.acos(half_module * (zr - zp) / distance)
     xr = -(involute(at_ring) - involute(alpha_t)) * (zr - zp) / tangent - xp
     tables = read_case(TALBOT).inputs()
-    del tables["planet_bearing"]
+    del tables["planet_bearing"], tables["carrier"]
     tables["gears"] = {
         "normal_module": f"{module} mm",
         "normal_pressure_angle": f"{alpha} deg",

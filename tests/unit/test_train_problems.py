@@ -7,8 +7,8 @@ import copy
 import pytest
 
 import epicyclic as ep
-from problems import problems_of
-from trains import published, simple, wolfrom
+from problems import only, problems_of
+from trains import one_set, published, simple, wolfrom
 
 
 def told(tables):
@@ -309,12 +309,25 @@ def test_teeth_that_leave_no_room():
     assert set(told(tables)) == {"sets.a.ring.teeth", "sets.b.planet.teeth", "sets.c.gear.teeth"}
 
 
+@pytest.mark.parametrize(("ring", "fits"), [(60, True), (63, True), (65, False)])
+def test_gears_of_given_efficiency_stand_at_one_distance(ring, fits):
+    gears = {"sun": {"teeth": 19}, "planet": {"teeth": 20, "planet": True}}
+    gears["ring"] = {"teeth": ring, "internal": True}
+    meshes = [["sun", "planet"], ["planet", "ring"]]
+    tables = one_set(gears, meshes, "ring", ("sun", "carrier"), 0.98)
+    assert (told(tables) == {}) == fits
+    if not fits:
+        assert "39 with sun, 45 with ring" in told(tables)["sets.S.gears.planet.teeth"]
+    del gears["ring"]["internal"]
+    assert "internal = true" in only(problems_of(ep.load_case, tables)).remedy
+
+
 def test_sizes_that_no_bearing_has():
     tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
     tables["bearings"]["motor_rear"] |= {"position": "0.06 mm", "outside_diameter": "710 mm"}
     found = told(tables)
     assert "0.06 mm from the other bearing of motor" in found["bearings.motor_front.position"]
-    assert "over 6 bores" in found["bearings.motor_rear.outside_diameter"]
+    assert "1.03 to 6 times the bore" in found["bearings.motor_rear.outside_diameter"]
     assert len(found) == 2
 
 

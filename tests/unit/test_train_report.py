@@ -96,8 +96,8 @@ def test_self_locking_is_said_at_the_top():
 def test_a_train_that_is_jammed_is_said_to_stand_still():
     gears = {
         "sun": {"teeth": 57},
-        "ring": {"teeth": 137, "internal": True},
-        "second_ring": {"teeth": 140, "internal": True},
+        "ring": {"teeth": 78, "internal": True},
+        "second_ring": {"teeth": 103, "internal": True},
         "wide": {"teeth": 23, "body": "planet"},
         "narrow": {"teeth": 38, "body": "planet"},
     }

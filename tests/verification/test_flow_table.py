@@ -182,7 +182,7 @@ def test_tables_hold_the_numbers_of_all_speeds(monkeypatch, drive, speeds, asked
         ("planet.roughness", "0.53 um", False),
         ("planet_bearing.race_roughness", "0.31 um", False),
         ("load_sharing.mesh_load_factor", 1.13, False),
-        ("carrier.outer_diameter", "173 mm", False),
+        ("carrier.outer_diameter", "211 mm", False),
         ("carrier.width", "61 mm", False),
         ("carrier.open_width", "13 mm", False),
         ("carrier.shroud_gap", "7 mm", False),

@@ -176,6 +176,7 @@ def test_plus_set_that_cannot_be_driven_back_is_self_locking():
     for name, (count, shift) in teeth.items():
         own["gears"][name] |= {"teeth": count, "profile_shift_coefficient": shift}
     own["gears"]["center_distance"] = "150 mm"
+    own["carrier"] = {"outer_diameter": "333 mm", "width": "60 mm"}
     own["models"] = own.get("models", {}) | {"friction": "schlenk"}
     driven = solved(tables)
     assert driven.train.ratio == pytest.approx(-9999)

@@ -67,6 +67,18 @@ from epicyclic.machine.gear_set import LossChoice
 from epicyclic.machine.pocket_flow import PocketSettings
 from epicyclic.registry import load, offered
 
+ONLY_WITH: dict[tuple[str, str], tuple[tuple[str, ...], tuple[str, ...]]] = {
+    ("models", "constant_friction"): (("friction",), ("constant",)),
+    ("models", "fluid_friction"): (("friction",), ("matsumoto", "doleschel")),
+    ("models", "application_factor"): (("friction",), ("niemann-winter",)),
+    ("models", "mesh_load_factor"): (("friction",), ("niemann-winter",)),
+    ("models", "fitted_form"): (("friction", "rolling", "bearing"), ("fitted",)),
+    ("models", "oil_beyond_range"): (("friction", "rolling", "bearing"), ("mixed-ehl",)),
+    ("models", "pocket_void_pressure"): (("pocketing",), ("incompressible",)),
+    ("contact_solver", ""): (("friction",), ("ehl-direct",)),
+    ("thermal", ""): (("temperatures",), ("flank", "network")),
+}
+"""Keys, and tables, that have an effect only if the names of some models contain some words."""
 GENERAL = {
     "friction": "mixed-lubrication",
     "rolling": "goksem-hargreaves",

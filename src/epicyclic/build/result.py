@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from epicyclic.build.machine import Built
-from epicyclic.build.models import SetCase, oil_share, standing_of
+from epicyclic.build.models import ONLY_WITH, SetCase, oil_share, standing_of
 from epicyclic.case.case import Case, TrainCase
 from epicyclic.case.tables.models import LoadSharing
 from epicyclic.case.tables.operation import SHARE_KEY
@@ -38,6 +38,7 @@ from epicyclic.machine.planets import SHARING_METHODS, BearingFigures
 from epicyclic.machine.pocket_flow import oil_in_mesh
 from epicyclic.machine.shaft_parts import ShaftBearing
 from epicyclic.machine.solve import Solution, stage_torques
+from epicyclic.oil.oil import oil_state
 from epicyclic.result.result import (
     HeatBalance,
     HeatPath,
@@ -82,6 +83,10 @@ BEARING_PRESSURE = 4.0e9
 """Pressure of a roller on its race at the static load rating of ISO 76 (general knowledge). [Pa]"""
 IDLE_PART = 0.3  # Part of the most loaded roller without load from which a result says so. [1]
 SOFT = 20e9  # Modulus below which a material is a plastic: metals have 40 GPa or more. [Pa]
+WARM = 343.15  # Where the slope of the viscosity is looked at, 70 degC. [K]
+LEAST_SLOPE, LARGEST_SLOPE = 1.0, 5.5
+"""Slopes of ASTM D341 between which all lubricants are: silicones have 1.2, oils of a viscosity
+index below zero 4.6, by viscosities from general knowledge. [1]"""
 LEAST_CONTACT = 0.75  # Share of the contact lines that carries below which a result says so. [1]
 
 
@@ -125,11 +130,23 @@ def _remarkable(found: GearSetResult, name: str) -> bool:
 def _notes_of_tables(case: SetCase) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What is known before anything is solved: what comes before the other notes, and behind."""
     before: list[str] = list(map(Note, (*fluid_notes(case), *lubrication_notes(case))))
+    oil = case.lubricant.oil
+    if not LEAST_SLOPE < oil_state(oil, WARM).d341_slope < LARGEST_SLOPE:
+        before.append(
+            f"The viscosity of {oil.name} changes with temperature as that of no lubricant does: "
+            "correct it at one of its temperatures."
+        )
     before += [*load_notes(case), *tooth_notes(case.gearing)]
     behind = [*case.found, *spacing_notes(case.gearing)]
     if case.gearing.listed and case.models.mesh_loads == "without-losses":
         without = "models.mesh_loads = without-losses"
         behind.append(f"{without} has no effect on a set whose gears are listed.")
+    for key in sorted(case.models.model_fields_set & {key for _, key in ONLY_WITH}):
+        roles, words = ONLY_WITH["models", key]
+        chosen = [case.chosen.get(role, "") for role in roles]
+        changed = getattr(case.models, key) != type(case.models).model_fields[key].default
+        if changed and not any(word in name for word in words for name in chosen):
+            behind.append(f"models.{key} has no effect with models.{roles[0]} = {chosen[0]}.")
     return tuple(before), tuple(map(Note, behind))
 
 
@@ -283,7 +300,8 @@ def general_notes(
         if term.left_out:
             missing.setdefault(term.left_out, []).append(term.name)
         elif term.factor != 1.0:
-            yield Note(f"{term.name} is multiplied by {term.factor:g}.")
+            text = f"{in_words(term.name)} is multiplied by {term.factor:g}."
+            yield Note(text, abs(term.watts - term.watts / term.factor)) if term.factor else text
     for reason, names in missing.items():
         yield f"{NOT_INCLUDED}: {', '.join(names)} ({reason})."
     if efficiency == 0.0 and input_power > 0:
@@ -505,6 +523,10 @@ def _set_notes(built: Built, solution: Solution) -> Iterator[str]:
             for name, discs in built.sets[key].discs.items()
             if solution.speeds[discs[0].body] != 0
         }
+        discs, oil = chain(*built.sets[key].discs.values()), own.lubrication
+        if oil is not None and oil.method == "dip" and not any(it.dips for it in discs):
+            idle = "no turning part reaches the oil of the sump."
+            yield Note(f"{key}: {idle}") if key else idle
         for note in case_notes(own, found, turning):
             yield Note(f"{key}: {note}", note_watts(note)) if key else note
     for result in solution.results.values():

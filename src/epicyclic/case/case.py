@@ -688,9 +688,6 @@ def _texts(value: Any) -> Iterator[str]:
             yield from _texts(item)
 
 
-# --- sets -----------------------------------------------------------------------------------------
-
-
 class _ReadSet(NamedTuple):
     table: SetTable | None  # None if a table of it is not valid by itself.
     problems: list[Problem]
@@ -783,9 +780,6 @@ def _complete(
     if not problems and (table.planet_bearing or table.planet_bearings or table.planet_pin):
         told = (*told, *places_told(whole))
     return (table, whole), told, list(dict.fromkeys(problems))
-
-
-# --- bearings, seals, drags -----------------------------------------------------------------------
 
 
 _SHAFTS = ("sun", "ring", "carrier")

@@ -11,12 +11,10 @@ from typing import Any
 from epicyclic.case.gear_tables import SetMesh
 from epicyclic.case.train_tables import ListedMesh
 from epicyclic.errors import Problem
+from epicyclic.gears.assembly import MOST_SHIFTED, reach_problems
 from epicyclic.gears.gear import CARRIER
 from epicyclic.gears.gearing import Gearing, GearPairing
 from epicyclic.messages import did_you_mean, written
-
-MOST_SHIFTED = 4
-"""Teeth by which profile shifts let sun and two planets differ from the ring; an estimate. [1]"""
 
 Parts = Mapping[str, Any]  # The tables of a set by their keys, as ``dict(table)`` gives them.
 
@@ -163,7 +161,7 @@ def _listed(parts: Parts, joined: set[str]) -> tuple[Gearing, list[Problem]]:
             meshes.append(_listed_pairing(parts, one, two))
     gearing = Gearing(bodies, tuple(planets), tuple(meshes), listed=True, count=parts["planets"])
     if "gears" not in parts:
-        return gearing, problems
+        return gearing, [*problems, *reach_problems(gearing)]
     central = [gear for gear, body in bodies.items() if body not in planets]
     drags = {f"{gear}_drag": (gear,) for gear in central}
     return replace(gearing, tables=gears, shared=parts["gears"], drags=drags), problems

@@ -142,7 +142,7 @@ def parameter_of(case: BaseModel, key: str, varied: Collection[str] = ()) -> Par
         return Problem(key, "", "is not a known key.", remedy)
     quantity = quantity_of(*found)
     if not is_continuous(found, quantity):
-        return Problem(key, "", "is not a continuous number.", "Fit a key that is.")
+        return Problem(key, "", "is not a continuous number.", "Name a key that is.")
     if key in varied:
         return Problem(key, "", "is given by a column of the table.", "Fit another key.")
     stated = value_of(case, key)

@@ -62,6 +62,7 @@ if TYPE_CHECKING:
 
 MOST_COEFFICIENTS = 5_000_000
 """Largest number of influence coefficients for each contact line: 40 MB, for three lines 120 MB."""
+MOST_LONGER = 3.0  # A bearing over the faces of its planet, which may have a hub; estimate. [1]
 
 
 def cross_check(
@@ -90,6 +91,8 @@ def cross_check(
         yield from check_ways_out(thermal, models.temperatures, own)
     if gearing is not None:
         yield from set_problems(gearing) if fresh is None else ()
+        if isinstance(carrier := sections.get("carrier"), Carrier):
+            yield from _too_small(carrier, gearing)
         for key in ("planet_bearing", "planet_pin"):
             bearing = sections.get(key) if fresh is None or key in fresh else None
             if isinstance(bearing, PlanetBearing | PlanetPin) and gearing.planets:
@@ -120,6 +123,15 @@ def _too_open(carrier: Carrier) -> list[Problem]:
     return [Problem("carrier.open_width", millimetres(carrier.open_width), allowed, remedy)]
 
 
+def _too_small(carrier: Carrier, gearing: Gearing) -> Iterator[Problem]:
+    """A carrier must reach the pins of its planets."""
+    circle = 2 * max(gearing.pin_radii(gearing.distances).values(), default=0.0)
+    if carrier.outer_diameter < circle:
+        allowed = f"must reach the circle of the pins, {millimetres(circle)}."
+        shown = millimetres(carrier.outer_diameter)
+        yield Problem("carrier.outer_diameter", shown, allowed, "Give its outside.")
+
+
 def check_bores(
     gearing: Gearing,
     key: str,
@@ -129,9 +141,16 @@ def check_bores(
     """A bearing must fit into the root circles of its planets."""
     sound, _ = gears_by_name(gearing)  # others are reported with the gears
     bore = bearing.pin_diameter + bearing.diametral_clearance
+    longest, length = f"{key}.length", getattr(bearing, "length", 0.0)
     if isinstance(bearing, PlanetBearing):
         bore += 2 * bearing.roller_diameter
+        longest = f"{key}.roller_length"
+        length = bearing.rows * (bearing.roller_length + bearing.row_gap) - bearing.row_gap
     for body in planets:
+        width = sum(sound[it].face_width for it in gearing.gears_of(body) if it in sound)
+        if length > MOST_LONGER * width > 0:
+            reason = f"is {millimetres(length)} in all, in planets {millimetres(width)} wide."
+            yield Problem(longest, "", reason, "Correct the lengths, or the face width.")
         roots = [sound[it].root_radius for it in gearing.gears_of(body) if it in sound]
         if roots and bore >= 2 * min(roots):
             allowed = f"the planet's bore of {millimetres(bore)} reaches its root circle of "
@@ -168,8 +187,10 @@ def listed_problems(table: ListedSet, gearing: Gearing) -> list[Problem]:
             remedy = did_you_mean(name, known) or f"The losses are {', '.join(known)}."
             problems.append(Problem(f"losses.{name}", "", "is not a loss of this set.", remedy))
     problems += _planet_problems(table, gearing)
-    if table.carrier is not None and table.carrier.open_width > table.carrier.width:
-        problems += _too_open(table.carrier)
+    if table.carrier is not None:
+        problems += _too_small(table.carrier, gearing)
+        if table.carrier.open_width > table.carrier.width:
+            problems += _too_open(table.carrier)
     return [*problems, *_sharing_problems(table)]
 
 
@@ -525,8 +546,7 @@ def _of_bearings(shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Prob
     if len(own) == 2 and len(places) == 2 and abs(places[0] - places[1]) < nearest:
         key = f"bearings.{next(iter(own))}.position"
         allowed = f"is {millimetres(abs(places[0] - places[1]))} from the other bearing of {shaft}."
-        remedy = "Bearings are wider than that; correct one of the two."
-        yield Problem(key, millimetres(places[0]), allowed, remedy)
+        yield Problem(key, millimetres(places[0]), allowed, "Correct one: bearings are wider.")
 
 
 def _of_gears(train: TrainCase, shaft: str, own: dict[str, ShaftBearingTable]) -> Iterator[Problem]:

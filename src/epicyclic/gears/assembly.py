@@ -21,9 +21,29 @@ from epicyclic.messages import millimetres
 SAME_PITCH = 1e-6
 """Base pitches and helix angles that differ by less, relatively and in radians, are equal. [1]"""
 SAME_PLACE = 1e-7  # Pin radii and overlaps that differ by less are equal: rounding of drawings. [m]
+MOST_SHIFTED = 4
+"""Teeth by which profile shifts let sun and two planets differ from the ring; an estimate. [1]"""
 MOST_PLANETS = 99
 ANGLE_TOLERANCE = math.radians(0.01)
 """Given planet positions may differ by this from an admissible one: drawing precision. [rad]"""
+
+
+def reach_problems(gearing: Gearing) -> Iterator[Problem]:
+    """Gears of planets that cannot mesh with all their central gears from one place, by teeth."""
+    reaches: dict[str, dict[str, float]] = {}
+    for mesh in gearing.meshes:
+        if (central := gearing.central_gear(mesh)) is not None:
+            (planet,) = {mesh.first, mesh.second} - {central}
+            one, two = mesh.teeth
+            reaches.setdefault(planet, {})[central] = two - one if mesh.internal else one + two
+    for planet, reach in reaches.items():
+        if max(reach.values()) - min(reach.values()) > MOST_SHIFTED:
+            told = ", ".join(f"{count:g} with {name}" for name, count in reach.items())
+            allowed = (
+                f"cannot be: sums of teeth, differences with rings, must be alike, and are {told}."
+            )
+            remedy = "Correct them, or write internal = true at ring gears."
+            yield Problem(f"gears.{planet}.teeth", "", allowed, remedy)
 
 
 def set_problems(gearing: Gearing) -> list[Problem]:
@@ -45,9 +65,6 @@ def set_problems(gearing: Gearing) -> list[Problem]:
     # a planet that cannot be cut is found in both meshes, and so is a wrong centre distance
     told = {("center_distance" in it.key and (it.key, it.remedy)) or it: it for it in problems}
     return list(told.values())
-
-
-# --- gears ----------------------------------------------------------------------------------------
 
 
 def rack_problems(gearing: Gearing) -> Iterator[Problem]:
@@ -90,9 +107,6 @@ def _hand_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
         allowed += "." if len(stated) == 2 else ", which contradicts the other hands given."
         keys = ", ".join(f"gears.{gear}.hand" for gear in stated or own)
         yield Problem(keys, shown, allowed, "Correct or leave out hand.")
-
-
-# --- meshes ---------------------------------------------------------------------------------------
 
 
 def _distance_problems(gearing: Gearing) -> Iterator[Problem]:
@@ -204,9 +218,6 @@ def _mesh_problems(gearing: Gearing, sound: Mapping[str, Gear]) -> Iterator[Prob
 
 def _degrees(angle: float) -> str:
     return f"{math.degrees(angle):.6g} deg"
-
-
-# --- assembly -------------------------------------------------------------------------------------
 
 
 def _assembly_problems(

@@ -196,9 +196,6 @@ def bearing_types(model: str) -> tuple[BearingType, ...]:
     return tuple(kind for kind in BEARING_TYPES if model != "harris" or kind != "needle")
 
 
-# --- Palmgren and Harris --------------------------------------------------------------------------
-
-
 def friction_load(bearing: CatalogueBearing, load: BearingLoad) -> float:
     """Load P1 that sets the load-dependent friction of a bearing. Theory (J1). [N]
 
@@ -342,9 +339,6 @@ class WithoutCoefficient(Flagged):
         return math.nan
 
 
-# --- table of the user ----------------------------------------------------------------------------
-
-
 @dataclass(frozen=True, slots=True)
 class TableModel(WithoutCoefficient):
     """Friction of a bearing from a table over speed, temperature or radial force."""
@@ -376,9 +370,6 @@ class TableModel(WithoutCoefficient):
         return self.table.flags(
             use, speed=speed, temperature=oil.temperature, radial_force=load.radial
         )
-
-
-# --- preload --------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -419,9 +410,6 @@ def preload_of(displacement: float, springs: tuple[AxialSpring, AxialSpring]) ->
     while excess(high) < 0:
         high *= 2
     return float(brentq(excess, 0, high))
-
-
-# --- load and range -------------------------------------------------------------------------------
 
 
 def minimum_load(

@@ -145,9 +145,6 @@ def mesh_rows(key: str, gearing: Gearing, bodies: Mapping[str, str]) -> Iterator
         )
 
 
-# --- shafts ---------------------------------------------------------------------------------------
-
-
 def shape_of_train(
     sets: Mapping[str, Gearing], shafts: Mapping[str, Sequence[str]]
 ) -> tuple[TrainShape, list[Problem]]:
@@ -193,9 +190,6 @@ def _no_member(key: str, name: str, members: Sequence[str], sets: Mapping[str, G
         return Problem(key, written(name), allowed, f"Join {owner}.{CARRIER}, or another member.")
     remedy = did_you_mean(name, members) or f"The members are {', '.join(members)}."
     return Problem(key, written(name), "is not a member of a set.", remedy)
-
-
-# --- operation ------------------------------------------------------------------------------------
 
 
 class StatedOperation(Protocol):

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
+from epicyclic.build.models import ONLY_WITH
 from epicyclic.case.case import KINDS
 from epicyclic.case.tables.elements import ElementTables
 from epicyclic.case.train_tables import form_of_set
@@ -29,18 +30,6 @@ _LISTED, _MEMBERS = "gears", "members"
 _OF_LOSSES = ("lubrication", "surroundings", "models", "contact_solver", "numerics")
 _TITLES_OF_PARTS = {"bearings": "Shaft bearings", "drags": "Other drags"}
 Path = tuple[str | int, ...]
-_ONLY_WITH: dict[tuple[str, str], tuple[tuple[str, ...], tuple[str, ...]]] = {
-    ("models", "constant_friction"): (("friction",), ("constant",)),
-    ("models", "fluid_friction"): (("friction",), ("matsumoto", "doleschel")),
-    ("models", "application_factor"): (("friction",), ("niemann-winter",)),
-    ("models", "mesh_load_factor"): (("friction",), ("niemann-winter",)),
-    ("models", "fitted_form"): (("friction", "rolling", "bearing"), ("fitted",)),
-    ("models", "oil_beyond_range"): (("friction", "rolling", "bearing"), ("mixed-ehl",)),
-    ("models", "pocket_void_pressure"): (("pocketing",), ("incompressible",)),
-    ("contact_solver", ""): (("friction",), ("ehl-direct",)),
-    ("thermal", ""): (("temperatures",), ("flank", "network")),
-}
-"""Keys, and tables, that have an effect only if the names of some models contain some words."""
 
 
 def input_tables(
@@ -103,7 +92,7 @@ class _Source:
         tables = [(str(part), "") for part in path]
         keys = [(str(table), str(key)) for table, key in itertools.pairwise(path)]
         for place in (*tables, *keys):
-            models, words = _ONLY_WITH.get(place, ((), ()))
+            models, words = ONLY_WITH.get(place, ((), ()))
             used = [self.used[model] for model in models if model in self.used]
             if used and not any(word in names for word in words for names in used):
                 return _is_given(path, self.given)

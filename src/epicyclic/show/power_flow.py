@@ -172,9 +172,6 @@ def _members(stage: str, shaft: str, shafts: Mapping[str, Sequence[str]]) -> lis
     ]
 
 
-# --- loops ----------------------------------------------------------------------------------------
-
-
 def _with_loops(links: Sequence[Link]) -> tuple[Link, ...]:
     """Links with the power that circulates: loops are taken out one by one, the shortest first."""
     left = [abs(link.power) for link in links]

@@ -65,7 +65,7 @@ def case_template(kind: str) -> str:
         return f"{_TRAIN_HEAD}{mark}{tables}{_TRAIN_STATES}"
     name = _EXAMPLES[kind]
     head = [
-        f"A case file of epicyclic, kind {kind}, filled in with the built-in case {name}.",
+        f"A case file of epicyclic, kind {kind}: {name} with the default models.",
         "Every dimensional value carries its unit. Commented-out keys have defaults.",
     ]
     # a case of one's own starts from the default models

@@ -39,9 +39,6 @@ MOST_STEPS, STEP = 6, 4.0
 """In search of a temperature on the other side of the wanted one: how many, how far. [1]"""
 
 
-# --- what a result says about its temperatures ----------------------------------------------------
-
-
 def heat_balance(case: CaseSource) -> HeatBalance:
     """Temperatures of all parts of a gearbox, and the heat paths.
 
@@ -123,9 +120,6 @@ def beyond_range(case: Case, result: Result) -> BeyondRange | None:
     assert high is not None
     loaded = sum(term.watts for term in result.terms if term.group == LOAD_DEPENDENT)
     return BeyondRange(watts / loaded, low, high)
-
-
-# --- what leads to a temperature ------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

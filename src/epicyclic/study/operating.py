@@ -66,7 +66,7 @@ def key_of(array: xr.DataArray) -> str:
 
 def operating_line(operation: Mapping[str, Any]) -> str:
     """The operating point, the table ``operation`` of a case, in one line; without varied keys."""
-    words = [operation["speed"]] if "speed" in operation else []
+    words = [RPM.text(RPM.parse(operation["speed"]))] if "speed" in operation else []
     if "torque" in operation:
         words.append(torque_text(NEWTON_METRE.parse(operation["torque"])))
     if {"input", "output"} <= operation.keys():
@@ -78,5 +78,5 @@ def operating_line(operation: Mapping[str, Any]) -> str:
     if operation.get("fixed"):
         words.append(f"{operation['fixed']} fixed")
     if "oil_inlet_temperature" in operation:
-        words.append(f"oil at {operation['oil_inlet_temperature']}")
+        words.append(f"oil at {CELSIUS.text(CELSIUS.parse(operation['oil_inlet_temperature']))}")
     return unit_text(", ".join(words))

@@ -271,9 +271,7 @@ class BearingSealTable(Table):
 
 _OF_TAPERED = ("rollers", "roller_diameter", "roller_length", "rib_height", "rib_roughness")
 _OF_OTHERS = {"cylindrical": 3, "thrust-roller": 3, "deep-groove": 2, "thrust-ball": 2}  # of these
-
-
-_THICKEST = 6.0  # Outside diameter over bore that no bearing has; a 633 has 4.3 (catalogues). [1]
+_THINNEST, _THICKEST = 1.03, 6.0  # D over d: thin sections have 1.04, a 633 4.3 (catalogues). [1]
 
 
 class ShaftBearingTable(ElementTable):
@@ -402,8 +400,9 @@ class ShaftBearingTable(ElementTable):
         if self.bore >= self.outside_diameter:
             reason = f"must be less than outside_diameter, {millimetres(self.outside_diameter)}."
             yield Problem("bore", millimetres(self.bore), reason, "Correct one of the two.")
-        elif self.outside_diameter > _THICKEST * self.bore:
-            shown, reason = millimetres(self.outside_diameter), f"is over {_THICKEST:g} bores."
+        elif not _THINNEST < self.outside_diameter / self.bore < _THICKEST:
+            shown = millimetres(self.outside_diameter)
+            reason = f"must be {_THINNEST:g} to {_THICKEST:g} times the bore."
             yield Problem("outside_diameter", shown, reason, "Correct one of the two.")
         if (kind, self.cage) not in TYPE_CONSTANTS:
             remedy = 'Write cage = "caged", or choose cylindrical or needle rollers.'

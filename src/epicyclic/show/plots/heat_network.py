@@ -152,9 +152,6 @@ def _power(watts: float) -> str:
     return f"{format_number(watts / (1e3 if large else 1), 3)} {'kW' if large else 'W'}"
 
 
-# --- where everything stands ----------------------------------------------------------------------
-
-
 def _layout(heat: HeatBalance) -> _Layout:
     every = list(_all_flows(heat))
     flows = tuple(flow for flow in every if flow.watts >= SMALLEST)
@@ -217,9 +214,6 @@ def _outside(layout: _Layout) -> dict[str, tuple[float, float]]:
     return places | dict.fromkeys(around, (sum(layout.shell) / 2, OUTSIDE - 0.1))
 
 
-# --- boxes ----------------------------------------------------------------------------------------
-
-
 def _write(ax: Axes, x: float, y: float, text: str, size: float, **style: Any) -> None:
     ax.text(x, y, text, va="center", fontsize=size, color=INK, **style)
 
@@ -275,9 +269,6 @@ def _rail(ax: Axes, layout: _Layout, node: str, ends: tuple[float, float], y: fl
     start = layout.edge if node == OIL and layout.has_housing else left
     size = _fit(text, right - start - 0.2, 12)
     _write(ax, start + 0.1, y, text, size, fontweight="bold", zorder=7)
-
-
-# --- arrows ---------------------------------------------------------------------------------------
 
 
 def _draw(ax: Axes, layout: _Layout, flow: _Flow) -> None:
@@ -366,9 +357,6 @@ def _across(ax: Axes, layout: _Layout, flow: _Flow) -> None:
 def _band(low: tuple[float, float], high: tuple[float, float]) -> list[tuple[float, float]]:
     """Corners of a rectangle."""
     return [low, (high[0], low[1]), high, (low[0], high[1])]
-
-
-# --- legend ---------------------------------------------------------------------------------------
 
 
 def _legend(ax: Axes, layout: _Layout) -> None:

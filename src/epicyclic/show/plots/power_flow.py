@@ -166,9 +166,6 @@ def _torque(value: float) -> str:
     return torque_text(0.0 if abs(value) < NO_POWER else abs(value), 4)
 
 
-# --- where everything stands ----------------------------------------------------------------------
-
-
 def _layout(flow: TrainFlow) -> _Layout:
     most = max((abs(link.power) for link in flow.links), default=0.0)
     busy = {link.line for link in flow.links if abs(link.power) > NO_POWER * most}
@@ -249,9 +246,6 @@ def _ordered_lines(flow: TrainFlow, stages: list[str], lines: list[str]) -> list
         return total
 
     return _in_best_order(lines, effort)
-
-
-# --- lines ----------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -395,9 +389,6 @@ def _draw_loss(ax: Axes, start: tuple[float, float], tip: float, width: float) -
     ax.add_patch(Polygon(points, closed=True, color=LOST, lw=0, zorder=3.5))
 
 
-# --- sets -----------------------------------------------------------------------------------------
-
-
 def _draw_spine(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
     """What joins the boxes of a set to its card and its brakes, and the power within it."""
     links = layout.crossing(stage)
@@ -493,9 +484,6 @@ def _draw_grounds(ax: Axes, layout: _Layout, stage: str, x: float) -> None:
         for low, words, colour in ((0.42, name, INK), (0.6, _torque(link.torque), SOFT)):
             size = _fit(words, room, 10)
             ax.text(at, GROUNDS - low, words, ha="center", va="top", fontsize=size, color=colour)
-
-
-# --- legend ---------------------------------------------------------------------------------------
 
 
 def _draw_legend(ax: Axes, layout: _Layout, entering: float) -> None:

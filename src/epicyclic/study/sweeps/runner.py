@@ -240,7 +240,7 @@ def read_heading(path: Path) -> tuple[str, dict[str, Any]]:
                 strange += 1 + len(line) // _LONG
     except OSError as error:
         raise _error(path, f"cannot be read: {error.strerror}.") from None
-    raise _error(path, "does not state the study of its points.")
+    raise _error(path, "is no file of a shard, or of an interrupted study.")
 
 
 _CHECK = b',"check":"%08x"}'
