@@ -322,6 +322,13 @@ def test_gears_of_given_efficiency_stand_at_one_distance(ring, fits):
     assert "internal = true" in only(problems_of(ep.load_case, tables)).remedy
 
 
+def test_a_seal_is_on_a_shaft_that_turns():
+    tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
+    tables["seals"]["motor_seal"]["shaft"] = "housing"
+    problem = only(problems_of(ep.load_case, tables))
+    assert (problem.key, problem.remedy) == ("seals.motor_seal.shaft", "Name a shaft.")
+
+
 def test_sizes_that_no_bearing_has():
     tables = copy.deepcopy(dict(ep.load_case("train-eaxle").given()))
     tables["bearings"]["motor_rear"] |= {"position": "0.06 mm", "outside_diameter": "710 mm"}

@@ -276,6 +276,15 @@ def test_bad_files_are_refused(folder, old, new, message):
         read_sets(file)
 
 
+def test_limits_are_in_order(folder):
+    file = folder / "ours.toml"
+    points = "[[1000, 100, 99.3, 99.1, 99.2], [2000, 100, 99.1, 99.6, 99.4]]"
+    text = SET.replace("[[1000, 100, 99.2], [2000, 100, 99.4]]", points)
+    file.write_text(text.replace('"efficiency [%]"', '"low", "high", "efficiency [%]"'))
+    with pytest.raises(ep.InputError, match=r"set ours: point 1: has a low limit above the high"):
+        read_sets(file)
+
+
 def test_a_case_is_no_file_of_measurements(folder):
     file = folder / "case.toml"
     file.write_text('kind = "train"\n[operation]\ninput = "a"\n')

@@ -244,7 +244,8 @@ def _problems(table: _SetTable, quantity: str, unit: str, case: Case) -> Iterato
         if part not in known:
             allowed = f"is not a loss of the case; its losses are {', '.join(known)}."
             yield Problem(f"{key}: component", part, allowed, "Choose one of these.")
-    ends = [place for place, head in enumerate(table.columns[:-1]) if _column(head)[0] in _ENDS]
+    heads = [_column(head)[0] for head in table.columns[:-1]]
+    ends = [heads.index(name) for name in _ENDS if name in heads]
     for number, row in enumerate(table.points, 1):
         if len(row) != len(table.columns):
             allowed = f"has {len(row)} values for {len(table.columns)} columns."
@@ -252,6 +253,9 @@ def _problems(table: _SetTable, quantity: str, unit: str, case: Case) -> Iterato
         elif any(isinstance(row[place], str) for place in (*ends, -1)):
             allowed = "has text for what was measured."
             yield Problem(f"{key}: point {number}", "", allowed, "Give a number in the unit.")
+        elif len(ends) == 2 and float(row[ends[0]]) > float(row[ends[1]]):
+            allowed = "has a low limit above the high one."
+            yield Problem(f"{key}: point {number}", "", allowed, "Exchange them.")
     if quantity == "mean_friction" and math.isnan(table.loss_factor):
         allowed = "is missing; losses follow from friction with it."
         yield Problem(f"{key}: loss_factor", "", allowed, "Give H_V as the source has it.")

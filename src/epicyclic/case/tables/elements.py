@@ -209,10 +209,11 @@ class ElementTable(Table):
 
     def problems(self) -> Iterator[Problem]:
         """What contradicts itself, or is missing; keys are relative to the table."""
-        (_, first), (key, second) = self.bodies.items()
+        (own, first), (key, second) = self.bodies.items()
         if first == second:
             reason = "names the same body twice, so there is no relative motion."
-            yield Problem(key, written(second), reason, f'Name another shaft, or "{HOUSING}".')
+            key, other = (own, "a") if first == HOUSING else (key, "another")
+            yield Problem(key, written(second), reason, f"Name {other} shaft.")
 
     def points(self, folder: Path) -> LossTable | None:
         """Its torque or power if it states a table; raises `InputError` for a bad file."""

@@ -170,10 +170,10 @@ def draw_front(found: Found, ax: Axes) -> Axes:
         line, alpha = ("-", 1.0) if name == FRONT else ("none", 0.45)
         places = SHOWN[one][1] * rows[one], SHOWN[two][1] * rows[two]
         ax.plot(*places, marker=marker, linestyle=line, alpha=alpha, label=name)
-    for place in found.chosen:
+    for turn, place in enumerate(found.chosen):  # labels above and below in turn
         row = found.table.loc[place]
         at = (SHOWN[one][1] * row[one], SHOWN[two][1] * row[two])
-        ax.annotate(f"{place}", at, textcoords="offset points", xytext=(6, 6))
+        ax.annotate(f"{place}", at, textcoords="offset points", xytext=(6, 6 - 18 * (turn % 2)))
     ax.set(xlabel=SHOWN[one][0], ylabel=SHOWN[two][0])
     ax.legend()
     return ax
