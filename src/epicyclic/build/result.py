@@ -543,7 +543,7 @@ def _solution_notes(case: Case, settled: Settled) -> Iterator[str]:
     if isinstance(case, TrainCase) and getattr(case.lubrication, "oil_level", None) is not None:
         tables = (table.lubrication for _, table in case.computed_sets)
         if case.lubrication not in tables:
-            yield "lubrication.oil_level has no effect: no set dips by it."
+            yield Note("lubrication.oil_level has no effect: no set dips by it.")
     if solution.jammed and isinstance(case, TrainCase):
         yield (
             "Self-locking: under this torque on the input, friction in the meshes keeps the "
