@@ -265,9 +265,6 @@ def _error(path: Path, option: str, allowed: str, remedy: str) -> InputError:
     return InputError([Problem(option, str(path), allowed, remedy)], "the command")
 
 
-# --- private folders, and what killed writers leave of them ---------------------------------------
-
-
 @contextmanager
 def _private_folder(parent: Path) -> Iterator[Path]:
     """A new folder that nobody else may enter, locked while it is in use.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,8 +26,8 @@ from epicyclic.cli.common import (
     table_options,
     wrong_ending,
 )
-from epicyclic.cli.many import Write, compute, tell_warnings
-from epicyclic.errors import Problem, raise_any
+from epicyclic.cli.many import Write, compute, warn_at
+from epicyclic.errors import ConvergenceError, Problem, raise_any
 from epicyclic.files import check_place, write_file
 
 if TYPE_CHECKING:
@@ -165,10 +166,13 @@ def duty_writer(
 def _result(
     data: xr.Dataset, cycle: Cycle, celsius: tuple[float, ...] | None, clamp: bool, runner: Runner
 ) -> xr.Dataset:
-    from epicyclic.study.maps.duty import add_up, make_duty
+    from epicyclic.study.maps.duty import add_up, costliest, make_duty
 
     with progress_bar("rows") as progress:
         sums = add_up(data, cycle, celsius, clamp=clamp, progress=progress)
+    with suppress(ConvergenceError):  # the map was interpolated there
+        if (case := costliest(data, sums)) is not None:
+            warn_at(case)
     with progress_bar("checked points") as progress:
         return make_duty(data, cycle, sums, replace(runner, progress=progress))
 
@@ -232,7 +236,6 @@ def _map(
         plan = cycle_plan(case, cycle, celsius)
         rows = replace(runner, progress=progress).within(plan).run(plan)
     data = to_map(plan, rows)
-    tell_warnings(plan, rows, " of a map over its ranges")
     if map_file is not None:
         _write_map(data, map_file)
     return data

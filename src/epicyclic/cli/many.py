@@ -362,20 +362,23 @@ def _print_thin_teeth(rows: Rows) -> None:
         )
 
 
-def tell_warnings(plan: MapPlan, rows: Rows, where: str = "") -> None:
-    """Say what `run` would warn of where most is lost, and `where` that is."""
+def tell_warnings(plan: MapPlan, rows: Rows) -> None:
+    """Say what `run` would warn of where most is lost."""
     from numpy import nan_to_num
 
+    worst = int(nan_to_num(rows.numbers("total"), nan=-1.0).argmax())
+    if rows.warnings[worst]:
+        warn_at(plan.case.updated(plan.changes(worst)))
+
+
+def warn_at(case: Case) -> None:
+    """Say what `run` warns of at this point, the one with the greatest loss."""
     from epicyclic.show.summary import first_warnings
     from epicyclic.study.solve import solve
 
-    worst = int(nan_to_num(rows.numbers("total"), nan=-1.0).argmax())
-    if not rows.warnings[worst]:
-        return
-    case = plan.case.updated(plan.changes(worst))
     found = first_warnings(solve(case))
     if found.items:
-        head = f"{found.title} at the greatest loss{where}: {point_of(case)}"
+        head = f"{found.title} at the greatest loss: {point_of(case)}"
         echo("\n• ".join((head, *found.items)), err=True)
 
 

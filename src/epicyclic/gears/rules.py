@@ -376,8 +376,6 @@ def _check_tip_passage(gearing: Gearing, mesh: Mesh) -> Iterator[Problem]:
         yield Problem(key, shown, allowed, remedy)
 
 
-# --- backlash ---
-
 ROUNDING = 1e-9  # Clearances count as negative beyond this: drawings may state exactly zero. [m]
 
 LARGEST_SHIFT = 1.2
@@ -477,9 +475,6 @@ def _other_sign(gearing: Gearing, mesh: Mesh) -> str:
         return ""
     hint = f" With the other sign, {-shift:g}, x of the {ring.name} fits: in ISO 21771 "
     return f"{hint}positive x thickens the teeth."
-
-
-# --- flanks ---
 
 
 @dataclass(frozen=True, slots=True)

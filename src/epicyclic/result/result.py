@@ -669,9 +669,6 @@ def _members_dict(flow: PowerFlow) -> dict[str, Any]:
     return {name: plain(it) | {"power": plain(it.power, WATT)} for name, it in flow.members.items()}
 
 
-# --- the numbers of every result of a kind --------------------------------------------------------
-
-
 @dataclass(frozen=True, slots=True)
 class NumberField:
     """One number that every result of a kind has."""

@@ -211,8 +211,6 @@ def joined(cases: Sequence[tuple[str, xr.Dataset]]) -> xr.Dataset:
     return data.assign_coords(case=[label for label, _ in cases])
 
 
-# --- chapters 2 and 5 -----------------------------------------------------------------------------
-
 _SETS = {
     "3 shaved": (3, "shaved"),
     "4 shaved": (4, "shaved"),
@@ -440,9 +438,6 @@ TOPICS = {
 """Which published numbers belong to a chapter: their topic, and a pattern of their pages."""
 
 
-# --- what the source says of each parameter -------------------------------------------------------
-
-
 @dataclass(frozen=True)
 class Influence:
     """What the source says of a parameter, and what is computed for it."""
@@ -492,9 +487,6 @@ def _named(coordinate: xr.DataArray, values: str) -> str:
     """``"face width 35 mm"``"""
     unit = unit_text(str(coordinate.attrs["units"])).removeprefix("1")
     return f"{coordinate.attrs['long_name']} {values} {unit}".rstrip()
-
-
-# --- points and datasets --------------------------------------------------------------------------
 
 
 def _points(*levers: Lever) -> Iterator[dict[str, Any]]:

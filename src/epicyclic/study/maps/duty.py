@@ -20,6 +20,7 @@ from epicyclic.study.maps.compute import (
     Deviation,
     MapPlan,
     Sample,
+    changes_at,
     further_values,
     leave_out,
     map_plan,
@@ -268,6 +269,14 @@ def add_up(
             check_gaps(data)
         totals.append(found)
     return Sums(lookup, celsius, clamp, tuple(totals))
+
+
+def costliest(data: xr.Dataset, sums: Sums) -> Case | None:
+    """The case at the point of the cycle, of those drawn, where most is lost; None if unknown."""
+    case, (rows, _) = map_case(data, further_values(data)), sums.totals[0].sample.drawn()
+    if case is None or not rows.size:
+        return None
+    return case.updated(changes_at(sums.lookup, rows[rows[:, -1].argmax()].tolist()))
 
 
 def make_duty(data: xr.Dataset, cycle: Cycle, sums: Sums, runner: Runner = HERE) -> xr.Dataset:
