@@ -91,8 +91,8 @@ def cross_check(
         yield from check_ways_out(thermal, models.temperatures, own)
     if gearing is not None:
         yield from set_problems(gearing) if fresh is None else ()
-        if isinstance(carrier := sections.get("carrier"), Carrier):
-            yield from _too_small(carrier, gearing)
+        carrier = sections.get("carrier") if fresh is None or "carrier" in fresh else None
+        yield from _too_small(carrier, gearing) if isinstance(carrier, Carrier) else ()
         for key in ("planet_bearing", "planet_pin"):
             bearing = sections.get(key) if fresh is None or key in fresh else None
             if isinstance(bearing, PlanetBearing | PlanetPin) and gearing.planets:

@@ -255,7 +255,8 @@ def torque_interpolation(data: xr.Dataset, case: Case) -> dict[str, str | float]
     for speed, line, own in zip(ends, lines, middles, strict=True):
         exact, direct = direct[: own.size], direct[own.size :]
         with np.errstate(divide="ignore", invalid="ignore"):  # of no loss there is no part
-            error = np.abs(np.interp(own, torques, line["total"].values) / exact - 1).round(12)
+            error = np.interp(own, torques, line["total"].values) / exact - 1
+            error = np.abs(error).round(12)  # less is rounding
         if np.isfinite(error).any():
             worst = int(np.nanargmax(error))
             found.append(float(f"{error[worst]:.2g}"))

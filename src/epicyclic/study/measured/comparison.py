@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 SHRUNK = 1 - 1e-6
 """Factor of coefficients of correlation, so that rounding leaves their matrix possible. [1]"""
+ABOVE = 1.01  # Loss over the power at the input: what a loss equal to it may scatter. [1]
 DIGITS = 8  # Decimals of coefficients of correlation.
 
 
@@ -339,7 +340,7 @@ def notes_on(table: Measurements, computed: Computed) -> Iterator[str]:
     for wrong, what, remedy in (
         (table.loss < 0, "are negative", "they scatter about zero, correct their sign or the zeros "
          "of the torques"),
-        ((table.loss > 1.01 * power) & (power > 0), "exceed the power at the input", "the output "
+        ((table.loss > ABOVE * power) & (power > 0), "exceed the power at the input", "the output "
          "is driven too, correct their unit"),
     ):  # fmt: skip
         rows = np.flatnonzero(wrong)

@@ -197,6 +197,7 @@ _OPERATING_TABLES = (
 
 MESHES_TOGETHER = 324  # Of all points of a block, at most: more take memory and hardly less time.
 FEWEST_TOGETHER = 8  # Points: with fewer there is little to gain, and each ends for itself.
+SAME_LOSS = 1e-9  # Losses that differ by less, relatively, do so by rounding in their blocks. [1]
 SURELY_LONG = 4000  # Meshes of all points: each takes half a millisecond or more.
 MANY, SMALL_BLOCKS = 48, 3  # Points from which on blocks are full, and blocks of fewer, to share.
 
@@ -662,7 +663,7 @@ def idle_keys(plan: SweepPlan, rows: Rows) -> list[str]:
     return [
         axis.key
         for number, axis in enumerate(plan.axes)
-        if len(axis.values) > 1 and np.allclose(total, total.take([0], number), rtol=1e-9, atol=0)
+        if len(axis.values) > 1 and np.allclose(total, total.take([0], number), SAME_LOSS, 0)
     ]
 
 
